@@ -8,7 +8,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::Limb;
 use ik_arm::rig::{LimbSettings, TargetKind};
 
-const FRAMES: Timeline = Timeline { start: 0.0, end: 239.0 / 30.0, frame_rate: 30 };
+const FRAMES: Timeline = Timeline { start: 0.0, end: 239.0 / 30.0, frame_rate: 30.0 };
 
 fn example(name: &str) -> Document {
     let opened = Example::find(name).and_then(|example| example.open().ok());

@@ -19,8 +19,8 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::rig::{LimbSettings, TargetKind};
 
-const WHOLE: Timeline = Timeline { start: 0.0, end: 2.0, frame_rate: 24 };
-const PART: Timeline = Timeline { start: 0.5, end: 1.25, frame_rate: 24 };
+const WHOLE: Timeline = Timeline { start: 0.0, end: 2.0, frame_rate: 24.0 };
+const PART: Timeline = Timeline { start: 0.5, end: 1.25, frame_rate: 24.0 };
 
 /// A random skeleton with moving targets of both kinds, or on a path, and with keys.
 fn random_document(random: &mut Random) -> Document {
@@ -166,7 +166,7 @@ fn baked_examples_move_as_before() {
     for example in Example::ALL {
         let mut document = example.open().expect("it opens").document;
         document.skeleton_rig.targets.iter_mut().for_each(|target| target.influence = 1.0);
-        let frames = Timeline { frame_rate: 12, ..document.timeline };
+        let frames = Timeline { frame_rate: 12.0, ..document.timeline };
         let settings = Bake { frames, ..Bake::of_timeline(&document) };
         if settings.check(&document).is_ok() {
             let baked = bake(&document, &settings);
@@ -202,7 +202,7 @@ fn documents_with_any_numbers_are_baked_or_refused() {
     for _ in 0..40 {
         let mut document = documents::document(&mut random);
         let start = document.timeline.start;
-        document.timeline = Timeline { start, end: start + 0.5, frame_rate: 20 };
+        document.timeline = Timeline { start, end: start + 0.5, frame_rate: 20.0 };
         document.skeleton_rig.solver.iterations = Some(20);
         let _ = Bake::of_timeline(&document).run(&document, |_, _| true);
     }
@@ -316,7 +316,7 @@ fn a_stretched_bone_is_reported_and_what_hangs_on_it_is_kept() {
 #[test]
 fn a_path_is_replaced_by_keys() {
     let document = Example::find("snake").expect("there").open().expect("it opens").document;
-    let frames = Timeline { frame_rate: 10, ..document.timeline };
+    let frames = Timeline { frame_rate: 10.0, ..document.timeline };
     let baked = bake(&document, &Bake { frames, tolerance: 1e-2 });
     assert_eq!(baked.document.skeleton_rig.follow_path, None);
     let root = Channel::Offset(JointId::new(0));
@@ -355,7 +355,7 @@ fn what_cannot_be_baked_is_refused_with_a_reason() {
     refused(
         &document,
         Bake { frames: Timeline { end: -1.0, ..WHOLE }, ..settings },
-        "a bake must start before it ends, within 86400 s of time 0, at 1 to 1000 frames per \
+        "a bake must start before it ends, within 86400 s of time 0, at 0.01 to 1000 frames per \
          second, got 0 s to -1 s at 24",
     );
     refused(

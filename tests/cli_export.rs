@@ -69,7 +69,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 fn moving() -> Document {
-    let timeline = Timeline { start: 1.0, end: 1.2, frame_rate: 10 };
+    let timeline = Timeline { start: 1.0, end: 1.2, frame_rate: 10.0 };
     let mut document = Document { timeline, ..Document::default() };
     for (time, x) in [(1.0, 100.0), (1.2, 300.0)] {
         document.keys.insert(Channel::Hand, time, Vec3::new(x, 200.0, 50.0));
@@ -110,6 +110,23 @@ fn every_format_is_written_and_nothing_else() {
 }
 
 #[test]
+fn frame_rates_need_not_be_whole() {
+    for (said, step) in
+        [("29.97", "0.033366700"), ("30000/1001", "0.03336666"), ("24", "0.041666667")]
+    {
+        let desk = Desk::moving();
+        desk.export("a.bvh", &["--fps", said]);
+        let text = fs::read_to_string(desk.out("a.bvh")).expect("read");
+        let line = text.lines().find(|line| line.starts_with("Frame Time")).expect("there");
+        assert!(line.contains(step), "{said}: {line}");
+        let rate =
+            said.split('/').map(|it| it.parse::<f64>().expect("a number")).reduce(|a, b| a / b);
+        let opened = io::open(&desk.out("a.bvh"), None).expect("it opens").document;
+        assert!((opened.timeline.frame_rate - rate.expect("a rate")).abs() < 1e-9, "{said}");
+    }
+}
+
+#[test]
 fn bvh_round_trips_in_the_chosen_unit() {
     let desk = Desk::new(Example::find("human").expect("there").text);
     desk.export("a.bvh", &["--unit", "m"]);
@@ -145,11 +162,11 @@ fn standard_input_is_exported() {
 fn what_the_format_cannot_hold_is_reported_on_stderr() {
     let mut document = moving();
     for (time, length) in [(1.0, 200.0), (1.2, 210.0)] {
-        document.keys.insert(Channel::Upper, time, Vec3::new(length, 0.0, 0.0));
+        document.keys.insert(Channel::Lower, time, Vec3::new(length, 0.0, 0.0));
     }
     let desk = Desk::new(&io::to_json(&document).expect("written"));
     let said = desk.export("a.bvh", &[]);
-    assert!(said.starts_with("ik-arm: the length of the upper limb changes"), "{said}");
+    assert!(said.starts_with("ik-arm: the last bone of \"lower\" changes"), "{said}");
 }
 
 // Pictures
@@ -234,7 +251,7 @@ fn an_export_cancelled_midway_leaves_no_file() {
     let desk = Desk::moving();
     let mut document = moving();
     document.timeline.end = 100.0;
-    let options = ExportOptions { size: (40, 40), fps: Some(1000), ..ExportOptions::default() };
+    let options = ExportOptions { size: (40, 40), fps: Some(1000.0), ..ExportOptions::default() };
     for name in ["a_##.png", "a.apng"] {
         let progress = Progress::default();
         let stopped = std::thread::scope(|scope| {

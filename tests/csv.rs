@@ -6,7 +6,7 @@ use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, Example, MotionError, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
-fn table(document: &Document, fps: Option<u32>) -> String {
+fn table(document: &Document, fps: Option<f64>) -> String {
     let exported = io::to_csv(document, fps, &Progress::default()).expect("it is written");
     assert_eq!(exported.notes, Vec::<String>::new());
     String::from_utf8(exported.bytes).expect("UTF-8")
@@ -20,18 +20,18 @@ fn a_small_skeleton_is_written_as_this_table() {
     skeleton.add(Joint::new("point", Some(JointId::new(0)), Vec3::ZERO)).expect("joint");
     let skeleton_rig = SkeletonRig::new(skeleton);
     let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
-    document.timeline = Timeline { start: -1.0, end: 0.0, frame_rate: 2 };
+    document.timeline = Timeline { start: -1.0, end: 0.0, frame_rate: 2.0 };
     document.keys.insert(Channel::Translation, -1.0, Vec3::ZERO);
     document.keys.insert(Channel::Translation, 0.0, Vec3::new(0.0, 1.0, -0.0));
     assert_eq!(
         table(&document, None),
         "frame,time,\"hip, \"\"left\"\".x\",\"hip, \"\"left\"\".y\",\"hip, \"\"left\"\".z\",\
          thigh.x,thigh.y,thigh.z,point.x,point.y,point.z,thigh_tip.x,thigh_tip.y,thigh_tip.z\n\
-         0,0,0,0,0,1,0,0,0,0,0,1,1,0\n\
-         1,0.5,0,0.5,0,1,0.5,0,0,0.5,0,1,1.5,0\n\
-         2,1,0,1,0,1,1,0,0,1,0,1,2,0\n"
+         0,-1,0,0,0,1,0,0,0,0,0,1,1,0\n\
+         1,-0.5,0,0.5,0,1,0.5,0,0,0.5,0,1,1.5,0\n\
+         2,0,0,1,0,1,1,0,0,1,0,1,2,0\n"
     );
-    assert_eq!(table(&document, Some(10)).lines().count(), 12);
+    assert_eq!(table(&document, Some(10.0)).lines().count(), 12);
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn the_arm_is_shoulder_elbow_and_hand() {
     for (time, x) in [(0.0, 0.0), (1.0, 300.0)] {
         document.keys.insert(Channel::Hand, time, Vec3::new(x, 250.0, 40.0));
     }
-    let table = table(&document, Some(4));
+    let table = table(&document, Some(4.0));
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     let header = rows.headers().expect("a header").iter().collect::<Vec<_>>().join(" ");
     let expected = "frame time shoulder.x shoulder.y shoulder.z elbow.x elbow.y elbow.z hand.x hand.y \

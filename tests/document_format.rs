@@ -604,6 +604,19 @@ fn a_file_has_the_points_and_the_switch_of_the_pin_only_where_they_are_needed() 
 // Keys
 
 #[test]
+fn frame_rates_need_not_be_whole_and_are_kept_exactly() {
+    for (rate, said) in
+        [(30.0, "\"frame_rate\": 30"), (29.97, "29.97"), (30e3 / 1001.0, "29.97002997")]
+    {
+        let mut document = Document::default();
+        document.timeline = Timeline { frame_rate: rate, end: 9.0, ..document.timeline };
+        let text = io::to_json(&document).expect("written");
+        assert!(text.contains(said) && !text.contains("30.0"), "{text}");
+        assert_eq!(open(&text).document.timeline.frame_rate, rate);
+    }
+}
+
+#[test]
 fn a_key_has_one_number_or_three_and_an_absent_channel_has_no_keys() {
     let opened = open(&with(
         r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"targets":[{"joint":0,"home":[0,1,0]}],
@@ -625,7 +638,7 @@ fn a_key_has_one_number_or_three_and_an_absent_channel_has_no_keys() {
     assert_eq!(value(Channel::Enabled(JointId::new(0)), 1.5), [0.0; 3]);
     assert_eq!(value(Channel::Overlay(Overlay::Cursor), 0.0), [1.0, 0.0, 0.0]);
     assert!(!keys.has(Channel::Root));
-    assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24 });
+    assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24.0 });
     assert_eq!((document.metres_per_unit, document.metres_per_unit()), (Some(0.01), 0.01));
 }
 

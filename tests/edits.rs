@@ -136,7 +136,7 @@ examples! {
     SetSlopes: [EditAction::SetSlopes(vec![(KEYED, 0.0)], Some(Slopes { arriving: Vec3::X, leaving: Vec3::Y }))];
     PasteKeys: [EditAction::PasteKeys];
     Bake: [EditAction::Bake(baked())];
-    SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25 })];
+    SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25.0 })];
     SetMetres: [EditAction::SetMetres(Some(2.0))];
 }
 

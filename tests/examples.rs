@@ -41,7 +41,7 @@ impl Posed {
     /// The poses of the timeline, four for each frame.
     fn all(document: &Document) -> Vec<Self> {
         let (from, to) = (document.timeline.start, document.timeline.end);
-        let step = 0.25 / f64::from(document.timeline.frame_rate);
+        let step = 0.25 / document.timeline.frame_rate;
         let count = ((to - from) / step).round() as usize;
         (0..=count).map(|index| Self::new(document, from + index as f64 * step)).collect()
     }

@@ -143,13 +143,35 @@ fn keys_follow_their_joints() {
 
 #[test]
 fn the_frame_count_includes_both_ends() {
-    let timeline = Timeline { start: 1.0, end: 2.0, frame_rate: 24 };
+    let timeline = Timeline { start: 1.0, end: 2.0, frame_rate: 24.0 };
     assert_eq!((timeline.frames(), timeline.time(24)), (25, 2.0));
     assert_eq!(Timeline { end: 2.02, ..timeline }.frames(), 25);
     assert_eq!(timeline.snapped(1.49), 36.0 / 24.0);
     assert_eq!(timeline.snapped(1.47), 35.0 / 24.0);
-    let third = Timeline { start: 0.1, end: 0.1 + 1.0 / 3.0, frame_rate: 30 };
+    let third = Timeline { start: 0.1, end: 0.1 + 1.0 / 3.0, frame_rate: 30.0 };
     assert_eq!(third.frames(), 11);
+}
+
+#[test]
+fn frames_of_any_rate_are_whole_at_the_start_and_a_frame_apart() {
+    let mut random = Random(31);
+    let rates = [24.0, 30e3 / 1001.0, 33.33, 119.88, 0.37, 1000.0];
+    for frame_rate in rates {
+        for _ in 0..50 {
+            let start = f64::from(random.within(-3.0..3.0));
+            let timeline = Timeline { start, end: start + 40.0, frame_rate };
+            let first = timeline.number(start);
+            assert!((first - first.round()).abs() < 1e-5, "{timeline:?}: {first}");
+            for frame in 0..timeline.frames().min(300) {
+                let time = timeline.time(frame);
+                let number = timeline.number(time);
+                assert!((number - first - frame as f64).abs() < 1e-6, "{timeline:?}: {number}");
+                assert!((timeline.time_of_number(number.round()) - time).abs() < 1e-6);
+                let near = time + 0.4 / frame_rate;
+                assert!((timeline.snapped(near) - time).abs() < 1e-6, "{timeline:?}");
+            }
+        }
+    }
 }
 
 /// A switch and points with keys at random times, some of them at the same times.

@@ -183,7 +183,7 @@ fn keying() -> impl Strategy<Value = Action> {
         1 => Just(Action::from(SelectAction::CopyKeys)),
         1 => Just(Action::from(EditAction::PasteKeys)),
         1 => any::<bool>().prop_map(PlaybackAction::SetAutoKey).prop_map(Action::from),
-        1 => (times.clone(), times, 0..70_u32).prop_map(|(start, end, frame_rate)| {
+        1 => (times.clone(), times, 0.0..70.0).prop_map(|(start, end, frame_rate)| {
             Action::from(EditAction::SetTimeline(Timeline { start, end, frame_rate }))
         }),
         1 => points().prop_map(EditAction::SetHand).prop_map(Action::from),

@@ -15,7 +15,7 @@ pub fn document(data: &[u8]) {
 fn short(document: Document) -> Document {
     const FRAMES: f64 = 3.0;
     let Timeline { start, end, frame_rate } = document.timeline;
-    let end = end.min(start + FRAMES / f64::from(frame_rate));
+    let end = end.min(start + FRAMES / frame_rate);
     Document { timeline: Timeline { start, end, frame_rate }, ..document }
 }
 

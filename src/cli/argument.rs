@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Display, Overlay, Theme};
+use crate::document::{Display, Overlay, Theme, Timeline};
 use crate::export::ExportOptions;
 use crate::kinematics::two_bone::TwoBone;
 
@@ -22,6 +22,11 @@ pub enum ArgumentError {
     Number,
     #[error("time must be a finite number of seconds")]
     Time,
+    #[error(
+        "frames per second must be a number like 29.97 or 30000/1001, {min} to {max}",
+        min = Timeline::MIN_FRAME_RATE, max = Timeline::MAX_FRAME_RATE
+    )]
+    FrameRate,
     #[error("limb length must be finite and above 0, got {0}")]
     Length(f32),
     #[error(
@@ -45,6 +50,10 @@ pub struct NumberArgument(pub f32);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeArgument(pub f64);
 
+/// Frames per second; need not be whole, and may be a fraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameRateArgument(pub f64);
+
 /// Length of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LengthArgument(pub f32);
@@ -62,6 +71,21 @@ pub enum ThemeName {
 /// Guides that are shown; all others are hidden.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuidesArgument(Vec<Overlay>);
+
+impl FromStr for FrameRateArgument {
+    type Err = ArgumentError;
+
+    fn from_str(text: &str) -> Result<Self, ArgumentError> {
+        let number = |text: &str| text.parse::<f64>().ok();
+        let rate = match text.split_once('/') {
+            Some((frames, seconds)) => {
+                number(frames).zip(number(seconds)).map(|(frames, seconds)| frames / seconds)
+            }
+            None => number(text),
+        };
+        rate.filter(|rate| Timeline::is_frame_rate(*rate)).map(Self).ok_or(ArgumentError::FrameRate)
+    }
+}
 
 impl FromStr for SizeArgument {
     type Err = ArgumentError;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
-use super::argument::NumberArgument;
+use super::argument::{FrameRateArgument, NumberArgument};
 use super::open;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
@@ -28,12 +28,8 @@ pub struct BakeArgs {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Frames per second [default: the timeline's]
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::MAX_FRAME_RATE))
-    )]
-    fps: Option<u32>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    fps: Option<FrameRateArgument>,
     /// Largest distance from the evaluated motion at a frame, as a fraction of the skeleton's reach,
     /// 0.00001 to 1 [default: 0.001]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
@@ -92,7 +88,7 @@ impl BakeArgs {
 
     fn settings(&self, document: &Document) -> Bake {
         let whole = Bake::of_timeline(document);
-        let frame_rate = self.fps.unwrap_or(whole.frames.frame_rate);
+        let frame_rate = self.fps.map_or(whole.frames.frame_rate, |FrameRateArgument(rate)| rate);
         Bake {
             frames: Timeline { frame_rate, ..whole.frames },
             tolerance: self.tolerance.map_or(whole.tolerance, |tolerance| tolerance.0),

@@ -6,11 +6,11 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use thiserror::Error;
 
-use super::argument::{SizeArgument, ThemeName, TimeArgument};
+use super::argument::{FrameRateArgument, SizeArgument, ThemeName, TimeArgument};
 use super::open;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
-use crate::document::{Document, Timeline};
+use crate::document::Document;
 use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{BvhUnit, OpenError, Progress};
 use crate::kinematics::skin::Skinning;
@@ -39,12 +39,8 @@ pub struct ExportArgs {
     #[arg(long, value_name = "NAME")]
     skeleton: Option<String>,
     /// Frames per second [default: the timeline's]
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..=i64::from(Timeline::MAX_FRAME_RATE))
-    )]
-    fps: Option<u32>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    fps: Option<FrameRateArgument>,
     /// Picture width and height in pixels, each 1 to 8192 [default: 1280x800]
     #[arg(long, value_name = "WxH")]
     size: Option<SizeArgument>,
@@ -134,7 +130,7 @@ impl ExportArgs {
     fn options(&self) -> ExportOptions {
         let defaults = ExportOptions::default();
         ExportOptions {
-            fps: self.fps,
+            fps: self.fps.map(|FrameRateArgument(rate)| rate),
             size: self.size.map_or(defaults.size, |size| (size.width, size.height)),
             theme: self.theme.map_or(defaults.theme, ThemeName::into),
             time: self.time.map(|time| time.0),

@@ -6,7 +6,7 @@ use crate::kinematics::skin::Skinning;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportOptions {
     /// Frames per second; `None` for the timeline's frame rate.
-    pub fps: Option<u32>,
+    pub fps: Option<f64>,
     /// Width and height of a picture in pixels.
     pub size: (u32, u32),
     /// Theme of a picture.

@@ -60,14 +60,13 @@ pub fn animation(
     const LOOP_FOR_EVER: u32 = 0;
     let frames = ExportFrames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
-    // Never fails: Timeline::MAX_FRAME_RATE fits into u16.
-    let rate = u16::try_from(frames.rate()).unwrap_or(u16::MAX);
     let gpu = Gpu::headless()?;
     let mut renderer = FrameRenderer::new(document, options, &gpu)?;
     io::write_with(path, |file| {
         let mut encoder = encoder(file, options.size);
         encoder.set_animated(count, LOOP_FOR_EVER)?;
-        encoder.set_frame_delay(1, rate)?;
+        let (seconds, frames_in_them) = frame_delay(frames.rate());
+        encoder.set_frame_delay(seconds, frames_in_them)?;
         let mut writer = encoder.write_header()?;
         for frame in 0..frames.count() {
             progress.step(frame, frames.count())?;
@@ -126,4 +125,36 @@ fn encoder<W: Write>(output: W, (width, height): (u32, u32)) -> png::Encoder<'st
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder
+}
+
+/// The time of a frame as a fraction, numerator and denominator, in seconds: the most exact one
+/// that an animated PNG can have.
+fn frame_delay(rate: f64) -> (u16, u16) {
+    let fraction = |seconds: u16| {
+        let frames = (f64::from(seconds) * rate).round().clamp(1.0, f64::from(u16::MAX));
+        (seconds, frames as u16)
+    };
+    let error = |(seconds, frames): (u16, u16)| {
+        (f64::from(seconds) / f64::from(frames) - rate.recip()).abs()
+    };
+    let most = (f64::from(u16::MAX) / rate).clamp(1.0, f64::from(u16::MAX)) as u16;
+    let better = |best, next| if error(next) < error(best) { next } else { best };
+    (1..=most).map(fraction).reduce(better).unwrap_or((1, 30))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frame_delay;
+
+    #[test]
+    fn frames_last_as_long_as_the_frame_rate_says() {
+        assert_eq!(frame_delay(30.0), (1, 30));
+        assert_eq!(frame_delay(30e3 / 1001.0), (1001, 30_000));
+        assert_eq!(frame_delay(0.01), (100, 1));
+        for rate in [23.976, 29.97, 33.33, 119.88, 0.37, 999.9] {
+            let (seconds, frames) = frame_delay(rate);
+            let is = f64::from(frames) / f64::from(seconds);
+            assert!((is / rate - 1.0).abs() < 1e-5, "{rate}: {is}");
+        }
+    }
 }

@@ -19,7 +19,7 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 /// timeline is too large for a table.
 pub fn to_csv(
     document: &Document,
-    fps: Option<u32>,
+    fps: Option<f64>,
     progress: &Progress,
 ) -> Result<Exported, MotionError> {
     let frames = ExportFrames::of_pose(document, fps)?;
@@ -32,7 +32,7 @@ pub fn to_csv(
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         table.write_field(frame.to_string())?;
-        table.write_field(frames.since_first(frame).to_string())?;
+        table.write_field(frames.time(frame).to_string())?;
         for (name, point) in columns.names.iter().zip(columns.points(playback.at(time), time)) {
             if !is_within_numbers(point) {
                 return Err(MotionError::TooFar { joint: name.clone() });

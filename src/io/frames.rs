@@ -16,8 +16,8 @@ impl ExportFrames {
     ///
     /// # Errors
     ///
-    /// Fails if the frame rate is 0 or above [`Timeline::MAX_FRAME_RATE`].
-    pub fn of_pose(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
+    /// Fails if the timeline cannot have the frame rate: see [`Timeline::is_frame_rate`].
+    pub fn of_pose(document: &Document, fps: Option<f64>) -> Result<Self, MotionError> {
         Self::new(document, fps, document.is_animated())
     }
 
@@ -27,15 +27,15 @@ impl ExportFrames {
     /// # Errors
     ///
     /// Fails for the same reason as [`ExportFrames::of_pose`].
-    pub fn of_picture(document: &Document, fps: Option<u32>) -> Result<Self, MotionError> {
+    pub fn of_picture(document: &Document, fps: Option<f64>) -> Result<Self, MotionError> {
         let is_moving = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
         Self::new(document, fps, is_moving || !document.keys.is_empty())
     }
 
-    fn new(document: &Document, fps: Option<u32>, is_moving: bool) -> Result<Self, MotionError> {
+    fn new(document: &Document, fps: Option<f64>, is_moving: bool) -> Result<Self, MotionError> {
         let frame_rate = fps.unwrap_or(document.timeline.frame_rate);
         let timeline = Timeline { frame_rate, ..document.timeline };
-        if !(1..=Timeline::MAX_FRAME_RATE).contains(&frame_rate) {
+        if !Timeline::is_frame_rate(frame_rate) {
             return Err(MotionError::FrameRate(frame_rate));
         }
         Ok(Self { timeline, count: if is_moving { timeline.frames() } else { 1 } })
@@ -47,7 +47,7 @@ impl ExportFrames {
     }
 
     /// Frames per second.
-    pub fn rate(&self) -> u32 {
+    pub fn rate(&self) -> f64 {
         self.timeline.frame_rate
     }
 
@@ -56,9 +56,9 @@ impl ExportFrames {
         self.timeline.time(frame)
     }
 
-    /// Time of a frame in an exported file, in seconds from the first frame.
+    /// Time of a frame in a format that has no times of its own, in seconds from the first frame.
     pub fn since_first(&self, frame: usize) -> f64 {
-        frame as f64 / f64::from(self.rate())
+        frame as f64 / self.rate()
     }
 }
 

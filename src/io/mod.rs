@@ -19,6 +19,7 @@ mod field_error;
 mod file_batch;
 mod file_format;
 mod format;
+mod frame_rate;
 mod frames;
 mod gltf;
 mod js3d;

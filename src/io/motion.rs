@@ -18,9 +18,12 @@ pub enum MotionError {
     /// The export was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The frame rate, in frames per second, is 0 or above [`Timeline::MAX_FRAME_RATE`].
-    #[error("frames per second must be from 1 to {max}, got {0}", max = Timeline::MAX_FRAME_RATE)]
-    FrameRate(u32),
+    /// The frame rate, in frames per second, is not one that a timeline can have.
+    #[error(
+        "frames per second must be from {min} to {max}, got {0}",
+        min = Timeline::MIN_FRAME_RATE, max = Timeline::MAX_FRAME_RATE
+    )]
+    FrameRate(f64),
     /// The skeleton has no joints.
     #[error("the skeleton must have at least one joint")]
     NoJoints,

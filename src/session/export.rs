@@ -9,7 +9,7 @@ pub struct Export {
     /// The file to write.
     pub path: PathBuf,
     /// Frames per second.
-    pub frame_rate: u32,
+    pub frame_rate: f64,
     /// Width and height of pictures, in pixels.
     pub size: (u32, u32),
 }

@@ -228,8 +228,9 @@ impl Session {
     pub(super) fn set_timeline(&mut self, timeline: Timeline) {
         if !timeline.is_valid() {
             self.fail(format!(
-                "A timeline must start before it ends, within a day of 0, and have 1 to {} frames per \
-                 second",
+                "A timeline must start before it ends, within a day of 0, and have {} to {} frames \
+                 per second",
+                Timeline::MIN_FRAME_RATE,
                 Timeline::MAX_FRAME_RATE
             ));
             return;

@@ -30,7 +30,7 @@ pub(super) fn write_onion_skins(
     }
     let (count, frames) = SKINS;
     let timeline = document.timeline;
-    let step = frames / f64::from(timeline.frame_rate);
+    let step = frames / timeline.frame_rate;
     let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
     let all = (-count..=count).filter(|place| *place != 0);
     let times = all.map(|place| (place, time + place as f64 * step));

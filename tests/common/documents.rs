@@ -66,7 +66,7 @@ pub fn document(random: &mut Random) -> Document {
     let timeline = Timeline {
         start,
         end: start + f64::from(random.within(0.1..100.0)) / 3.0,
-        frame_rate: 1 + random.below(1000) as u32,
+        frame_rate: (1 + random.below(100_000)) as f64 / 100.0,
     };
     Document {
         rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),

@@ -128,7 +128,7 @@ fn names() -> Document {
 }
 
 fn short() -> Timeline {
-    Timeline { start: -0.5, end: 1.5, frame_rate: 24 }
+    Timeline { start: -0.5, end: 1.5, frame_rate: 24.0 }
 }
 
 fn times() -> [f64; 4] {

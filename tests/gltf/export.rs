@@ -186,7 +186,7 @@ fn there_is_a_key_in_every_frame_and_time_counts_from_0() {
             assert!(times.len() == 1 || times.len() == timeline.frames(), "{name}");
             assert_eq!(times.len(), values.len());
             for (frame, time) in times.iter().enumerate() {
-                let expected = frame as f64 / f64::from(timeline.frame_rate);
+                let expected = frame as f64 / timeline.frame_rate;
                 assert_eq!(time[0], expected as f32, "{name}");
             }
         }
@@ -243,7 +243,7 @@ fn only_nodes_that_leave_the_rest_pose_have_channels() {
 #[test]
 fn the_frame_rate_of_the_export_can_be_chosen() {
     let document = keyed_arm(&mut Random(5));
-    let bytes = io::glb(&document, Some(10), &Progress::default()).expect("it is written");
+    let bytes = io::glb(&document, Some(10.0), &Progress::default()).expect("it is written");
     let glb = Glb::new(&bytes);
     let Moving { times, .. } = &channels(&glb)[0];
     assert_eq!((times.len(), times[1][0], times[20][0]), (21, 0.1, 2.0));
@@ -341,7 +341,7 @@ fn huge_and_tiny_skeletons_stay_finite() {
 #[test]
 fn too_many_frames_are_refused_before_they_are_computed() {
     let mut document = keyed_arm(&mut Random(8));
-    document.timeline = Timeline { start: 0.0, end: 80_000.0, frame_rate: 1000 };
+    document.timeline = Timeline { start: 0.0, end: 80_000.0, frame_rate: 1000.0 };
     let expected = "a motion of 4 joints must have at most 5000000 frames, got 80000001";
     assert!(refusal(&document).starts_with(expected));
 }

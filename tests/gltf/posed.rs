@@ -54,7 +54,7 @@ fn document(random: &mut Random) -> Document {
     rig.follow_path = random.one_of(&[None, None, Some(FollowPath::Head)]);
     let mut document =
         Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
-    document.timeline = Timeline { start: 0.0, end: 1.0, frame_rate: FRAMES };
+    document.timeline = Timeline { start: 0.0, end: 1.0, frame_rate: f64::from(FRAMES) };
     key(random, &mut document, reach);
     document
 }

@@ -62,7 +62,7 @@ fn check(name: &str, document: &Document, opened: &Opened) {
     for frame in 0..frames {
         let expected = bases(document, timeline.time(frame));
         let size = largest(&expected).max(0.25 * document.metres_per_unit());
-        let time = frame as f64 / f64::from(timeline.frame_rate);
+        let time = frame as f64 / timeline.frame_rate;
         for (joint, expected) in &expected {
             let found = imported(&opened.document, time, joint);
             let Some(found) = found else { panic!("{name} has no joint {joint}") };
@@ -143,7 +143,7 @@ fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
 #[test]
 fn a_chain_of_the_largest_number_of_joints_keeps_its_lengths() {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24 };
+    document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24.0 };
     let joint = |index: usize| {
         let parent = index.checked_sub(1);
         let offset = parent.map_or(Vec3::ZERO, |_| Vec3::Y);

@@ -67,7 +67,7 @@ fn range_rate_and_tolerance_are_asked_for() {
     bench.settle();
     assert!(bench.says("16 frames"));
     let (settings, _) = started(&mut bench);
-    let frames = Timeline { start: 1.0, end: 2.5, frame_rate: 10 };
+    let frames = Timeline { start: 1.0, end: 2.5, frame_rate: 10.0 };
     assert_eq!(settings, Bake { frames, tolerance: 0.01 });
 }
 
@@ -78,7 +78,7 @@ fn a_range_that_ends_before_it_starts_is_not_baked() {
     bench.settle();
     assert!(bench.node(Role::Button, "Bake").accesskit_node().is_disabled());
     assert!(bench.says(
-        "a bake must start before it ends, within 86400 s of time 0, at 1 to 1000 frames per \
+        "a bake must start before it ends, within 86400 s of time 0, at 0.01 to 1000 frames per \
          second, got 0 s to -1 s at 30"
     ));
 }

@@ -321,7 +321,7 @@ fn the_frame_rate_can_be_chosen_and_an_unlisted_one_of_a_file_is_shown() {
     let mut bench = keyed();
     bench.click(Role::ComboBox, "Frame rate");
     bench.click(Role::Button, "24 fps");
-    assert_eq!(bench.session().document().timeline.frame_rate, 24);
+    assert_eq!(bench.session().document().timeline.frame_rate, 24.0);
     bench.drag_and_drop(
         PointerButton::Primary,
         ruler_position(&bench, 1.0),
@@ -329,10 +329,12 @@ fn the_frame_rate_can_be_chosen_and_an_unlisted_one_of_a_file_is_shown() {
     );
     let frames = bench.session().time() * 24.0;
     assert!((frames - frames.round()).abs() < 1e-9);
-    let timeline = Timeline { frame_rate: 25, ..Timeline::default() };
+    let timeline = Timeline { frame_rate: 33.33, ..Timeline::default() };
     bench.apply([EditAction::SetTimeline(timeline)]);
     bench.click(Role::ComboBox, "Frame rate");
-    assert!(bench.shows(Role::Button, "25 fps"));
+    assert!(bench.shows(Role::Button, "33.33 fps"));
+    bench.click(Role::Button, "29.97 fps");
+    assert_eq!(bench.session().document().timeline.frame_rate, 30e3 / 1001.0);
 }
 
 fn type_into(bench: &mut Bench, field: &str, text: &str) {

@@ -16,9 +16,10 @@ pub enum BakeError {
     Nothing,
     /// The range or its frame rate is not [valid](Timeline::is_valid).
     #[error(
-        "a bake must start before it ends, within {max} s of time 0, at 1 to {rate} frames per \
+        "a bake must start before it ends, within {max} s of time 0, at {least} to {rate} frames per \
          second, got {start} s to {end} s at {frame_rate}",
-        max = Timeline::MAX_TIME, rate = Timeline::MAX_FRAME_RATE,
+        max = Timeline::MAX_TIME, least = Timeline::MIN_FRAME_RATE,
+        rate = Timeline::MAX_FRAME_RATE,
         start = .0.start, end = .0.end, frame_rate = .0.frame_rate
     )]
     Range(Timeline),

@@ -47,8 +47,7 @@ impl BakedFrames {
 
     /// The frames between two times, both excluded. Infinite times are allowed.
     pub fn between(&self, from: f64, to: f64) -> core::ops::Range<usize> {
-        let position =
-            |time: f64| (time - self.timeline.start) * f64::from(self.timeline.frame_rate);
+        let position = |time: f64| (time - self.timeline.start) * self.timeline.frame_rate;
         // Conversion saturates. Frames next to the bounds may be included by rounding; their values
         // do not change.
         let first = position(from).floor() as usize;
@@ -64,7 +63,7 @@ impl BakedFrames {
         let is_outside = |time: f64| time < start || time > end;
         let knots = document.keys.track(channel).into_iter().flat_map(Spline::knots);
         let mut track: Spline<Vec3> = knots.filter(|knot| is_outside(knot.time)).copied().collect();
-        let frame = 1.0 / f64::from(self.timeline.frame_rate);
+        let frame = 1.0 / self.timeline.frame_rate;
         let before = [start - 2.0 * frame, start - frame].map(|time| (self.starts_late, time));
         let after = [end + frame, end + 2.0 * frame].map(|time| (self.ends_early, time));
         for (_, time) in before.into_iter().chain(after).filter(|(is_open, _)| *is_open) {

@@ -1,6 +1,7 @@
 use super::hierarchy::{BvhChannel, BvhNode};
 use super::text::{Scanner, TextError, Token};
 use crate::document::Timeline;
+use crate::io::frame_rate;
 
 /// The values of all channels in each frame.
 pub struct MotionData {
@@ -14,7 +15,8 @@ pub struct MotionData {
 /// The times of the frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTiming {
-    pub frame_rate: u32,
+    /// Frames per second, as far as a timeline can have them.
+    pub frame_rate: f64,
     /// Time from one frame to the next in seconds; `None` if it is 1 / `frame_rate`.
     step: Option<f64>,
 }
@@ -115,7 +117,7 @@ impl FrameTiming {
             let reason = format!("Frame Time must be above 0 s, got {step}");
             return Err(TextError::new(word.at, "", reason));
         }
-        let timing = Self::new(step);
+        let timing = Self::new(step, last_digit(word.text));
         let end = timing.time(frames.saturating_sub(1));
         if end > Timeline::MAX_TIME {
             let max_time = Timeline::MAX_TIME;
@@ -126,21 +128,26 @@ impl FrameTiming {
         Ok(timing)
     }
 
-    fn new(step: f64) -> Self {
-        /// Relative tolerance for a frame time of 1 / (a whole number), because files round it.
-        const ROUNDING: f64 = 1e-3;
-        let rate = step.recip().round();
-        let highest = f64::from(Timeline::MAX_FRAME_RATE);
-        let is_whole = (1.0..=highest).contains(&rate) && (step * rate - 1.0).abs() < ROUNDING;
-        let frame_rate = rate.clamp(1.0, highest) as u32;
-        Self { frame_rate, step: (!is_whole).then_some(step) }
+    /// `unit` is the value of the last digit of `step`.
+    fn new(step: f64, unit: f64) -> Self {
+        let rate = frame_rate::of_frame_time(step, unit);
+        let frame_rate = rate.clamp(Timeline::MIN_FRAME_RATE, Timeline::MAX_FRAME_RATE);
+        Self { frame_rate, step: (frame_rate != rate).then_some(step) }
     }
 
     /// Time of a frame, in seconds.
     pub fn time(&self, frame: usize) -> f64 {
         match self.step {
-            None => frame as f64 / f64::from(self.frame_rate),
+            None => frame as f64 / self.frame_rate,
             Some(step) => frame as f64 * step,
         }
     }
+}
+
+/// The value of the last digit of a number: 0.001 for "0.033" and for "3.3e-2".
+fn last_digit(number: &str) -> f64 {
+    let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    10_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)))
 }

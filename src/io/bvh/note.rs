@@ -1,13 +1,11 @@
 use std::fmt;
 
-/// Content of a document that BVH cannot hold.
+/// Motion that BVH cannot hold.
 pub enum BvhNote<'a> {
     /// The skeleton's transform has uneven scale, shear or zero scale.
     Uneven,
-    /// The length of the limb with this name changes over time.
-    Length(&'a str),
-    /// The offsets of the joints with these names change over time.
-    Offsets(&'a [&'a str]),
+    /// The bones without children with these names change their length or direction.
+    Ends(&'a [&'a str]),
 }
 
 impl fmt::Display for BvhNote<'_> {
@@ -15,28 +13,20 @@ impl fmt::Display for BvhNote<'_> {
         match self {
             Self::Uneven => f.write_str(
                 "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations \
-                 only: the nearest rotations are written",
+                 only: the nearest rotations are written; the joints' positions are exact",
             ),
-            Self::Length(limb) => write!(
-                f,
-                "the length of the {limb} limb changes, but BVH lengths are constant: that of the \
-                 first frame is written"
-            ),
-            Self::Offsets(joints) => {
-                /// Maximum number of names that are listed. Further joints are only counted.
+            Self::Ends(names) => {
+                /// Maximum number of names that are listed. Further bones are only counted.
                 const MOST: usize = 10;
                 let named: Vec<_> =
-                    joints.iter().take(MOST).map(|name| format!("{name:?}")).collect();
-                let offsets = if joints.len() == 1 { "offset" } else { "offsets" };
-                write!(f, "the {offsets} of {}", named.join(", "))?;
-                if let Some(more) = joints.len().checked_sub(MOST).filter(|more| *more > 0) {
+                    names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
+                write!(f, "the last bone of {}", named.join(", "))?;
+                if let Some(more) = names.len().checked_sub(MOST).filter(|more| *more > 0) {
                     write!(f, " and {more} more joints")?;
                 }
-                let change = if joints.len() == 1 { "changes" } else { "change" };
-                write!(
-                    f,
-                    " {change} in time, but BVH offsets are constant except for a single root: \
-                     those of the first frame are written"
+                f.write_str(
+                    " changes in time, but BVH has constant end sites: that of the first frame is \
+                     written",
                 )
             }
         }

@@ -23,10 +23,10 @@ enum BvhRigKind {
 /// The pose of a rig in one frame, in units of the scene.
 #[derive(Clone, Debug)]
 pub struct BvhPose {
-    /// The offset of each node from its parent in the bind pose, in world axes; for the first node
-    /// its position in the world.
+    /// The offset of each node from its parent, in the parent's axes; for the first node its
+    /// position in the world.
     pub offsets: Vec<DVec3>,
-    /// The tip of each leaf's bone in the bind pose, relative to its base; `None` for other nodes.
+    /// The tip of each leaf's bone relative to its base, in its own axes; `None` for other nodes.
     pub ends: Vec<Option<DVec3>>,
     /// The rotation of each node relative to its parent, in world axes.
     pub rotations: Vec<DMat3>,
@@ -74,6 +74,19 @@ impl BvhRig {
         (!nodes.is_empty()).then_some(Self { names, parents, kind: BvhRigKind::Skeleton(nodes) })
     }
 
+    /// The longest distance from the root along the bones of a pose.
+    pub fn reach(&self, pose: &BvhPose) -> f64 {
+        let mut along = vec![0.0; pose.offsets.len()];
+        let mut longest = 0.0_f64;
+        for (node, parent) in self.parents.iter().enumerate() {
+            if let Some(parent) = parent {
+                along[node] = along[*parent] + pose.offsets[node].length();
+            }
+            longest = longest.max(along[node] + pose.ends[node].map_or(0.0, DVec3::length));
+        }
+        longest
+    }
+
     /// The pose of the rig at `time` in seconds. `document` must be evaluated at this time.
     pub fn pose(&self, document: &Document, transform: &SkeletonTransform, time: f64) -> BvhPose {
         match &self.kind {
@@ -92,11 +105,15 @@ impl BvhRig {
     ) -> BvhPose {
         let joint =
             |node: &Option<usize>| node.and_then(|joint| skeleton.joint(JointId::new(joint)));
-        let offset = |node| match joint(node) {
-            None => transform.origin(),
-            Some(joint) => transform.vector(joint.offset.as_dvec3()),
+        let local = |node| joint(node).map_or(DMat3::IDENTITY, local_rotation);
+        let locals: Vec<DMat3> = nodes.iter().map(local).collect();
+        let spaces = transform.nodes(&self.parents, &locals);
+        let offset = |(node, parent): (_, &Option<usize>)| match (joint(node), parent) {
+            (None, _) => transform.origin(),
+            (Some(joint), None) => transform.vector(joint.offset.as_dvec3()),
+            (Some(joint), Some(parent)) => spaces[*parent].vectors * joint.offset.as_dvec3(),
         };
-        let mut offsets: Vec<DVec3> = nodes.iter().map(offset).collect();
+        let mut offsets: Vec<DVec3> = nodes.iter().zip(&self.parents).map(offset).collect();
         if let (Some(Some(_)), Some(first)) = (nodes.first(), offsets.first_mut()) {
             *first += transform.origin();
         }
@@ -104,12 +121,12 @@ impl BvhRig {
         for parent in self.parents.iter().flatten() {
             is_leaf[*parent] = false;
         }
-        let end = |joint: &Joint| transform.vector(joint.axis.as_dvec3());
-        let ends = nodes.iter().zip(is_leaf);
-        let ends = ends.map(|(node, is_leaf)| joint(node).filter(|_| is_leaf).map(end)).collect();
-        let local = |node| joint(node).map_or(DMat3::IDENTITY, local_rotation);
-        let locals: Vec<DMat3> = nodes.iter().map(local).collect();
-        BvhPose { offsets, ends, rotations: transform.rotations(&self.parents, &locals) }
+        let ends = nodes.iter().zip(is_leaf).zip(&spaces).map(|((node, is_leaf), space)| {
+            let joint = joint(node).filter(|_| is_leaf)?;
+            Some(space.vectors * joint.axis.as_dvec3())
+        });
+        let ends = ends.collect();
+        BvhPose { offsets, ends, rotations: spaces.into_iter().map(|it| it.rotation).collect() }
     }
 }
 

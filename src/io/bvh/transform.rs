@@ -7,7 +7,8 @@ use nalgebra::Matrix3;
 /// If M = s·Q with Q orthogonal (possibly a mirror), a rotation R in the skeleton is the rotation
 /// Q·R·Qᵀ in the world. If M has uneven scale, shear or zero scale, no such rotation exists. A
 /// joint then gets the rotation W for which W·M is nearest to M·G, where G is the joint's rotation
-/// in the skeleton.
+/// in the skeleton. The joints' positions are exact all the same: they are written as offsets that
+/// change over time.
 pub struct SkeletonTransform {
     matrix: DMat3,
     translation: DVec3,
@@ -32,30 +33,43 @@ impl SkeletonTransform {
         self.translation
     }
 
+    /// Converts a vector of the space in which a joint without a parent has its offset.
     pub fn vector(&self, vector: DVec3) -> DVec3 {
         self.matrix * vector
     }
 
     /// Converts the joints' rotations relative to their parents from the skeleton's axes to world
     /// axes. Parents come before their children.
-    pub fn rotations(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<DMat3> {
+    pub fn nodes(&self, parents: &[Option<usize>], locals: &[DMat3]) -> Vec<BvhNodeTransform> {
         if let Some(orthogonal) = self.orthogonal {
-            return locals
-                .iter()
-                .map(|local| orthogonal * *local * orthogonal.transpose())
-                .collect();
+            let node = |local: &DMat3| BvhNodeTransform {
+                rotation: orthogonal * *local * orthogonal.transpose(),
+                vectors: self.matrix,
+            };
+            return locals.iter().map(node).collect();
         }
-        let (mut globals, mut worlds, mut rotations) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut globals, mut worlds, mut nodes) = (Vec::new(), Vec::new(), Vec::new());
         for (local, parent) in locals.iter().zip(parents) {
             let parent_of = |all: &[DMat3]| parent.map_or(DMat3::IDENTITY, |parent| all[parent]);
             let global = parent_of(&globals) * *local;
             let world = nearest(self.matrix * global * self.matrix.transpose());
-            rotations.push(parent_of(&worlds).transpose() * world);
+            nodes.push(BvhNodeTransform {
+                rotation: parent_of(&worlds).transpose() * world,
+                vectors: world.transpose() * self.matrix * global,
+            });
             globals.push(global);
             worlds.push(world);
         }
-        rotations
+        nodes
     }
+}
+
+/// The transform of a node of the file in one frame.
+pub struct BvhNodeTransform {
+    /// Rotation relative to the parent, in world axes.
+    pub rotation: DMat3,
+    /// Converts a vector of the joint's space to the node's space: an offset of a child, or the bone.
+    pub vectors: DMat3,
 }
 
 /// The orthogonal Q of a matrix s·Q; `None` if the matrix has uneven scale, shear or zero scale.

@@ -12,7 +12,11 @@ use crate::io::Progress;
 use crate::io::frames::{ExportFrames, FrameEvaluator};
 use crate::io::motion::{Exported, MotionError};
 
-/// Exports the shown rig and its motion as a BVH file.
+/// Numbers of a node in a frame: its offset, and its angles about x, y and z.
+const WIDTH: usize = 6;
+
+/// Exports the shown rig and its motion as a BVH file. A joint whose offset changes has position
+/// channels, all others have rotation channels only.
 ///
 /// # Errors
 ///
@@ -20,62 +24,115 @@ use crate::io::motion::{Exported, MotionError};
 /// overflows, or the rig or the timeline is too large.
 pub fn to_bvh(
     document: &Document,
-    fps: Option<u32>,
+    fps: Option<f64>,
     unit: BvhUnit,
     progress: &Progress,
 ) -> Result<Exported, MotionError> {
     let frames = ExportFrames::of_pose(document, fps)?;
     let rig = BvhRig::new(document).ok_or(MotionError::NoJoints)?;
-    MotionError::check_size(frames.count(), 3 + 3 * rig.names.len())?;
+    MotionError::check_size(frames.count(), WIDTH * rig.names.len())?;
     let mut playback = FrameEvaluator::new(document);
-    let mut lost = LostMotion::default();
-    let mut writer = BvhWriter::new(&rig, unit.per_unit(document));
-    let mut text = String::new();
-    let mut first: Option<BvhPose> = None;
+    let mut motion = BvhMotion::new(&rig, unit.per_unit(document));
     for frame in 0..frames.count() {
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         let posed = playback.at(time);
         let transform = SkeletonTransform::new(posed.skeleton().transform());
-        let pose = rig.pose(posed, &transform, time);
-        let first = match &first {
-            Some(first) => first,
-            None => {
-                text = writer.hierarchy(&pose)?;
-                motion_header(&mut text, &frames);
-                lost = LostMotion::new(document, &transform, &pose);
-                first.insert(pose.clone())
-            }
-        };
-        lost.compare(first, &pose);
-        writer.frame(&mut text, &pose)?;
+        motion.is_uneven |= document.rig == RigKind::Skeleton && !transform.is_even();
+        motion.add(rig.pose(posed, &transform, time))?;
     }
+    let text = motion.text(&frames)?;
     progress.step(frames.count(), frames.count())?;
-    Ok(Exported { bytes: text.into_bytes(), notes: lost.notes(&rig) })
+    Ok(Exported { bytes: text.into_bytes(), notes: motion.notes() })
 }
 
-fn motion_header(text: &mut String, frames: &ExportFrames) {
-    let _ = writeln!(text, "MOTION\nFrames: {}", frames.count());
-    let _ = writeln!(text, "Frame Time: {:.9}", f64::from(frames.rate()).recip());
-}
-
-/// Writes the hierarchy and the frames of a rig.
-struct BvhWriter<'a> {
+/// The motion of a rig, frame by frame.
+struct BvhMotion<'a> {
     rig: &'a BvhRig,
     /// Length of one unit of the scene, in units of the file.
     scale: f64,
-    /// The joints' angles in the previous frame, in radians. The angles of the next frame are
-    /// unwrapped to be nearest to them.
+    /// The pose in the first frame.
+    first: Option<BvhPose>,
+    /// Offsets and ends that move by less than this count as constant, in units of the scene.
+    least: f64,
+    /// For each node, whether its offset moves.
+    offsets: Vec<bool>,
+    /// For each node, whether the tip of its bone moves.
+    ends: Vec<bool>,
+    is_uneven: bool,
+    /// The joints' angles in the last frame, in radians. The angles of the next frame are unwrapped
+    /// to be nearest to them.
     angles: Vec<DVec3>,
+    /// The numbers of all frames: for each node, [`WIDTH`] in units of the file and degrees.
+    rows: Vec<f32>,
 }
 
-impl<'a> BvhWriter<'a> {
+impl<'a> BvhMotion<'a> {
     fn new(rig: &'a BvhRig, scale: f64) -> Self {
-        Self { rig, scale, angles: vec![DVec3::ZERO; rig.names.len()] }
+        let nodes = rig.names.len();
+        Self {
+            rig,
+            scale,
+            first: None,
+            least: 0.0,
+            offsets: vec![false; nodes],
+            ends: vec![false; nodes],
+            is_uneven: false,
+            angles: vec![DVec3::ZERO; nodes],
+            rows: Vec::new(),
+        }
     }
 
-    fn hierarchy(&self, pose: &BvhPose) -> Result<String, MotionError> {
+    fn add(&mut self, pose: BvhPose) -> Result<(), MotionError> {
+        /// Fraction of the reach by which what counts as constant may move.
+        const CONSTANT: f64 = 1e-5;
+        if self.first.is_none() {
+            self.least = CONSTANT * self.rig.reach(&pose);
+        }
+        for node in 0..pose.offsets.len() {
+            self.angles[node] = angles::nearest(pose.rotations[node], self.angles[node]);
+            self.rows.extend(self.in_file(node, pose.offsets[node])?);
+            self.rows.extend(self.angles[node].to_array().map(degrees));
+        }
+        let first = self.first.get_or_insert_with(|| pose.clone());
+        for (node, moves) in self.offsets.iter_mut().enumerate() {
+            *moves |= pose.offsets[node].distance(first.offsets[node]) > self.least;
+        }
+        for (node, moves) in self.ends.iter_mut().enumerate() {
+            let ends = pose.ends[node].zip(first.ends[node]);
+            *moves |= ends.is_some_and(|(now, first)| now.distance(first) > self.least);
+        }
+        Ok(())
+    }
+
+    /// A vector in units of the file. Errors name the node.
+    fn in_file(&self, node: usize, vector: DVec3) -> Result<[f32; 3], MotionError> {
+        let vector = (vector * self.scale).as_vec3();
+        if !vector.is_finite() {
+            let joint = self.rig.names.get(node).cloned().unwrap_or_default();
+            return Err(MotionError::TooFar { joint });
+        }
+        Ok(vector.to_array())
+    }
+
+    /// Whether a node has position channels. The first one always does.
+    fn has_position(&self, node: usize) -> bool {
+        node == 0 || self.offsets[node]
+    }
+
+    fn text(&self, frames: &ExportFrames) -> Result<String, MotionError> {
+        let mut text = self.hierarchy()?;
+        let _ = writeln!(text, "MOTION\nFrames: {}", frames.count());
+        let _ = writeln!(text, "Frame Time: {}", frame_time(frames.rate()));
+        for row in self.rows.chunks_exact(WIDTH * self.rig.names.len()) {
+            self.frame(&mut text, row);
+        }
+        Ok(text)
+    }
+
+    fn hierarchy(&self) -> Result<String, MotionError> {
         let mut text = "HIERARCHY\n".to_owned();
+        let Some(pose) = &self.first else { return Ok(text) };
         let BvhRig { names, parents, .. } = self.rig;
         // The nodes whose blocks are not closed yet, from the root inwards.
         let mut open: Vec<usize> = Vec::new();
@@ -90,9 +147,9 @@ impl<'a> BvhWriter<'a> {
             line(&mut text, depth, "{");
             let offset = if parent.is_none() { DVec3::ZERO } else { pose.offsets[node] };
             line(&mut text, depth + 1, &format!("OFFSET{}", self.vector(node, offset)?));
-            let channels = match parent {
-                None => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
-                Some(_) => "3 Zrotation Yrotation Xrotation",
+            let channels = match self.has_position(node) {
+                true => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
+                false => "3 Zrotation Yrotation Xrotation",
             };
             line(&mut text, depth + 1, &format!("CHANNELS {channels}"));
             if let Some(end) = pose.ends[node] {
@@ -109,36 +166,48 @@ impl<'a> BvhWriter<'a> {
         Ok(text)
     }
 
-    fn frame(&mut self, text: &mut String, pose: &BvhPose) -> Result<(), MotionError> {
-        let root = pose.offsets.first().copied().unwrap_or_default();
+    fn frame(&self, text: &mut String, row: &[f32]) {
         let start = text.len();
-        text.push_str(&self.vector(0, root)?);
-        for (angles, rotation) in self.angles.iter_mut().zip(&pose.rotations) {
-            *angles = angles::nearest(*rotation, *angles);
-            for angle in [angles.z, angles.y, angles.x] {
-                push_number(text, degrees(angle));
+        for (node, numbers) in row.chunks_exact(WIDTH).enumerate() {
+            let &[px, py, pz, ax, ay, az] = numbers else { continue };
+            if self.has_position(node) {
+                [px, py, pz].into_iter().for_each(|number| push_number(text, number));
             }
+            [az, ay, ax].into_iter().for_each(|number| push_number(text, number));
         }
         // Removes the space in front of the first number.
         text.remove(start);
         text.push('\n');
-        Ok(())
     }
 
-    /// Formats the three numbers of a vector in units of the file, each after a space. Errors name
-    /// the node.
+    /// The three numbers of a vector in units of the file, each after a space. Errors name the node.
     fn vector(&self, node: usize, vector: DVec3) -> Result<String, MotionError> {
-        let vector = (vector * self.scale).as_vec3();
-        if !vector.is_finite() {
-            let joint = self.rig.names.get(node).cloned().unwrap_or_default();
-            return Err(MotionError::TooFar { joint });
-        }
         let mut text = String::new();
-        for number in vector.to_array() {
+        for number in self.in_file(node, vector)? {
             push_number(&mut text, number);
         }
         Ok(text)
     }
+
+    /// Descriptions of motion that the file cannot hold.
+    fn notes(&self) -> Vec<String> {
+        let names = self.rig.names.iter().map(String::as_str).zip(&self.ends);
+        let moving: Vec<&str> = names.filter(|(_, moves)| **moves).map(|(name, _)| name).collect();
+        let mut notes = Vec::new();
+        if self.is_uneven {
+            notes.push(BvhNote::Uneven.to_string());
+        }
+        if !moving.is_empty() {
+            notes.push(BvhNote::Ends(&moving).to_string());
+        }
+        notes
+    }
+}
+
+/// The time of a frame in seconds, with so many digits that a reader finds the same frame rate.
+fn frame_time(rate: f64) -> String {
+    let step = rate.recip();
+    if rate.fract() == 0.0 { format!("{step:.9}") } else { step.to_string() }
 }
 
 /// Converts an angle to degrees, rounded to f32 so that a right angle becomes exactly 90.
@@ -162,55 +231,4 @@ fn line(text: &mut String, depth: usize, line: &str) {
     text.extend(std::iter::repeat_n('\t', depth.min(DEEPEST)));
     text.push_str(line);
     text.push('\n');
-}
-
-/// Motion that the file cannot hold.
-#[derive(Default)]
-struct LostMotion {
-    is_arm: bool,
-    is_uneven: bool,
-    offsets: Vec<bool>,
-    ends: Vec<bool>,
-}
-
-impl LostMotion {
-    fn new(document: &Document, transform: &SkeletonTransform, pose: &BvhPose) -> Self {
-        let is_arm = document.rig == RigKind::Arm;
-        Self {
-            is_arm,
-            is_uneven: !is_arm && !transform.is_even(),
-            offsets: vec![false; pose.offsets.len()],
-            ends: vec![false; pose.ends.len()],
-        }
-    }
-
-    fn compare(&mut self, first: &BvhPose, now: &BvhPose) {
-        // The first node is skipped: its offset may change, because it has position channels.
-        for (node, moves) in self.offsets.iter_mut().enumerate().skip(1) {
-            *moves |= first.offsets[node] != now.offsets[node];
-        }
-        for (node, moves) in self.ends.iter_mut().enumerate() {
-            *moves |= first.ends[node] != now.ends[node];
-        }
-    }
-
-    fn notes(&self, rig: &BvhRig) -> Vec<String> {
-        let mut notes = Vec::new();
-        if self.is_uneven {
-            notes.push(BvhNote::Uneven.to_string());
-        }
-        let names = || rig.names.iter().map(String::as_str);
-        let moving: Vec<&str> =
-            names().zip(&self.offsets).filter(|(_, moves)| **moves).map(|(name, _)| name).collect();
-        if self.is_arm {
-            // The lower limb's offset is the upper limb's length; the lower limb's end is its own
-            // length.
-            let lengths = [(!moving.is_empty(), "upper"), (self.ends.contains(&true), "lower")];
-            let changing = lengths.into_iter().filter(|(changes, _)| *changes);
-            notes.extend(changing.map(|(_, limb)| BvhNote::Length(limb).to_string()));
-        } else if !moving.is_empty() {
-            notes.push(BvhNote::Offsets(&moving).to_string());
-        }
-        notes
-    }
 }

@@ -2,7 +2,7 @@
 //! the keys and the timeline of a document.
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::check;
 use super::key::KeyFields;
@@ -28,7 +28,22 @@ pub struct ChannelFields {
 pub struct TimelineFields {
     start: Option<Seconds>,
     end: Option<Seconds>,
-    frame_rate: Option<Whole>,
+    frame_rate: Option<FramesPerSecond>,
+}
+
+/// Frames per second; a whole number is written without a decimal point.
+#[derive(Clone, Copy, Deserialize)]
+struct FramesPerSecond(f64);
+
+impl Serialize for FramesPerSecond {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(rate) = *self;
+        let whole = rate as u32;
+        match f64::from(whole) == rate {
+            true => serializer.serialize_u32(whole),
+            false => Seconds(rate).serialize(serializer),
+        }
+    }
 }
 
 impl ChannelFields {
@@ -107,7 +122,7 @@ impl TimelineFields {
         Self {
             start: Some(Seconds(timeline.start)),
             end: Some(Seconds(timeline.end)),
-            frame_rate: Some(Whole(timeline.frame_rate)),
+            frame_rate: Some(FramesPerSecond(timeline.frame_rate)),
         }
     }
 
@@ -117,16 +132,17 @@ impl TimelineFields {
         let timeline = Timeline {
             start,
             end: self.end.map_or(start + default.duration(), |Seconds(end)| end),
-            frame_rate: self.frame_rate.map_or(default.frame_rate, |Whole(rate)| rate),
+            frame_rate: self.frame_rate.map_or(default.frame_rate, |FramesPerSecond(rate)| rate),
         };
         if timeline.is_valid() {
             return Ok(timeline);
         }
         let Timeline { start, end, frame_rate } = timeline;
         let reason = format!(
-            "must start before it ends, within ±{} s, at 1 to {} frames a second, got {start} s to \
+            "must start before it ends, within ±{} s, at {} to {} frames a second, got {start} s to \
              {end} s at {frame_rate}",
             Timeline::MAX_TIME,
+            Timeline::MIN_FRAME_RATE,
             Timeline::MAX_FRAME_RATE,
         );
         Err(FieldError::new(at, reason))

@@ -29,7 +29,7 @@ pub(in crate::ui) fn ui(
         let limit = Timeline::MAX_TIME;
         row(ui, "Start", seconds(&mut frames.start).range(-limit..=limit));
         row(ui, "End", seconds(&mut frames.end).range(-limit..=limit));
-        let rate = DragValue::new(&mut frames.frame_rate).range(1..=Timeline::MAX_FRAME_RATE);
+        let rate = widgets::frame_rate(&mut frames.frame_rate);
         row(ui, "Frames per second", rate);
         let tolerance = DragValue::new(tolerance).speed(1e-4).max_decimals(5);
         row(ui, "Tolerance (of the reach)", tolerance.range(BakeError::TOLERANCES));

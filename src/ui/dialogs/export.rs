@@ -6,11 +6,10 @@ use egui::{DragValue, Grid, Ui};
 
 use super::path::{browse, folder, unless_there};
 use super::prompt::prompt;
-use crate::document::Timeline;
 use crate::export::{ExportOptions, Format};
 use crate::io::ExportFrames;
 use crate::session::{Actions, EditAction, Export, FileAction, PathDialog, Session, ShellAction};
-use crate::ui::widgets::NumberField;
+use crate::ui::widgets::{self, NumberField};
 
 /// A file format with its name, file extension and tooltip.
 struct FormatChoice {
@@ -93,8 +92,7 @@ pub(in crate::ui) fn ui(
         let mut changed = export.clone();
         if chosen.is_some_and(Format::has_frames) {
             let name = ui.label("Frames per second");
-            ui.add(DragValue::new(&mut changed.frame_rate).range(1..=Timeline::MAX_FRAME_RATE))
-                .labelled_by(name.id);
+            ui.add(widgets::frame_rate(&mut changed.frame_rate)).labelled_by(name.id);
             ui.end_row();
             length(ui, session, export.frame_rate, chosen);
         }
@@ -143,7 +141,7 @@ pub(in crate::ui) fn ui(
 }
 
 /// Shows the length of the motion, if there is any.
-fn length(ui: &mut Ui, session: &Session, frame_rate: u32, format: Option<Format>) {
+fn length(ui: &mut Ui, session: &Session, frame_rate: f64, format: Option<Format>) {
     ui.label("Length");
     let document = session.document();
     let timeline = document.timeline;

@@ -109,14 +109,13 @@ fn next_frame(session: &Session, by: f64) -> f64 {
     /// Distance from a frame, in frames, below which a time counts as on the frame.
     const ROUNDING: f64 = 1e-6;
     let timeline = session.document().timeline;
-    let rate = f64::from(timeline.frame_rate);
-    let frame = session.time() * rate;
+    let frame = timeline.number(session.time());
     let next = match by > 0.0 {
         true => (frame + ROUNDING).floor() + 1.0,
         false => (frame - ROUNDING).ceil() - 1.0,
     };
     let (first, last) = drag::span(session);
-    (next / rate).clamp(first.min(session.time()), last.max(session.time()))
+    timeline.time_of_number(next).clamp(first.min(session.time()), last.max(session.time()))
 }
 
 /// Time in seconds of the last key before the playhead; `None` if there is no key.

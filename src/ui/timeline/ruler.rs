@@ -36,7 +36,7 @@ pub(in crate::ui) fn ui(
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_min_numeric_value(timeline.start);
         node.set_max_numeric_value(timeline.end);
-        node.set_numeric_value_step(1.0 / f64::from(timeline.frame_rate));
+        node.set_numeric_value_step(1.0 / timeline.frame_rate);
         node.add_action(accesskit::Action::SetValue);
         node.add_action(accesskit::Action::Increment);
         node.add_action(accesskit::Action::Decrement);
@@ -77,7 +77,7 @@ fn step_by_accesskit(ui: &Ui, session: &Session, actions: &mut Actions) {
         count(accesskit::Action::Increment) - count(accesskit::Action::Decrement)
     });
     if frames != 0.0 {
-        let time = timeline.snapped(session.time()) + frames / f64::from(timeline.frame_rate);
+        let time = timeline.snapped(session.time()) + frames / timeline.frame_rate;
         actions.push(PlaybackAction::SetTime(timeline.snapped(time)));
     }
     let values: Vec<f64> = ui.input(|input| {
@@ -100,12 +100,11 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     for (x, _) in ticks.lines(scale, timeline, ticks.minor) {
         painter.vline(x, rect.bottom() - 4.0..=rect.bottom(), Stroke::new(1.0, weak));
     }
-    for (x, frame) in ticks.lines(scale, timeline, ticks.major) {
+    for (x, label) in ticks.lines(scale, timeline, ticks.major) {
         painter.vline(x, rect.bottom() - 7.0..=rect.bottom(), Stroke::new(1.0, strong));
-        let rate = i64::from(timeline.frame_rate.max(1));
-        let (text, colour) = match frame % rate {
-            0 => (format!("{} s", frame / rate), strong),
-            _ => (format!("f {frame}"), weak),
+        let (text, colour) = match label {
+            RulerLabel::Second(second) => (format!("{second} s"), strong),
+            RulerLabel::Frame(frame) => (format!("f {frame}"), weak),
         };
         let at = pos2(x, rect.top() + 1.0);
         painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);
@@ -148,43 +147,97 @@ pub(in crate::ui) fn playhead(
     painter.add(Shape::convex_polygon(points.to_vec(), accent, rim));
 }
 
-/// Spacing of the ruler's lines, in frames.
+/// Spacing of the ruler's lines.
 struct RulerTicks {
-    /// Frames from one labelled line to the next.
-    major: i64,
-    /// Frames from any line to the next.
-    minor: i64,
+    /// From one labelled line to the next.
+    major: RulerStep,
+    /// From any line to the next.
+    minor: RulerStep,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum RulerStep {
+    Frames(i64),
+    Seconds(i64),
+}
+
+/// What a line of the ruler stands for. The number of a frame counts from time 0.
+#[derive(Clone, Copy)]
+enum RulerLabel {
+    Frame(i64),
+    Second(i64),
+}
+
+impl RulerStep {
+    fn seconds(self, timeline: Timeline) -> f64 {
+        match self {
+            Self::Frames(frames) => frames as f64 / timeline.frame_rate,
+            Self::Seconds(seconds) => seconds as f64,
+        }
+    }
+
+    /// Whether every line of `other` is a line of this step, too.
+    fn divides(self, other: Self, timeline: Timeline) -> bool {
+        match (self, other) {
+            (Self::Frames(own), Self::Frames(other)) => other % own == 0,
+            (Self::Seconds(own), Self::Seconds(other)) => other % own == 0,
+            (Self::Frames(own), Self::Seconds(seconds)) => {
+                frames_per_second(timeline).is_some_and(|rate| seconds * rate % own == 0)
+            }
+            (Self::Seconds(_), Self::Frames(_)) => false,
+        }
+    }
+}
+
+/// The frame rate if every second is at a frame.
+fn frames_per_second(timeline: Timeline) -> Option<i64> {
+    let rate = timeline.frame_rate;
+    (rate.fract() == 0.0 && timeline.number(0.0).fract() == 0.0).then_some(rate as i64)
 }
 
 impl RulerTicks {
     fn new(scale: TimeScale, timeline: Timeline) -> Self {
         const SECONDS: [i64; 16] =
             [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200, 86_400];
-        let rate = i64::from(timeline.frame_rate.max(1));
-        let frames = [1, 2, 3, 5, 6, 10, 15].into_iter().filter(|it| *it < rate && rate % it == 0);
-        let steps: Vec<i64> = frames.chain(SECONDS.map(|seconds| seconds * rate)).collect();
-        let points = |step: i64| step as f64 * scale.points_per_second() / rate as f64;
-        let last = 86_400 * rate;
-        let major = steps.iter().copied().find(|step| points(*step) >= LABEL).unwrap_or(last);
-        let finer = |step: &i64| *step < major && major % step == 0 && points(*step) >= LINE;
+        let rate = frames_per_second(timeline);
+        let is_part = |frames: &i64| {
+            (*frames as f64) < timeline.frame_rate && rate.is_none_or(|rate| rate % frames == 0)
+        };
+        let frames = [1, 2, 3, 5, 6, 10, 15].into_iter().filter(is_part).map(RulerStep::Frames);
+        let steps: Vec<RulerStep> = frames.chain(SECONDS.map(RulerStep::Seconds)).collect();
+        let points = |step: RulerStep| step.seconds(timeline) * scale.points_per_second();
+        let major = steps.iter().copied().find(|step| points(*step) >= LABEL);
+        let major = major.unwrap_or(RulerStep::Seconds(86_400));
+        let finer = |step: &RulerStep| step.divides(major, timeline) && points(*step) >= LINE;
         let minor = steps.iter().copied().find(finer).unwrap_or(major);
         Self { major, minor }
     }
 
-    /// The x on screen and the number of each visible frame whose number is a multiple of `step`.
+    /// The x on screen and the label of each visible line of a step.
     fn lines(
         &self,
         scale: TimeScale,
         timeline: Timeline,
-        step: i64,
-    ) -> impl Iterator<Item = (f32, i64)> + use<> {
-        let rate = f64::from(timeline.frame_rate.max(1));
+        step: RulerStep,
+    ) -> impl Iterator<Item = (f32, RulerLabel)> + use<> {
         let (from, to) = scale.range();
-        let index = |time: f64| time * rate / step as f64;
+        let shift = match step {
+            RulerStep::Frames(_) => timeline.time_of_number(0.0),
+            RulerStep::Seconds(_) => 0.0,
+        };
+        let rate = frames_per_second(timeline);
+        let span = step.seconds(timeline);
+        let index = |time: f64| (time - shift) / span;
         let (first, last) = (index(from).ceil() as i64, index(to).floor() as i64);
         (first..=last).map(move |index| {
-            let frame = index * step;
-            (scale.x(frame as f64 / rate), frame)
+            let label = match (step, rate) {
+                (RulerStep::Seconds(seconds), _) => RulerLabel::Second(index * seconds),
+                (RulerStep::Frames(frames), Some(rate)) if index * frames % rate == 0 => {
+                    RulerLabel::Second(index * frames / rate)
+                }
+                (RulerStep::Frames(frames), _) => RulerLabel::Frame(index * frames),
+            };
+            (scale.x(index as f64 * span + shift), label)
         })
     }
 }
@@ -197,7 +250,7 @@ mod tests {
 
     #[test]
     fn lines_are_never_closer_than_can_be_told_apart_and_times_never_overlap() {
-        for frame_rate in [1, 7, 24, 30, 60, 1000] {
+        for frame_rate in [0.01, 1.0, 7.0, 24.0, 29.97, 30.0, 33.33, 60.0, 1000.0] {
             for end in [0.01, 0.5, 1.0, 8.0, 100.0, 3600.0, 86_400.0] {
                 let timeline = Timeline { start: 0.0, end, frame_rate };
                 let scale = TimeScale::showing(Rangef::new(0.0, 800.0), 0.0, end);

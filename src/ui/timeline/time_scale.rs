@@ -137,7 +137,7 @@ impl TimeScale {
 
     /// Zooms in by `factor`; the time at `x` on screen keeps its position.
     fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
-        let least = LEAST_FRAMES / f64::from(timeline.frame_rate.max(1));
+        let least = LEAST_FRAMES / timeline.frame_rate;
         let span = self.to - self.from;
         let new_span = (span / factor).clamp(least, 4.0 * Timeline::MAX_TIME);
         if !new_span.is_finite() {

@@ -188,23 +188,24 @@ impl TimeField<'_> {
 
 fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     seconds(ui, session, actions);
-    let rate = f64::from(session.document().timeline.frame_rate);
+    let timeline = session.document().timeline;
     let frame = TimeField {
         name: "Frame",
         label: "Frame",
-        value: (session.time() * rate).round() + 0.0,
+        value: timeline.number(session.time()).round() + 0.0,
         unit: " f",
         speed: 0.25,
         width: 74.0,
         digits: 0,
         tooltip: "Set the time in frames: drag or type",
     };
-    frame.show_free(ui, roomy, actions, |frame| PlaybackAction::SetTime(frame.round() / rate));
+    let set = |frame: f64| PlaybackAction::SetTime(timeline.time_of_number(frame.round()));
+    frame.show_free(ui, roomy, actions, set);
 }
 
 fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
-    let rate = f64::from(timeline.frame_rate);
+    let rate = timeline.frame_rate;
     let is_dragged = ui.input(|input| input.pointer.any_down());
     let set =
         |time| PlaybackAction::SetTime(if is_dragged { timeline.snapped(time) } else { time });
@@ -268,7 +269,7 @@ fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
 
 fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
-    let name = |rate: u32| format!("{rate} fps");
+    let name = |rate: f64| format!("{} fps", (rate * 1000.0).round() / 1000.0);
     let combo = ComboBox::from_id_salt("frame rate")
         .selected_text(name(timeline.frame_rate))
         .width(72.0)

@@ -24,7 +24,11 @@ impl Values<'_> {
 
     pub fn export(&mut self) -> Export {
         let side = self.one_of(&[0, 1, 100, u32::MAX]);
-        Export { path: self.path(), frame_rate: self.one_of(&[0, 24, 5000]), size: (side, 100) }
+        Export {
+            path: self.path(),
+            frame_rate: self.one_of(&[0.0, 24.0, 33.33, 5000.0]),
+            size: (side, 100),
+        }
     }
 
     pub fn job(&mut self) -> ExportJob {
@@ -32,7 +36,7 @@ impl Values<'_> {
     }
 
     pub fn bake(&mut self) -> Bake {
-        let frames = Timeline { frame_rate: self.one_of(&[0, 2, 5000]), ..self.timeline() };
+        let frames = Timeline { frame_rate: self.one_of(&[0.0, 2.0, 5000.0]), ..self.timeline() };
         Bake { frames, tolerance: self.one_of(&[0.0, 1e-3, 0.1, f32::NAN]) }
     }
 
@@ -47,7 +51,7 @@ impl Values<'_> {
     /// A bake of a few frames; one that changes nothing if the document cannot be baked.
     pub fn baked(&mut self) -> Box<Baked> {
         let document = self.session.document();
-        let frames = Timeline { start: 0.0, end: 0.2, frame_rate: 10 };
+        let frames = Timeline { start: 0.0, end: 0.2, frame_rate: 10.0 };
         let settings = Bake { frames, tolerance: 1e-3 };
         let baked = settings.run(document, |done, _| done < 100).unwrap_or_else(|_| Baked {
             document: document.clone(),

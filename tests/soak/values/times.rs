@@ -90,7 +90,21 @@ impl Values<'_> {
         let (start, end) = (self.time(), self.time());
         let (start, end) =
             if self.chance(0.9) { (start.min(end), end.max(start)) } else { (end, start) };
-        let frame_rate = self.one_of(&[24, 30, 60, 1, 1000, 0, 7, 1001, u32::MAX]);
+        let frame_rate = self.one_of(&[
+            24.0,
+            30.0,
+            60.0,
+            1.0,
+            1000.0,
+            0.0,
+            7.0,
+            29.97,
+            0.01,
+            1001.0,
+            -30.0,
+            f64::NAN,
+            f64::INFINITY,
+        ]);
         Timeline { start, end, frame_rate }
     }
 

@@ -21,8 +21,8 @@ use rig::GltfRig;
 
 /// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is the skin of
 /// the skeleton; without one, cones around the bones. The frame
-/// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 1 to
-/// 1000. Lengths are in metres, and no node has a scale.
+/// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 0.01
+/// to 1000. Lengths are in metres, and no node has a scale.
 ///
 /// # Errors
 ///
@@ -30,11 +30,11 @@ use rig::GltfRig;
 /// the export is cancelled.
 pub fn glb(
     document: &Document,
-    frames_per_second: Option<u32>,
+    frames_per_second: Option<f64>,
     progress: &Progress,
 ) -> Result<Vec<u8>, GlbError> {
     let rate = frames_per_second.unwrap_or(document.timeline.frame_rate);
-    let frame_rate = rate.clamp(1, Timeline::MAX_FRAME_RATE);
+    let frame_rate = rate.clamp(Timeline::MIN_FRAME_RATE, Timeline::MAX_FRAME_RATE);
     let timeline = Timeline { frame_rate, ..document.timeline };
     let mut rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;

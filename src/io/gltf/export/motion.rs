@@ -8,7 +8,7 @@ use crate::io::progress::Progress;
 
 /// The animation: the transforms of all nodes that leave the bind pose.
 pub struct JointAnimation {
-    /// Times of the frames, in seconds from the first frame.
+    /// Times of the frames, in seconds: those of the document where glTF can have them.
     pub times: Vec<f32>,
     /// Rotations relative to the parents, as unit quaternions. Their signs are chosen so that
     /// interpolation takes the shorter arc.
@@ -55,14 +55,23 @@ impl JointAnimation {
         }
         rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
         translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
-        let rate = f64::from(timeline.frame_rate);
-        let times = (0..frames).map(|frame| (frame as f64 / rate) as f32).collect();
+        let first = first_time(timeline);
+        let time = |frame: usize| first + frame as f64 / timeline.frame_rate;
+        let times = (0..frames).map(|frame| time(frame) as f32).collect();
         Ok(Self { times, rotations, translations })
     }
 
     pub fn is_empty(&self) -> bool {
         self.rotations.is_empty() && self.translations.is_empty()
     }
+}
+
+/// Time of the first frame in the file: that of the document, unless it is below 0, which glTF does
+/// not allow, or so late that single precision cannot tell the frames apart.
+fn first_time(timeline: Timeline) -> f64 {
+    let rounding = timeline.end * f64::from(f32::EPSILON);
+    let is_exact = timeline.start >= 0.0 && rounding < 0.1 / timeline.frame_rate;
+    if is_exact { timeline.start } else { 0.0 }
 }
 
 /// Changes below this count as rounding errors: in radians for a rotation, relative to the distance

@@ -2,36 +2,34 @@ use super::sampler::tolerance;
 use super::tracks::NodeTracks;
 use crate::document::Timeline;
 use crate::io::field_error::FieldError;
+use crate::io::frame_rate;
 use crate::io::json_path::JsonPath;
 
-/// Common frame rates in frames per second, ascending.
-const COMMON_RATES: [u32; 8] = [24, 25, 30, 48, 50, 60, 100, 120];
-/// Frame rate of a motion whose keys fit none of the common frame rates.
-const FALLBACK_RATE: u32 = 60;
+/// Frame rate of a motion whose keys fit no frame rate.
+const FALLBACK_RATE: f64 = 60.0;
 
-/// Returns the timeline from the first key to the last. Its frame rate is the lowest common one
-/// that has a frame at every key, or else [`FALLBACK_RATE`]. Returns `None` if all keys are at the
-/// same time. `at` is the path of the animation.
+/// Returns the timeline from the first key to the last. Its frame rate is the one that
+/// [`frame_rate::of_times`] finds with as little tolerance as possible, or else [`FALLBACK_RATE`].
+/// Returns `None` if all keys are at the same time. `at` is the path of the animation.
 pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
-    let Some((start, last)) = time_range(tracks) else { return Ok(None) };
-    let frames_at = |rate: u32| {
-        tracks.times().all(|time| {
-            let frame = (time - start) * f64::from(rate);
-            (frame - frame.round()).abs() <= tolerance(time) * f64::from(rate)
-        })
-    };
-    let fitting = COMMON_RATES.into_iter().find(|rate| frames_at(*rate));
-    let frame_rate = fitting.unwrap_or(FALLBACK_RATE);
-    let rate = f64::from(frame_rate);
-    let frames = (last - start) * rate;
-    let frames = if fitting.is_some() { frames.round() } else { frames.ceil() };
-    let timeline = Timeline { start, end: start + frames / rate, frame_rate };
-    if frames > 0.0 && !timeline.is_valid() {
+    let Some((start, end)) = time_range(tracks) else { return Ok(None) };
+    if start == end {
+        return Ok(None);
+    }
+    let mut times: Vec<f64> = tracks.times().map(|time| time - start).collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    let rounded = |time: f64| ((time + start) * f64::from(f32::EPSILON)).max(1e-7);
+    let found = frame_rate::of_times(&times, rounded);
+    let found = found.or_else(|| frame_rate::of_times(&times, |_| 2e-6));
+    let found = found.or_else(|| frame_rate::of_times(&times, |time| tolerance(time + start)));
+    let timeline = Timeline { start, end, frame_rate: found.unwrap_or(FALLBACK_RATE) };
+    if !timeline.is_valid() {
         let max = Timeline::MAX_TIME;
-        let reason = format!("must be within ±{max} s, got {start} to {last} s");
+        let reason = format!("must be within ±{max} s, got {start} to {end} s");
         return Err(FieldError::new(at.clone(), reason));
     }
-    Ok((frames > 0.0).then_some(timeline))
+    Ok(Some(timeline))
 }
 
 /// Times of the first and the last key in seconds; `None` without keys.
