@@ -559,11 +559,41 @@ fn errors_name_the_field() {
         (
             "/buffers/0/uri",
             json!(format!("data:;base64,{}", infinite.trim_end_matches('=').repeat(40))),
-            "accessors[0]: times must be finite and increase, got inf as time 0",
+            "accessors[0]: times must be finite, got inf as time 0",
         ),
     ] {
         let found = error_with_value(pointer, value);
         assert!(found.starts_with(said), "{pointer}: {found}");
+    }
+}
+
+#[test]
+fn keys_at_repeated_or_unsorted_times_are_sorted_and_the_last_one_counts_with_one_remark() {
+    let sorted = ([0.0, 0.5, 1.0], [0.0, 2.0, 1.0]);
+    for (times, heights) in [
+        (vec![0.0, 0.5, 0.5, 1.0], vec![0.0, 9.0, 2.0, 1.0]),
+        (vec![0.5, 1.0, 0.0], vec![2.0, 1.0, 0.0]),
+        (vec![1.0, 0.0, 1.0, 0.5, 0.0], vec![7.0, 5.0, 1.0, 2.0, 0.0]),
+    ] {
+        for interpolation in ["LINEAR", "STEP", "CUBICSPLINE"] {
+            let open_with = |times: &[f32], heights: &[f32]| {
+                let mut text = Text::chain();
+                let rows = heights.iter().flat_map(|height| match interpolation {
+                    "CUBICSPLINE" => vec![0.1, 0.2, 0.3, 0.0, *height, 0.0, 0.3, 0.2, 0.1],
+                    _ => vec![0.0, *height, 0.0],
+                });
+                let rows: Vec<f32> = rows.collect();
+                let (times, moved) = (text.floats(1, times), text.floats(3, &rows));
+                for node in [0, 1] {
+                    text.animate(node, "translation", interpolation, times, moved);
+                }
+                open(&text)
+            };
+            let (expected, found) = (open_with(&sorted.0, &sorted.1), open_with(&times, &heights));
+            assert_eq!(found.document.keys, expected.document.keys, "{times:?} {interpolation}");
+            let [remark] = &found.warnings[..] else { panic!("one: {:?}", found.warnings) };
+            assert!(remark.reason.starts_with("times must increase; the keys are sorted"));
+        }
     }
 }
 
@@ -576,14 +606,8 @@ fn invalid_rotations_and_times_are_refused() {
         refusal(&text.embedded())
     };
     let none = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-    assert!(
-        with([0.0, 0.0], none)
-            .contains("accessors[0]: times must be finite and increase, got 0 as time 1")
-    );
-    assert!(
-        with([1.0, f32::NAN], none)
-            .contains("accessors[0]: times must be finite and increase, got NaN as time 1")
-    );
+    let said = with([1.0, f32::NAN], none);
+    assert!(said.contains("accessors[0]: times must be finite, got NaN as time 1"), "{said}");
     assert!(
         with([0.0, 1e9], none)
             .contains("animations[0]: must be within ±86400 s, got 0 to 1000000000 s")

@@ -97,7 +97,16 @@ fn import(
         None => (Vec::new(), None),
         Some(first) => {
             let at = at.index(0);
-            animate(source, file, &nodes, (first, &at), &mut poser, &mut joints, &bind_pose)?
+            animate(
+                source,
+                file,
+                &nodes,
+                (first, &at),
+                &mut poser,
+                &mut joints,
+                &bind_pose,
+                warnings,
+            )?
         }
     };
     let built = rig::build(joints, &motions, timeline);
@@ -135,10 +144,11 @@ fn animate(
     poser: &mut NodePoser<'_>,
     joints: &mut [Joint],
     bind_pose: &[JointPlacement],
+    warnings: &mut FieldWarnings,
 ) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
     let channels = tracks::used_channels(animation, at, nodes, &poser.is_needed())?;
     let buffers = tracks::buffers(source, file, &channels)?;
-    let tracks = NodeTracks::new(file, &buffers, &channels)?;
+    let tracks = NodeTracks::new(file, &buffers, &channels, warnings)?;
     let Some((start, _)) = clip::time_range(&tracks) else {
         return Ok((Vec::new(), None));
     };

@@ -10,6 +10,8 @@ use crate::io::field_error::FieldError;
 /// The keys of one animated part of a node, with their interpolation.
 pub struct KeySampler<'a> {
     times: AccessorRows<'a>,
+    /// The rows of the keys in the order of their times; `None` if the file has them in this order.
+    order: Option<Vec<u32>>,
     /// One row per time, or with cubic splines three rows: in-tangent, value, out-tangent.
     values: AccessorRows<'a>,
     part: AnimatedPart,
@@ -82,20 +84,34 @@ impl<'a> KeySampler<'a> {
                 format!("must be {values_per_key} for each of the {times} times, got {count}");
             return Err(FieldError::new(at_accessor(output).key("count"), reason));
         }
-        Ok(Self { times, values, part, interpolation })
+        Ok(Self { times, order: None, values, part, interpolation })
     }
 
-    /// Checks all keys. Fails if times are not finite or do not increase, values are not finite, or
-    /// a rotation is zero. `input` and `output` are the accessors named in errors.
-    pub fn check(&self, [input, output]: [usize; 2]) -> Result<(), FieldError> {
-        for key in 0..self.len() {
-            let time = self.time(key);
-            let follows = key == 0 || self.time(key - 1) < time;
-            if !(time.is_finite() && follows) {
-                let reason = format!("times must be finite and increase, got {time} as time {key}");
-                return Err(FieldError::new(at_accessor(input), reason));
-            }
+    /// Sorts the keys by time. Of several keys at the same time, the last one counts. Returns
+    /// whether anything changed, or an error that names the accessor `input` if a time is not finite.
+    pub fn sort(&mut self, input: usize) -> Result<bool, FieldError> {
+        let times = || (0..self.times.len()).map(|row| self.row_time(row));
+        if let Some((key, time)) = times().enumerate().find(|(_, time)| !time.is_finite()) {
+            let reason = format!("times must be finite, got {time} as time {key}");
+            return Err(FieldError::new(at_accessor(input), reason));
         }
+        if times().is_sorted_by(|before, after| before < after) {
+            return Ok(false);
+        }
+        let mut order: Vec<u32> = (0..self.times.len() as u32).collect();
+        let time = |row: &u32| self.row_time(*row as usize);
+        order.sort_by(|a, b| time(a).total_cmp(&time(b)));
+        // The last of equal times is kept: in reverse, it comes first.
+        order.reverse();
+        order.dedup_by(|row, kept| time(row) == time(kept));
+        order.reverse();
+        self.order = Some(order);
+        Ok(true)
+    }
+
+    /// Checks all keys. Fails if values are not finite or a rotation is zero. The error names the
+    /// accessor `output`.
+    pub fn check(&self, output: usize) -> Result<(), FieldError> {
         for row in 0..self.values.len() {
             let value: [f64; 4] = self.values.row(row);
             if !value.into_iter().take(self.width()).all(f64::is_finite) {
@@ -117,13 +133,22 @@ impl<'a> KeySampler<'a> {
 
     /// Number of keys.
     pub fn len(&self) -> usize {
-        self.times.len()
+        self.order.as_ref().map_or(self.times.len(), Vec::len)
     }
 
     /// Time of a key, in seconds.
     pub fn time(&self, key: usize) -> f64 {
-        let [time] = self.times.row(key);
+        self.row_time(self.row_of(key))
+    }
+
+    fn row_time(&self, row: usize) -> f64 {
+        let [time] = self.times.row(row);
         time
+    }
+
+    /// The row of the file that has a key.
+    fn row_of(&self, key: usize) -> usize {
+        self.order.as_ref().map_or(key, |order| order[key] as usize)
     }
 
     pub fn point(&self, time: f64) -> DVec3 {
@@ -191,9 +216,10 @@ impl<'a> KeySampler<'a> {
     /// The numbers of a key. `which` selects the row of a cubic spline's key; other keys have one
     /// row.
     fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
+        let row = self.row_of(key);
         self.values.row(match self.interpolation {
-            Interpolation::CubicSpline => 3 * key + which,
-            Interpolation::Linear | Interpolation::Step => key,
+            Interpolation::CubicSpline => 3 * row + which,
+            Interpolation::Linear | Interpolation::Step => row,
         })
     }
 

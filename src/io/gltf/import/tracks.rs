@@ -4,8 +4,9 @@ use super::buffers::GltfBuffers;
 use super::file::{GltfAnimation, GltfChannel, GltfFile, index_rule};
 use super::nodes::{NodeTransform, NodeTree, TransformParts, at_node};
 use super::part::AnimatedPart;
+use super::rows::at_accessor;
 use super::sampler::{Interpolation, KeySampler};
-use crate::io::field_error::FieldError;
+use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
@@ -107,12 +108,14 @@ impl<'a> NodeTracks<'a> {
         file: &GltfFile,
         buffers: &'a GltfBuffers<'_>,
         channels: &[UsedChannel<'_>],
+        warnings: &mut FieldWarnings,
     ) -> Result<Self, FieldError> {
         /// Maximum number of keys in all channels together. Bounds the time, because many channels
         /// can share the same few bytes.
         const MOST_KEYS: usize = 20_000_000;
         let mut tracks = Vec::with_capacity(channels.len());
         let mut keys = 0_usize;
+        let mut unsorted: Option<usize> = None;
         for UsedChannel { node, part, interpolation, input, output, at } in channels {
             let (node, part, accessors) = (*node, *part, [*input, *output]);
             let sampler = KeySampler::new(file, buffers, accessors, part, *interpolation)?;
@@ -123,8 +126,16 @@ impl<'a> NodeTracks<'a> {
             }
             tracks.push(NodeTrack { node, part, sampler });
         }
-        for (track, UsedChannel { input, output, .. }) in tracks.iter().zip(channels) {
-            track.sampler.check([*input, *output])?;
+        for (track, UsedChannel { input, output, .. }) in tracks.iter_mut().zip(channels) {
+            if track.sampler.sort(*input)? {
+                unsorted.get_or_insert(*input);
+            }
+            track.sampler.check(*output)?;
+        }
+        if let Some(input) = unsorted {
+            let reason = "times must increase; the keys are sorted, and of several keys at the same \
+                          time the last one counts";
+            warnings.push(at_accessor(input), reason);
         }
         Ok(Self(tracks))
     }
