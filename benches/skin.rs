@@ -60,7 +60,9 @@ fn opened(criterion: &mut Criterion) {
     let bytes = io::glb(&document, None, &Progress::default()).expect("an export");
     group.throughput(Throughput::Bytes(bytes.len() as u64));
     group.bench_function("glb", |bench| {
-        bench.iter(|| io::read("human.glb", &bytes[..], None).expect("it opens"));
+        bench.iter(|| {
+            io::read("human.glb", &bytes[..], &io::OpenOptions::default()).expect("it opens")
+        });
     });
 }
 

@@ -26,11 +26,12 @@ fn text(exported: &Exported) -> &str {
 }
 
 fn open(text: &str) -> Opened {
-    io::parse("test.bvh", text, None).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    io::parse("test.bvh", text, &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 fn refusal(text: &str) -> String {
-    message(io::parse("test.bvh", text, None).expect_err("it is refused"))
+    message(io::parse("test.bvh", text, &io::OpenOptions::default()).expect_err("it is refused"))
 }
 
 fn shown(skeleton: Skeleton) -> Document {
@@ -447,7 +448,7 @@ const SMALL: &str = "HIERARCHY\nROOT hip\n{\n OFFSET 1 2 3\n CHANNELS 3 Zrotatio
 
 #[test]
 fn a_small_file_is_read_as_written() {
-    let Opened { document, warnings, order, skeletons } = open(SMALL);
+    let Opened { document, warnings, order, skeletons, .. } = open(SMALL);
     let joints = document.skeleton().joints();
     let name = |index: usize| (joints[index].name.as_str(), joints[index].parent);
     assert_eq!((name(0), name(1)), (("hip", None), ("knee", Some(JointId::new(0)))));
@@ -466,8 +467,10 @@ fn a_small_file_is_read_as_written() {
         (warnings, order, skeletons),
         (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()])
     );
-    assert!(io::parse("x", SMALL, Some("hip")).is_ok());
-    let error = io::parse("x", SMALL, Some("knee")).expect_err("no skeleton").to_string();
+    assert!(io::parse("x", SMALL, &io::OpenOptions::of_skeleton("hip")).is_ok());
+    let error = io::parse("x", SMALL, &io::OpenOptions::of_skeleton("knee"))
+        .expect_err("no skeleton")
+        .to_string();
     assert_eq!(error, "x has no skeleton called \"knee\"; it has \"hip\"");
 }
 
@@ -762,12 +765,13 @@ fn damaged_files_open_or_are_refused() {
     let wrong_words: Vec<_> = wrong_words.collect();
     let mut opened = 0;
     for bytes in mutations(whole, &mut random, 900).into_iter().chain(wrong_words) {
-        match io::read("damaged.bvh", &bytes[..], None) {
+        match io::read("damaged.bvh", &bytes[..], &io::OpenOptions::default()) {
             Ok(read) => {
                 opened += 1;
                 assert!(read.document.timeline.is_valid());
                 let again = io::to_json(&read.document).expect("written");
-                io::parse("again", &again, None).expect("every document can be saved and opened");
+                io::parse("again", &again, &io::OpenOptions::default())
+                    .expect("every document can be saved and opened");
             }
             Err(error) => drop(message(error)),
         }
@@ -794,7 +798,7 @@ fn a_file_too_large_is_refused_before_it_is_read() {
     let file = std::fs::File::create(&path).expect("created");
     file.set_len(200 << 20).expect("sparse");
     let before = std::time::Instant::now();
-    let error = message(io::open(&path, None).expect_err("refused"));
+    let error = message(io::open(&path, &io::OpenOptions::default()).expect_err("refused"));
     assert!(error.ends_with("must be at most 64 MB large"), "{error}");
     assert!(before.elapsed().as_millis() < 100);
 }

@@ -44,7 +44,10 @@ impl Desk {
         let output = self.run(arguments);
         assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
         assert!(output.stdout.is_empty());
-        (complaint(&output), io::open(&self.out(), None).expect("it opens").document)
+        (
+            complaint(&output),
+            io::open(&self.out(), &io::OpenOptions::default()).expect("it opens").document,
+        )
     }
 
     /// Standard error of a bake that fails and writes nothing.

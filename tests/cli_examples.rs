@@ -32,7 +32,7 @@ fn with_a_name_the_example_is_printed() {
     for example in Example::ALL {
         let output = examples(&[example.name]);
         assert_eq!(stdout(&output), example.text);
-        io::parse("printed", stdout(&output), None).expect("it opens");
+        io::parse("printed", stdout(&output), &io::OpenOptions::default()).expect("it opens");
     }
 }
 
@@ -42,7 +42,7 @@ fn with_an_output_the_example_is_written() {
     let path = folder.path().join("snake.json");
     let output = examples(&["snake", "-o", path.to_str().expect("a path in UTF-8")]);
     assert_eq!(stdout(&output), "");
-    let opened = io::open(&path, None).expect("it opens");
+    let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
     assert_eq!(opened.document.skeleton().joints().len(), 24);
 }
 

@@ -121,7 +121,8 @@ fn frame_rates_need_not_be_whole() {
         assert!(line.contains(step), "{said}: {line}");
         let rate =
             said.split('/').map(|it| it.parse::<f64>().expect("a number")).reduce(|a, b| a / b);
-        let opened = io::open(&desk.out("a.bvh"), None).expect("it opens").document;
+        let opened =
+            io::open(&desk.out("a.bvh"), &io::OpenOptions::default()).expect("it opens").document;
         assert!((opened.timeline.frame_rate - rate.expect("a rate")).abs() < 1e-9, "{said}");
     }
 }
@@ -132,7 +133,7 @@ fn bvh_round_trips_in_the_chosen_unit() {
     desk.export("a.bvh", &["--unit", "m"]);
     desk.export("b.bvh", &[]);
     let size = |name: &str| {
-        let opened = io::open(&desk.out(name), None).expect("it opens");
+        let opened = io::open(&desk.out(name), &io::OpenOptions::default()).expect("it opens");
         assert!(!opened.skeletons.is_empty(), "it is not saved over");
         opened.document.skeleton_rig.reach()
     };

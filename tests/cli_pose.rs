@@ -164,7 +164,10 @@ fn joints_keep_the_order_of_the_file_and_are_in_world_space() {
 fn a_transform_maps_the_joints_own_space_to_the_world() {
     for name in ["human", "snake", "degenerate"] {
         let scene = Scene::example(name);
-        let skeleton = io::open(&scene.path, None).expect("opens").document.skeleton_rig;
+        let skeleton = io::open(&scene.path, &io::OpenOptions::default())
+            .expect("opens")
+            .document
+            .skeleton_rig;
         for (joint, own) in scene.pose(&[]).joints.iter().zip(skeleton.skeleton.joints()) {
             let full = Mat4::from_cols_array(&joint.transform);
             assert!(full.transform_point3(Vec3::ZERO).distance(joint.base) < 1e-5);

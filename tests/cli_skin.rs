@@ -54,7 +54,7 @@ fn a_document_gets_a_skin_around_its_bones() {
     let arguments = ["--detail", "1.5", "--thickness", "0.8", "--skinning", "spread-twist"];
     let output = skin(&file, &out, &arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let document = io::open(&out, None).expect("opens").document;
+    let document = io::open(&out, &io::OpenOptions::default()).expect("opens").document;
     let skin = document.skeleton_rig.skin.expect("a skin");
     let SkinSource::Bones(bones) = &skin.source else { panic!("a skin from bones") };
     assert_eq!(bones.shape().detail, 1.5);
@@ -112,7 +112,7 @@ fn an_obj_holds_the_posed_mesh_in_world_space_closed_with_outward_normals() {
     let desk = Desk::new();
     let (file, skinned) = (desk.example("two-targets"), desk.path("skinned.json"));
     assert!(skin(&file, &skinned, &[]).status.success());
-    let document = io::open(&skinned, None).expect("opens").document;
+    let document = io::open(&skinned, &io::OpenOptions::default()).expect("opens").document;
     for (argument, skinning) in [
         ("linear", Skinning::Linear),
         ("dual-quaternion", Skinning::DualQuaternion),

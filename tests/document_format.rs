@@ -15,7 +15,8 @@ use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 
 fn open(text: &str) -> Opened {
-    io::parse("test.json", text, None).unwrap_or_else(|error| panic!("{error}"))
+    io::parse("test.json", text, &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn with(fields: &str) -> String {
@@ -23,7 +24,7 @@ fn with(fields: &str) -> String {
 }
 
 fn refusal(text: &str) -> String {
-    message(io::parse("test.json", text, None).expect_err("it is refused"))
+    message(io::parse("test.json", text, &io::OpenOptions::default()).expect_err("it is refused"))
 }
 
 // Writing and reading again
@@ -395,7 +396,8 @@ fn more_joints_than_a_skeleton_can_have_are_refused() {
 
 #[test]
 fn invalid_utf_8_has_its_position() {
-    let error = io::read("x.json", &b"{\n \"\xc3\xa9\":\"\xff\"}"[..], None).expect_err("refused");
+    let error = io::read("x.json", &b"{\n \"\xc3\xa9\":\"\xff\"}"[..], &io::OpenOptions::default())
+        .expect_err("refused");
     let expected = "text must be UTF-8, got byte 0xff";
     assert_eq!(message(error), format!("x.json, line 2, column 7: {expected}"));
 }
@@ -415,23 +417,27 @@ fn deep_nesting_is_an_error_or_ignored_and_no_crash() {
 fn a_file_that_cannot_be_read_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("missing.json");
-    let error = io::open(&missing, None).expect_err("refused").to_string();
+    let error = io::open(&missing, &io::OpenOptions::default()).expect_err("refused").to_string();
     assert!(error.starts_with(&format!("{} cannot be read: ", missing.display())), "{error}");
 
-    let error = io::open(folder.path(), None).expect_err("refused").to_string();
+    let error =
+        io::open(folder.path(), &io::OpenOptions::default()).expect_err("refused").to_string();
     assert!(error.contains(" cannot be read: "), "{error}");
 
     let huge = folder.path().join("huge.json");
     fs::File::create(&huge).and_then(|file| file.set_len((64 << 20) + 1)).expect("made");
-    let error = io::open(&huge, None).expect_err("refused").to_string();
+    let error = io::open(&huge, &io::OpenOptions::default()).expect_err("refused").to_string();
     assert_eq!(error, format!("{} must be at most 64 MB large", huge.display()));
-    let endless = io::read("endless", std::io::repeat(b' '), None).expect_err("refused");
+    let endless = io::read("endless", std::io::repeat(b' '), &io::OpenOptions::default())
+        .expect_err("refused");
     assert_eq!(endless.to_string(), "endless must be at most 64 MB large");
 }
 
 #[test]
 fn a_document_has_no_skeletons_to_choose_from() {
-    let error = io::parse("a.json", &with("\"targets\":[]"), Some("Human")).expect_err("refused");
+    let error =
+        io::parse("a.json", &with("\"targets\":[]"), &io::OpenOptions::of_skeleton("Human"))
+            .expect_err("refused");
     let expected = "a.json has no skeleton called \"Human\"; it has one skeleton, without a name";
     assert_eq!(error.to_string(), expected);
 }
@@ -442,12 +448,12 @@ fn damaged_files_open_or_are_refused_and_never_crash() {
         let document = documents::document(&mut Random(seed));
         let json = io::to_json(&document).expect("written");
         for damaged in mutations(&json, &mut Random(seed), 40) {
-            let _ = io::read("x", &*damaged, None).map_err(message);
+            let _ = io::read("x", &*damaged, &io::OpenOptions::default()).map_err(message);
         }
     }
     for example in Example::ALL {
         for damaged in mutations(example.text, &mut Random(7), 150) {
-            let _ = io::read("x", &*damaged, None).map_err(message);
+            let _ = io::read("x", &*damaged, &io::OpenOptions::default()).map_err(message);
         }
     }
 }
@@ -461,7 +467,7 @@ fn a_saved_document_is_opened_again() {
     let document = documents::document(&mut Random(3));
     fs::write(&path, "before").expect("written");
     io::save(&document, &path).expect("saved");
-    assert_eq!(io::open(&path, None).expect("opened").document, document);
+    assert_eq!(io::open(&path, &io::OpenOptions::default()).expect("opened").document, document);
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing beside it");
 }
 
@@ -493,7 +499,10 @@ fn a_saved_file_keeps_its_permissions_and_a_link_stays_a_link() {
 
     assert!(link.symlink_metadata().expect("there").is_symlink());
     assert_eq!(path.metadata().expect("there").permissions().mode() & 0o777, 0o640);
-    assert_eq!(io::open(&path, None).expect("opened").document, Document::default());
+    assert_eq!(
+        io::open(&path, &io::OpenOptions::default()).expect("opened").document,
+        Document::default()
+    );
 }
 
 // Examples
@@ -661,7 +670,8 @@ fn a_key_with_a_curve_of_its_own_is_an_object_and_is_saved_as_one() {
     assert_eq!(key(Channel::Twist, 0.0).interpolation, Interpolation::Step);
     assert_eq!(key(Channel::Twist, 0.0).slopes, slopes(Vec3::X * 3.0, Vec3::X * 3.0));
     let text = io::to_json(&opened.document).expect("it can be saved");
-    let again = io::parse("again.json", &text, None).expect("it opens").document;
+    let again =
+        io::parse("again.json", &text, &io::OpenOptions::default()).expect("it opens").document;
     assert_eq!(again.keys, opened.document.keys);
     assert_eq!(text.matches("\"key\"").count(), 3, "a plain key stays a row: {text}");
 }

@@ -13,7 +13,7 @@ use ik_arm::kinematics::chain_ik::Root;
 const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
 fn open(path: &Path) -> Opened {
-    io::open(path, None).unwrap_or_else(|error| panic!("{error}"))
+    io::open(path, &io::OpenOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Files of version 1, each with the file of version 2 that has the same content: an example, an
@@ -129,11 +129,12 @@ fn errors_and_warnings_have_the_positions_of_the_file() {
         ),
         ("\"arm\":{\"weight\":1,}", "line 2, column 19: arm: not JSON: trailing comma"),
     ] {
-        let error = io::parse("1.json", &version_1(fields), None).expect_err("refused");
+        let error = io::parse("1.json", &version_1(fields), &io::OpenOptions::default())
+            .expect_err("refused");
         assert_eq!(message(error), format!("1.json, {expected}"), "{fields}");
     }
     let text = version_1("\"arm\":{\"weight\":1,\n \"wrist\":{\"roll\":0,\"elbow_spin\":1}}");
-    let warnings = io::parse("1.json", &text, None).expect("opens").warnings;
+    let warnings = io::parse("1.json", &text, &io::OpenOptions::default()).expect("opens").warnings;
     let expected = "line 3, column 33: arm.hand_orientation.elbow_spin: unknown field, ignored";
     assert_eq!(warnings.iter().map(ToString::to_string).collect::<Vec<_>>(), [expected]);
 }
@@ -142,7 +143,7 @@ fn errors_and_warnings_have_the_positions_of_the_file() {
 fn a_name_of_version_1_in_a_file_of_version_2_is_unknown_and_the_warning_has_the_new_name() {
     let text = "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"arm\",\n\"arm\":{\"elbow_spin\":1,\n\
                 \"twist_reference\":{\"carried\":{}}},\"keys\":[]}";
-    let opened = io::parse("2.json", text, None).expect("opens");
+    let opened = io::parse("2.json", text, &io::OpenOptions::default()).expect("opens");
     assert_eq!(opened.document.arm.twist, 0.0);
     let warnings: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
@@ -188,5 +189,8 @@ fn the_example_in_the_documentation_opens_without_a_warning() {
     let docs = fs::read_to_string(Path::new(FOLDER).join("docs/files.md")).expect("text");
     let (_, example) = docs.split_once("```json\n").expect("an example");
     let (example, _) = example.split_once("```").expect("its end");
-    assert_eq!(io::parse("files.md", example, None).expect("opens").warnings, []);
+    assert_eq!(
+        io::parse("files.md", example, &io::OpenOptions::default()).expect("opens").warnings,
+        []
+    );
 }

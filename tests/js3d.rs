@@ -13,11 +13,12 @@ use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::JointId;
 
 fn open(text: &str) -> Opened {
-    io::parse("test.js3d", text, None).unwrap_or_else(|error| panic!("{error}"))
+    io::parse("test.js3d", text, &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn refusal(text: &str) -> String {
-    message(io::parse("test.js3d", text, None).expect_err("it is refused"))
+    message(io::parse("test.js3d", text, &io::OpenOptions::default()).expect_err("it is refused"))
 }
 
 /// A scene with one skeleton; the bones begin on line 2.
@@ -34,7 +35,7 @@ fn bones(bones: &str) -> String {
 #[test]
 fn the_smallest_scene_opens() {
     let text = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"bones":[{"extent":[0,1,0]}]}}}}}"#;
-    let Opened { document, warnings, order, skeletons } = open(text);
+    let Opened { document, warnings, order, skeletons, .. } = open(text);
     let skeleton = document.skeleton();
     let joint = &skeleton.joints()[0];
     assert_eq!(document.rig, RigKind::Skeleton);
@@ -103,7 +104,7 @@ fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
     let length = |opened: Opened| opened.document.skeleton().joints()[0].axis.y;
     assert_eq!(open(&text).skeletons, ["zebra", "ant"]);
     assert_eq!(length(open(&text)), 1.0);
-    let named = |name| io::parse("x.js3d", &text, Some(name));
+    let named = |name| io::parse("x.js3d", &text, &io::OpenOptions::of_skeleton(name));
     assert_eq!(length(named("ant").expect("there")), 2.0);
     let error = named("Ant").expect_err("not there").to_string();
     assert_eq!(error, "x.js3d has no skeleton called \"Ant\"; it has \"zebra\", \"ant\"");
@@ -520,7 +521,7 @@ fn damaged_scenes_open_or_are_refused_and_never_crash() {
         let random = &mut Random(seed);
         let text = Scene::random(random).text();
         for damaged in mutations(&text, random, 40) {
-            let _ = io::read("x", &*damaged, None).map_err(message);
+            let _ = io::read("x", &*damaged, &io::OpenOptions::default()).map_err(message);
         }
     }
 }

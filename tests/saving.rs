@@ -93,7 +93,7 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
         let text = fs::read_to_string(&path).expect("there");
         let which = texts.iter().position(|whole| *whole == text);
         let which = which.unwrap_or_else(|| panic!("{} bytes are neither", text.len()));
-        let opened = io::open(&path, None).expect("it opens");
+        let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
         assert!(opened.document == documents[which] && opened.warnings.is_empty());
         found[which] += 1;
         interrupted += usize::from(fs::read_dir(&folder).expect("a folder").count() > 1);
@@ -139,7 +139,10 @@ fn a_disk_that_fills_while_a_file_is_written_leaves_the_old_one() {
     let ended = child.env(TO, &path).output().expect("it runs");
     let said = String::from_utf8_lossy(&ended.stdout);
     assert!(said.contains("File too large"), "{ended:?}");
-    assert_eq!(io::open(&path, None).expect("whole").document, Document::default());
+    assert_eq!(
+        io::open(&path, &io::OpenOptions::default()).expect("whole").document,
+        Document::default()
+    );
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left");
 }
 

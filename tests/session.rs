@@ -10,7 +10,7 @@ use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
     SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
-use ik_arm::io::Example;
+use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -464,9 +464,9 @@ fn selected_and_copied_keys_follow_their_joints() {
 #[test]
 fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
     let mut session = Session::default();
-    session.apply(FileAction::Open { path: "slow.glb".into(), skeleton: None });
+    session.apply(FileAction::Open { path: "slow.glb".into(), options: OpenOptions::default() });
     session.apply(EditAction::SetTwist(1.0));
-    let opened = FileAction::Opened { document: Box::default(), file: None };
+    let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     session.apply(opened.clone());
     assert_eq!(session.arm().twist, 1.0);
     assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
@@ -481,7 +481,7 @@ fn many_keys_move_at_once() {
     for frame in 0..50_000 {
         document.keys.insert(Channel::Hand, f64::from(frame) / 30.0, Vec3::X * frame as f32);
     }
-    session.apply(FileAction::Opened { document: Box::new(document), file: None });
+    session.apply(FileAction::Opened { document: Box::new(document), file: None, contents: None });
     let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
     session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();

@@ -231,7 +231,11 @@ fn samples_are_bounded_and_cleared_with_the_document() {
     }
     assert_eq!(session.pops().samples().count(), 600);
     let document = Box::new(Document::default());
-    session.apply(FileAction::Discard(Box::new(FileAction::Opened { document, file: None })));
+    session.apply(FileAction::Discard(Box::new(FileAction::Opened {
+        document,
+        file: None,
+        contents: None,
+    })));
     assert_eq!(session.pops().samples().count(), 0);
 }
 

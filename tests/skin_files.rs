@@ -100,7 +100,8 @@ impl Project {
         let project = Self(tempfile::tempdir().expect("a folder"));
         fs::create_dir(project.path("models")).expect("a folder");
         write_glb(&figure(4, 1), &project.path("models/figure.glb"));
-        let opened = io::open(&project.path("models/figure.glb"), None).expect("it opens");
+        let opened = io::open(&project.path("models/figure.glb"), &io::OpenOptions::default())
+            .expect("it opens");
         io::save(&opened.document, &project.path("scene.json")).expect("saved");
         project
     }
@@ -110,7 +111,7 @@ impl Project {
     }
 
     fn open(&self) -> Opened {
-        io::open(&self.path("scene.json"), None).expect("it opens")
+        io::open(&self.path("scene.json"), &io::OpenOptions::default()).expect("it opens")
     }
 }
 
@@ -122,7 +123,8 @@ fn a_document_names_the_file_of_its_mesh_relative_to_its_own_folder() {
     assert!(text.len() < 10_000, "the mesh is not in the document: {} bytes", text.len());
     let opened = project.open();
     assert_eq!(warnings(&opened), [""; 0]);
-    let imported = io::open(&project.path("models/figure.glb"), None).expect("it opens");
+    let imported = io::open(&project.path("models/figure.glb"), &io::OpenOptions::default())
+        .expect("it opens");
     assert_eq!(opened.document, imported.document);
     // The whole project can be moved, and the document saved into another folder.
     let elsewhere = tempfile::tempdir().expect("a folder");
@@ -130,7 +132,8 @@ fn a_document_names_the_file_of_its_mesh_relative_to_its_own_folder() {
     for name in ["scene.json", "models/figure.glb"] {
         fs::copy(project.path(name), elsewhere.path().join(name)).expect("a copy");
     }
-    let moved = io::open(&elsewhere.path().join("scene.json"), None).expect("it opens");
+    let moved = io::open(&elsewhere.path().join("scene.json"), &io::OpenOptions::default())
+        .expect("it opens");
     assert_eq!(warnings(&moved), [""; 0]);
     assert_eq!(attached(&moved.document), attached(&opened.document));
     let deeper = elsewhere.path().join("models/deeper.json");
@@ -156,7 +159,8 @@ fn a_missing_file_is_told_once_and_the_skeleton_opens_without_its_skin() {
     // Saving again keeps the reference.
     io::save(&opened.document, &project.path("again.json")).expect("saved");
     fs::rename(project.path("figure.glb"), project.path("models/figure.glb")).expect("moved back");
-    let again = io::open(&project.path("again.json"), None).expect("it opens");
+    let again =
+        io::open(&project.path("again.json"), &io::OpenOptions::default()).expect("it opens");
     assert_eq!(warnings(&again), [""; 0]);
     assert_eq!(attached(&again.document), attached(&project.open().document));
 }
@@ -204,7 +208,7 @@ fn a_packed_skin_is_read_back_bit_for_bit_without_its_file() {
         let SkinSource::Mesh(mesh) = &skin.source else { panic!("the mesh is from a file") };
         skin.source = SkinSource::Mesh(mesh.packed().expect("a mesh"));
         let text = io::to_json(&document).expect("a text");
-        let read = io::parse("packed.json", &text, None).expect("it opens");
+        let read = io::parse("packed.json", &text, &io::OpenOptions::default()).expect("it opens");
         assert_eq!(warnings(&read), [""; 0]);
         assert_eq!(read.document, document);
     }
@@ -239,7 +243,9 @@ fn damaged_packed_meshes_name_the_field() {
     let mut refused = |pointer: &str, value: serde_json::Value| {
         let field = json.pointer_mut(pointer).expect("a field");
         let before = std::mem::replace(field, value);
-        let error = io::parse("x.json", &json.to_string(), None).expect_err("refused").to_string();
+        let error = io::parse("x.json", &json.to_string(), &io::OpenOptions::default())
+            .expect_err("refused")
+            .to_string();
         *json.pointer_mut(pointer).expect("a field") = before;
         error
     };
@@ -288,7 +294,8 @@ fn the_path_to_the_file_leads_through_parent_folders_and_links() {
         let text = fs::read_to_string(&path).expect("a text");
         assert!(text.contains("\"file\": \"../models/figure.glb\""), "{}", path.display());
         let name = path.file_name().expect("a name");
-        let opened = io::open(&project.path("scenes").join(name), None).expect("it opens");
+        let opened = io::open(&project.path("scenes").join(name), &io::OpenOptions::default())
+            .expect("it opens");
         assert_eq!(warnings(&opened), [""; 0]);
     }
 }
@@ -305,7 +312,7 @@ fn parts_share_a_texture_also_in_files() {
     let skin = MeshSkin::new(mesh.into(), None, skin.joints().to_vec(), document.skeleton());
     document.skeleton_rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
     let text = io::to_json(&document).expect("a text");
-    let read = io::parse("x.json", &text, None).expect("it opens").document;
+    let read = io::parse("x.json", &text, &io::OpenOptions::default()).expect("it opens").document;
     assert_eq!(read, document);
     let textures: Vec<_> =
         attached(&read).parts.iter().filter_map(|part| part.texture.as_ref()).collect();

@@ -6,7 +6,7 @@ mod common;
 use common::Random;
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, FollowPath, Ray, RigKind, SkeletonRig};
-use ik_arm::io::{parse, to_json};
+use ik_arm::io::{OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::session::{
@@ -298,10 +298,12 @@ fn following_the_head_is_saved_without_its_keys_a_second_time() {
     let document = keyed_snake(&mut random);
     let text = to_json(&document).expect("JSON");
     assert!(text.contains("\"follow_path\": {\n    \"path\": \"head\"\n  }"), "{text}");
-    let read = parse("a.json", &text, None).expect("a document").document;
+    let read = parse("a.json", &text, &OpenOptions::default()).expect("a document").document;
     assert_eq!(read, document);
     let cut = text.replace("\"path\": \"head\"", "\"path\": \"ring\", \"radius\": 1");
-    let error = parse("a.json", &cut, None).expect_err("a ring needs numbers").to_string();
+    let error = parse("a.json", &cut, &OpenOptions::default())
+        .expect_err("a ring needs numbers")
+        .to_string();
     assert!(error.contains("follow_path: must have `amplitude` for a ring"), "{error}");
 }
 

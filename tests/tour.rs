@@ -134,7 +134,7 @@ fn changed() -> Session {
     let mut session = session();
     let document = Box::new(example("walk"));
     let file = Some(PathBuf::from("/tmp/walk.json"));
-    session.apply(FileAction::Opened { document, file });
+    session.apply(FileAction::Opened { document, file, contents: None });
     session.apply(PlaybackAction::SetTime(0.5));
     session.apply(EditAction::SetTranslation(Vec3::new(0.1, 0.02, 0.0)));
     session.apply(EditAction::ShowOverlay(Overlay::Labels, false));

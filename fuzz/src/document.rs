@@ -1,12 +1,12 @@
 use ik_arm::document::{Document, Timeline};
-use ik_arm::io::{self, BvhUnit, Progress};
+use ik_arm::io::{self, BvhUnit, OpenOptions, Progress};
 
 use super::opened::{is_readable, opened};
 
 /// A document or similar bytes: they are refused with a short message, or the document survives
 /// saving and reading, and so do its exports.
 pub fn document(data: &[u8]) {
-    if let Some(opened) = opened(data, None) {
+    if let Some(opened) = opened(data, &OpenOptions::default()) {
         export(&short(opened.document));
     }
 }
@@ -22,12 +22,14 @@ fn short(document: Document) -> Document {
 fn export(document: &Document) {
     let progress = &Progress::default();
     match io::glb(document, None, progress) {
-        Ok(bytes) => drop(opened(&bytes, None).expect("glTF of ours is read")),
+        Ok(bytes) => drop(opened(&bytes, &OpenOptions::default()).expect("glTF of ours is read")),
         Err(error) => is_readable(&error.to_string()),
     }
     for unit in [BvhUnit::Centimetres, BvhUnit::Scene] {
         match io::to_bvh(document, None, unit, progress) {
-            Ok(bvh) => drop(opened(&bvh.bytes, None).expect("BVH of ours is read")),
+            Ok(bvh) => {
+                drop(opened(&bvh.bytes, &OpenOptions::default()).expect("BVH of ours is read"))
+            }
             Err(error) => is_readable(&error.to_string()),
         }
     }

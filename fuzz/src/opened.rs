@@ -1,14 +1,14 @@
 use std::collections::HashSet;
 
 use ik_arm::document::Document;
-use ik_arm::io::{self, Opened};
+use ik_arm::io::{self, OpenOptions, Opened};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
 
 /// Checks the content of a file, or that its error is readable.
-pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
-    match io::read("file", bytes, skeleton) {
+pub fn opened(bytes: &[u8], options: &OpenOptions) -> Option<Opened> {
+    match io::read("file", bytes, options) {
         Ok(opened) => {
             check(&opened);
             Some(opened)
@@ -20,12 +20,15 @@ pub fn opened(bytes: &[u8], skeleton: Option<&str>) -> Option<Opened> {
     }
 }
 
-/// Every skeleton of a file.
+/// Every skeleton and every animation of a file.
 pub fn every_skeleton(bytes: &[u8]) {
     const ENOUGH: usize = 4;
-    if let Some(first) = opened(bytes, None) {
+    if let Some(first) = opened(bytes, &OpenOptions::default()) {
         for name in first.skeletons.iter().take(ENOUGH) {
-            opened(bytes, Some(name));
+            opened(bytes, &OpenOptions::of_skeleton(name));
+        }
+        for animation in first.animations.iter().skip(1).take(ENOUGH) {
+            opened(bytes, &OpenOptions::of_animation(&animation.name));
         }
     }
 }
@@ -36,7 +39,8 @@ pub fn is_readable(message: &str) {
 }
 
 fn check(opened: &Opened) {
-    let Opened { document, warnings, order, skeletons } = opened;
+    let Opened { document, warnings, order, skeletons, animations, animation } = opened;
+    assert!(animation.is_none_or(|animation| animation < animations.len()));
     warnings.iter().for_each(|warning| is_readable(&warning.to_string()));
     let names: HashSet<_> = skeletons.iter().collect();
     assert_eq!(names.len(), skeletons.len(), "{skeletons:?}");
@@ -104,7 +108,8 @@ fn check_poses(document: &Document) {
 /// Numbers that are not finite could not be written.
 fn is_read_as_it_is_written(document: &Document) {
     let json = io::to_json(document).expect("every document can be written");
-    let again = io::parse("again", &json, None).expect("what was written is read");
+    let again =
+        io::parse("again", &json, &io::OpenOptions::default()).expect("what was written is read");
     assert_eq!(again.document, *document);
     assert_eq!(again.warnings, []);
     // Equal numbers may differ in the sign of 0; their texts do not.

@@ -11,12 +11,13 @@ use super::user_event::{PathChoice, UserEvent, send};
 use super::viewport_picture::ViewportPicture;
 use crate::document::{Bake, Document, SkeletonRig, Skin};
 use crate::export::{self, ExportError, ExportOptions, Format};
-use crate::io::{self, OpenError, Opened, Progress};
+use crate::io::{self, OpenError, OpenOptions, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::SkinSource;
 use crate::scene::Scene;
 use crate::session::{
-    Action, Actions, BakeJob, Dialog, Export, ExportJob, FileAction, PathDialog, ShellAction,
+    Action, Actions, BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, PathDialog,
+    ShellAction,
 };
 
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
@@ -109,10 +110,10 @@ fn export_message(
 }
 
 /// Reads a file on a thread of its own, because the file may be large.
-pub(super) fn open(path: PathBuf, skeleton: Option<String>, proxy: EventLoopProxy<UserEvent>) {
+pub(super) fn open(path: PathBuf, options: OpenOptions, proxy: EventLoopProxy<UserEvent>) {
     thread::spawn(move || {
-        let read = Box::new(io::open(&path, skeleton.as_deref()));
-        send(&proxy, UserEvent::Opened { path, has_chosen_skeleton: skeleton.is_some(), read });
+        let read = Box::new(io::open(&path, &options));
+        send(&proxy, UserEvent::Opened { path, options, read });
     });
 }
 
@@ -129,34 +130,37 @@ pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProx
 }
 
 /// Actions for a file that was read: they show the file's document or the error, and ask which of
-/// several skeletons to open.
+/// several skeletons and animations to open, unless `options` choose one.
 pub(super) fn open_actions(
     path: PathBuf,
-    has_chosen_skeleton: bool,
+    options: OpenOptions,
     read: Result<Opened, OpenError>,
 ) -> Actions {
     let mut actions = Actions::new();
-    let Opened { document, warnings, skeletons, .. } = match read {
+    let opened = match read {
         Ok(opened) => opened,
         Err(error) => {
             actions.push(FileAction::NotOpened { path, why: error.to_string() });
             return actions;
         }
     };
-    let message = match &warnings[..] {
+    let message = match &opened.warnings[..] {
         [] => format!("Opened {}", path.display()),
         [one] => format!("Opened {}; {one}", path.display()),
         [first, rest @ ..] => {
             format!("Opened {}; {first}, and {} more warnings", path.display(), rest.len())
         }
     };
+    let asks = options == OpenOptions::default();
+    let is_own = opened.skeletons.is_empty();
+    let contents = (!is_own).then(|| Box::new(FileContents::new(path.clone(), options, &opened)));
+    let question = contents.clone().filter(|contents| asks && contents.has_choice());
+    let document = Box::new(opened.document);
     // Save must not overwrite a file of another program.
-    let file = skeletons.is_empty().then(|| path.clone());
-    actions.push(FileAction::Opened { document: Box::new(document), file });
+    actions.push(FileAction::Opened { document, file: is_own.then_some(path), contents });
     actions.push(ShellAction::Report(message));
-    if skeletons.len() > 1 && !has_chosen_skeleton {
-        actions.push(ShellAction::OpenDialog(Dialog::ChooseSkeleton { path, names: skeletons }));
-    }
+    actions
+        .extend(question.map(|contents| ShellAction::OpenDialog(Dialog::ChooseContents(contents))));
     actions
 }
 
@@ -206,7 +210,7 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
 pub(super) fn path_action(dialog: PathDialog, choice: PathChoice) -> Action {
     match (choice, dialog) {
         (PathChoice::Path(path), PathDialog::Open { .. }) => {
-            FileAction::Open { path, skeleton: None }.into()
+            FileAction::Open { path, options: OpenOptions::default() }.into()
         }
         (PathChoice::Path(path), PathDialog::SaveAs { .. }) => FileAction::SaveAs(path).into(),
         (PathChoice::Path(path), PathDialog::LocateSkin { .. }) => {

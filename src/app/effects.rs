@@ -74,7 +74,7 @@ impl AppWindow {
                 let path = session.full_path(&dialog, dialog.path());
                 background::choose_path(dialog, &path, proxy.clone());
             }
-            Effect::Open { path, skeleton } => background::open(path, skeleton, proxy.clone()),
+            Effect::Open { path, options } => background::open(path, options, proxy.clone()),
             Effect::LocateSkin(path) => {
                 background::locate_skin(path, session.skeleton_rig(), proxy.clone());
             }

@@ -34,7 +34,7 @@ pub fn run(
     session.set_recent(settings.recent.clone());
     session.set_export_folder(settings.export_folder.clone());
     if let Some((document, file)) = document {
-        session.apply(FileAction::Opened { document: Box::new(document), file });
+        session.apply(FileAction::Opened { document: Box::new(document), file, contents: None });
     }
     let recovery = Recovery::start();
     let recovered = recovery.find();
@@ -215,8 +215,8 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Exported(result) => {
                 self.session.apply(FileAction::ExportEnded(result));
             }
-            UserEvent::Opened { path, has_chosen_skeleton, read } => {
-                for action in background::open_actions(path, has_chosen_skeleton, *read) {
+            UserEvent::Opened { path, options, read } => {
+                for action in background::open_actions(path, options, *read) {
                     self.session.apply(action);
                 }
             }

@@ -14,7 +14,7 @@ use winit::event_loop::EventLoopProxy;
 
 use super::user_event::UserEvent;
 use crate::document::Document;
-use crate::io::{self as files, SaveError};
+use crate::io::{self as files, OpenOptions, SaveError};
 use crate::session::Session;
 
 /// Time from a change of the document to its backup.
@@ -253,7 +253,10 @@ impl Backup {
     fn read(path: &Path) -> Result<Self, Box<dyn std::error::Error>> {
         let BackupFile { file, document } = serde_json::from_str(&fs::read_to_string(path)?)?;
         let name = path.display().to_string();
-        Ok(Self { document: files::parse(&name, &document, None)?.document, file })
+        Ok(Self {
+            document: files::parse(&name, &document, &OpenOptions::default())?.document,
+            file,
+        })
     }
 
     fn write(&self, path: &Path) -> Result<(), SaveError> {

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use winit::event_loop::EventLoopProxy;
 
 use crate::document::Baked;
-use crate::io::{OpenError, Opened};
+use crate::io::{OpenError, OpenOptions, Opened};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError};
 use crate::session::{BakeJob, PathDialog};
 
@@ -24,8 +24,8 @@ pub enum UserEvent {
     GraphicsFailed,
     /// Answer of the system's file dialog.
     Chosen(PathDialog, PathChoice),
-    /// A file was read; `has_chosen_skeleton` if the user chose one of its skeletons.
-    Opened { path: PathBuf, has_chosen_skeleton: bool, read: Box<Result<Opened, OpenError>> },
+    /// A file was read.
+    Opened { path: PathBuf, options: OpenOptions, read: Box<Result<Opened, OpenError>> },
     /// The file of a skin was read.
     SkinLocated {
         path: PathBuf,

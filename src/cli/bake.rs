@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::argument::{FrameRateArgument, NumberArgument};
 use super::open;
+use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
 use crate::document::{Bake, BakeError, Baked, Document, Timeline};
@@ -27,6 +28,8 @@ pub struct BakeArgs {
     /// Document to write (.json)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    open: OpenArgs,
     /// Frames per second [default: the timeline's]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     fps: Option<FrameRateArgument>,
@@ -75,7 +78,7 @@ impl BakeArgs {
         if !open::is_document(&self.output) {
             return Err(BakeCommandError::Extension(self.output.display().to_string()));
         }
-        let document = open::open(&self.file, None)?.document;
+        let document = open::open(&self.file, &self.open.options())?.document;
         let settings = self.settings(&document);
         let baked = run_with_bar(|progress| {
             settings.run(&document, |done, total| progress.step(done, total).is_ok())

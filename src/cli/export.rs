@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::argument::{FrameRateArgument, SizeArgument, ThemeName, TimeArgument};
 use super::open;
+use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
 use crate::document::Document;
@@ -35,9 +36,8 @@ pub struct ExportArgs {
     /// File to write
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Skeleton to export, if the file has several [default: the first]
-    #[arg(long, value_name = "NAME")]
-    skeleton: Option<String>,
+    #[command(flatten)]
+    open: OpenArgs,
     /// Frames per second [default: the timeline's]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     fps: Option<FrameRateArgument>,
@@ -60,7 +60,7 @@ pub struct ExportArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum UnitName {
+pub enum UnitName {
     Cm,
     M,
     Scene,
@@ -101,7 +101,7 @@ impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
         // Checks the arguments first, so that no file is read if one of them does not apply.
         self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
-        let document = open::open(&self.file, self.skeleton.as_deref())?.document;
+        let document = open::open(&self.file, &self.open.options())?.document;
         let notes = run_with_bar(|progress| self.write(&document, progress))??;
         Ok(notes)
     }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::value_parser;
 
 use super::open;
+use super::open_args::OpenArgs;
 use super::report::fail;
 use crate::app;
 use crate::session::TourStep;
@@ -15,9 +16,8 @@ pub struct GuiArgs {
     /// File to open: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Skeleton to open, if the file has several [default: the first]
-    #[arg(long, value_name = "NAME", requires = "file")]
-    skeleton: Option<String>,
+    #[command(flatten)]
+    open: OpenArgs,
     /// Begin the tour at this step [default: 1]
     #[arg(long, value_name = "STEP", num_args = 0..=1, default_missing_value = "1",
         value_parser = value_parser!(u16).range(1..=steps()))]
@@ -31,7 +31,7 @@ fn steps() -> i64 {
 pub fn run(args: &GuiArgs) -> ExitCode {
     let mut document = None;
     if let Some(path) = &args.file {
-        match open::open(path, args.skeleton.as_deref()) {
+        match open::open(path, &args.open.options()) {
             // A file of another program is opened but never overwritten by Save.
             Ok(opened) => {
                 let file = opened.skeletons.is_empty().then(|| path.clone());

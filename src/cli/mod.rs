@@ -2,10 +2,12 @@
 
 mod argument;
 mod bake;
+mod convert;
 mod examples;
 mod export;
 mod gui;
 mod open;
+mod open_args;
 mod pose;
 mod progress_bar;
 mod quiet;
@@ -20,6 +22,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use bake::BakeArgs;
+use convert::ConvertArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
 use gui::GuiArgs;
@@ -50,6 +53,8 @@ enum Command {
     Render(RenderArgs),
     /// Export a file's motion, mesh or pictures: .glb, .bvh, .csv, .obj, .png, .apng
     Export(ExportArgs),
+    /// Convert a file to a document (.json), .glb or .bvh
+    Convert(ConvertArgs),
     /// Replace a skeleton's targets by keys: a document in, a document out
     Bake(BakeArgs),
     /// Give a file's skeleton a smooth skin around its bones: a document out
@@ -76,6 +81,7 @@ pub fn run() -> ExitCode {
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Bake(args)) => bake::run(&args),
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),

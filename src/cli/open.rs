@@ -2,7 +2,7 @@ use std::io;
 use std::path::Path;
 
 use super::report::say;
-use crate::io::{OpenError, Opened, open as open_file, read};
+use crate::io::{OpenError, OpenOptions, Opened, open as open_file, read};
 
 const STANDARD_INPUT: &str = "-";
 
@@ -20,11 +20,11 @@ pub fn is_document(path: &Path) -> bool {
 }
 
 /// Opens a file, or standard input for `-`, and prints its warnings.
-pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
+pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
     let opened = if path == Path::new(STANDARD_INPUT) {
-        read(&name(path), io::stdin().lock(), skeleton)?
+        read(&name(path), io::stdin().lock(), options)?
     } else {
-        open_file(path, skeleton)?
+        open_file(path, options)?
     };
     for warning in &opened.warnings {
         say(&format_args!("{}, {warning}", name(path)));

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::argument::NumberArgument;
 use super::open;
+use super::open_args::OpenArgs;
 use super::report::{USAGE, fail, say};
 use crate::document::{Document, Overlay, RigKind, Skin};
 use crate::io::{OpenError, SaveError, save};
@@ -28,9 +29,8 @@ pub struct SkinArgs {
     /// Document to write (.json)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Skeleton to take, if the file has several [default: the first]
-    #[arg(long, value_name = "NAME")]
-    skeleton: Option<String>,
+    #[command(flatten)]
+    open: OpenArgs,
     /// How finely the mesh is made: the smallest radius is N cells of the grid, 1.2 to 16; twice the
     /// detail gives four times the vertices [default: 2]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
@@ -80,7 +80,7 @@ impl SkinArgs {
             return Err(SkinCommandError::Extension(self.output.display().to_string()));
         }
         let file = open::name(&self.file);
-        let mut document = open::open(&self.file, self.skeleton.as_deref())?.document;
+        let mut document = open::open(&self.file, &self.open.options())?.document;
         if document.rig == RigKind::Arm {
             return Err(SkinCommandError::NoSkeleton(file));
         }

@@ -39,6 +39,16 @@ pub enum OpenError {
         /// skeleton has no name.
         names: Vec<String>,
     },
+    /// The file has no animation of the requested name or number.
+    #[error("{file} has no animation {name:?}; {}", list_animations(names))]
+    NoAnimation {
+        /// Name of the file.
+        file: String,
+        /// The requested name or number.
+        name: String,
+        /// Names of the file's animations.
+        names: Vec<String>,
+    },
 }
 
 impl OpenError {
@@ -136,4 +146,15 @@ pub(crate) fn shortened(message: String) -> String {
     let start = message.chars().take(START);
     let end = message.chars().skip(count - END);
     start.chain("…".chars()).chain(end).collect()
+}
+
+fn list_animations(names: &[String]) -> String {
+    /// Maximum number of names that are listed.
+    const MOST: usize = 20;
+    let quoted: Vec<_> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
+    match (names.len(), names.len().saturating_sub(MOST)) {
+        (0, _) => "it has none that can be chosen".to_owned(),
+        (_, 0) => format!("it has {}", quoted.join(", ")),
+        (_, more) => format!("it has {} and {more} more", quoted.join(", ")),
+    }
 }

@@ -1,5 +1,6 @@
 use super::OpenError;
 use super::open::parse;
+use super::open_options::OpenOptions;
 use super::opened::Opened;
 use crate::document::Document;
 
@@ -225,6 +226,6 @@ impl Example {
     ///
     /// Never fails: a test opens every example.
     pub fn open(self) -> Result<Opened, OpenError> {
-        parse(self.name, self.text, None)
+        parse(self.name, self.text, &OpenOptions::default())
     }
 }

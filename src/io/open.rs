@@ -3,20 +3,20 @@ use std::path::Path;
 
 use super::error::OpenError;
 use super::file_format::FileFormat;
+use super::open_options::OpenOptions;
 use super::opened::Opened;
 use super::source::Source;
 use super::{bvh, format, gltf, js3d};
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
-/// detected by the content. If the file has several skeletons, the one called `skeleton` is opened,
-/// or with `None` the first.
+/// detected by the content. `options` choose one of several skeletons and animations.
 ///
 /// # Errors
 ///
 /// Fails if the file cannot be read, has none of these formats, has invalid content, or has no
-/// skeleton called `skeleton`.
-pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    open_source(&Source::open(path)?, skeleton)
+/// skeleton or animation of the given name.
+pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
+    open_source(&Source::open(path)?, options)
 }
 
 /// Like [`open`], but reads the content from `input`. Errors call the file `name`.
@@ -24,8 +24,8 @@ pub fn open(path: &Path, skeleton: Option<&str>) -> Result<Opened, OpenError> {
 /// # Errors
 ///
 /// See [`open`].
-pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    open_source(&Source::read(name, input)?, skeleton)
+pub fn read(name: &str, input: impl Read, options: &OpenOptions) -> Result<Opened, OpenError> {
+    open_source(&Source::read(name, input)?, options)
 }
 
 /// Like [`open`], but takes the content as a text. Errors call the file `name`.
@@ -33,20 +33,25 @@ pub fn read(name: &str, input: impl Read, skeleton: Option<&str>) -> Result<Open
 /// # Errors
 ///
 /// See [`open`].
-pub fn parse(name: &str, text: &str, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    open_source(&Source::new(name, text), skeleton)
+pub fn parse(name: &str, text: &str, options: &OpenOptions) -> Result<Opened, OpenError> {
+    open_source(&Source::new(name, text), options)
 }
 
-fn open_source(source: &Source, skeleton: Option<&str>) -> Result<Opened, OpenError> {
-    match (FileFormat::detect(source)?, skeleton) {
-        (FileFormat::Scene, skeleton) => js3d::read(source, skeleton),
-        (FileFormat::Gltf, skeleton) => gltf::read(source, skeleton),
-        (FileFormat::Motion, skeleton) => bvh::read(source, skeleton),
-        (FileFormat::Document, None) => format::read(source),
-        (FileFormat::Document, Some(name)) => Err(OpenError::NoSkeleton {
-            file: source.name().to_owned(),
-            name: name.to_owned(),
-            names: Vec::new(),
-        }),
+fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
+    let format = FileFormat::detect(source)?;
+    let OpenOptions { skeleton, animation } = options;
+    let (file, skeleton) = (source.name().to_owned(), skeleton.as_deref());
+    let opened = match (format, skeleton) {
+        (FileFormat::Gltf, _) => return gltf::read(source, options),
+        (FileFormat::Scene, skeleton) => js3d::read(source, skeleton)?,
+        (FileFormat::Motion, skeleton) => bvh::read(source, skeleton)?,
+        (FileFormat::Document, None) => format::read(source)?,
+        (FileFormat::Document, Some(name)) => {
+            return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: Vec::new() });
+        }
+    };
+    match animation {
+        Some(name) => Err(OpenError::NoAnimation { file, name: name.clone(), names: Vec::new() }),
+        None => Ok(opened),
     }
 }

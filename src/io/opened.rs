@@ -1,4 +1,5 @@
 use super::error::Remark;
+use super::file_animation::FileAnimation;
 use crate::document::Document;
 use crate::kinematics::skeleton::JointId;
 
@@ -14,4 +15,8 @@ pub struct Opened {
     /// The names of the file's skeletons, one of which was opened; empty for this program's own
     /// format, in which the one skeleton has no name.
     pub skeletons: Vec<String>,
+    /// The animations of a glTF file; empty for other formats.
+    pub animations: Vec<FileAnimation>,
+    /// Index of the animation that was read; `None` if there is none.
+    pub animation: Option<usize>,
 }

@@ -7,6 +7,7 @@ use super::error::OpenError;
 use super::field_error::FieldWarnings;
 use super::file_format::FileFormat;
 use super::json_path::JsonPath;
+use super::open_options::OpenOptions;
 use super::source::Source;
 use super::{gltf, js3d};
 use crate::document::{Document, Skin};
@@ -59,8 +60,9 @@ fn read(
         return Ok(None);
     }
     let source = Source::open(path)?;
+    let options = skeleton.map_or_else(OpenOptions::default, OpenOptions::of_skeleton);
     let opened = match FileFormat::detect(&source)? {
-        FileFormat::Gltf => gltf::read(&source, skeleton)?,
+        FileFormat::Gltf => gltf::read(&source, &options)?,
         FileFormat::Scene => js3d::read(&source, skeleton)?,
         FileFormat::Document | FileFormat::Motion => return Ok(None),
     };

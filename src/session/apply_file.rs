@@ -6,6 +6,7 @@ use super::dialog::Dialog;
 use super::effect::Effect;
 use super::export::{Export, ExportJob};
 use super::file_action::FileAction;
+use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
 use super::session::{ASPECT, Session};
 use crate::document::{Document, RigKind};
@@ -42,6 +43,11 @@ impl Session {
     pub(super) fn is_late(&self, action: &FileAction) -> bool {
         let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
         matches!(action, FileAction::Opened { .. }) && (is_other || self.is_editing())
+    }
+
+    /// The skeletons and animations of the file of another program that the document comes from.
+    pub fn contents(&self) -> Option<&FileContents> {
+        self.files.contents()
     }
 
     /// Whether the unsaved document of an earlier run was opened or declined.
@@ -167,15 +173,18 @@ impl Session {
                 self.say("No file was chosen");
             }
             FileAction::NoSystemDialog(dialog) => self.ask_in_program(dialog),
-            FileAction::Open { path, skeleton } => {
+            FileAction::Open { path, options } => {
                 self.shell.set_choosing(false);
                 if !matches!(self.shell.path_dialog(), Some(PathDialog::Open { .. })) {
                     self.shell.take_dialog();
                 }
                 self.files.set_opening(self.revision());
-                return Some(Effect::Open { path, skeleton });
+                return Some(Effect::Open { path, options });
             }
-            FileAction::Opened { document, file } => self.replace_document(*document, file),
+            FileAction::Opened { document, file, contents } => {
+                self.replace_document(*document, file);
+                self.files.set_contents(contents);
+            }
             FileAction::NotOpened { path, why } => self.fail_open(&path, &why),
             FileAction::LocateSkin(path) => {
                 self.shell.take_dialog();

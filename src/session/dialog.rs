@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use super::bake_action::BakeJob;
 use super::file_action::FileAction;
+use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
 use crate::document::{Bake, Document};
 use crate::kinematics::skeleton::JointId;
@@ -43,13 +44,8 @@ pub enum Dialog {
     },
     /// Asks for a path.
     Path(PathDialog),
-    /// Asks which of a file's skeletons to open.
-    ChooseSkeleton {
-        /// The file to open.
-        path: PathBuf,
-        /// Names of the skeletons in the file.
-        names: Vec<String>,
-    },
+    /// Asks which of a file's skeletons and animations to open.
+    ChooseContents(Box<FileContents>),
     /// Asks for the name of a joint.
     Rename {
         /// The joint to rename.

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use super::export::Export;
 use super::path_dialog::PathDialog;
 use crate::document::Bake;
+use crate::io::OpenOptions;
 
 /// A request from the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,8 +22,8 @@ pub enum Effect {
     Open {
         /// The file.
         path: PathBuf,
-        /// Name of the skeleton to open, for a file with several; `None` opens the first.
-        skeleton: Option<String>,
+        /// Choice of one of several skeletons and animations.
+        options: OpenOptions,
     },
     /// Reads the mesh of the document's skin from a file.
     LocateSkin(PathBuf),

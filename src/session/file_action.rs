@@ -1,9 +1,10 @@
 use std::path::PathBuf;
 
 use super::export::{Export, ExportJob};
+use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
 use crate::document::Document;
-use crate::io::Example;
+use crate::io::{Example, OpenOptions};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError};
 
 /// Opens, saves, exports and quits.
@@ -22,8 +23,8 @@ pub enum FileAction {
     Open {
         /// The file.
         path: PathBuf,
-        /// Name of the skeleton to open, for a file with several; `None` opens the first.
-        skeleton: Option<String>,
+        /// Choice of one of several skeletons and animations.
+        options: OpenOptions,
     },
     /// Replaces the document and clears the history.
     Opened {
@@ -31,6 +32,8 @@ pub enum FileAction {
         document: Box<Document>,
         /// The file that Save overwrites; `None` if Save must ask for a path.
         file: Option<PathBuf>,
+        /// What else the file has; `None` for a document of this program.
+        contents: Option<Box<FileContents>>,
     },
     /// Reports why a file cannot be opened.
     NotOpened {

@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::export::ExportJob;
 use super::file_action::FileAction;
+use super::file_contents::FileContents;
 
 /// The document's file, recent files, the running export and pending requests.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +15,8 @@ pub(super) struct Files {
     recovery_settled: bool,
     /// The document's revision when the user chose a file to open.
     opening: Option<u64>,
+    /// What else the file of another program has that the document comes from.
+    contents: Option<Box<FileContents>>,
     /// The action to apply once the document is saved; `None` if no action waits.
     after_save: Option<Box<FileAction>>,
 }
@@ -32,8 +35,17 @@ impl Files {
             job: self.job.take(),
             recovery_settled: self.recovery_settled,
             opening: None,
+            contents: None,
             after_save: None,
         }
+    }
+
+    pub fn contents(&self) -> Option<&FileContents> {
+        self.contents.as_deref()
+    }
+
+    pub fn set_contents(&mut self, contents: Option<Box<FileContents>>) {
+        self.contents = contents;
     }
 
     pub fn file(&self) -> Option<&Path> {

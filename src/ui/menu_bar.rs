@@ -5,7 +5,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 use super::panels::right;
 use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
-use crate::io::{Example, Group};
+use crate::io::{Example, Group, OpenOptions};
 use crate::session::{
     Action, Actions, Dialog, EditAction, FileAction, Navigation, Session, ShellAction, TourAction,
     TransactionAction, ViewAction,
@@ -72,6 +72,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_enabled_ui(!session.recent().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| recent(ui, session, actions));
     });
+    contents(ui, session, actions);
     ui.separator();
     if item(ui, "Save", "Ctrl+S") {
         actions.push(FileAction::Save);
@@ -92,12 +93,23 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
+/// Shows the item that opens another skeleton or animation of the file.
+fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let several = session.contents().filter(|contents| contents.has_choice());
+    let button = Button::new("Skeletons and animations…");
+    let item = ui.add_enabled(several.is_some(), button);
+    let item = item.on_disabled_hover_text("The file has no other skeleton or animation");
+    if let Some(contents) = several.filter(|_| item.clicked()) {
+        actions.push(ShellAction::OpenDialog(Dialog::ChooseContents(Box::new(contents.clone()))));
+    }
+}
+
 fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for path in session.recent() {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let button = ui.button(name).on_hover_text(path.display().to_string());
         if button.clicked() {
-            actions.push(FileAction::Open { path: path.clone(), skeleton: None });
+            actions.push(FileAction::Open { path: path.clone(), options: OpenOptions::default() });
         }
     }
 }

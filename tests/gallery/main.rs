@@ -27,7 +27,8 @@ fn opened(name: &str) -> Document {
     let opened = example.open().expect("it opens");
     assert_eq!(opened.warnings, []);
     let json = io::to_json(&opened.document).expect("written");
-    let again = io::parse(name, &json, None).expect("it opens again").document;
+    let again =
+        io::parse(name, &json, &io::OpenOptions::default()).expect("it opens again").document;
     assert_eq!(again, opened.document);
     opened.document
 }

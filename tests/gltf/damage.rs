@@ -9,7 +9,7 @@ use crate::text;
 use ik_arm::kinematics::skeleton::JointId;
 
 fn open(bytes: &[u8]) {
-    match io::read("damaged", bytes, None) {
+    match io::read("damaged", bytes, &io::OpenOptions::default()) {
         Err(error) => {
             message(error);
         }
@@ -72,7 +72,9 @@ fn deep_nesting_is_an_error_and_a_deep_tree_is_not() {
     for open_bracket in ["[", "{\"a\":"] {
         let text =
             format!("{{\"asset\":{{\"version\":\"2.0\"}},\"x\":{}", open_bracket.repeat(1_000_000));
-        let error = message(io::parse("deep", &text, None).expect_err("it is refused"));
+        let error = message(
+            io::parse("deep", &text, &io::OpenOptions::default()).expect_err("it is refused"),
+        );
         assert!(error.contains("not JSON"), "{error}");
     }
     let node = |index| format!("{{\"children\":[{}],\"translation\":[0,1,0]}},", index + 1);
@@ -80,7 +82,7 @@ fn deep_nesting_is_an_error_and_a_deep_tree_is_not() {
     let text = format!(
         "{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}{{}}],\"skins\":[{{\"joints\":[150000]}}]}}"
     );
-    let opened = io::parse("deep", &text, None).expect("it opens");
+    let opened = io::parse("deep", &text, &io::OpenOptions::default()).expect("it opens");
     assert_eq!(opened.document.skeleton().base(JointId::new(0)), glam::Vec3::Y * 150_000.0);
 }
 
@@ -96,6 +98,7 @@ fn accessors_shared_by_too_many_channels_are_refused_early() {
     for node in 0..10_000 {
         text.animate(node, "translation", "LINEAR", input, output);
     }
-    let error = io::read("many", &text.binary()[..], None).expect_err("it is refused");
+    let error = io::read("many", &text.binary()[..], &io::OpenOptions::default())
+        .expect_err("it is refused");
     assert!(message(error).contains("must have at most 20000000 keys"));
 }

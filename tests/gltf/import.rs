@@ -12,7 +12,8 @@ use crate::common::damage::message;
 use crate::text::{Text, base64, glb};
 
 fn open(text: &Text) -> Opened {
-    io::parse("test.gltf", &text.embedded(), None).unwrap_or_else(|error| panic!("{error}"))
+    io::parse("test.gltf", &text.embedded(), &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn skeleton(text: &Text) -> Skeleton {
@@ -20,7 +21,7 @@ fn skeleton(text: &Text) -> Skeleton {
 }
 
 fn refusal(text: &str) -> String {
-    message(io::parse("x.gltf", text, None).expect_err("it is refused"))
+    message(io::parse("x.gltf", text, &io::OpenOptions::default()).expect_err("it is refused"))
 }
 
 /// Base of a joint at a time, by the joint's name.
@@ -61,7 +62,10 @@ fn a_text_and_a_binary_file_give_the_same_joints() {
         (opened.skeletons.as_slice(), opened.order.as_slice()),
         (&["skin".to_owned()][..], &[0, 1, 2].map(JointId::new)[..])
     );
-    assert_eq!(io::read("x.glb", &text.binary()[..], None).expect("it opens"), opened);
+    assert_eq!(
+        io::read("x.glb", &text.binary()[..], &io::OpenOptions::default()).expect("it opens"),
+        opened
+    );
 }
 
 #[test]
@@ -153,7 +157,11 @@ fn of_several_skins_the_first_is_read_or_the_one_that_is_named() {
         { "joints": [0, 1] }, { "name": "b", "joints": [1, 2] }, { "name": "b", "joints": [2] },
     ]);
     text.json["nodes"][3]["skin"] = json!(0);
-    let named = |name| io::parse("x.gltf", &text.embedded(), name);
+    let named = |name: Option<&str>| {
+        let skeleton = name.map(str::to_owned);
+        let options = io::OpenOptions { skeleton, ..io::OpenOptions::default() };
+        io::parse("x.gltf", &text.embedded(), &options)
+    };
     let count = |name| {
         let opened = named(name).expect("it opens");
         assert_eq!(opened.skeletons, ["lamp", "b", "b_2"]);
@@ -295,24 +303,125 @@ fn the_frame_rate_is_the_lowest_that_has_every_key_and_need_not_be_whole() {
     }
 }
 
-#[test]
-fn only_the_first_animation_is_read_with_a_warning() {
+/// A chain with an animation for each of `turns`: node 0 turns by so many quarters in a second.
+fn with_animations(turns: &[f32]) -> Text {
     let mut text = Text::chain();
     let times = text.floats(1, &[0.0, 1.0]);
-    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
-    text.animate(0, "rotation", "LINEAR", times, turned);
-    let mut first = text.json["animations"][0].clone();
-    first["channels"][0]["target"]["path"] = json!("weights");
-    let second = text.json["animations"][0].clone();
-    text.json["animations"] = json!([first, second]);
+    let mut animations = Vec::new();
+    for (index, turn) in turns.iter().enumerate() {
+        text.json.as_object_mut().expect("an object").remove("animations");
+        let turned = text.floats(4, &quarters(&[0.0, *turn]));
+        text.animate(0, "rotation", "LINEAR", times, turned);
+        let mut animation = text.json["animations"][0].clone();
+        animation["name"] = json!(format!("turn {index}"));
+        animations.push(animation);
+    }
+    text.json["animations"] = json!(animations);
+    text
+}
+
+#[test]
+fn the_first_animation_that_moves_is_read_and_any_other_on_request() {
+    let turns: Vec<f32> = (0..14).map(|index| index as f32 / 14.0).collect();
+    let text = with_animations(&turns);
     let opened = open(&text);
-    assert!(opened.document.keys.is_empty());
+    assert_eq!((opened.animations.len(), opened.animation), (14, Some(1)));
     assert_eq!(opened.warnings.len(), 1);
-    assert_eq!(opened.warnings[0].field, "animations[1]");
-    assert_eq!(opened.warnings[0].reason, "ignored; only the first animation is read");
-    let binary = io::read("x.glb", &text.binary()[..], None).expect("it opens");
-    let remark = binary.warnings[0].to_string();
-    assert_eq!(remark, "animations[1]: ignored; only the first animation is read");
+    assert_eq!(opened.warnings[0].reason, "\"turn 1\" is read, one of 14");
+    let still = &opened.animations[0];
+    assert_eq!((still.name.as_str(), still.moving_joints, still.moves()), ("turn 0", 0, false));
+    for (index, turn) in turns.iter().enumerate() {
+        for said in [format!("turn {index}"), index.to_string()] {
+            let options = io::OpenOptions::of_animation(&said);
+            let opened = io::parse("x.gltf", &text.embedded(), &options).expect("it opens");
+            assert_eq!(opened.animation, Some(index));
+            let turned = opened.document.keys.value(Channel::Rotation(JointId::new(0)), 1.0);
+            let turned = turned.unwrap_or_default();
+            assert!((turned.z - turn * FRAC_PI_2).abs() < 1e-5, "{said}: {turned}");
+        }
+    }
+    for said in ["turn 14", "14", "-1", ""] {
+        let options = io::OpenOptions::of_animation(said);
+        let error = io::parse("x.gltf", &text.embedded(), &options).expect_err("none");
+        let start = format!("x.gltf has no animation {said:?}; it has \"turn 0\", \"turn 1\"");
+        assert!(error.to_string().starts_with(&start), "{error}");
+    }
+}
+
+#[test]
+fn a_damaged_animation_does_not_keep_the_others_from_being_read() {
+    let mut text = with_animations(&[1.0, 0.5]);
+    text.json["animations"][0]["samplers"][0]["output"] = json!(999);
+    let opened = open(&text);
+    assert_eq!(opened.animation, Some(1));
+    let options = io::OpenOptions::of_animation("0");
+    assert!(io::parse("x.gltf", &text.embedded(), &options).is_err());
+}
+
+/// Four nodes in a row below `hips`, 1 m apart, and a node beside them.
+fn without_skin() -> Text {
+    let mut nodes = vec![json!({ "name": "scene", "children": [1, 6] })];
+    for (index, name) in ["hips", "spine", "neck", "head"].into_iter().enumerate() {
+        let children = if index < 3 { json!([index + 2]) } else { json!([5]) };
+        nodes.push(json!({ "name": name, "translation": [0, 1, 0], "children": children }));
+    }
+    nodes.push(json!({ "name": "hat", "translation": [0, 1, 0] }));
+    nodes.push(json!({ "name": "lamp" }));
+    let mut text = Text::new(json!(nodes), &[]);
+    text.json["skins"] = json!([]);
+    text
+}
+
+#[test]
+fn without_a_skin_the_nodes_that_move_are_the_joints_up_to_their_common_ancestor() {
+    let mut text = without_skin();
+    assert!(
+        refusal(&text.embedded()).contains("skins: must have at least one skin, or an animation")
+    );
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    for node in [2, 4] {
+        text.animate(node, "rotation", "LINEAR", times, turned);
+    }
+    let opened = open(&text);
+    let joints = opened.document.skeleton().joints();
+    let told: Vec<_> = joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(told, ["spine", "neck", "head"]);
+    assert_eq!(opened.skeletons, ["scene"]);
+    assert_near(base(&opened, 0.0, "head"), Vec3::new(0.0, 4.0, 0.0));
+    assert_near(base(&opened, 1.0, "head"), Vec3::new(-2.0, 2.0, 0.0));
+}
+
+#[test]
+fn nodes_that_move_become_joints_though_the_skin_does_not_list_them() {
+    let mut text = without_skin();
+    text.json["skins"] = json!([{ "name": "body", "joints": [2, 3] }]);
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    let moved = text.floats(3, &[0.0, 1.0, 0.0, 5.0, 1.0, 0.0]);
+    text.animate(1, "translation", "LINEAR", times, moved);
+    text.animate(5, "rotation", "LINEAR", times, turned);
+    let opened = open(&text);
+    let skeleton = opened.document.skeleton();
+    let names: Vec<_> = opened
+        .order
+        .iter()
+        .map(|joint| skeleton.joint(*joint).expect("there").name.as_str())
+        .collect();
+    assert_eq!(names, ["spine", "neck", "hips", "hat"]);
+    assert_near(base(&opened, 1.0, "neck"), Vec3::new(5.0, 3.0, 0.0));
+    assert_near(base(&opened, 1.0, "hat"), Vec3::new(5.0, 5.0, 0.0));
+    assert!(opened.document.keys.has(Channel::Rotation(skeleton.find("hat").expect("a joint"))));
+    assert_eq!(opened.warnings, []);
+
+    // A node in another tree is left out, with a remark.
+    text.json["nodes"][0]["children"] = json!([1]);
+    text.animate(6, "translation", "LINEAR", times, moved);
+    let opened = open(&text);
+    assert_eq!(opened.document.skeleton().joints().len(), 4);
+    let [remark] = &opened.warnings[..] else { panic!("one: {:?}", opened.warnings) };
+    let reason = "moves, but is not in the hierarchy of the skeleton, and is left out";
+    assert_eq!((remark.field.as_str(), remark.reason.as_str()), ("nodes[6]", reason));
 }
 
 // Other files
@@ -332,7 +441,7 @@ fn a_buffer_can_be_a_file_in_the_same_folder() {
     std::fs::write(folder.path().join("a b.bin"), text.bytes()).expect("written");
     let path = folder.path().join("x.gltf");
     std::fs::write(&path, text.with_uri("./a%20b.bin")).expect("written");
-    let opened = io::open(&path, None).expect("it opens");
+    let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
     assert_near(base(&opened, 1.0, "c"), Vec3::NEG_X * 2.0);
 }
 
@@ -359,7 +468,7 @@ fn a_buffer_that_is_not_in_the_files_own_folder_is_refused() {
         "none.bin",
     ] {
         std::fs::write(&path, text.with_uri(uri)).expect("written");
-        let error = message(io::open(&path, None).expect_err(uri));
+        let error = message(io::open(&path, &io::OpenOptions::default()).expect_err(uri));
         assert!(error.contains("buffers[0].uri: "), "{error}");
     }
     let error = refusal(&text.with_uri("a.bin"));
@@ -372,7 +481,8 @@ fn a_file_of_200_mb_is_refused_before_it_is_read() {
     let path = folder.path().join("large.glb");
     let file = std::fs::File::create(&path).expect("made");
     file.set_len(200 << 20).expect("made long");
-    let error = io::open(&path, None).expect_err("it is refused").to_string();
+    let error =
+        io::open(&path, &io::OpenOptions::default()).expect_err("it is refused").to_string();
     assert!(error.ends_with("must be at most 64 MB large"), "{error}");
 }
 
@@ -409,7 +519,6 @@ fn errors_name_the_field() {
     let infinite = base64(&f32::INFINITY.to_le_bytes());
     for (pointer, value, said) in [
         ("/asset/version", json!("1.0"), "asset.version: must be 2 or 2.x, got \"1.0\""),
-        ("/skins", json!([]), "skins: must have at least one skin"),
         ("/skins/0/joints", json!([]), "skins[0].joints: must have at least one joint"),
         (
             "/skins/0/joints/1",
@@ -646,7 +755,9 @@ fn too_many_joints_nodes_and_frames_are_refused() {
 #[test]
 fn errors_in_a_binary_file_have_no_line() {
     let json = br#"{"asset":{"version":"2.0"},"skins":[{"joints":[0]}]}"#;
-    let said = |bytes: &[u8]| message(io::read("x.glb", bytes, None).expect_err("it is refused"));
+    let said = |bytes: &[u8]| {
+        message(io::read("x.glb", bytes, &io::OpenOptions::default()).expect_err("it is refused"))
+    };
     assert_eq!(
         said(&glb(json, b"")),
         "x.glb, skins[0].joints[0]: must be below 0, the number of nodes, got 0"

@@ -15,7 +15,8 @@ use crate::documents::{all, glb};
 use crate::text::{Text, base64, push};
 
 fn opened(text: &Text) -> Opened {
-    io::parse("test.gltf", &text.embedded(), None).unwrap_or_else(|error| panic!("{error}"))
+    io::parse("test.gltf", &text.embedded(), &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn skin(opened: &Opened) -> &Skin {
@@ -133,7 +134,8 @@ fn every_form_of_an_accessor_gives_the_same_mesh() {
         let mut text = strip.text();
         change(&mut text);
         assert_is_strip(&opened(&text), &strip, what);
-        let binary = io::read("test.glb", &text.binary()[..], None).expect("it opens");
+        let binary = io::read("test.glb", &text.binary()[..], &io::OpenOptions::default())
+            .expect("it opens");
         assert_is_strip(&binary, &strip, what);
     };
     check("joints of two bytes", &|text| {
@@ -449,7 +451,7 @@ fn base_colours_and_their_textures_are_read_from_every_place() {
     ]);
     let path = folder.path().join("figure.gltf");
     std::fs::write(&path, text.embedded()).expect("a file");
-    let opened = io::open(&path, None).expect("it opens");
+    let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
     assert_eq!(warnings(&opened), [""; 0]);
     let parts = &attached(&opened).parts;
     assert_eq!(parts.iter().map(|part| part.triangles).collect::<Vec<_>>(), [4; 4]);
@@ -522,7 +524,8 @@ fn of_several_skins_each_has_its_own_mesh() {
     );
     push(&mut text.json["nodes"], json!({ "mesh": 1, "skin": 1 }));
     for (name, triangles) in [("skin", 4), ("other", 1)] {
-        let opened = io::parse("x.gltf", &text.embedded(), Some(name)).expect("it opens");
+        let opened = io::parse("x.gltf", &text.embedded(), &io::OpenOptions::of_skeleton(name))
+            .expect("it opens");
         assert_eq!(attached(&opened).mesh.mesh().triangles.len(), triangles, "{name}");
     }
 }
@@ -600,7 +603,9 @@ fn an_exported_skin_has_the_same_vertices_at_every_key_when_it_is_opened() {
         let transform =
             Affine3A::from_mat3_translation(linear * random.within(0.2..3.0), Vec3::ONE);
         document.skeleton_mut().set_transform(transform).expect("finite");
-        let read = io::read("x.glb", &glb(&document)[..], None).expect("it opens").document;
+        let read = io::read("x.glb", &glb(&document)[..], &io::OpenOptions::default())
+            .expect("it opens")
+            .document;
         let size = document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
         let scale = transform.matrix3.determinant().abs().cbrt() * document.metres_per_unit();
         let size = size.mesh.mesh().size() * scale;
@@ -637,7 +642,8 @@ fn parts_and_textures_survive_export_and_import() {
         { "pbrMetallicRoughness": { "baseColorFactor": [0, 0.5, 1, 1] } },
     ]);
     let before = opened(&text);
-    let after = io::read("x.glb", &glb(&before.document)[..], None).expect("it opens");
+    let after = io::read("x.glb", &glb(&before.document)[..], &io::OpenOptions::default())
+        .expect("it opens");
     assert_eq!(warnings(&after), [""; 0]);
     let (before_parts, after_parts) = (&attached(&before).parts, &attached(&after).parts);
     assert_eq!(before_parts.len(), 2);

@@ -113,7 +113,7 @@ proptest! {
             session.apply(PlaybackAction::SetTime(time));
         }
         prop_assert_eq!(*session.pose(), alone);
-        let again = ik_arm::io::parse("a", &ik_arm::io::to_json(session.document()).expect("json"), None);
+        let again = ik_arm::io::parse("a", &ik_arm::io::to_json(session.document()).expect("json"), &ik_arm::io::OpenOptions::default());
         prop_assert_eq!(again.expect("opened").document.evaluate(last).arm.pose(), alone);
     }
 

@@ -56,8 +56,11 @@ fn a_forearm_rolls_beyond_half_a_turn() {
         let found = session.arm().roll(session.pose());
         assert!((found - roll).abs() < 1e-4, "{found} is not {roll}");
     }
-    let opened =
-        ik_arm::io::parse("a", &ik_arm::io::to_json(session.document()).expect("json"), None);
+    let opened = ik_arm::io::parse(
+        "a",
+        &ik_arm::io::to_json(session.document()).expect("json"),
+        &ik_arm::io::OpenOptions::default(),
+    );
     let arm = opened.expect("opened").document.arm;
     assert!((arm.roll(&arm.pose()) - 9.0).abs() < 1e-4, "its turns are kept in the file");
 }

@@ -60,7 +60,7 @@ impl Actions {
     fn anew(&mut self, session: &Session) -> Action {
         let mut values = self.values(session);
         let (document, file) = (Box::new(values.document()), values.file());
-        FileAction::Discard(Box::new(FileAction::Opened { document, file })).into()
+        FileAction::Discard(Box::new(FileAction::Opened { document, file, contents: None })).into()
     }
 
     fn made_smaller(&mut self, session: &Session) -> Option<Action> {

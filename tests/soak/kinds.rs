@@ -1,6 +1,7 @@
 //! All kinds of actions. A new action does not compile without its line here.
 
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
+use ik_arm::io::OpenOptions;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
@@ -216,8 +217,8 @@ kinds! {
         ChoosePath: Look 1, |_| FileAction::ChoosePath;
         ChoseNothing: Look 1, |_| FileAction::ChoseNothing;
         NoSystemDialog: Look 1, |v| FileAction::NoSystemDialog(v.path_dialog());
-        Open: Files 1, |v| FileAction::Open { path: v.path(), skeleton: None };
-        Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file() };
+        Open: Files 1, |v| FileAction::Open { path: v.path(), options: OpenOptions::default() };
+        Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file(), contents: None };
         NotOpened: Look 1, |v| FileAction::NotOpened { path: v.path(), why: v.name() };
         LocateSkin: Look 1, |v| FileAction::LocateSkin(v.path());
         SkinLocated: Build 1, |v| FileAction::SkinLocated { path: v.path(), before: v.skin_file(), read: Box::new(v.located_skin()) };
@@ -258,7 +259,11 @@ pub fn leaving(values: &mut Values<'_>) -> FileAction {
     match values.random.below(6) {
         0 => FileAction::NewSkeleton,
         1 => FileAction::Recover { document: Box::new(values.document()), file: values.file() },
-        2 => FileAction::Opened { document: Box::new(values.document()), file: values.file() },
+        2 => FileAction::Opened {
+            document: Box::new(values.document()),
+            file: values.file(),
+            contents: None,
+        },
         3 => FileAction::Quit,
         _ => FileAction::OpenExample(values.example()),
     }

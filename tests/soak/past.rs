@@ -42,7 +42,7 @@ pub fn saved(document: &Document) -> Result<String, Broken> {
 pub fn saving(document: &Document) -> Result<(), Broken> {
     let text =
         io::to_json(document).map_err(|error| Broken(format!("it can be saved: {error}")))?;
-    let opened = io::parse("soak.json", &text, None)
+    let opened = io::parse("soak.json", &text, &io::OpenOptions::default())
         .map_err(|error| Broken(format!("what is saved can be opened: {error}")))?;
     // A skin's file may be missing, which is told at every opening.
     let odd = opened.warnings.iter().find(|remark| remark.field != "skin.mesh.file");

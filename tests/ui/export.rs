@@ -109,10 +109,11 @@ fn a_document_with_keys_survives_saving_and_opening() {
     let saved = bench.session().document().clone();
     assert!(!bench.session().is_unsaved());
 
-    let opened = io::open(&path, None).expect("it opens");
+    let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
     let mut again = Bench::after([FileAction::Opened {
         document: Box::new(opened.document),
         file: Some(path),
+        contents: None,
     }]);
     assert_eq!(again.session().document(), &saved);
     again.apply([PlaybackAction::SetTime(0.75)]);

@@ -68,7 +68,7 @@ fn each_rig_keeps_its_view_in_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("views.json");
     ik_arm::io::save(document, &path).expect("saved");
-    let opened = ik_arm::io::open(&path, None).expect("opened");
+    let opened = ik_arm::io::open(&path, &ik_arm::io::OpenOptions::default()).expect("opened");
     assert_eq!(&opened.document, document);
     assert!(opened.document.other_rig_camera.is_some());
 }

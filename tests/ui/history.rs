@@ -5,7 +5,7 @@ use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Cursor, Document};
-use ik_arm::io::Example;
+use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, SelectAction,
@@ -157,7 +157,7 @@ fn hundreds_of_steps_can_be_undone() {
 #[test]
 fn losing_unsaved_changes_needs_confirmation() {
     let example = Example::find("human").expect("there");
-    let open = |path: &str| FileAction::Open { path: path.into(), skeleton: None };
+    let open = |path: &str| FileAction::Open { path: path.into(), options: OpenOptions::default() };
     for leaving in
         [FileAction::Quit, FileAction::NewSkeleton, FileAction::OpenExample(example), open("a")]
     {
@@ -250,7 +250,7 @@ fn recent_files_are_offered_again() {
     menu(&mut bench, "File");
     menu(&mut bench, "Open recent");
     bench.click(Role::Button, "two.json");
-    let open = Effect::Open { path: "/a/two.json".into(), skeleton: None };
+    let open = Effect::Open { path: "/a/two.json".into(), options: OpenOptions::default() };
     assert_eq!(bench.effects(), [open]);
     let recent: Vec<_> = bench.session().recent().iter().map(|path| path.display()).collect();
     assert_eq!(

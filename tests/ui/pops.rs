@@ -152,7 +152,11 @@ fn opening_another_document_clears_the_pops() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     let document = Box::new(Document::default());
-    bench.apply([FileAction::Discard(Box::new(FileAction::Opened { document, file: None }))]);
+    bench.apply([FileAction::Discard(Box::new(FileAction::Opened {
+        document,
+        file: None,
+        contents: None,
+    }))]);
     assert!(bench.says("Drag the hand, or play the timeline"));
 }
 

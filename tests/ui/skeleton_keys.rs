@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{DroppedFile, Event, Key, Modifiers};
 use glam::Vec3;
-use ik_arm::io::Example;
+use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::session::{
@@ -218,7 +218,7 @@ fn a_file_that_is_dropped_on_the_window_is_opened() {
     let path = PathBuf::from("dropped scene.js3d");
     bench.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
     bench.frame([]);
-    assert_eq!(bench.effects(), [Effect::Open { path, skeleton: None }]);
+    assert_eq!(bench.effects(), [Effect::Open { path, options: OpenOptions::default() }]);
 }
 
 #[test]

@@ -7,11 +7,11 @@ use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers, vec2};
 use glam::Vec3;
 use ik_arm::document::{RigKind, TargetPath};
-use ik_arm::io::{Example, Group};
+use ik_arm::io::{Example, FileAnimation, Group, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, Iterate, PanelTab, PathDialog, SelectAction,
-    ShellAction, SolverAction, ViewAction,
+    Action, Dialog, EditAction, Effect, FileAction, FileContents, Iterate, PanelTab, PathDialog,
+    SelectAction, ShellAction, SolverAction, ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -559,10 +559,10 @@ fn files_are_asked_for_opened_and_saved() {
     bench.frame([]);
     bench.frame([egui::Event::Text("scene.js3d".to_owned())]);
     bench.key(Key::Enter);
-    let open = Effect::Open { path: "scene.js3d".into(), skeleton: None };
+    let open = Effect::Open { path: "scene.js3d".into(), options: OpenOptions::default() };
     assert_eq!(bench.effects(), [open]);
     let document = Box::new(bench.session().document().clone());
-    bench.apply([FileAction::Opened { document, file: None }]);
+    bench.apply([FileAction::Opened { document, file: None, contents: None }]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     assert!(
         matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
@@ -576,14 +576,50 @@ fn files_are_asked_for_opened_and_saved() {
     assert_eq!(bench.effects(), [Effect::Save("ik-arm.json".into())]);
 }
 
+fn contents(skeletons: &[&str], animations: &[&str]) -> Box<FileContents> {
+    let animation = |name: &&str| FileAnimation {
+        name: (*name).to_owned(),
+        start: 0.0,
+        end: 2.0,
+        moving_joints: 3,
+    };
+    Box::new(FileContents {
+        path: "two.glb".into(),
+        options: OpenOptions::default(),
+        skeletons: skeletons.iter().map(|name| (*name).to_owned()).collect(),
+        animations: animations.iter().map(animation).collect(),
+        animation: Some(0),
+    })
+}
+
 #[test]
 fn of_several_skeletons_one_is_chosen() {
-    let names = ["left", "right"].map(str::to_owned).to_vec();
-    let dialog = Dialog::ChooseSkeleton { path: "two.js3d".into(), names };
+    let dialog = Dialog::ChooseContents(contents(&["left", "right"], &[]));
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
+    bench.click(Role::Button, "left");
+    assert_eq!(bench.effects(), [], "it is open");
     bench.click(Role::Button, "right");
-    let open = Effect::Open { path: "two.js3d".into(), skeleton: Some("right".to_owned()) };
-    assert_eq!(bench.effects(), [open]);
+    let options = OpenOptions::of_skeleton("right");
+    assert_eq!(bench.effects(), [Effect::Open { path: "two.glb".into(), options }]);
+}
+
+#[test]
+fn of_several_animations_another_is_chosen_from_the_menu() {
+    let mut bench = Bench::new();
+    bench.choose(&["File", "Skeletons and animations…"]);
+    assert!(bench.session().dialog().is_none(), "there is nothing to choose");
+    bench.key(Key::Escape);
+    let opened = |contents| FileAction::Opened {
+        document: Box::new(Example::find("human").expect("there").open().expect("opens").document),
+        file: None,
+        contents: Some(contents),
+    };
+    bench.apply([opened(contents(&["rig"], &["Idle", "Run"]))]);
+    bench.choose(&["File", "Skeletons and animations…"]);
+    assert!(bench.says("2 animations"));
+    bench.click(Role::Button, "Run · 2.00 s · 3 joints");
+    let options = OpenOptions::of_animation("Run");
+    assert_eq!(bench.effects(), [Effect::Open { path: "two.glb".into(), options }]);
 }
 
 #[test]

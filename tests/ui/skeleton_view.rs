@@ -33,7 +33,11 @@ fn skeleton() -> Skeleton {
 fn bench() -> Bench {
     let skeleton_rig = SkeletonRig::new(skeleton());
     let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
-    let mut bench = Bench::after([FileAction::Opened { document: Box::new(document), file: None }]);
+    let mut bench = Bench::after([FileAction::Opened {
+        document: Box::new(document),
+        file: None,
+        contents: None,
+    }]);
     let camera = bench.session().framing_all();
     bench.apply([ViewAction::SetCamera(camera)]);
     bench

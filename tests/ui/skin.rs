@@ -164,8 +164,9 @@ fn with_file() -> (tempfile::TempDir, Bench) {
         Example::find("two-targets").expect("an example").open().expect("it opens").document;
     let bytes = io::glb(&human, None, &Progress::default()).expect("an export");
     std::fs::write(&path, bytes).expect("a file");
-    let document = Box::new(io::open(&path, None).expect("it opens").document);
-    (folder, Bench::after([FileAction::Opened { document, file: None }]))
+    let document =
+        Box::new(io::open(&path, &io::OpenOptions::default()).expect("it opens").document);
+    (folder, Bench::after([FileAction::Opened { document, file: None, contents: None }]))
 }
 
 #[test]
@@ -178,7 +179,7 @@ fn a_mesh_of_a_file_is_named_and_packed_into_the_document_in_one_step() {
     assert!(!bench.shows(Role::Button, "Pack skin into file"));
     drop(folder);
     let text = io::to_json(bench.session().document()).expect("a text");
-    let read = io::parse("x.json", &text, None).expect("it opens").document;
+    let read = io::parse("x.json", &text, &io::OpenOptions::default()).expect("it opens").document;
     assert!(read.skeleton_rig.skin.expect("a skin").mesh().is_ok());
     bench.choose(&["Edit", "Undo Pack skin into file"]);
     assert!(bench.shows(Role::Button, "Pack skin into file"));
@@ -191,8 +192,10 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
     let (old, new) = (folder.path().join("figure.glb"), folder.path().join("moved.glb"));
     io::save(bench.session().document(), &scene).expect("saved");
     std::fs::rename(&old, &new).expect("moved");
-    let document = Box::new(io::open(&scene, None).expect("it opens").document);
-    let mut bench = Bench::after([FileAction::Opened { document, file: Some(scene) }]);
+    let document =
+        Box::new(io::open(&scene, &io::OpenOptions::default()).expect("it opens").document);
+    let mut bench =
+        Bench::after([FileAction::Opened { document, file: Some(scene), contents: None }]);
     bench.reveal(Role::Button, "Locate…");
     let missing =
         format!("the skin's file {} is missing: locate it, or remove the skin", old.display());

@@ -522,7 +522,7 @@ fn ten_thousand_channels_scroll_quickly() {
         }
     }
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([FileAction::Opened { document: Box::new(document), file: None }]);
+    bench.apply([FileAction::Opened { document: Box::new(document), file: None, contents: None }]);
     let frame = |bench: &mut Bench| {
         let begun = Instant::now();
         bench.frame([]);

@@ -18,7 +18,7 @@ pub fn document_of(kept: &Path) -> Document {
     let kept = std::fs::read_to_string(kept).expect("whole");
     let kept: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
     let text = kept["document"].as_str().expect("a document");
-    ik_arm::io::parse("kept", text, None).expect("it opens").document
+    ik_arm::io::parse("kept", text, &ik_arm::io::OpenOptions::default()).expect("it opens").document
 }
 
 /// Drags the hand to the left end of its slider.

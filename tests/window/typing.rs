@@ -15,7 +15,7 @@ fn saved_to(program: &Program, path: &Path) -> Document {
     program.key("Return");
     wait_for("the saved file", || path.exists().then_some(()));
     program.at_rest();
-    io::open(path, None).expect("a document").document
+    io::open(path, &io::OpenOptions::default()).expect("a document").document
 }
 
 fn saved_again(program: &Program, path: &Path) -> Document {
@@ -23,7 +23,7 @@ fn saved_again(program: &Program, path: &Path) -> Document {
     program.key("ctrl+s");
     wait_for("the saved file", || path.exists().then_some(()));
     program.at_rest();
-    io::open(path, None).expect("a document").document
+    io::open(path, &io::OpenOptions::default()).expect("a document").document
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod given_target;
 mod joint_name;
+mod list;
 mod pose_line;
 mod posed;
 
@@ -12,8 +13,10 @@ use std::process::ExitCode;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use thiserror::Error;
 
+use self::list::FileList;
 use super::argument::TimeArgument;
 use super::open;
+use super::open_args::OpenArgs;
 use super::report::fail;
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
@@ -44,9 +47,11 @@ pub struct PoseArgs {
     /// standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Skeleton to pose, if the file has several [default: the first]
-    #[arg(long, value_name = "NAME")]
-    skeleton: Option<String>,
+    #[command(flatten)]
+    open: OpenArgs,
+    /// Print what the file has, instead of a pose: its skeletons, animations and targets
+    #[arg(long, conflicts_with_all = ["fk", "solver", "targets"])]
+    list: bool,
     /// Time in seconds at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
     time: TimeArgument,
@@ -117,9 +122,14 @@ pub fn run(args: &PoseArgs) -> ExitCode {
 
 fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let file = open::name(&args.file);
-    let opened = open::open(&args.file, args.skeleton.as_deref())?;
+    let opened = open::open(&args.file, &args.open.options())?;
     if opened.document.rig == RigKind::Arm {
         return Err(PoseCommandError::Arm(file));
+    }
+    if args.list {
+        let list = FileList::new(&opened, args.open.options().skeleton.as_deref());
+        let text = serde_json::to_string_pretty(&list).map_err(io::Error::from)?;
+        return Ok(writeln!(io::stdout(), "{text}")?);
     }
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;

@@ -6,6 +6,7 @@ use crate::cli::argument::{
     GuidesArgument, LengthArgument, NumberArgument, PointArgument, SizeArgument, ThemeName,
     TimeArgument,
 };
+use crate::cli::open_args::OpenArgs;
 use crate::document::{AxisView, Camera};
 use crate::rig::{Crowd, Processor};
 
@@ -21,9 +22,8 @@ pub struct RenderArgs {
     /// standard input
     #[arg(value_name = "FILE", conflicts_with_all = ["hand", "twist", "root", "upper", "lower"])]
     pub file: Option<PathBuf>,
-    /// Skeleton to draw, if the file has several [default: the first]
-    #[arg(long, value_name = "NAME", requires = "file")]
-    pub skeleton: Option<String>,
+    #[command(flatten)]
+    pub open: OpenArgs,
     /// Time of the picture in seconds, at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
     pub time: TimeArgument,

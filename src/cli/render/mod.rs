@@ -64,7 +64,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     let time = args.time.0;
     let mut document = match &args.file {
         Some(file) => {
-            let opened = open::open(file, args.skeleton.as_deref())?;
+            let opened = open::open(file, &args.open.options())?;
             opened.document.evaluate(time)
         }
         None => Document { arm: arm(args)?, ..Document::default() },

@@ -35,7 +35,14 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let mut warnings = rename(source, &mut nodes);
     warnings.extend(warning.map(|it| source.remark_about(it.at, &it.joint, &it.reason)));
     let document = document(&nodes, &motion).map_err(open_error)?;
-    Ok(Opened { order: document.skeleton().ids().collect(), document, warnings, skeletons })
+    Ok(Opened {
+        order: document.skeleton().ids().collect(),
+        document,
+        warnings,
+        skeletons,
+        animations: Vec::new(),
+        animation: None,
+    })
 }
 
 /// Makes the names of joints unique, and returns warnings about the renamed joints.

@@ -35,6 +35,8 @@ fn read_fields(source: &Source) -> Result<Opened, OpenError> {
         document,
         warnings: source.warnings(&warnings),
         skeletons: Vec::new(),
+        animations: Vec::new(),
+        animation: None,
     })
 }
 

@@ -20,10 +20,12 @@
 //!
 //! # Import
 //!
-//! A skin's joints become a skeleton in the world, in metres, parents before their children. The
-//! nodes are the bind pose: a joint's frame is its node's rotation. A joint that moves has keys at
-//! every frame of the first animation; its offset has keys if lengths or scales change. A node
-//! `NAME_tip` without children is not a joint but the tip of NAME's bone.
+//! A skin's joints become a skeleton in the world, in metres, parents before their children, and so
+//! do other nodes of their hierarchy that an animation moves. Without a skin, the joints are the
+//! nodes that animations move, with their ancestors up to a common one. The nodes are the bind pose:
+//! a joint's frame is its node's rotation. A joint that moves has keys at every frame of the chosen
+//! animation; its offset has keys if lengths or scales change. A node `NAME_tip` without children is
+//! not a joint but the tip of NAME's bone.
 //!
 //! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:
 //! triangles, normals, weights, and base colours with their textures. Other meshes and channels of

@@ -63,7 +63,14 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let mut document =
         Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, ..Document::default() };
     add_skin(&mut document, source, scene, chosen, &order, &mut warnings);
-    Ok(Opened { document, warnings: source.warnings(&warnings), order, skeletons: names })
+    Ok(Opened {
+        document,
+        warnings: source.warnings(&warnings),
+        order,
+        skeletons: names,
+        animations: Vec::new(),
+        animation: None,
+    })
 }
 
 /// Gives the skeleton the mesh called `name`. A mesh that cannot be read is left out, with a warning.

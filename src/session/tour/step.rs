@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::goal::Goal;
 use crate::document::Document;
-use crate::io::{Example, OpenError, parse};
+use crate::io::{Example, OpenError, OpenOptions, parse};
 use crate::session::panel_tab::PanelTab;
 
 /// A step of the tour.
@@ -81,6 +81,6 @@ impl TourStep {
         let of_tour = SCENES.into_iter().find(|(name, _)| *name == self.scene);
         let example = || Example::find(&self.scene).map(|example| example.text);
         let text = of_tour.map(|(_, text)| text).or_else(example).unwrap_or_default();
-        Ok(parse(&self.scene, text, None)?.document)
+        Ok(parse(&self.scene, text, &OpenOptions::default())?.document)
     }
 }

@@ -1,30 +1,12 @@
 //! Dialogs about joints and skeletons.
 
-use std::path::Path;
-
-use egui::{Button, ScrollArea, Ui};
+use egui::{Button, Ui};
 
 use super::first_button::first_button;
 use super::prompt::prompt;
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, Dialog, EditAction, FileAction, Session, ShellAction};
+use crate::session::{Actions, Dialog, EditAction, Session, ShellAction};
 use crate::ui::widgets;
-
-pub(super) fn choose_skeleton(ui: &mut Ui, path: &Path, names: &[String], actions: &mut Actions) {
-    ui.set_width(360.0);
-    ui.label("The file contains several skeletons. The first is open. Open another:");
-    ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-        for name in names {
-            if ui.add(Button::new(name).truncate()).clicked() {
-                let (path, skeleton) = (path.to_owned(), Some(name.clone()));
-                actions.push(FileAction::Open { path, skeleton });
-            }
-        }
-    });
-    if first_button(ui, "Keep the first") {
-        actions.push(ShellAction::CloseDialog);
-    }
-}
 
 pub(super) fn rename(
     ui: &mut Ui,

@@ -1,6 +1,7 @@
 //! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
 mod bake;
+mod contents;
 mod export;
 mod first_button;
 mod joints;
@@ -46,7 +47,7 @@ pub(in crate::ui) fn ui(
         Dialog::Path(PathDialog::Open { .. }) => "Open",
         Dialog::Path(PathDialog::SaveAs { .. }) => "Save as",
         Dialog::Path(PathDialog::LocateSkin { .. }) => "Locate skin",
-        Dialog::ChooseSkeleton { .. } => "Choose a skeleton",
+        Dialog::ChooseContents(_) => "Skeletons and animations",
         Dialog::Rename { .. } => "Rename",
         Dialog::Bake { job: None, .. } => "Bake to keys",
         Dialog::Bake { .. } => "Baking to keys",
@@ -85,7 +86,7 @@ pub(in crate::ui) fn ui(
             let typed = (path.as_str(), problem.as_deref());
             path::ask_path(ui, session, &path::LOCATE_SKIN, typed, is_new, actions);
         }
-        Dialog::ChooseSkeleton { path, names } => joints::choose_skeleton(ui, path, names, actions),
+        Dialog::ChooseContents(of_file) => contents::choose(ui, of_file, actions),
         Dialog::Rename { joint, name } => {
             joints::rename(ui, session, *joint, name, is_new, actions);
         }

@@ -6,6 +6,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::prompt::prompt;
 use crate::export::existing;
+use crate::io::OpenOptions;
 use crate::session::{Action, Actions, Dialog, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets;
 
@@ -28,7 +29,7 @@ pub(super) const OPEN: PathPrompt = PathPrompt {
     prompt: "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf",
     accept: "Open",
     dialog: |path| PathDialog::Open { path, problem: None },
-    action: |path| FileAction::Open { path, skeleton: None },
+    action: |path| FileAction::Open { path, options: OpenOptions::default() },
 };
 
 pub(super) const SAVE_AS: PathPrompt = PathPrompt {

@@ -3,6 +3,7 @@
 use egui::{Event, Key, KeyboardShortcut, Modifiers, Ui};
 
 use super::focus;
+use crate::io::OpenOptions;
 use crate::session::{
     Actions, Dialog, FileAction, SelectAction, Session, ShellAction, SolverAction,
     TransactionAction, ViewAction,
@@ -49,7 +50,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
     }
     let dropped = ui.input(|input| input.raw.dropped_files.first().map(|it| it.path().to_owned()));
     if let Some(path) = dropped {
-        actions.push(FileAction::Open { path, skeleton: None });
+        actions.push(FileAction::Open { path, options: OpenOptions::default() });
     }
     if pressed(Modifiers::COMMAND, Key::E) {
         actions.push(ShellAction::OpenDialog(session.export_dialog().into()));

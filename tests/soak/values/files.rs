@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use ik_arm::document::{Bake, Baked, Camera, Document, RigKind, SkeletonRig, Timeline};
-use ik_arm::io::{Example, Progress};
+use ik_arm::io::{Example, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{BakeJob, Dialog, Export, ExportJob, FileAction, PathDialog};
+use ik_arm::session::{BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, PathDialog};
 
 use super::Values;
 use crate::common::skeletons;
@@ -103,9 +103,13 @@ impl Values<'_> {
             2 => Dialog::Recover { document: Box::new(self.document()), file: self.file() },
             3 => Dialog::Unsaved { then: Box::new(FileAction::Quit) },
             4..=7 => Dialog::Path(self.path_dialog()),
-            8 => {
-                Dialog::ChooseSkeleton { path: self.path(), names: vec![self.name(), self.name()] }
-            }
+            8 => Dialog::ChooseContents(Box::new(FileContents {
+                path: self.path(),
+                options: OpenOptions::of_animation(&self.name()),
+                skeletons: vec![self.name(), self.name()],
+                animations: Vec::new(),
+                animation: None,
+            })),
             9 => Dialog::Exporting,
             10 => Dialog::DeleteJoints { joints: self.some_joints() },
             11 => {

@@ -53,7 +53,7 @@ pub struct GltfNode {
     pub skin: Option<Whole>,
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 pub struct GltfSkin {
     pub name: Option<String>,
     pub joints: Vec<Whole>,
@@ -129,6 +129,7 @@ pub struct GltfImage {
 
 #[derive(Deserialize)]
 pub struct GltfAnimation {
+    pub name: Option<String>,
     pub channels: List<GltfChannel>,
     pub samplers: List<GltfSampler>,
 }

@@ -1,5 +1,6 @@
 //! Import of the skeleton of a skin, with its motion.
 
+mod animations;
 mod buffers;
 mod clip;
 mod file;
@@ -15,19 +16,24 @@ mod skin_mesh;
 mod skins;
 mod tracks;
 
+use std::collections::BTreeSet;
+
 use crate::document::Timeline;
 use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
 use crate::io::field_error::{FieldError, FieldWarnings};
+use crate::io::file_animation::FileAnimation;
 use crate::io::json_path::JsonPath;
+use crate::io::open_options::OpenOptions;
 use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
-use file::{GltfAnimation, GltfFile, GltfSkin};
+use animations::at_animation;
+use file::{GltfFile, GltfSkin};
 use motion::{JointMotion, JointPlacement, NodePoser};
-use nodes::NodeTree;
+use nodes::{NodeTree, at_node};
 use rig::ImportedRig;
 use skin_mesh::MeshImport;
 use skins::{SkinJoints, at_skin};
@@ -36,30 +42,49 @@ use tracks::NodeTracks;
 /// Maximum number of node transforms in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
 
-/// Reads the skeleton of the skin called `name`, or of the first skin.
-pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
+/// Reads a skeleton and one of the animations: the skin's joints, or without a skin the nodes that
+/// the animations move.
+pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let JsonObject(file) = source.parse::<JsonObject<GltfFile>>(|_| {})?;
     check(&file).map_err(|error| source.error(&error))?;
-    let names = skins::names(&file);
-    let chosen = match name {
+    let nodes = NodeTree::new(&file).map_err(|error| source.error(&error))?;
+    let scans = animations::scan(source, &file, &nodes);
+    let moving: BTreeSet<usize> =
+        scans.iter().flat_map(|scan| scan.moving.iter().copied()).collect();
+    let names = skins::names(&file, &nodes, &moving);
+    let chosen = match &options.skeleton {
         Some(name) => names.iter().position(|other| other == name),
-        None => Some(0),
+        None => (!names.is_empty()).then_some(0),
     };
-    let Some((index, skin)) = chosen.and_then(|skin| Some((skin, file.skins.0.get(skin)?))) else {
-        return Err(OpenError::NoSkeleton {
-            file: source.name().to_owned(),
-            name: name.unwrap_or_default().to_owned(),
-            names,
+    let Some(index) = chosen else {
+        return Err(match &options.skeleton {
+            Some(name) => {
+                OpenError::NoSkeleton { file: source.name().to_owned(), name: name.clone(), names }
+            }
+            None => source.error(&no_skeleton()),
         });
     };
+    let joints = skin_joints(&file, &nodes, index, &moving);
+    let joints = joints.map_err(|error| source.error(&error))?;
+    let described: Vec<FileAnimation> = scans.iter().map(|scan| scan.described(&joints)).collect();
+    let animation = animations::choose(source, &described, options.animation.as_deref())?;
     let mut warnings = FieldWarnings::default();
-    let imported = import(source, &file, index, skin, &mut warnings);
-    let (ImportedRig { document, kept }, order) = imported.map_err(|error| source.error(&error))?;
+    if let (Some(chosen), true) = (animation, described.len() > 1) {
+        let reason = format!("{:?} is read, one of {}", described[chosen].name, described.len());
+        warnings.push(at_animation(chosen), reason);
+    }
+    warn_of_left_out(&moving, &joints, &mut warnings);
+    let import = GltfImport { source, file: &file, nodes: &nodes, index, joints: &joints };
+    let imported = import.read(animation, &names[index], &mut warnings);
+    let ImportedRig { document, kept } = imported.map_err(|error| source.error(&error))?;
+    let order = joints.order.iter().chain(&joints.added);
     Ok(Opened {
         document,
         warnings: source.warnings(&warnings),
-        order: order.into_iter().filter_map(|joint| kept[joint]).map(JointId::new).collect(),
+        order: order.filter_map(|joint| kept[*joint]).map(JointId::new).collect(),
         skeletons: names,
+        animations: described,
+        animation,
     })
 }
 
@@ -69,100 +94,127 @@ fn check(file: &GltfFile) -> Result<(), FieldError> {
         let reason = format!("must be 2 or 2.x, got {:?}", asset.version);
         return Err(FieldError::new(JsonPath::root().key("asset").key("version"), reason));
     }
-    if file.skins.0.is_empty() {
-        let reason = "must have at least one skin";
-        return Err(FieldError::new(JsonPath::root().key("skins"), reason));
-    }
     Ok(())
 }
 
-fn import(
-    source: &Source,
-    file: &GltfFile,
-    index: usize,
-    skin: &GltfSkin,
-    warnings: &mut FieldWarnings,
-) -> Result<(ImportedRig, Vec<usize>), FieldError> {
-    let nodes = NodeTree::new(file)?;
-    let skin_joints = SkinJoints::new(file, &nodes, index, skin)?;
-    let mut poser = NodePoser::new(&nodes, &skin_joints);
-    let bind_pose = poser.bind_pose()?;
-    let mut joints = rig::joints(file, &skin_joints, &bind_pose);
-    let at = JsonPath::root().key("animations");
-    if file.animations.0.len() > 1 {
-        let reason = "ignored; only the first animation is read";
-        warnings.push(at.clone().index(1), reason);
-    }
-    let (motions, timeline) = match file.animations.0.first() {
-        None => (Vec::new(), None),
-        Some(first) => {
-            let at = at.index(0);
-            animate(
-                source,
-                file,
-                &nodes,
-                (first, &at),
-                &mut poser,
-                &mut joints,
-                &bind_pose,
-                warnings,
-            )?
-        }
-    };
-    let built = rig::build(joints, &motions, timeline);
-    let mut built = built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
-    let mesh = MeshImport {
-        source,
-        file,
-        nodes: &nodes,
-        index,
-        skin,
-        joints: &skin_joints,
-        bind_pose: &bind_pose,
-    };
-    match mesh.read(warnings) {
-        Ok(Some((mesh, checksum))) => {
-            let skeleton = skins::names(file).swap_remove(index);
-            let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
-            let file = source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
-            attach_skin(&mut built.document, mesh, file, joints);
-        }
-        Ok(None) => {}
-        Err(error) => {
-            let reason = format!("{}; the skin is left out", error.reason);
-            warnings.push(error.field, reason);
-        }
-    }
-    Ok((built, skin_joints.order))
+fn no_skeleton() -> FieldError {
+    let reason = "must have at least one skin, or an animation that moves a node";
+    FieldError::new(JsonPath::root().key("skins"), reason)
 }
 
-fn animate(
-    source: &Source,
+fn skin_joints(
     file: &GltfFile,
     nodes: &NodeTree,
-    (animation, at): (&GltfAnimation, &JsonPath),
-    poser: &mut NodePoser<'_>,
-    joints: &mut [Joint],
-    bind_pose: &[JointPlacement],
-    warnings: &mut FieldWarnings,
-) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
-    let channels = tracks::used_channels(animation, at, nodes, &poser.is_needed())?;
-    let buffers = tracks::buffers(source, file, &channels)?;
-    let tracks = NodeTracks::new(file, &buffers, &channels, warnings)?;
-    let Some((start, _)) = clip::time_range(&tracks) else {
-        return Ok((Vec::new(), None));
-    };
-    let timeline = clip::timeline(&tracks, at)?;
-    let frames = timeline.map_or(1, |timeline| timeline.frames());
-    if frames.saturating_mul(poser.len()) > MOST_SAMPLES {
-        let nodes = poser.len();
-        let reason = format!(
-            "must have at most {} frames of {nodes} nodes, got {frames}",
-            MOST_SAMPLES / nodes
-        );
-        return Err(FieldError::new(at.clone(), reason));
+    index: usize,
+    moving: &BTreeSet<usize>,
+) -> Result<SkinJoints, FieldError> {
+    match file.skins.0.get(index) {
+        Some(skin) => SkinJoints::new(file, nodes, index, skin, moving),
+        None => SkinJoints::of_moving(nodes, moving).ok_or_else(no_skeleton),
     }
-    let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-    let motions = motion::sample(poser, &tracks, sampled, frames, joints, bind_pose)?;
-    Ok((motions, timeline))
+}
+
+/// Warns of nodes that move and are no joints.
+fn warn_of_left_out(moving: &BTreeSet<usize>, joints: &SkinJoints, warnings: &mut FieldWarnings) {
+    let is_joint: BTreeSet<usize> = joints.nodes.iter().copied().collect();
+    let mut left_out = moving.difference(&is_joint);
+    let count = left_out.clone().count();
+    if let Some(first) = left_out.next() {
+        let reason = match count {
+            1 => "moves, but is not in the hierarchy of the skeleton, and is left out".to_owned(),
+            _ => format!(
+                "and {} more nodes move, but are not in the hierarchy of the skeleton, and are left out",
+                count - 1
+            ),
+        };
+        warnings.push(at_node(*first), reason);
+    }
+}
+
+/// A skeleton of a file that is imported.
+struct GltfImport<'a> {
+    source: &'a Source,
+    file: &'a GltfFile,
+    nodes: &'a NodeTree,
+    /// Index of the skin; for a file without skins 0.
+    index: usize,
+    joints: &'a SkinJoints,
+}
+
+impl GltfImport<'_> {
+    fn read(
+        &self,
+        animation: Option<usize>,
+        name: &str,
+        warnings: &mut FieldWarnings,
+    ) -> Result<ImportedRig, FieldError> {
+        let Self { source, file, nodes, index, joints: skin_joints } = *self;
+        let mut poser = NodePoser::new(nodes, skin_joints);
+        let bind_pose = poser.bind_pose()?;
+        let mut joints = rig::joints(file, skin_joints, &bind_pose);
+        let (motions, timeline) = match animation {
+            None => (Vec::new(), None),
+            Some(chosen) => self.animate(chosen, &mut poser, &mut joints, &bind_pose, warnings)?,
+        };
+        let built = rig::build(joints, &motions, timeline);
+        let mut built =
+            built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
+        let no_skin = GltfSkin::default();
+        let mesh = MeshImport {
+            source,
+            file,
+            nodes,
+            index,
+            skin: file.skins.0.get(index).unwrap_or(&no_skin),
+            joints: skin_joints,
+            bind_pose: &bind_pose,
+        };
+        match mesh.read(warnings) {
+            Ok(Some((mesh, checksum))) => {
+                let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
+                let skeleton = name.to_owned();
+                let file =
+                    source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
+                attach_skin(&mut built.document, mesh, file, joints);
+            }
+            Ok(None) => {}
+            Err(error) => {
+                let reason = format!("{}; the skin is left out", error.reason);
+                warnings.push(error.field, reason);
+            }
+        }
+        Ok(built)
+    }
+
+    /// Reads the motion of an animation.
+    fn animate(
+        &self,
+        chosen: usize,
+        poser: &mut NodePoser<'_>,
+        joints: &mut [Joint],
+        bind_pose: &[JointPlacement],
+        warnings: &mut FieldWarnings,
+    ) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
+        let at = at_animation(chosen);
+        let Some(animation) = self.file.animations.0.get(chosen) else {
+            return Ok((Vec::new(), None));
+        };
+        let channels = tracks::used_channels(animation, &at, self.nodes, &poser.is_needed())?;
+        let buffers = tracks::buffers(self.source, self.file, &channels)?;
+        let tracks = NodeTracks::new(self.file, &buffers, &channels, warnings)?;
+        let Some((start, _)) = clip::time_range(&tracks) else {
+            return Ok((Vec::new(), None));
+        };
+        let timeline = clip::timeline(&tracks, &at)?;
+        let frames = timeline.map_or(1, |timeline| timeline.frames());
+        if frames.saturating_mul(poser.len()) > MOST_SAMPLES {
+            let nodes = poser.len();
+            let most = MOST_SAMPLES / nodes;
+            let reason = format!("must have at most {most} frames of {nodes} nodes, got {frames}");
+            return Err(FieldError::new(at, reason));
+        }
+        let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
+        let motions = motion::sample(poser, &tracks, sampled, frames, joints, bind_pose)?;
+        Ok((motions, timeline))
+    }
 }

@@ -8,6 +8,7 @@ use crate::io::value::JsonNumbers;
 /// The nodes of a file as a tree.
 pub struct NodeTree {
     pub parents: Vec<Option<usize>>,
+    pub children: Vec<Vec<usize>>,
     /// All nodes, parents before their children.
     pub order: Vec<usize>,
     /// Transforms of the nodes relative to their parents, without animation.
@@ -51,7 +52,24 @@ impl NodeTree {
         let parents = parents(nodes)?;
         let order = order(nodes, &parents)?;
         let locals = nodes.iter().enumerate().map(|(index, node)| local(index, node));
-        Ok(Self { order, locals: locals.collect::<Result<_, _>>()?, parents })
+        let mut children = vec![Vec::new(); nodes.len()];
+        for (node, parent) in parents.iter().enumerate() {
+            if let Some(parent) = parent {
+                children[*parent].push(node);
+            }
+        }
+        Ok(Self { order, locals: locals.collect::<Result<_, _>>()?, children, parents })
+    }
+
+    /// For each node, the root of its tree.
+    pub fn roots(&self) -> Vec<usize> {
+        let mut roots: Vec<usize> = (0..self.parents.len()).collect();
+        for &node in &self.order {
+            if let Some(parent) = self.parents[node] {
+                roots[node] = roots[parent];
+            }
+        }
+        roots
     }
 
     /// Transforms of all nodes to the world, without animation.

@@ -44,6 +44,9 @@ pub fn tolerance(time: f64) -> f64 {
     (time.abs() * ROUNDING).max(LEAST)
 }
 
+/// Relative change of a value below which it counts as constant.
+const LEAST: f64 = 1e-6;
+
 /// Index of the in-tangent among the three rows of a cubic spline's key.
 const IN_TANGENT: usize = 0;
 /// Index of the value among the three rows of a cubic spline's key.
@@ -129,6 +132,27 @@ impl<'a> KeySampler<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Whether the value ever differs from that of the first key, or leaves it on a cubic spline.
+    pub fn varies(&self) -> bool {
+        let width = self.width();
+        let row = |row: usize| -> [f64; 4] { self.values.row(row) };
+        let differs = |a: [f64; 4], b: [f64; 4]| {
+            let size = a.iter().take(width).map(|part| part.abs()).fold(1e-3, f64::max);
+            (0..width).any(|part| (a[part] - b[part]).abs() > LEAST * size)
+        };
+        let is_cubic = self.interpolation == Interpolation::CubicSpline;
+        let (each, value) = if is_cubic { (3, VALUE) } else { (1, 0) };
+        let keys = self.times.len();
+        (1..keys).any(|key| differs(row(value), row(each * key + value)))
+            || is_cubic
+                && keys > 1
+                && (0..keys).any(|key| {
+                    [IN_TANGENT, OUT_TANGENT]
+                        .into_iter()
+                        .any(|which| differs([0.0; 4], row(3 * key + which)))
+                })
     }
 
     /// Number of keys.

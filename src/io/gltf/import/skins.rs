@@ -1,26 +1,37 @@
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
-use super::file::{GltfFile, GltfSkin, index_rule};
+use super::file::{GltfFile, GltfNode, GltfSkin, index_rule};
 use super::nodes::NodeTree;
 use crate::io::field_error::FieldError;
 use crate::io::gltf::names::UniqueNames;
 use crate::io::json_path::JsonPath;
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
-/// The joints of a skin, parents before their children.
+/// The joints of a skeleton, parents before their children: those of a skin, and other nodes of its
+/// hierarchy that animations move.
 pub struct SkinJoints {
     /// The node of each joint.
     pub nodes: Vec<usize>,
-    /// The parent of each joint: the joint of its nearest ancestor node that is in the skin. Nodes
+    /// The parent of each joint: the joint of its nearest ancestor node that is a joint. Nodes
     /// between the two joints are skipped. `None` for a root.
     pub parents: Vec<Option<usize>>,
     /// For each joint in the order of the file's skin, its index in `nodes`.
     pub order: Vec<usize>,
+    /// The joints that the skin does not list, in the order of the file's nodes.
+    pub added: Vec<usize>,
 }
 
 /// Returns a unique name for each skin: its own name, otherwise the name of the first node with the
-/// skin, otherwise `skin_` and its number.
-pub fn names(file: &GltfFile) -> Vec<String> {
+/// skin, otherwise `skin_` and its number. A file without skins has one skeleton if nodes move, with
+/// the name of the first root of the `moving` nodes.
+pub fn names(file: &GltfFile, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<String> {
+    if file.skins.0.is_empty() {
+        let roots = nodes.roots();
+        let root = moving.first().and_then(|node| file.nodes.0.get(roots[*node]));
+        let name = |root: &GltfNode| root.name.clone().filter(|name| !name.trim().is_empty());
+        let name = root.map(|root| name(root).unwrap_or_else(|| "skeleton".to_owned()));
+        return name.into_iter().collect();
+    }
     let mut users = vec![None; file.skins.0.len()];
     for node in &file.nodes.0 {
         let user = node.skin.and_then(|skin| users.get_mut(skin.0 as usize));
@@ -41,11 +52,13 @@ pub fn at_skin(skin: usize) -> JsonPath {
 }
 
 impl SkinJoints {
+    /// The joints of a skin, and those `moving` nodes that have a root in common with one of them.
     pub fn new(
         file: &GltfFile,
         nodes: &NodeTree,
         index: usize,
         skin: &GltfSkin,
+        moving: &BTreeSet<usize>,
     ) -> Result<Self, FieldError> {
         let at = at_skin(index).key("joints");
         if skin.joints.is_empty() {
@@ -68,15 +81,46 @@ impl SkinJoints {
             }
         }
         let listed: Vec<usize> = skin.joints.iter().map(|joint| joint.0 as usize).collect();
-        Ok(Self::sorted(nodes, &listed))
+        let roots = nodes.roots();
+        let own: HashSet<usize> = listed.iter().map(|node| roots[*node]).collect();
+        let is_added = |node: &usize| own.contains(&roots[*node]) && !seen.contains(node);
+        let added: Vec<usize> = moving.iter().copied().filter(is_added).collect();
+        if listed.len() + added.len() > 2 * Skeleton::MOST_JOINTS {
+            return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
+        }
+        Ok(Self::sorted(nodes, &listed, &added))
+    }
+
+    /// For a file without a skin, the `moving` nodes with their ancestors up to the nearest one that
+    /// all moving nodes of a tree have in common. `None` if no node moves.
+    pub fn of_moving(nodes: &NodeTree, moving: &BTreeSet<usize>) -> Option<Self> {
+        let mut below = vec![0_usize; nodes.parents.len()];
+        for node in nodes.order.iter().rev().copied() {
+            below[node] += usize::from(moving.contains(&node));
+            if let Some(parent) = nodes.parents[node] {
+                below[parent] += below[node];
+            }
+        }
+        let roots = nodes.roots();
+        // An ancestor above which all moving nodes of the tree are in one branch is left out.
+        let is_above = |node: usize| {
+            let all = below[roots[node]];
+            let mut children = nodes.children[node].iter();
+            !moving.contains(&node) && children.any(|child| below[*child] == all)
+        };
+        let is_joint = |node: &usize| below[*node] > 0 && !is_above(*node);
+        let added: Vec<usize> = (0..nodes.parents.len()).filter(is_joint).collect();
+        (!added.is_empty()).then(|| Self::sorted(nodes, &[], &added))
     }
 
     /// Sorts the joints so that parents come before their children, otherwise in the listed order.
-    fn sorted(nodes: &NodeTree, listed: &[usize]) -> Self {
-        let parent_of = nearest_listed_ancestors(nodes, listed);
+    fn sorted(nodes: &NodeTree, skin: &[usize], added: &[usize]) -> Self {
+        let listed: Vec<usize> = skin.iter().chain(added).copied().collect();
+        let parent_of = nearest_listed_ancestors(nodes, &listed);
         let mut joint_of = vec![None; nodes.parents.len()];
-        let mut joints = Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new() };
-        for &node in listed {
+        let mut joints =
+            Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new(), added: Vec::new() };
+        for &node in &listed {
             let unplaced = |node: &usize| joint_of[*node].is_none();
             let path =
                 std::iter::successors(Some(node), |node| parent_of[*node]).take_while(unplaced);
@@ -86,7 +130,8 @@ impl SkinJoints {
                 joints.nodes.push(node);
             }
         }
-        joints.order = listed.iter().filter_map(|node| joint_of[*node]).collect();
+        joints.order = skin.iter().filter_map(|node| joint_of[*node]).collect();
+        joints.added = added.iter().filter_map(|node| joint_of[*node]).collect();
         joints
     }
 }

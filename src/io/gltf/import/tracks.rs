@@ -140,6 +140,11 @@ impl<'a> NodeTracks<'a> {
         Ok(Self(tracks))
     }
 
+    /// The nodes that some track moves, unsorted and with repetitions.
+    pub fn moving(&self) -> impl Iterator<Item = usize> + '_ {
+        self.0.iter().filter(|track| track.sampler.varies()).map(|track| track.node)
+    }
+
     /// Times of all keys in seconds, unsorted.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().flat_map(|track| (0..track.sampler.len()).map(|key| track.sampler.time(key)))
