@@ -28,7 +28,7 @@ fn export(document: &Document) {
     for unit in [BvhUnit::Centimetres, BvhUnit::Scene] {
         match io::to_bvh(document, None, unit, progress) {
             Ok(bvh) => {
-                drop(opened(&bvh.bytes, &OpenOptions::default()).expect("BVH of ours is read"))
+                drop(opened(&bvh.bytes, &OpenOptions::default()).expect("BVH of ours is read"));
             }
             Err(error) => is_readable(&error.to_string()),
         }
