@@ -4,11 +4,13 @@
 mod common;
 
 use common::Random;
-use glam::Vec3;
+use std::f64::consts::{PI, TAU};
+
+use glam::{DQuat, Vec3};
 use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
-use ik_arm::kinematics::spline::Spline;
+use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 
 fn number(value: f32) -> Vec3 {
     Vec3::new(value, 0.0, 0.0)
@@ -150,6 +152,33 @@ fn the_frame_count_includes_both_ends() {
     assert_eq!(timeline.snapped(1.47), 35.0 / 24.0);
     let third = Timeline { start: 0.1, end: 0.1 + 1.0 / 3.0, frame_rate: 30.0 };
     assert_eq!(third.frames(), 11);
+}
+
+#[test]
+fn slerp_turns_a_joint_the_shortest_way_at_constant_speed() {
+    let mut random = Random(77);
+    let channel = Channel::Rotation(JointId::new(0));
+    let turn = |angles: Vec3| {
+        let Vec3 { x, y, z } = angles;
+        let [x, y, z] = [x, y, z].map(f64::from);
+        DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x)
+    };
+    for _ in 0..200 {
+        let (from, to) = (random.vector(8.0), random.vector(8.0));
+        let mut keys = Keys::default();
+        for (time, value) in [(1.0, from), (3.0, to)] {
+            let interpolation = Interpolation::Slerp;
+            keys.insert_key(channel, Knot { interpolation, ..Knot::new(time, value) });
+        }
+        let (axis, angle) = (turn(from).inverse() * turn(to)).to_axis_angle();
+        let angle = if angle > PI { angle - TAU } else { angle };
+        for part in [0.0, 0.1, 0.5, 0.9, 0.999] {
+            let found = turn(keys.value(channel, 1.0 + 2.0 * part).expect("keyed"));
+            let expected = turn(from) * DQuat::from_axis_angle(axis, part * angle);
+            assert!(found.angle_between(expected) < 5e-6, "{from} to {to} at {part}");
+        }
+        assert_eq!((keys.value(channel, 0.0), keys.value(channel, 3.0)), (Some(from), Some(to)));
+    }
 }
 
 #[test]

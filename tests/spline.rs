@@ -202,7 +202,7 @@ fn it_overshoots_as_the_documentation_says() {
 /// A spline whose knots have shapes and slopes of their own.
 fn shaped() -> impl Strategy<Value = Vec<Knot<f32>>> {
     let slope = -50.0..50.0_f32;
-    let shape = (0..3_usize, proptest::option::of((slope.clone(), slope)));
+    let shape = (0..Interpolation::ALL.len(), proptest::option::of((slope.clone(), slope)));
     (knots(), vec(shape, 12)).prop_map(|(knots, shapes)| {
         let knots = knots.into_iter().zip(shapes);
         let shaped = knots.map(|((time, value), (kind, slopes))| {
@@ -248,7 +248,7 @@ proptest! {
             };
             let expected = match from.interpolation {
                 Interpolation::Step => a.1,
-                Interpolation::Linear => a.1 + (b.1 - a.1) * part,
+                Interpolation::Linear | Interpolation::Slerp => a.1 + (b.1 - a.1) * part,
                 Interpolation::Smooth => {
                     let leaving = from.slopes.map(|it| f64::from(it.leaving));
                     let arriving = to.slopes.map(|it| f64::from(it.arriving));

@@ -139,6 +139,12 @@ impl Channel {
         self.quantity() == Quantity::Switch
     }
 
+    /// Whether the channel's values are the angles of a joint, R_z · R_y · R_x, so that keys can turn it
+    /// the shortest way: see [`Interpolation::Slerp`](crate::kinematics::spline::Interpolation::Slerp).
+    pub fn is_rotation(self) -> bool {
+        matches!(self, Self::Rotation(_) | Self::TargetOrientation(_))
+    }
+
     /// The channel of the point that the Cursor of `arm` has: in the world if it is pinned, else in
     /// Root space.
     pub fn of_cursor(arm: &Arm) -> Self {

@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use super::channel::{Channel, Quantity};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::JointRemap;
-use crate::kinematics::spline::{Knot, Spline};
+use crate::kinematics::skeleton::{JointRemap, exact_angles};
+use crate::kinematics::spline::{Interpolation, Knot, Segment, Spline};
 
 /// The keys of a document: for every keyed channel a track, the spline through its keys.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -133,6 +133,7 @@ impl Keys {
             (_, Quantity::Switch) => track.step(time),
             (_, Quantity::Length) => Some(track.at(time)?.max(Vec3::X * min_length(track))),
             (_, Quantity::Fraction) => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
+            (_, Quantity::Angles) if channel.is_rotation() => rotation(track, time),
             (_, Quantity::Point | Quantity::Angle | Quantity::Angles) => track.at(time),
         }
     }
@@ -152,6 +153,17 @@ impl Keys {
             Some((channel.remapped(remap)?, track.clone()))
         };
         self.tracks = Shared::from(self.tracks.iter().filter_map(remapped).collect::<Tracks>());
+    }
+}
+
+/// Interpolated angles of a joint; `None` without keys.
+fn rotation(track: &Spline<Vec3>, time: f64) -> Option<Vec3> {
+    match track.segment(time) {
+        Some(Segment { from, to, part }) if from.interpolation == Interpolation::Slerp => {
+            let [from, to] = [from, to].map(|knot| knot.value.as_dvec3());
+            Some(exact_angles::slerp(from, to, part).as_vec3())
+        }
+        _ => track.at(time),
     }
 }
 

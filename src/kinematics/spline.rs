@@ -8,7 +8,8 @@
 //! ```
 //!
 //! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can be a
-//! straight line or a step instead.
+//! straight line or a step instead. Whoever knows that the values are the angles of a rotation can turn
+//! the shortest way instead: see [`Spline::segment`].
 //!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
 //! first knot and after the last, the curve is constant. It is C¹ at interior knots.
@@ -54,6 +55,20 @@ pub enum Interpolation {
     Linear,
     /// The value of the knot, until the next one.
     Step,
+    /// For the angles of a joint, the shortest turn at constant speed, by spherical linear
+    /// interpolation; for any other value, a straight line.
+    Slerp,
+}
+
+/// Two neighbouring knots, and where a time is between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<V> {
+    /// The knot before or at the time.
+    pub from: Knot<V>,
+    /// The knot after the time.
+    pub to: Knot<V>,
+    /// Part of the way from one to the other, 0 to less than 1.
+    pub part: f64,
 }
 
 /// Slopes of a curve at a knot, per second.
@@ -67,7 +82,7 @@ pub struct Slopes<V> {
 
 impl Interpolation {
     /// All kinds, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Smooth, Self::Linear, Self::Step];
+    pub const ALL: [Self; 4] = [Self::Smooth, Self::Linear, Self::Step, Self::Slerp];
 
     /// Name on screen.
     pub fn title(self) -> &'static str {
@@ -75,6 +90,7 @@ impl Interpolation {
             Self::Smooth => "Smooth",
             Self::Linear => "Linear",
             Self::Step => "Step",
+            Self::Slerp => "Slerp",
         }
     }
 }
@@ -178,6 +194,13 @@ impl<V: Copy> Spline<V> {
         Some(self.knots.get(until.saturating_sub(1))?.value)
     }
 
+    /// The knots around a time; `None` before the first knot, and at and after the last.
+    pub fn segment(&self, time: f64) -> Option<Segment<V>> {
+        let after = self.knots.partition_point(|knot| knot.time <= time);
+        let (from, to) = (*self.knots.get(after.checked_sub(1)?)?, *self.knots.get(after)?);
+        Some(Segment { from, to, part: (time - from.time) / (to.time - from.time) })
+    }
+
     fn search(&self, time: f64) -> Result<usize, usize> {
         let index = self.knots.partition_point(|knot| knot.time < time);
         match self.knots.get(index) {
@@ -235,7 +258,9 @@ where
     let s = (time - from.time) / span;
     Some(match from.interpolation {
         Interpolation::Step => from.value,
-        Interpolation::Linear => from.value * (1.0 - s) as f32 + to.value * s as f32,
+        Interpolation::Linear | Interpolation::Slerp => {
+            from.value * (1.0 - s) as f32 + to.value * s as f32
+        }
         Interpolation::Smooth => {
             let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
             let leaving = from.slopes.map(|slopes| slopes.leaving * span as f32);

@@ -9,6 +9,7 @@ mod documents;
 mod export;
 mod glb;
 mod import;
+mod interpolation;
 #[cfg(feature = "app")]
 mod posed;
 mod round_trip;

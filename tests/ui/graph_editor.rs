@@ -2,7 +2,9 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
-use ik_arm::document::Channel;
+use egui_kittest::kittest::NodeT as _;
+use ik_arm::document::{Channel, RigKind};
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::spline::{Interpolation, Knot};
 use ik_arm::session::{
     Action, EditAction, PlaybackAction, SelectAction, TransactionAction, ViewAction,
@@ -155,6 +157,31 @@ fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
         bench.apply([TransactionAction::Undo]);
         assert_eq!(keys(&bench)[1].interpolation, Interpolation::Smooth);
     }
+}
+
+#[test]
+fn slerp_is_offered_for_joints_alone() {
+    let is_disabled = |bench: &Bench| {
+        bench.node(Role::Button, Interpolation::Slerp.title()).accesskit_node().is_disabled()
+    };
+    let mut bench = graph();
+    bench.move_to(place(&bench, 3.0, 60.0));
+    bench.press(RIGHT);
+    bench.release(RIGHT);
+    bench.settle();
+    assert!(is_disabled(&bench), "the twist is no rotation of a joint");
+    let key = (Channel::Rotation(JointId::new(0)), 1.0);
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([
+        Action::from(EditAction::ShowRig(RigKind::Skeleton)),
+        PlaybackAction::SetTime(1.0).into(),
+        EditAction::Key(vec![key.0]).into(),
+        SelectAction::Keys(vec![key]).into(),
+        ViewAction::ShowGraphEditor(true).into(),
+    ]);
+    bench.apply([EditAction::SetInterpolation(vec![key], Interpolation::Slerp)]);
+    let set = bench.session().document().keys.key(key.0, key.1).expect("a key");
+    assert_eq!(set.interpolation, Interpolation::Slerp);
 }
 
 #[test]

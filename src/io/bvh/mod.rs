@@ -32,7 +32,6 @@
 //! child, or to the mean of its children, all at the first frame. Values that change over time
 //! become keys; constant values are set on the skeleton.
 
-mod angles;
 mod hierarchy;
 mod motion;
 mod names;

@@ -1,6 +1,5 @@
 use glam::{DMat3, DVec3, Vec3};
 
-use super::angles;
 use super::hierarchy::{self, BvhChannel, BvhNode};
 use super::motion::{self, MotionData};
 use super::names::distinct;
@@ -10,6 +9,7 @@ use crate::document::{self, Camera, Document, Keys, RigKind, SkeletonRig, Timeli
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
+use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 /// Whether a text is BVH, judged by its first word.
@@ -146,7 +146,7 @@ fn add_keys(
     let rotation = angles.as_vec3();
     if changes(|channel| matches!(channel, BvhChannel::Rotation(_))) {
         for (frame, row) in rows.enumerate() {
-            angles = angles::nearest(rotation_of(node, row), angles);
+            angles = exact_angles::nearest(rotation_of(node, row), angles);
             let time = motion.timing.time(frame);
             keys.insert(document::Channel::Rotation(JointId::new(joint)), time, angles.as_vec3());
         }
@@ -195,7 +195,7 @@ fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
         }
     }
     let is_zyx = order.is_sorted_by(|a, b| a > b);
-    if is_zyx { angles } else { angles::nearest(rotation_of(node, row), DVec3::ZERO) }
+    if is_zyx { angles } else { exact_angles::nearest(rotation_of(node, row), DVec3::ZERO) }
 }
 
 /// The axis of each joint's bone at the first frame: from the joint to its End Site, otherwise to

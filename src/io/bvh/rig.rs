@@ -1,9 +1,9 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
-use super::angles;
 use super::names::{distinct, word};
 use super::transform::SkeletonTransform;
 use crate::document::{Arm, Document, RigKind};
+use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 /// The nodes of a hierarchy in the order of the file: each node is followed by its descendants.
@@ -132,7 +132,7 @@ impl BvhRig {
 
 /// The rotation of [`Joint::local_rotation`], but computed in f64.
 fn local_rotation(joint: &Joint) -> DMat3 {
-    let rotation = angles::matrix(joint.rotation.as_dvec3());
+    let rotation = exact_angles::matrix(joint.rotation.as_dvec3());
     if joint.frame == Mat3::IDENTITY {
         return rotation;
     }

@@ -2,7 +2,6 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::angles;
 use super::note::BvhNote;
 use super::rig::{BvhPose, BvhRig};
 use super::transform::SkeletonTransform;
@@ -11,6 +10,7 @@ use crate::document::{Document, RigKind};
 use crate::io::Progress;
 use crate::io::frames::{ExportFrames, FrameEvaluator};
 use crate::io::motion::{Exported, MotionError};
+use crate::kinematics::skeleton::exact_angles;
 
 /// Numbers of a node in a frame: its offset, and its angles about x, y and z.
 const WIDTH: usize = 6;
@@ -90,7 +90,7 @@ impl<'a> BvhMotion<'a> {
             self.least = CONSTANT * self.rig.reach(&pose);
         }
         for node in 0..pose.offsets.len() {
-            self.angles[node] = angles::nearest(pose.rotations[node], self.angles[node]);
+            self.angles[node] = exact_angles::nearest(pose.rotations[node], self.angles[node]);
             self.rows.extend(self.in_file(node, pose.offsets[node])?);
             self.rows.extend(self.angles[node].to_array().map(degrees));
         }

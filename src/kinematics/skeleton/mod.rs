@@ -42,6 +42,7 @@
 
 mod edit;
 mod error;
+pub(crate) mod exact_angles;
 mod forward;
 mod joint;
 mod joint_angles;

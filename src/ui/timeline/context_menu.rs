@@ -86,14 +86,18 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let mut all = keys.iter().filter_map(|(channel, time)| document.keys.key(*channel, *time));
         !keys.is_empty() && all.all(|key| key.interpolation == interpolation)
     };
+    let no_angles = keys.iter().any(|(channel, _)| !channel.is_rotation());
+    let no_angles = no_angles.then_some("Only angles of joints turn the shortest way");
     for (interpolation, tooltip) in [
         (Interpolation::Smooth, "Let the values follow a smooth curve to the next key"),
         (Interpolation::Linear, "Let the values follow a straight line to the next key"),
         (Interpolation::Step, "Keep the value until the next key"),
+        (Interpolation::Slerp, "Turn the shortest way to the next key, at constant speed"),
     ] {
         let button = Button::selectable(chosen(interpolation), interpolation.title());
-        let button = ui.add_enabled(none.is_none(), button).on_hover_text(tooltip);
-        if button.on_disabled_hover_text(none.unwrap_or_default()).clicked() {
+        let why_not = none.or(no_angles.filter(|_| interpolation == Interpolation::Slerp));
+        let button = ui.add_enabled(why_not.is_none(), button).on_hover_text(tooltip);
+        if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
             actions.push(EditAction::SetInterpolation(keys.to_vec(), interpolation));
             ui.close();
         }

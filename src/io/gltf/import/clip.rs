@@ -23,13 +23,26 @@ pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timelin
     let found = frame_rate::of_times(&times, rounded);
     let found = found.or_else(|| frame_rate::of_times(&times, |_| 2e-6));
     let found = found.or_else(|| frame_rate::of_times(&times, |time| tolerance(time + start)));
-    let timeline = Timeline { start, end, frame_rate: found.unwrap_or(FALLBACK_RATE) };
+    let frame_rate = found.unwrap_or(FALLBACK_RATE);
+    let whole = Timeline {
+        start: on_frame(start, Timeline { start: 0.0, end, frame_rate }),
+        end,
+        frame_rate,
+    };
+    let timeline = Timeline { end: on_frame(end, whole), ..whole };
     if !timeline.is_valid() {
         let max = Timeline::MAX_TIME;
         let reason = format!("must be within ±{max} s, got {start} to {end} s");
         return Err(FieldError::new(at.clone(), reason));
     }
     Ok(Some(timeline))
+}
+
+/// The time of the frame at a time that single precision cannot tell from it; else the time itself.
+pub fn on_frame(time: f64, timeline: Timeline) -> f64 {
+    let frame = timeline.snapped(time);
+    let rounding = (time.abs() * f64::from(f32::EPSILON)).max(1e-7);
+    if (frame - time).abs() <= rounding { frame } else { time }
 }
 
 /// Times of the first and the last key in seconds; `None` without keys.

@@ -4,6 +4,7 @@ mod animations;
 mod buffers;
 mod clip;
 mod file;
+mod joint_tracks;
 mod material;
 mod motion;
 mod nodes;
@@ -32,7 +33,8 @@ use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
 use animations::at_animation;
 use file::{GltfFile, GltfSkin};
-use motion::{JointMotion, JointPlacement, NodePoser};
+use joint_tracks::{ExactTracks, JointTracks};
+use motion::{JointPlacement, NodePoser};
 use nodes::{NodeTree, at_node};
 use rig::ImportedRig;
 use skin_mesh::MeshImport;
@@ -194,7 +196,7 @@ impl GltfImport<'_> {
         joints: &mut [Joint],
         bind_pose: &[JointPlacement],
         warnings: &mut FieldWarnings,
-    ) -> Result<(Vec<JointMotion>, Option<Timeline>), FieldError> {
+    ) -> Result<(Vec<JointTracks>, Option<Timeline>), FieldError> {
         let at = at_animation(chosen);
         let Some(animation) = self.file.animations.0.get(chosen) else {
             return Ok((Vec::new(), None));
@@ -206,6 +208,12 @@ impl GltfImport<'_> {
             return Ok((Vec::new(), None));
         };
         let timeline = clip::timeline(&tracks, &at)?;
+        let exact = ExactTracks::new(self.nodes, self.joints, &tracks, bind_pose, timeline);
+        let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
+        if exact.iter().all(Option::is_some) {
+            return Ok((exact.into_iter().flatten().collect(), timeline));
+        }
+        // Joints below scales that are uneven or change have keys at every frame.
         let frames = timeline.map_or(1, |timeline| timeline.frames());
         if frames.saturating_mul(poser.len()) > MOST_SAMPLES {
             let nodes = poser.len();
@@ -213,8 +221,10 @@ impl GltfImport<'_> {
             let reason = format!("must have at most {most} frames of {nodes} nodes, got {frames}");
             return Err(FieldError::new(at, reason));
         }
-        let sampled = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-        let motions = motion::sample(poser, &tracks, sampled, frames, joints, bind_pose)?;
+        let frame_times = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
+        let sampled = motion::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
+        let motions = exact.into_iter().zip(sampled);
+        let motions = motions.map(|(exact, sampled)| exact.unwrap_or(sampled)).collect();
         Ok((motions, timeline))
     }
 }

@@ -1,5 +1,6 @@
-use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Mat3A};
 
+use super::joint_tracks::JointTracks;
 use super::nodes::{NodeTransform, NodeTree, at_node};
 use super::skins::SkinJoints;
 use super::tracks::NodeTracks;
@@ -24,14 +25,6 @@ pub struct NodePoser<'a> {
     needed: Vec<usize>,
     locals: Vec<NodeTransform>,
     worlds: Vec<DAffine3>,
-}
-
-/// The motion of a joint, frame by frame.
-#[derive(Default)]
-pub struct JointMotion {
-    /// Angles about x, y and z in radians, unwrapped from frame to frame.
-    pub rotations: Vec<Vec3>,
-    pub offsets: Vec<Vec3>,
 }
 
 impl<'a> NodePoser<'a> {
@@ -97,8 +90,8 @@ impl<'a> NodePoser<'a> {
     }
 }
 
-/// Samples the motions of all joints in the first `frames` frames of `timeline`. Leaves the angles
-/// of the last frame in `joints`.
+/// Samples the motions of all joints in the first `frames` frames of `timeline`: keys at every frame,
+/// with angles unwrapped from frame to frame. Leaves the angles of the last frame in `joints`.
 pub fn sample(
     poser: &mut NodePoser<'_>,
     tracks: &NodeTracks<'_>,
@@ -106,10 +99,11 @@ pub fn sample(
     frames: usize,
     joints: &mut [Joint],
     bind_pose: &[JointPlacement],
-) -> Result<Vec<JointMotion>, FieldError> {
-    let mut motions: Vec<JointMotion> = joints.iter().map(|_| JointMotion::default()).collect();
+) -> Result<Vec<JointTracks>, FieldError> {
+    let mut motions: Vec<JointTracks> = joints.iter().map(|_| JointTracks::default()).collect();
     for frame in 0..frames {
-        let placements = poser.at(tracks, timeline.time(frame))?;
+        let time = timeline.time(frame);
+        let placements = poser.at(tracks, time)?;
         let rotations: Vec<DMat3> = placements
             .iter()
             .zip(bind_pose)
@@ -131,8 +125,8 @@ pub fn sample(
             // Unwrapped: the angles nearest to those of the previous frame.
             joint.rotation =
                 joint.angles_of(Mat3A::from((parent_inverse * rotations[index]).as_mat3()));
-            motion.rotations.push(joint.rotation);
-            motion.offsets.push(offset);
+            motion.rotation.insert(time, joint.rotation);
+            motion.offset.insert(time, offset);
         }
     }
     Ok(motions)

@@ -1,11 +1,13 @@
 use glam::Vec3;
 
 use super::file::GltfFile;
-use super::motion::{JointMotion, JointPlacement};
+use super::joint_tracks::JointTracks;
+use super::motion::JointPlacement;
 use super::skins::SkinJoints;
 use crate::document::{Camera, Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
+use crate::kinematics::spline::{Knot, Spline};
 
 /// Returns all joints of a skin in the bind pose, with offsets and frames in world axes. The axes
 /// of their bones are zero until [`build`] sets them.
@@ -30,18 +32,26 @@ pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]
 /// an offset.
 const LEAST: f32 = 1e-6;
 
-impl JointMotion {
+impl JointTracks {
     fn turns(&self) -> bool {
-        let first = self.rotations.first().copied().unwrap_or_default();
-        self.rotations.iter().any(|angles| (*angles - first).abs().max_element() > 2.0 * LEAST)
+        changes(&self.rotation, |_| 2.0 * LEAST)
     }
 
     /// Whether the joint's offset changes. `size` is the length of the skeleton's longest offset.
     fn moves(&self, size: f32) -> bool {
-        let first = self.offsets.first().copied().unwrap_or_default();
-        let least = LEAST * first.length().max(1e-3 * size);
-        self.offsets.iter().any(|offset| offset.distance(first) > least)
+        changes(&self.offset, |first| LEAST * first.length().max(1e-3 * size))
     }
+}
+
+/// Whether a value changes by more than `least` of its first key, or a slope leads away from it.
+fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
+    let Some(first) = track.knots().first().map(|knot| knot.value) else { return false };
+    let least = least(first);
+    let leads_away = |knot: &Knot<Vec3>| {
+        let slopes = knot.slopes.iter().flat_map(|it| [it.arriving, it.leaving]);
+        track.knots().len() > 1 && slopes.into_iter().any(|slope| slope.length() > least)
+    };
+    track.knots().iter().any(|knot| knot.value.distance(first) > least || leads_away(knot))
 }
 
 /// An imported skeleton with its motion.
@@ -56,14 +66,15 @@ pub struct ImportedRig {
 
 pub fn build(
     mut joints: Vec<Joint>,
-    motions: &[JointMotion],
+    motions: &[JointTracks],
     timeline: Option<Timeline>,
 ) -> Result<ImportedRig, SkeletonError> {
     let bind_offsets: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
     let size = bind_offsets.iter().map(|offset| offset.length()).fold(0.0, f32::max);
+    let first = |track: &Spline<Vec3>| track.knots().first().map(|knot| knot.value);
     for (joint, motion) in joints.iter_mut().zip(motions) {
-        joint.offset = motion.offsets.first().copied().unwrap_or(joint.offset);
-        joint.rotation = motion.rotations.first().copied().unwrap_or(joint.rotation);
+        joint.offset = first(&motion.offset).unwrap_or(joint.offset);
+        joint.rotation = first(&motion.rotation).unwrap_or(joint.rotation);
     }
     let moves: Vec<bool> = joints
         .iter()
@@ -142,23 +153,17 @@ fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
 
 fn add_keys(
     document: &mut Document,
-    motions: &[JointMotion],
+    motions: &[JointTracks],
     moves: &[bool],
     kept: &[Option<usize>],
 ) {
-    let timeline = document.timeline;
-    let mut add = |channel, values: &[Vec3]| {
-        for (frame, value) in values.iter().enumerate() {
-            document.keys.insert(channel, timeline.time(frame), *value);
-        }
-    };
     for ((motion, moves), joint) in motions.iter().zip(moves).zip(kept) {
-        let Some(joint) = *joint else { continue };
+        let Some(joint) = joint.map(JointId::new) else { continue };
         if motion.turns() {
-            add(Channel::Rotation(JointId::new(joint)), &motion.rotations);
+            document.keys.set_track(Channel::Rotation(joint), motion.rotation.clone());
         }
         if *moves {
-            add(Channel::Offset(JointId::new(joint)), &motion.offsets);
+            document.keys.set_track(Channel::Offset(joint), motion.offset.clone());
         }
     }
 }

@@ -155,6 +155,35 @@ impl<'a> KeySampler<'a> {
                 })
     }
 
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Translation or scale of a key.
+    pub fn key_point(&self, key: usize) -> DVec3 {
+        DVec3::from_array(self.row(key, VALUE))
+    }
+
+    /// Rotation of a key.
+    pub fn key_rotation(&self, key: usize) -> DQuat {
+        unit(self.row(key, VALUE)).unwrap_or_default()
+    }
+
+    /// In-tangent and out-tangent of a key, per second; `None` without cubic splines.
+    pub fn tangents(&self, key: usize) -> Option<[DVec4; 2]> {
+        let row = |which| {
+            let [x, y, z]: [f64; 3] = self.row(key, which);
+            DVec4::new(x, y, z, 0.0)
+        };
+        let is_cubic = self.interpolation == Interpolation::CubicSpline;
+        is_cubic.then(|| [row(IN_TANGENT), row(OUT_TANGENT)])
+    }
+
+    /// Rotation on the cubic spline from a key to the next one, at a part of the way.
+    pub fn spline_rotation(&self, key: usize, part: f64) -> DQuat {
+        unit(self.cubic(key, part).to_array()).unwrap_or_else(|| self.key_rotation(key))
+    }
+
     /// Number of keys.
     pub fn len(&self) -> usize {
         self.order.as_ref().map_or(self.times.len(), Vec::len)
@@ -177,7 +206,7 @@ impl<'a> KeySampler<'a> {
 
     pub fn point(&self, time: f64) -> DVec3 {
         let (key, fraction) = self.locate(time);
-        let at = |key| DVec3::from_array(self.row(key, VALUE));
+        let at = |key| self.key_point(key);
         match fraction {
             None => at(key),
             Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
@@ -189,7 +218,7 @@ impl<'a> KeySampler<'a> {
 
     pub fn rotation(&self, time: f64) -> DQuat {
         let (key, fraction) = self.locate(time);
-        let at = |key| unit(self.row(key, VALUE)).unwrap_or_default();
+        let at = |key| self.key_rotation(key);
         match fraction {
             None => at(key),
             Some(fraction) if self.interpolation == Interpolation::CubicSpline => {

@@ -1,4 +1,4 @@
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::buffers::GltfBuffers;
 use super::file::{GltfAnimation, GltfChannel, GltfFile, index_rule};
@@ -12,7 +12,11 @@ use crate::io::source::Source;
 use crate::io::value::JsonObject;
 
 /// The animated values of all nodes.
-pub struct NodeTracks<'a>(Vec<NodeTrack<'a>>);
+pub struct NodeTracks<'a> {
+    tracks: Vec<NodeTrack<'a>>,
+    /// Index of the track of a part of a node.
+    places: HashMap<(usize, AnimatedPart), usize>,
+}
 
 struct NodeTrack<'a> {
     node: usize,
@@ -137,22 +141,31 @@ impl<'a> NodeTracks<'a> {
                           time the last one counts";
             warnings.push(at_accessor(input), reason);
         }
-        Ok(Self(tracks))
+        let places = tracks.iter().enumerate();
+        let places = places.map(|(place, track)| ((track.node, track.part), place)).collect();
+        Ok(Self { tracks, places })
+    }
+
+    /// The keys of a part of a node's transform; `None` if it has none.
+    pub fn track(&self, node: usize, part: AnimatedPart) -> Option<&KeySampler<'a>> {
+        Some(&self.tracks[*self.places.get(&(node, part))?].sampler)
     }
 
     /// The nodes that some track moves, unsorted and with repetitions.
     pub fn moving(&self) -> impl Iterator<Item = usize> + '_ {
-        self.0.iter().filter(|track| track.sampler.varies()).map(|track| track.node)
+        self.tracks.iter().filter(|track| track.sampler.varies()).map(|track| track.node)
     }
 
     /// Times of all keys in seconds, unsorted.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.0.iter().flat_map(|track| (0..track.sampler.len()).map(|key| track.sampler.time(key)))
+        self.tracks
+            .iter()
+            .flat_map(|track| (0..track.sampler.len()).map(|key| track.sampler.time(key)))
     }
 
     /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.
     pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
-        for NodeTrack { node, part, sampler } in &self.0 {
+        for NodeTrack { node, part, sampler } in &self.tracks {
             if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(*node) {
                 let TransformParts { translation, rotation, scale } = parts;
                 match part {

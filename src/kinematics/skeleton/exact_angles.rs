@@ -1,7 +1,9 @@
+//! Euler angles of joints in f64, so that errors do not add up along a long chain.
+
 use core::array;
 use core::f64::consts::PI;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 use crate::kinematics::angle;
 
@@ -9,9 +11,8 @@ use crate::kinematics::angle;
 /// `near`, in radians. Every rotation has two such triples of angles, and each angle is determined
 /// up to whole turns. At y = ±90°, where x and z turn about the same axis, z is taken from `near`.
 ///
-/// This is [`nearest_angles`](crate::kinematics::skeleton::nearest_angles), but in f64, so that
-/// errors do not add up along a long chain.
-pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
+/// This is [`nearest_angles`](super::nearest_angles), but in f64.
+pub(crate) fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
     const GIMBAL: f64 = 1e-9;
     let DMat3 { x_axis, y_axis, z_axis } = rotation;
     let cos_y = x_axis.x.hypot(x_axis.y);
@@ -29,10 +30,18 @@ pub fn nearest(rotation: DMat3, near: DVec3) -> DVec3 {
 }
 
 /// The rotation R_z · R_y · R_x for angles about x, y and z, in radians.
-pub fn matrix(angles: DVec3) -> DMat3 {
+pub(crate) fn matrix(angles: DVec3) -> DMat3 {
     DMat3::from_rotation_z(angles.z)
         * DMat3::from_rotation_y(angles.y)
         * DMat3::from_rotation_x(angles.x)
+}
+
+/// Angles between those of two rotations, at the part `s` of the way along the shortest turn: the ones
+/// nearest to the straight line from `from` to `to`. All in radians.
+pub(crate) fn slerp(from: DVec3, to: DVec3, s: f64) -> DVec3 {
+    let [start, end] = [from, to].map(|angles| DQuat::from_mat3(&matrix(angles)));
+    let between = start.slerp(end, s).normalize();
+    nearest(DMat3::from_quat(between), from.lerp(to, s))
 }
 
 #[cfg(test)]
