@@ -368,7 +368,9 @@ fn do_it_for_me_shows_the_result_without_a_mouse() {
     bench.click(Role::Button, &step(5).guess.answers[2]);
     assert!(has_tooltip(&mut bench, Role::Button, "Do it for me"));
     bench.click(Role::Button, "Do it for me");
-    assert!(bench.says("The hole is gone: the nearest distance is upper minus lower, now 0.0."));
+    assert!(bench.says(
+        "The hole is gone: the nearest distance, the difference of the lengths, is now 0.0."
+    ));
     assert!(!is_done(&bench, 5), "the dot of the step stays empty");
 }
 

@@ -42,6 +42,7 @@
 
 mod edit;
 mod error;
+#[cfg(feature = "document")]
 pub(crate) mod exact_angles;
 mod forward;
 mod joint;

@@ -11,7 +11,7 @@ use crate::session::solver_run::SolverRun;
 type Figure = fn(&Session) -> Option<String>;
 
 /// All figures by their names in the texts.
-const FIGURES: [(&str, Figure); 25] = [
+const FIGURES: [(&str, Figure); 26] = [
     ("elbow_to_hand", elbow_to_hand),
     ("hand", hand),
     ("upper", |session| Some(length(session, session.arm().bones.upper()))),
@@ -30,7 +30,8 @@ const FIGURES: [(&str, Figure); 25] = [
     ("shoulder_moved", shoulder_moved),
     ("fk_bow", |session| bow(session, 0.0)),
     ("ik_bow", |session| bow(session, 1.0)),
-    ("angles", |session| Some((3 * session.skeleton().joints().len()).to_string())),
+    ("angles", |session| Some(angles(session).to_string())),
+    ("spare", |session| Some(angles(session).saturating_sub(3).to_string())),
     ("first", |session| fewest_iterations(session).map(|(method, _)| method.title().to_owned())),
     ("fewest", |session| fewest_iterations(session).map(|(_, count)| count.to_string())),
     ("last", |session| most_iterations(session).map(|(method, _)| method.title().to_owned())),
@@ -38,6 +39,11 @@ const FIGURES: [(&str, Figure); 25] = [
     ("missed", |session| missed(session).map(|(name, _)| name)),
     ("miss", |session| missed(session).map(|(_, miss)| miss)),
 ];
+
+/// Number of joint angles of the skeleton.
+fn angles(session: &Session) -> usize {
+    3 * session.skeleton().joints().len()
+}
 
 /// The text with the scene's numbers in place of their names in braces. A sentence with a number
 /// that the scene does not have yet is left out.
