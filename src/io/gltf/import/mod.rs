@@ -3,15 +3,17 @@
 mod animations;
 mod buffers;
 mod clip;
+mod exact_tracks;
 mod file;
 mod joint_tracks;
 mod material;
-mod motion;
+mod node_poser;
 mod nodes;
 mod part;
 mod primitive;
 mod rig;
 mod rows;
+mod sampled_tracks;
 mod sampler;
 mod skin_mesh;
 mod skins;
@@ -32,9 +34,10 @@ use crate::io::value::JsonObject;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
 use animations::at_animation;
+use exact_tracks::ExactTracks;
 use file::{GltfFile, GltfSkin};
-use joint_tracks::{ExactTracks, JointTracks};
-use motion::{JointPlacement, NodePoser};
+use joint_tracks::JointTracks;
+use node_poser::{JointPlacement, NodePoser};
 use nodes::{NodeTree, at_node};
 use rig::ImportedRig;
 use skin_mesh::MeshImport;
@@ -185,6 +188,7 @@ impl GltfImport<'_> {
                 warnings.push(error.field, reason);
             }
         }
+        built.document.camera = built.document.framing_camera();
         Ok(built)
     }
 
@@ -222,7 +226,8 @@ impl GltfImport<'_> {
             return Err(FieldError::new(at, reason));
         }
         let frame_times = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-        let sampled = motion::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
+        let sampled =
+            sampled_tracks::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
         let motions = exact.into_iter().zip(sampled);
         let motions = motions.map(|(exact, sampled)| exact.unwrap_or(sampled)).collect();
         Ok((motions, timeline))

@@ -2,12 +2,12 @@ use glam::Vec3;
 
 use super::file::GltfFile;
 use super::joint_tracks::JointTracks;
-use super::motion::JointPlacement;
+use super::node_poser::JointPlacement;
 use super::skins::SkinJoints;
-use crate::document::{Camera, Channel, Document, RigKind, SkeletonRig, Timeline};
+use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
-use crate::kinematics::spline::{Knot, Spline};
+use crate::kinematics::spline::Spline;
 
 /// Returns all joints of a skin in the bind pose, with offsets and frames in world axes. The axes
 /// of their bones are zero until [`build`] sets them.
@@ -26,32 +26,6 @@ pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]
         }
     };
     joints.nodes.iter().enumerate().map(joint).collect()
-}
-
-/// Changes below this count as rounding errors: in radians for an angle, relative to its length for
-/// an offset.
-const LEAST: f32 = 1e-6;
-
-impl JointTracks {
-    fn turns(&self) -> bool {
-        changes(&self.rotation, |_| 2.0 * LEAST)
-    }
-
-    /// Whether the joint's offset changes. `size` is the length of the skeleton's longest offset.
-    fn moves(&self, size: f32) -> bool {
-        changes(&self.offset, |first| LEAST * first.length().max(1e-3 * size))
-    }
-}
-
-/// Whether a value changes by more than `least` of its first key, or a slope leads away from it.
-fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
-    let Some(first) = track.knots().first().map(|knot| knot.value) else { return false };
-    let least = least(first);
-    let leads_away = |knot: &Knot<Vec3>| {
-        let slopes = knot.slopes.iter().flat_map(|it| [it.arriving, it.leaving]);
-        track.knots().len() > 1 && slopes.into_iter().any(|slope| slope.length() > least)
-    };
-    track.knots().iter().any(|knot| knot.value.distance(first) > least || leads_away(knot))
 }
 
 /// An imported skeleton with its motion.
@@ -100,7 +74,6 @@ pub fn build(
         kept_joints.extend((!is_tip).then_some(joint));
     }
     document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(kept_joints)?);
-    document.camera = Camera::framing_skeleton(&document.skeleton_rig);
     Ok(ImportedRig { document, kept })
 }
 

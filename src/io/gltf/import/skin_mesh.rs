@@ -13,7 +13,7 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::buffers::{GltfBuffers, is_file};
 use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, index_rule};
 use super::material::{ImageCache, MaterialSource, PartMaterial};
-use super::motion::JointPlacement;
+use super::node_poser::JointPlacement;
 use super::nodes::{NodeTree, at_node};
 use super::primitive::PrimitiveMesh;
 use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
