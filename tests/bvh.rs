@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use common::damage::{message, mutations};
 use common::{Random, skeletons};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
-use ik_arm::document::{Camera, Channel, Document, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
@@ -462,7 +462,7 @@ fn a_small_file_is_read_as_written() {
     assert_eq!(keyed, [Channel::Rotation(JointId::new(0))]);
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25.0 });
     assert_eq!((document.rig, document.metres_per_unit), (RigKind::Skeleton, Some(0.01)));
-    assert_eq!(document.camera, Camera::framing_skeleton(&document.skeleton_rig));
+    assert_eq!(document.camera, document.framing_camera());
     assert_eq!(
         (warnings, order, skeletons),
         (vec![], [0, 1].map(JointId::new).to_vec(), vec!["hip".to_owned()])

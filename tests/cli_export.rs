@@ -208,6 +208,22 @@ fn a_picture_is_taken_at_a_time_or_at_the_start() {
 }
 
 #[test]
+fn a_view_frames_the_whole_motion_for_pictures_alone() {
+    let desk = Desk::moving();
+    let picture = |arguments: &[&str]| {
+        desk.export("a.png", &[&["--size", "80x50"], arguments].concat());
+        pixels(&desk.out("a.png"))
+    };
+    let views = ["front", "right", "top", "perspective"].map(|view| picture(&["--view", view]));
+    for (index, view) in views.iter().enumerate() {
+        assert!(!views[index + 1..].contains(view), "view {index}");
+    }
+    let output = desk.run("a.bvh", &["--view", "top"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(complaint(&output).contains("--view does not apply"), "{output:?}");
+}
+
+#[test]
 fn a_sequence_replaces_all_existing_files_or_none() {
     let desk = Desk::moving();
     fs::write(desk.out("a_00.png"), "before").expect("written");

@@ -325,7 +325,7 @@ fn a_time_moves_keyed_channels() {
 }
 
 #[test]
-fn a_time_moves_a_path_follower_and_the_view_with_it() {
+fn a_time_moves_a_path_follower_within_the_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let snake = ik_arm::io::Example::find("snake").expect("there").text;
     let snake = file(&folder, "snake.json", snake);

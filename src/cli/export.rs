@@ -11,6 +11,7 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::view_name::ViewName;
 use crate::document::Document;
 use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{BvhUnit, OpenError, Progress};
@@ -47,6 +48,9 @@ pub struct ExportArgs {
     /// Colours of a picture [default: dark]
     #[arg(long, value_enum)]
     theme: Option<ThemeName>,
+    /// Camera that frames the whole motion from this side, for pictures [default: the file's camera]
+    #[arg(long, value_enum)]
+    view: Option<ViewName>,
     /// Time of a single picture or mesh in seconds [default: the timeline's start]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     time: Option<TimeArgument>,
@@ -101,7 +105,10 @@ impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
         // Checks the arguments first, so that no file is read if one of them does not apply.
         self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
-        let document = open::open(&self.file, &self.open.options())?.document;
+        let mut document = open::open(&self.file, &self.open.options())?.document;
+        if let Some(view) = self.view {
+            document.camera = view.framing(&document, self.size());
+        }
         let notes = run_with_bar(|progress| self.write(&document, progress))??;
         Ok(notes)
     }
@@ -116,6 +123,7 @@ impl ExportArgs {
             (self.fps.is_some(), !format.is_still(), "--fps"),
             (self.size.is_some(), format.is_picture(), "--size"),
             (self.theme.is_some(), format.is_picture(), "--theme"),
+            (self.view.is_some(), format.is_picture(), "--view"),
             (self.time.is_some(), format.is_still(), "--time"),
             (self.unit.is_some(), format == Format::Bvh, "--unit"),
             (self.skinning.is_some(), format == Format::Obj, "--skinning"),
@@ -127,11 +135,18 @@ impl ExportArgs {
         Ok(())
     }
 
+    /// The size of a picture.
+    fn size(&self) -> SizeArgument {
+        let (width, height) = ExportOptions::default().size;
+        self.size.unwrap_or(SizeArgument { width, height })
+    }
+
     fn options(&self) -> ExportOptions {
         let defaults = ExportOptions::default();
+        let SizeArgument { width, height } = self.size();
         ExportOptions {
             fps: self.fps.map(|FrameRateArgument(rate)| rate),
-            size: self.size.map_or(defaults.size, |size| (size.width, size.height)),
+            size: (width, height),
             theme: self.theme.map_or(defaults.theme, ThemeName::into),
             time: self.time.map(|time| time.0),
             unit: self.unit.map_or(defaults.unit, UnitName::into),

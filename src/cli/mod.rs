@@ -16,6 +16,7 @@ mod report;
 mod skin;
 mod solve;
 mod tour;
+mod view_name;
 
 use std::process::ExitCode;
 

@@ -4,7 +4,6 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::projection::Projection;
 use crate::kinematics::angle;
-use crate::rig::SkeletonRig;
 
 /// An orbit camera with a level horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,13 +139,6 @@ impl Camera {
         let (nearest, farthest) = Self::DISTANCES;
         let distance = (radius * Self::MARGIN / half_angle).clamp(nearest, farthest);
         Self { target: centre, distance, ..self }
-    }
-
-    /// A camera that frames a skeleton and its targets at time 0.
-    #[must_use]
-    pub fn framing_skeleton(rig: &SkeletonRig) -> Self {
-        let (centre, radius) = rig.bounds(&rig.skeleton_at(0.0).pose(), 0.0);
-        Self::default().framing(centre, radius, 1.0)
     }
 
     /// The orthographic camera of an axis view, with the same target and distance.

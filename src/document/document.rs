@@ -58,21 +58,10 @@ impl Document {
         if rig == self.rig {
             return;
         }
-        let camera = self.other_rig_camera.unwrap_or_else(|| self.default_camera(rig));
+        self.rig = rig;
+        let camera = self.other_rig_camera.unwrap_or_else(|| self.framing_camera());
         self.other_rig_camera = Some(self.camera);
-        (self.rig, self.camera) = (rig, camera);
-    }
-
-    /// A camera that frames a whole rig.
-    fn default_camera(&self, rig: RigKind) -> Camera {
-        match rig {
-            RigKind::Arm if self.arm.bones == Arm::default().bones => Camera::default(),
-            RigKind::Arm => {
-                let (centre, radius) = self.arm.bounds(&self.arm.pose());
-                Camera::default().framing(centre, radius, 1.0)
-            }
-            RigKind::Skeleton => Camera::framing_skeleton(&self.skeleton_rig),
-        }
+        self.camera = camera;
     }
 
     /// Deletes joints with all their descendants, their targets and their keys. Targets on them move to

@@ -59,6 +59,13 @@ impl Document {
         }
     }
 
+    /// Whether something of the picture may change over time: there are keys, or a target or the shown
+    /// skeleton moves without keys.
+    pub fn is_moving(&self) -> bool {
+        let moves = self.rig == RigKind::Skeleton && self.skeleton_rig.is_moving();
+        moves || !self.keys.is_empty()
+    }
+
     /// Whether the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
         let moves = self.rig == RigKind::Skeleton

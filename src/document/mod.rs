@@ -21,6 +21,7 @@ mod dissolve;
 #[expect(clippy::module_inception, reason = "the type Document, in the file of its name")]
 mod document;
 mod evaluate;
+mod framing;
 mod hand_orientation;
 mod keys;
 mod plant;

@@ -1,4 +1,4 @@
-use crate::document::{Camera, Document, Overlay, Skin};
+use crate::document::{Document, Overlay, Skin};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinPart, SkinSource};
 
@@ -17,6 +17,5 @@ pub fn attach_skin(
     let skin = Skin::new(SkinSource::Mesh(skin));
     let colour = if has_colours { skin.colour } else { Skin::DEFAULT_COLOUR };
     document.skeleton_rig.skin = Some(Skin { colour, ..skin });
-    document.camera = Camera::framing_skeleton(&document.skeleton_rig);
     document.display = document.display.with(Overlay::Skin, true).with(Overlay::Bones, false);
 }

@@ -1,4 +1,4 @@
-use crate::document::{Document, RigKind, Timeline};
+use crate::document::{Document, Timeline};
 
 use super::MotionError;
 
@@ -28,8 +28,7 @@ impl ExportFrames {
     ///
     /// Fails for the same reason as [`ExportFrames::of_pose`].
     pub fn of_picture(document: &Document, fps: Option<f64>) -> Result<Self, MotionError> {
-        let is_moving = document.rig == RigKind::Skeleton && document.skeleton_rig.is_moving();
-        Self::new(document, fps, is_moving || !document.keys.is_empty())
+        Self::new(document, fps, document.is_moving())
     }
 
     fn new(document: &Document, fps: Option<f64>, is_moving: bool) -> Result<Self, MotionError> {

@@ -32,9 +32,9 @@ impl Session {
         self.playback.is_auto_key()
     }
 
-    /// Whether the document has keys, or a target or the skeleton moves without keys.
+    /// Whether the document has keys, or a target or the shown skeleton moves without keys.
     pub fn has_motion(&self) -> bool {
-        !self.document().keys.is_empty() || self.skeleton_rig().is_moving()
+        self.document().is_moving()
     }
 
     pub(super) fn apply_playback(&mut self, action: PlaybackAction) {
@@ -64,8 +64,10 @@ impl Session {
 
     fn set_time(&mut self, time: f64) {
         if self.playback.set_time(time) {
-            self.discard_unkeyed_edits();
-            self.refresh();
+            self.with_camera_following(|session| {
+                session.discard_unkeyed_edits();
+                session.refresh();
+            });
         }
     }
 

@@ -1,8 +1,11 @@
+use glam::Vec3;
+
 use super::panel_tab::PanelTab;
 use super::session::{ASPECT, Session};
 use super::view_action::ViewAction;
 use super::view_drag::ViewDrag;
 use crate::document::{Camera, Overlay, RigKind};
+use crate::kinematics::skeleton::JointId;
 use crate::rig::Crowd;
 
 /// Camera, crowd and panels.
@@ -54,17 +57,15 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
-    /// A camera that frames what is shown: all points in reach of the arm, the skeleton with its
-    /// targets, or the crowd.
+    /// A camera that frames what is shown, over the whole timeline: all points in reach of the arm, the
+    /// skeleton with its targets, or the crowd.
     pub fn framing_all(&self) -> Camera {
         if let Some(crowd) = self.crowd() {
             let (centre, radius) = crowd.bounds();
             return self.settled_camera().framing(centre, radius, ASPECT);
         }
-        let (centre, radius) = match self.rig() {
-            RigKind::Arm => (self.arm().root, self.arm().reach_limits().outer),
-            RigKind::Skeleton => self.skeleton_rig().bounds(self.skeleton_pose(), self.time()),
-        };
+        let (centre, radius) =
+            self.shown().motion_bounds_by(|arm| (arm.root, arm.reach_limits().outer));
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
@@ -114,6 +115,7 @@ impl Session {
                     self.set_camera(before);
                 }
             }
+            ViewAction::FollowSelection(follows) => self.follow_selection(follows),
             ViewAction::ShowCrowd(shown) => {
                 if self.view.show_crowd(shown) {
                     self.forget_pause();
@@ -142,6 +144,54 @@ impl Session {
         match rig {
             RigKind::Arm => self.preferences.arm_tab = tab,
             RigKind::Skeleton => self.preferences.skeleton_tab = tab,
+        }
+    }
+
+    /// Whether the camera follows the selected joints, or without a selection the whole rig, while the time
+    /// changes.
+    pub fn follows_selection(&self) -> bool {
+        self.view.follows_selection()
+    }
+
+    /// Starts or stops to follow the selection. At the start, the camera glides so that it is in the middle
+    /// of the picture.
+    fn follow_selection(&mut self, follows: bool) {
+        self.view.follow_selection(follows);
+        let camera = Camera { target: self.followed_point(), ..self.settled_camera() };
+        if follows && camera.is_valid() {
+            self.glide_to(camera);
+        }
+    }
+
+    /// The point that the camera follows, in the world: the mean of the bases of the selected joints, or
+    /// without a selection of all joints. For the arm it is the Root.
+    fn followed_point(&self) -> Vec3 {
+        let pose = self.skeleton_pose();
+        let bases = |joints: &[JointId]| {
+            let weight = 1.0 / joints.len() as f32;
+            joints.iter().map(|joint| pose.base(*joint) * weight).sum()
+        };
+        match self.rig() {
+            RigKind::Arm => self.arm().root,
+            RigKind::Skeleton if self.selection().is_empty() => {
+                bases(&pose.ids().collect::<Vec<_>>())
+            }
+            RigKind::Skeleton => bases(self.selection()),
+        }
+    }
+
+    /// Changes the pose by `change`. If the camera follows the selection, it moves as far as that does.
+    pub(super) fn with_camera_following(&mut self, change: impl FnOnce(&mut Self)) {
+        if !self.follows_selection() || self.crowd().is_some() {
+            return change(self);
+        }
+        let before = self.followed_point();
+        change(self);
+        let by = self.followed_point() - before;
+        let moved = Camera { target: self.camera().target + by, ..*self.camera() };
+        if moved.is_valid() {
+            self.view.translate(by);
+            self.set_camera(moved);
         }
     }
 

@@ -1,4 +1,4 @@
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::view_drag::{CameraMotion, Glide, ViewDrag};
 use crate::document::Camera;
@@ -10,6 +10,7 @@ use crate::rig::{Crowd, Processor};
 pub(super) struct View {
     drag: Option<ViewDrag>,
     glide: Option<Glide>,
+    follows_selection: bool,
     crowd_shown: bool,
     crowd_size: u32,
     crowd_solver: Processor,
@@ -23,6 +24,7 @@ impl Default for View {
         Self {
             drag: None,
             glide: None,
+            follows_selection: false,
             crowd_shown: false,
             crowd_size: 1_000,
             crowd_solver: Processor::Cpu,
@@ -79,6 +81,24 @@ impl View {
         Some(self.drag.take()?.before)
     }
 
+    pub fn follows_selection(&self) -> bool {
+        self.follows_selection
+    }
+
+    pub fn follow_selection(&mut self, follows: bool) {
+        self.follows_selection = follows;
+    }
+
+    /// Moves the cameras that the drag started from and that the glide connects, in the world.
+    pub fn translate(&mut self, by: Vec3) {
+        if let Some(drag) = &mut self.drag {
+            drag.before.target += by;
+        }
+        if let Some(glide) = &mut self.glide {
+            glide.translate(by);
+        }
+    }
+
     pub fn crowd(&self, bones: TwoBone) -> Option<Crowd> {
         let Self { crowd_size: arms, crowd_solver: processor, crowd_time, .. } = *self;
         self.crowd_shown.then_some(Crowd { arms, bones, time: crowd_time as f32, processor })
@@ -119,6 +139,7 @@ impl View {
 
     /// Resets the crowd and hides it.
     pub fn reset_crowd(&mut self) {
-        *self = Self { drag: self.drag, glide: self.glide, ..Self::default() };
+        let Self { drag, glide, follows_selection, .. } = *self;
+        *self = Self { drag, glide, follows_selection, ..Self::default() };
     }
 }

@@ -25,6 +25,9 @@ pub enum ViewAction {
     Drop,
     /// Ends the drag and restores the camera from before it.
     Cancel,
+    /// Keeps the camera at its distance and direction from the selected joints, or from the middle of all
+    /// joints, while the time changes; or lets it stand again.
+    FollowSelection(bool),
     /// Shows a crowd of arms instead of the rig, or the rig again.
     ShowCrowd(bool),
     /// Sets the number of arms, from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).

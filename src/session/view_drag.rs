@@ -1,4 +1,4 @@
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::document::Camera;
 
@@ -69,6 +69,12 @@ impl Glide {
 
     pub(super) fn target(&self) -> Camera {
         self.to
+    }
+
+    /// Moves both cameras, in the world.
+    pub(super) fn translate(&mut self, by: Vec3) {
+        self.from.target += by;
+        self.to.target += by;
     }
 
     /// The camera at `seconds` on the window's clock, and whether the glide has ended. The first

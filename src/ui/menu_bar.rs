@@ -221,6 +221,12 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Frame all", "Home") {
         actions.push(commands::frame_all(session));
     }
+    let mut follows = session.follows_selection();
+    let tooltip =
+        "Move the camera with the selection, or with the whole rig, while the time changes";
+    if ui.checkbox(&mut follows, "Follow selection").on_hover_text(tooltip).changed() {
+        actions.push(ViewAction::FollowSelection(follows));
+    }
     ui.separator();
     for (theme, name) in [(Theme::Light, "Light theme"), (Theme::Dark, "Dark theme")] {
         if ui.radio(session.preferences().theme == theme, name).clicked() {

@@ -180,6 +180,7 @@ kinds! {
             ViewAction::ShowTab(v.one_of(&tabs))
         };
         ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
+        FollowSelection: Look 1, |v| ViewAction::FollowSelection(v.coin());
         ShowCrowd: Look 1, |v| ViewAction::ShowCrowd(v.coin());
         SetCrowdSize: Look 1, |v| ViewAction::SetCrowdSize(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));
         SetCrowdSolver: Look 1, |v| ViewAction::SetCrowdSolver(v.one_of(&[Processor::Cpu, Processor::Gpu]));

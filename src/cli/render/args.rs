@@ -7,7 +7,7 @@ use crate::cli::argument::{
     TimeArgument,
 };
 use crate::cli::open_args::OpenArgs;
-use crate::document::{AxisView, Camera};
+use crate::cli::view_name::ViewName;
 use crate::rig::{Crowd, Processor};
 
 #[derive(clap::Args)]
@@ -91,32 +91,11 @@ pub enum CrowdSolverName {
     Gpu,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub enum ViewName {
-    Front,
-    Right,
-    Top,
-    Perspective,
-}
-
 impl From<CrowdSolverName> for Processor {
     fn from(name: CrowdSolverName) -> Self {
         match name {
             CrowdSolverName::Cpu => Self::Cpu,
             CrowdSolverName::Gpu => Self::Gpu,
-        }
-    }
-}
-
-impl ViewName {
-    /// The default camera, turned to look from this side.
-    pub fn camera(self) -> Camera {
-        let camera = Camera::default();
-        match self {
-            Self::Front => camera.along(AxisView::Front),
-            Self::Right => camera.along(AxisView::Right),
-            Self::Top => camera.along(AxisView::Top),
-            Self::Perspective => camera,
         }
     }
 }

@@ -1,7 +1,8 @@
-use super::args::{RenderArgs, ViewName};
+use super::args::RenderArgs;
 use super::error::RenderCommandError;
 use super::frame_progress::FrameProgress;
 use super::timings::{CrowdTimingsLine, milliseconds, print};
+use crate::cli::view_name::ViewName;
 use crate::document::{Document, Theme};
 use crate::kinematics::two_bone::TwoBone;
 use crate::render::{self, Gpu, PictureRenderer};

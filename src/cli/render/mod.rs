@@ -9,17 +9,15 @@ mod timings;
 use std::io;
 use std::process::ExitCode;
 
-use glam::Vec3;
-
 use super::open;
 use super::report::fail;
-use crate::document::{Arm, Cursor, Display, Document, Overlay, RigKind};
+use super::view_name::ViewName;
+use crate::document::{Arm, Cursor, Document};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
 use crate::session::Overlays;
 pub use args::RenderArgs;
-use args::ViewName;
 use error::RenderCommandError;
 use timings::{TimingsLine, milliseconds, print};
 
@@ -74,9 +72,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     }
     let view = args.view.or(args.file.is_none().then_some(ViewName::Perspective));
     if let Some(view) = view {
-        let (centre, radius) = bounds(&document, time);
-        let aspect = args.size.width as f32 / args.size.height as f32;
-        document.camera = view.camera().framing(centre, radius, aspect);
+        document.camera = view.framing(&document, args.size);
     }
     Ok(document)
 }
@@ -88,31 +84,4 @@ fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {
     arm.twist = (args.twist.0 % 360.0).to_radians();
     arm.root = args.root.0;
     Ok(arm)
-}
-
-/// Centre and radius of the bounding sphere of the shown rig, in world space.
-fn bounds(document: &Document, time: f64) -> (Vec3, f32) {
-    match document.rig {
-        RigKind::Arm => arm_bounds(&document.arm, document.display),
-        RigKind::Skeleton => {
-            let rig = &document.skeleton_rig;
-            rig.bounds(&rig.skeleton_at(time).pose(), time)
-        }
-    }
-}
-
-/// Centre and radius of a bounding sphere of the arm, in world space. The sphere contains the outer
-/// limit if that is shown, otherwise the Cursor if that is shown.
-fn arm_bounds(arm: &Arm, display: Display) -> (Vec3, f32) {
-    let (centre, radius) = arm.bounds(&arm.pose());
-    if display.shows(Overlay::OuterLimit) {
-        (arm.root, arm.reach_limits().outer.max(arm.root.distance(centre) + radius))
-    } else if display.shows(Overlay::Cursor) {
-        let cursor = arm.cursor_in_world();
-        let excess = (centre.distance(cursor) - radius).max(0.0);
-        let centre = centre.move_towards(cursor, excess / 2.0);
-        (centre, radius + excess / 2.0)
-    } else {
-        (centre, radius)
-    }
 }

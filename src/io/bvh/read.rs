@@ -5,7 +5,7 @@ use super::motion::{self, MotionData};
 use super::names::distinct;
 use super::text::{Scanner, TextError};
 use super::unit::METRES_PER_UNIT;
-use crate::document::{self, Camera, Document, Keys, RigKind, SkeletonRig, Timeline};
+use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
@@ -91,15 +91,15 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
     let skeleton =
         Skeleton::from_joints(joints).map_err(|error| TextError::new(at, "", error.to_string()))?;
     let rig = SkeletonRig::new(skeleton);
-    Ok(Document {
+    let document = Document {
         rig: RigKind::Skeleton,
-        camera: Camera::framing_skeleton(&rig),
         skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
         metres_per_unit: Some(METRES_PER_UNIT),
         ..Document::default()
-    })
+    };
+    Ok(Document { camera: document.framing_camera(), ..document })
 }
 
 /// The timeline from the first frame to the last, or up to the default end if the motion has a

@@ -11,7 +11,7 @@ use super::keys::{ChannelFields, TimelineFields, keys};
 use super::skeleton::SkeletonFields;
 use super::skin::SkinFields;
 use super::targets::{SolverFields, TargetFields, add_targets};
-use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig};
+use crate::document::{Arm, Document, Keys, Overlay, RigKind, SkeletonRig};
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumber, JsonObject, Whole};
@@ -79,10 +79,8 @@ impl DocumentFields {
         if let Some(JsonObject(fields)) = self.follow_path {
             skeleton_rig.follow_path = Some(fields.follow_path(&at("follow_path"))?);
         }
-        let camera = match self.camera {
-            Some(JsonObject(fields)) => fields.camera(&at("camera"))?,
-            None => default_camera(self.rig, &skeleton_rig),
-        };
+        let camera = self.camera.map(|JsonObject(fields)| fields.camera(&at("camera")));
+        let camera = camera.transpose()?;
         let other_camera =
             self.other_camera.map(|JsonObject(fields)| fields.camera(&at("other_camera")));
         let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline(at("timeline")));
@@ -95,21 +93,15 @@ impl DocumentFields {
             skeleton_rig,
             keys: Keys::default(),
             timeline: timeline.transpose()?.unwrap_or_default(),
-            camera,
+            camera: camera.unwrap_or_default(),
             other_rig_camera: other_camera.transpose()?,
             display: overlays.unwrap_or_default(),
             metres_per_unit: metres.transpose()?,
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document)?;
+        if camera.is_none() && document.rig == RigKind::Skeleton {
+            document.camera = document.framing_camera();
+        }
         Ok(document)
-    }
-}
-
-/// The camera for a file without a camera. An arm of any size gets the same camera, as in version
-/// 1.
-fn default_camera(rig: RigKind, skeleton: &SkeletonRig) -> Camera {
-    match rig {
-        RigKind::Arm => Camera::default(),
-        RigKind::Skeleton => Camera::framing_skeleton(skeleton),
     }
 }

@@ -29,7 +29,7 @@ use super::json_path::JsonPath;
 use super::opened::Opened;
 use super::source::Source;
 use super::value::JsonObject;
-use crate::document::{Camera, Document, RigKind, SkeletonRig, Target};
+use crate::document::{Document, RigKind, SkeletonRig, Target};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::SkinFile;
 use bones::SkeletonWithOrder;
@@ -59,10 +59,10 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let (rig, order) =
         rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
     warn_of_unread(&file, &mut warnings);
-    let camera = Camera::framing_skeleton(&rig);
     let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, ..Document::default() };
+        Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
     add_skin(&mut document, source, scene, chosen, &order, &mut warnings);
+    document.camera = document.framing_camera();
     Ok(Opened {
         document,
         warnings: source.warnings(&warnings),
