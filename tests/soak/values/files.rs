@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{Bake, Baked, Camera, Document, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Bake, Baked, Document, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{Example, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, PathDialog};
@@ -124,12 +124,8 @@ impl Values<'_> {
 
 fn skeleton(skeleton: Skeleton) -> Document {
     let skeleton_rig = SkeletonRig::new(skeleton);
-    Document {
-        rig: RigKind::Skeleton,
-        camera: Camera::framing_skeleton(&skeleton_rig),
-        skeleton_rig,
-        ..Document::default()
-    }
+    let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+    Document { camera: document.framing_camera(), ..document }
 }
 
 /// A skeleton with the largest number of joints.
