@@ -598,15 +598,16 @@ fn duplicate_names_are_changed_with_a_warning() {
 }
 
 #[test]
-fn a_bone_ends_at_the_only_child_or_at_the_middle_of_several() {
+fn a_bone_ends_at_the_child_that_continues_the_chain_and_a_leaf_without_end_site_goes_straight_on()
+{
     let text = "HIERARCHY\nROOT a { OFFSET 0 0 0\n\
         JOINT b { OFFSET 2 4 0 JOINT c { OFFSET 0 6 0 } }\n\
         JOINT d { OFFSET 0 4 0 } }\nMOTION\nFrames: 0\nFrame Time: 1\n";
     let joints = open(text).document.skeleton().clone();
     let axis = |name| joints.joints()[joints.find(name).expect("there").index()].axis;
-    assert_eq!(axis("a"), Vec3::new(1.0, 4.0, 0.0));
+    assert_eq!(axis("a"), Vec3::new(2.0, 4.0, 0.0));
     assert_eq!(axis("b"), Vec3::new(0.0, 6.0, 0.0));
-    assert_eq!((axis("c"), axis("d")), (Vec3::ZERO, Vec3::ZERO));
+    assert_eq!((axis("c"), axis("d")), (Vec3::Y * 3.0, Vec3::Y * 6.0));
 }
 
 #[test]

@@ -146,10 +146,15 @@ fn rotate(rig: &mut SkeletonRig, joint: JointId, rotation: Vec3) {
     }
 }
 
+/// Sets the offset of a joint, and for a connected one its parent's bone.
 fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
     let Some(before) = rig.skeleton.joint(joint) else { return };
+    let above = before.parent.filter(|_| before.connected);
     if !is_identical(before.offset, offset) {
         rig.skeleton_mut().write_local(joint, |joint| joint.offset = offset);
+    }
+    if let Some(above) = above.filter(|it| !is_identical(rig.skeleton[*it].axis, offset)) {
+        rig.skeleton_mut().write_local(above, |above| above.axis = offset);
     }
 }
 

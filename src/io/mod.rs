@@ -11,6 +11,7 @@
 
 mod attach_skin;
 mod base64;
+mod bones;
 mod bvh;
 mod csv;
 pub(crate) mod error;

@@ -17,6 +17,8 @@ pub struct AttachedMesh {
     /// For each joint, the box around those vertices in the joint's own space in the bind pose: its lowest and its
     /// highest corner; `None` for a joint without such vertices.
     pub boxes: Vec<Option<[Vec3; 2]>>,
+    /// The bones on which the thickness was measured: the axis of each joint.
+    axes: Vec<Vec3>,
 }
 
 impl AttachedMesh {
@@ -49,7 +51,13 @@ impl AttachedMesh {
             }
         }
         let mean = |(sum, count): (f64, u32)| (sum / f64::from(count.max(1))) as f32;
-        Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes }
+        let axes = skeleton.joints().iter().map(|joint| joint.axis).collect();
+        Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes, axes }
+    }
+
+    /// Whether the mesh was measured on joints with the bones of this skeleton.
+    pub(super) fn is_measured_on(&self, skeleton: &Skeleton) -> bool {
+        skeleton.joints().iter().map(|joint| joint.axis).eq(self.axes.iter().copied())
     }
 
     /// The corners of boxes in the world that contain nearly all of the mesh in a pose.

@@ -44,7 +44,7 @@ pub enum SkinFileError {
     Invalid(String),
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct LoadedMesh {
     in_file: Shared<FileMesh>,
     attached: Shared<AttachedMesh>,
@@ -117,6 +117,12 @@ impl MeshSkin {
         Self { mesh, ..self.clone() }
     }
 
+    /// The skin measured again, if the bones of the skeleton have changed since; otherwise `None`.
+    pub(super) fn refreshed(&self, skeleton: &Skeleton) -> Option<Self> {
+        let mesh = self.mesh.as_ref().ok()?;
+        (!mesh.attached.is_measured_on(skeleton)).then(|| self.attached_to(skeleton))
+    }
+
     /// The skin for a skeleton with other joint indices.
     pub(super) fn remapped(&self, remap: &JointRemap, skeleton: &Skeleton) -> Self {
         let joints: Vec<_> =
@@ -130,5 +136,12 @@ impl LoadedMesh {
         let FileMesh { mesh, parents, parts } = &*in_file;
         let attached = AttachedMesh::new(mesh.renumbered(joints, parents), parts.clone(), skeleton);
         Self { attached: attached.into(), in_file }
+    }
+}
+
+/// The attached mesh follows from the one in the file, the joints and the skeleton of the rig.
+impl PartialEq for LoadedMesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.in_file == other.in_file
     }
 }

@@ -155,7 +155,8 @@ impl SkeletonRig {
         self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap, &self.skeleton));
     }
 
-    /// Makes a skin from bones again if the bind pose or its shape have changed since it was made.
+    /// Makes a skin from bones again if the bind pose or its shape have changed since it was made, and
+    /// measures one from a file again if the bones have.
     pub fn refresh_skin(&mut self) {
         let refreshed = self.skin.as_ref().and_then(|skin| skin.refreshed(&self.skeleton));
         if refreshed.is_some() {

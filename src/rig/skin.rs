@@ -92,12 +92,12 @@ impl Skin {
         own.joints() == mesh.joints() && own.file() == before
     }
 
-    /// The skin with its mesh made again, if it is made from bones and the bind pose or the shape have
+    /// The skin with its mesh made or measured again, if the bones, or the shape of a skin from bones, have
     /// changed since; otherwise `None`.
     pub(super) fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
         let source = match &self.source {
             SkinSource::Bones(bones) => SkinSource::Bones(bones.refreshed(skeleton)?),
-            SkinSource::Mesh(_) => return None,
+            SkinSource::Mesh(mesh) => SkinSource::Mesh(mesh.refreshed(skeleton)?),
         };
         Some(Self { source, ..self.clone() })
     }

@@ -215,6 +215,7 @@ fn skeleton(random: &mut Random) -> Skeleton {
                 random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
             }),
             locked: random.coin(),
+            connected: random.coin(),
             radius: random.finite().abs(),
         }
     });

@@ -148,7 +148,18 @@ fn skin(skin: &Skin, skeleton: &Skeleton) -> Result<(), Broken> {
 }
 
 fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
-    let Joint { name, parent, offset, axis, rotation, frame, limits, locked: _, radius } = joint;
+    let Joint {
+        name,
+        parent,
+        offset,
+        axis,
+        rotation,
+        frame,
+        limits,
+        locked: _,
+        connected: _,
+        radius,
+    } = joint;
     hold!(!name.trim().is_empty(), "joint {index} has a name");
     hold!(
         parent.is_none_or(|parent| parent < JointId::new(index)),

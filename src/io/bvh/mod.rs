@@ -28,9 +28,9 @@
 //!
 //! # Import
 //!
-//! Channels can have any order and number. The bone of a joint goes to its End Site, to its only
-//! child, or to the mean of its children, all at the first frame. Values that change over time
-//! become keys; constant values are set on the skeleton.
+//! Channels can have any order and number. The bone of a joint goes to its End Site or to the
+//! child that continues the chain, see [`bones`](super::bones), all at the first frame. Values that
+//! change over time become keys; constant values are set on the skeleton.
 
 mod hierarchy;
 mod motion;

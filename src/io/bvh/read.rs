@@ -6,6 +6,7 @@ use super::names::distinct;
 use super::text::{Scanner, TextError};
 use super::unit::METRES_PER_UNIT;
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
+use crate::io::bones::{self, JointTree};
 use crate::io::error::{OpenError, Remark};
 use crate::io::opened::Opened;
 use crate::io::source::Source;
@@ -82,11 +83,13 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
         joints.push(Joint { offset, rotation, ..default });
         start += node.channels.len();
     }
-    for (joint, axis) in axes(nodes, &joints).into_iter().enumerate() {
-        let default = Joint::new("", None, axis);
-        joints[joint].axis = axis;
-        joints[joint].radius = default.radius.min(f32::MAX);
-    }
+    let tree = JointTree::new(&joints);
+    let moves = |joint| keys.has(document::Channel::Offset(JointId::new(joint)));
+    let mut bones = tree.bones(|joint| nodes[joint].end, |_| None);
+    tree.free_origins(&mut bones, moves);
+    tree.guess_leaves(&mut bones, |joint| nodes[joint].end.is_some());
+    bones::give_bones(&mut joints, &bones);
+    bones::connect(&mut joints, &bones, moves);
     let at = nodes.first().map_or(0, |root| root.at);
     let skeleton =
         Skeleton::from_joints(joints).map_err(|error| TextError::new(at, "", error.to_string()))?;
@@ -196,20 +199,4 @@ fn first_angles(node: &BvhNode, row: &[f32]) -> DVec3 {
     }
     let is_zyx = order.is_sorted_by(|a, b| a > b);
     if is_zyx { angles } else { exact_angles::nearest(rotation_of(node, row), DVec3::ZERO) }
-}
-
-/// The axis of each joint's bone at the first frame: from the joint to its End Site, otherwise to
-/// its only child or the mean of its children, otherwise zero.
-fn axes(nodes: &[BvhNode], joints: &[Joint]) -> Vec<Vec3> {
-    let mut sums = vec![(DVec3::ZERO, 0_u32); joints.len()];
-    for joint in joints {
-        if let Some(parent) = joint.parent {
-            sums[parent.index()].0 += joint.offset.as_dvec3();
-            sums[parent.index()].1 += 1;
-        }
-    }
-    let axis = |(node, (sum, count)): (&BvhNode, (DVec3, u32))| {
-        node.end.unwrap_or_else(|| (sum / f64::from(count.max(1))).as_vec3())
-    };
-    nodes.iter().zip(sums).map(axis).collect()
 }

@@ -27,6 +27,8 @@ struct JointFields {
     limits: Option<JsonObject<LimitsFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     locked: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    connected: Option<bool>,
     radius: Option<JsonNumber>,
 }
 
@@ -121,6 +123,7 @@ impl JointFields {
             frame: (!is_identity).then_some(JsonNumbers(frame)),
             limits: joint.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
             locked: joint.locked.then_some(true),
+            connected: joint.connected.then_some(true),
             radius: Some(JsonNumber(joint.radius)),
         }
     }
@@ -142,6 +145,7 @@ impl JointFields {
             limits: [limits.x, limits.y, limits.z]
                 .map(|limit| limit.map(|JsonNumbers([min, max])| Limit { min, max })),
             locked: self.locked.unwrap_or(default.locked),
+            connected: self.connected.unwrap_or(default.connected),
             radius: self.radius.map_or(default.radius.min(f32::MAX), |JsonNumber(radius)| radius),
             ..default
         }

@@ -26,7 +26,8 @@
 //! a joint's frame is its node's rotation. A joint that moves has the keys of its node in the chosen
 //! animation, with their interpolation: rotations turn by slerp, step, or follow a spline of angles
 //! that is as exact as single precision. Below scales that are uneven or change, joints have keys at
-//! every frame. A node `NAME_tip` without children is not a joint but the tip of NAME's bone.
+//! every frame. A node `NAME_tip` without children is not a joint but the tip of NAME's bone. The
+//! other bones follow from the joints, see [`bones`](super::bones).
 //!
 //! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:
 //! triangles, normals, weights, and base colours with their textures. Other meshes and channels of
@@ -41,6 +42,7 @@ pub(super) mod chunks;
 mod colour;
 mod export;
 mod frame;
+mod generator;
 mod import;
 mod names;
 

@@ -102,6 +102,7 @@ impl Skeleton {
             }
             let joint = self.joints[child.index()].make_mut();
             (joint.parent, joint.offset, joint.rotation) = (parent, offset, rotation);
+            joint.connected = false;
             joint.widen_limits(rotation);
         }
         self.remove(joints)
@@ -160,6 +161,7 @@ impl Skeleton {
         check_finite(joint, offset, rotation)?;
         let moved = self.joints[joint.index()].make_mut();
         (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
+        moved.connected = false;
         moved.clamp();
         Ok(self.sort())
     }

@@ -28,6 +28,9 @@ pub struct Joint {
     pub limits: [Option<Limit>; 3],
     /// Whether solvers leave the rotation unchanged.
     pub locked: bool,
+    /// Whether keys that move this joint also move the tip of its parent's bone, so that the bone ends
+    /// here at every time.
+    pub connected: bool,
     /// Radius with which the bone is drawn, in skeleton units.
     pub radius: f32,
 }
@@ -44,6 +47,7 @@ impl Joint {
             frame: Mat3::IDENTITY,
             limits: [None; 3],
             locked: false,
+            connected: false,
             radius: (axis.as_dvec3().length() * 0.1) as f32,
         }
     }

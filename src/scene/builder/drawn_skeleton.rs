@@ -1,3 +1,5 @@
+use glam::Vec3;
+
 use super::shadow::above_ground;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
@@ -18,6 +20,8 @@ const TAPER: f32 = 0.6;
 const SLENDER: f32 = 4.0;
 /// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
 pub(super) const GHOST: f32 = 0.45;
+/// Ratio of the radius of a rod between a bone and a child away from it to the thinner bone's radius.
+const LINK: f32 = 0.3;
 /// Contrast of the FK pose with the background, from 0 to 1.
 const FK_CONTRAST: f32 = 0.35;
 
@@ -98,6 +102,19 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
+    /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of that
+    /// bone, so that no bone floats.
+    pub fn add_link(&self, scene: &mut Scene, joint: JointId) {
+        let Some(parent) = self.joints[joint.index()].parent else { return };
+        let (base, tip) = (self.pose.base(parent), self.pose.tip(parent));
+        let to = self.pose.base(joint);
+        let from = if to.distance(base) <= to.distance(tip) { base } else { tip };
+        if distance_from_segment(to, base, tip) > self.radius(parent) {
+            let radius = LINK * self.radius(parent).min(self.radius(joint));
+            scene.add_solid(from, to, radius, radius, scene.palette.joint);
+        }
+    }
+
     /// Adds the bones that `fk`, the FK pose, has elsewhere, for the joints that are to be shown.
     pub fn add_fk_pose(
         &self,
@@ -141,4 +158,12 @@ impl<'a> DrawnSkeleton<'a> {
             scene.add_label(label, format_args!("{}", self.joints[joint.index()].name));
         }
     }
+}
+
+/// Distance of a point from the line segment between two points.
+fn distance_from_segment(point: Vec3, from: Vec3, to: Vec3) -> f32 {
+    let along = to - from;
+    let part = (point - from).dot(along) / along.length_squared();
+    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(from + along * part)
 }

@@ -53,6 +53,7 @@ pub(super) fn add(
         }
         let colour = drawn.colour(scene, joint, overlays);
         drawn.add_bone(scene, joint, colour);
+        drawn.add_link(scene, joint);
         if display.shows(Overlay::Shadow) {
             drawn.add_shadow(scene, joint);
         }

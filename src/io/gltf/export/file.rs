@@ -20,6 +20,7 @@ use super::motion::{JointAnimation, JointTrack};
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
 use crate::io::gltf::colour::linear;
+use crate::io::gltf::generator;
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
 
@@ -29,10 +30,7 @@ pub fn write(
     mesh: &RigMesh,
 ) -> Result<Vec<u8>, GlbError> {
     let mut writer = GltfWriter::default();
-    writer.root.asset = Asset {
-        generator: Some(concat!("ik-arm ", env!("CARGO_PKG_VERSION")).to_owned()),
-        ..Asset::default()
-    };
+    writer.root.asset = Asset { generator: Some(generator::this_program()), ..Asset::default() };
     let [armature, mesh_node] = add_nodes(&mut writer, bones);
     let skin = add_skin(&mut writer, bones, &mesh.attached, armature);
     let mesh = add_mesh(&mut writer, mesh);

@@ -40,7 +40,7 @@ impl LimbMesh {
             let part = &mut limbs.parts[bone.shade];
             let rotation = placed.frame();
             let length = placed.along.length();
-            let tip = tips[index].unwrap_or(index);
+            let tip = tips[index].or(bone.connected).unwrap_or(index);
             let [thick, thin] = bone.radii;
             part.add_ball(placed.base, rotation, thick * BALL, index);
             if length > 0.0 {

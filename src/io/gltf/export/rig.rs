@@ -14,6 +14,9 @@ use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 pub struct GltfRig {
     document: Document,
     metres_per_unit: f64,
+    /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their joints.
+    /// Nodes keep these directions where bones follow connected joints: the skin follows the nodes.
+    axes: Vec<DVec3>,
     /// The bones, parents before their children.
     pub bones: Vec<RigBone>,
     /// Placements of the bones in the bind pose.
@@ -28,6 +31,8 @@ pub struct RigBone {
     /// length changes over time.
     pub has_tip: bool,
     pub is_leaf: bool,
+    /// The bone that starts at this one's tip and can move against it.
+    pub connected: Option<usize>,
     /// Radii at base and tip, in metres.
     pub radii: [f64; 2],
     /// Index of the bone's colour, 0 or 1.
@@ -62,6 +67,7 @@ impl GltfRig {
         let mut rig = Self {
             document: document.clone(),
             metres_per_unit,
+            axes: document.skeleton().joints().iter().map(|joint| joint.axis.as_dvec3()).collect(),
             bones: Vec::new(),
             bind_pose: Vec::new(),
         };
@@ -72,7 +78,7 @@ impl GltfRig {
             }
             RigKind::Skeleton => {
                 let skeleton = document.skeleton();
-                rig.bind_pose = rig.metric(placements(skeleton, |_| DMat3::IDENTITY));
+                rig.bind_pose = rig.metric(placements(skeleton, &rig.axes, |_| DMat3::IDENTITY));
                 rig.bones = rig.joints(skeleton.joints());
             }
         }
@@ -87,7 +93,8 @@ impl GltfRig {
         self.metric(match document.rig {
             RigKind::Arm => posed_arm(document),
             RigKind::Skeleton => {
-                placements(&document.skeleton_rig.skeleton_at(time), local_rotation)
+                let skeleton = document.skeleton_rig.skeleton_at(time);
+                placements(&skeleton, &self.axes, local_rotation)
             }
         })
     }
@@ -119,6 +126,7 @@ impl GltfRig {
                 parent: None,
                 has_tip: keys.has(Channel::Upper) || stretches,
                 is_leaf: false,
+                connected: None,
                 radii: radii(rig.upper()),
                 shade: 0,
             },
@@ -127,6 +135,7 @@ impl GltfRig {
                 parent: Some(0),
                 has_tip: true,
                 is_leaf: true,
+                connected: None,
                 radii: radii(rig.lower()),
                 shade: 1,
             },
@@ -139,11 +148,14 @@ impl GltfRig {
         let reach = f64::from(self.document.skeleton_rig.reach()) * self.metres_per_unit;
         let mut depths = vec![0_usize; joints.len()];
         let mut are_leaves = vec![true; joints.len()];
+        let mut connected = vec![None; joints.len()];
         for (index, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent {
                 depths[index] =
                     depths[parent.index()] + usize::from(joints[parent.index()].axis != Vec3::ZERO);
                 are_leaves[parent.index()] = false;
+                connected[parent.index()] =
+                    joint.connected.then_some(index).or(connected[parent.index()]);
             }
         }
         let bone = |(index, joint): (usize, &Shared<Joint>)| RigBone {
@@ -151,6 +163,7 @@ impl GltfRig {
             parent: joint.parent.map(JointId::index),
             has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
             is_leaf: are_leaves[index],
+            connected: connected[index],
             radii: radii(
                 f64::from(joint.radius) * metres,
                 self.bind_pose[index].along.length(),
@@ -185,21 +198,25 @@ fn local_rotation(joint: &Joint) -> DMat3 {
     DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
 }
 
-fn placements(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<BonePlacement> {
-    let placement = |((_, joint), full): ((_, &Joint), DAffine3)| BonePlacement {
+/// Placements of the bones of a skeleton, which are the `axes` in the spaces of their joints.
+fn placements(
+    skeleton: &Skeleton,
+    axes: &[DVec3],
+    rotation: impl Fn(&Joint) -> DMat3,
+) -> Vec<BonePlacement> {
+    let placement = |(axis, full): (&DVec3, DAffine3)| BonePlacement {
         base: full.translation,
-        along: full.matrix3 * joint.axis.as_dvec3(),
-        across: full.matrix3 * across(joint),
+        along: full.matrix3 * axis,
+        across: full.matrix3 * across(*axis),
         y: full.matrix3.y_axis,
     };
-    skeleton.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
+    axes.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
 }
 
 /// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x, whose
 /// node would not turn with the joint otherwise.
-fn across(joint: &Joint) -> DVec3 {
+fn across(axis: DVec3) -> DVec3 {
     const ALONG: f64 = 0.99;
-    let axis = joint.axis.as_dvec3();
     if axis.x.abs() > ALONG * axis.length() { DVec3::Z } else { DVec3::X }
 }
 

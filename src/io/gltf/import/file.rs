@@ -7,6 +7,7 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
+use crate::io::gltf::generator::is_this_program;
 use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
@@ -39,6 +40,14 @@ pub struct GltfFile {
 #[derive(Deserialize)]
 pub struct GltfAsset {
     pub version: String,
+    generator: Option<String>,
+}
+
+impl GltfAsset {
+    /// Whether this program has written the file.
+    pub fn is_of_this_program(&self) -> bool {
+        self.generator.as_deref().is_some_and(is_this_program)
+    }
 }
 
 #[derive(Deserialize)]
@@ -50,6 +59,7 @@ pub struct GltfNode {
     pub rotation: Option<JsonNumbers<4>>,
     pub scale: Option<JsonPoint>,
     pub mesh: Option<Whole>,
+    pub camera: Option<Whole>,
     pub skin: Option<Whole>,
 }
 

@@ -39,7 +39,7 @@ use file::{GltfFile, GltfSkin};
 use joint_tracks::JointTracks;
 use node_poser::{JointPlacement, NodePoser};
 use nodes::{NodeTree, at_node};
-use rig::ImportedRig;
+use rig::{BoneEnds, ImportedRig};
 use skin_mesh::MeshImport;
 use skins::{SkinJoints, at_skin};
 use tracks::NodeTracks;
@@ -161,7 +161,8 @@ impl GltfImport<'_> {
             None => (Vec::new(), None),
             Some(chosen) => self.animate(chosen, &mut poser, &mut joints, &bind_pose, warnings)?,
         };
-        let built = rig::build(joints, &motions, timeline);
+        let ends = BoneEnds::new(file, nodes, skin_joints, &bind_pose);
+        let built = rig::build(joints, &motions, timeline, &ends);
         let mut built =
             built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
         let no_skin = GltfSkin::default();

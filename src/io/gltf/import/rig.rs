@@ -1,10 +1,14 @@
+use std::collections::HashSet;
+
 use glam::Vec3;
 
-use super::file::GltfFile;
+use super::file::{GltfFile, GltfNode};
 use super::joint_tracks::JointTracks;
 use super::node_poser::JointPlacement;
+use super::nodes::NodeTree;
 use super::skins::SkinJoints;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use crate::io::bones::{self, Bone, JointTree};
 use crate::io::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 use crate::kinematics::spline::Spline;
@@ -38,10 +42,53 @@ pub struct ImportedRig {
     pub kept: Vec<Option<usize>>,
 }
 
+/// Where bones end that lead to no joint.
+pub struct BoneEnds {
+    /// For each joint the end of its bone relative to it, in its axes.
+    pub of: Vec<Option<Vec3>>,
+    /// Whether leaves without an end have no bone, rather than one that the file does not tell.
+    pub are_complete: bool,
+}
+
+impl BoneEnds {
+    /// The ends of leaves: a node below that is no joint and has nothing to draw, as many programs write
+    /// for the tips of fingers and heads. Files of this program are complete.
+    pub fn new(
+        file: &GltfFile,
+        nodes: &NodeTree,
+        joints: &SkinJoints,
+        bind_pose: &[JointPlacement],
+    ) -> Self {
+        let worlds = nodes.worlds();
+        let is_joint: HashSet<usize> = joints.nodes.iter().copied().collect();
+        let is_empty = |node: &usize| {
+            let GltfNode { mesh, camera, skin, .. } = &file.nodes.0[*node];
+            let draws = mesh.is_some() || camera.is_some() || skin.is_some();
+            !draws && !is_joint.contains(node) && nodes.children[*node].is_empty()
+        };
+        let is_parent: HashSet<usize> = joints.parents.iter().flatten().copied().collect();
+        let end = |joint: usize| {
+            if is_parent.contains(&joint) {
+                return None;
+            }
+            let base = bind_pose[joint].base;
+            let empty = nodes.children[joints.nodes[joint]].iter().copied().filter(is_empty);
+            let ends = empty.map(|node| (worlds[node].translation - base).as_vec3());
+            let longer = |a: &Vec3, b: &Vec3| a.length().total_cmp(&b.length());
+            ends.filter(|end| end.is_finite() && *end != Vec3::ZERO).max_by(longer)
+        };
+        Self {
+            of: (0..joints.nodes.len()).map(end).collect(),
+            are_complete: file.asset.0.is_of_this_program(),
+        }
+    }
+}
+
 pub fn build(
     mut joints: Vec<Joint>,
     motions: &[JointTracks],
     timeline: Option<Timeline>,
+    ends: &BoneEnds,
 ) -> Result<ImportedRig, SkeletonError> {
     let bind_offsets: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
     let size = bind_offsets.iter().map(|offset| offset.length()).fold(0.0, f32::max);
@@ -56,7 +103,9 @@ pub fn build(
         .map(|(index, _)| motions.get(index).is_some_and(|motion| motion.moves(size)))
         .collect();
     let are_tips = tips(&joints, &moves);
-    give_bones(&mut joints, &bind_offsets, &are_tips);
+    let bones = bones(&joints, &are_tips, &moves, ends);
+    bones::give_bones(&mut joints, &bones);
+    bones::connect(&mut joints, &bones, |joint| moves[joint]);
     let mut kept = Vec::with_capacity(joints.len());
     let mut next = 0;
     for is_tip in &are_tips {
@@ -92,36 +141,27 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     joints.iter().enumerate().map(is_tip).collect()
 }
 
-/// Sets the axis of each joint's bone. The axis goes from the joint to its tip, otherwise to the
-/// child along the joint's y axis, otherwise to the mean of the children.
-fn give_bones(joints: &mut [Joint], bind_offsets: &[Vec3], are_tips: &[bool]) {
-    const ALONG: f32 = 0.999;
-    let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
-    for (index, joint) in joints.iter().enumerate() {
-        if let Some(parent) = joint.parent {
-            children[parent.index()].push(index);
-        }
+/// The bone of each joint: to its tip, to one of the `ends`, to the child along the joint's y axis (as
+/// Blender has its bones), or to the child that continues the chain.
+fn bones(joints: &[Joint], are_tips: &[bool], moves: &[bool], ends: &BoneEnds) -> Vec<Bone> {
+    /// Cosine of the greatest angle between the y axis and a bone along it.
+    const ALONG: f64 = 0.999;
+    let tree = JointTree::new(joints);
+    let tip = |joint: usize| tree.children(joint).iter().copied().find(|child| are_tips[*child]);
+    let end = |joint: usize| tip(joint).map(|tip| joints[tip].offset).or(ends.of[joint]);
+    let along_y = |joint: usize| {
+        let y = joints[joint].frame.y_axis.as_dvec3();
+        let is_along =
+            |child: &usize| joints[*child].offset.as_dvec3().normalize_or_zero().dot(y) > ALONG;
+        tree.children(joint).iter().copied().find(is_along)
+    };
+    let mut bones = tree.bones(end, along_y);
+    if ends.are_complete {
+        return bones;
     }
-    for (index, children) in children.into_iter().enumerate() {
-        let y = joints[index].frame.y_axis;
-        let is_along = |child: &&usize| bind_offsets[**child].normalize_or_zero().dot(y) > ALONG;
-        let tip = children.iter().find(|child| are_tips[**child]);
-        let axis = match tip.or_else(|| children.iter().find(is_along)) {
-            Some(child) if are_tips[*child] => joints[*child].offset,
-            Some(child) => bind_offsets[*child],
-            None => middle(children.iter().map(|child| bind_offsets[*child])),
-        };
-        let joint = &mut joints[index];
-        joint.radius = Joint::new("", None, axis).radius;
-        joint.axis = axis;
-    }
-}
-
-/// The mean of those offsets that are not zero; zero if there are none.
-fn middle(offsets: impl Iterator<Item = Vec3>) -> Vec3 {
-    let offsets: Vec<Vec3> = offsets.filter(|offset| *offset != Vec3::ZERO).collect();
-    let weight = 1.0 / offsets.len().max(1) as f32;
-    offsets.into_iter().map(|offset| offset * weight).sum()
+    tree.free_origins(&mut bones, |joint| moves[joint]);
+    tree.guess_leaves(&mut bones, |joint| are_tips[joint] || end(joint).is_some());
+    bones
 }
 
 fn add_keys(
