@@ -106,6 +106,7 @@ examples! {
     })))];
     SetHead: [EditAction::SetHead(Vec3::X)];
     SetTranslation: [EditAction::SetTranslation(Vec3::X)];
+    TurnYUp: [EditAction::TurnYUp];
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
     RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
     SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];

@@ -30,6 +30,7 @@ mod rekey;
 mod rig_kind;
 mod target_space;
 mod timeline;
+mod turn;
 
 pub use crate::kinematics::twist::TwistReferenceKind;
 pub use crate::rig::{FollowPath, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing};

@@ -11,7 +11,7 @@ use super::source::Source;
 use super::value::Whole;
 
 /// The format of a file.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FileFormat {
     /// A document of this program.
     Document,

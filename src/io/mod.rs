@@ -39,6 +39,7 @@ mod skin_file;
 mod source;
 mod texture;
 mod translation;
+mod turn_up;
 pub(crate) mod value;
 mod write;
 
@@ -59,4 +60,5 @@ pub use open_options::OpenOptions;
 pub use opened::Opened;
 pub use progress::{Cancelled, Progress};
 pub use skin_file::relocated_skin;
+pub use turn_up::Upwards;
 pub use write::{write, write_with};

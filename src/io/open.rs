@@ -6,10 +6,11 @@ use super::file_format::FileFormat;
 use super::open_options::OpenOptions;
 use super::opened::Opened;
 use super::source::Source;
-use super::{bvh, format, gltf, js3d};
+use super::{bvh, format, gltf, js3d, turn_up};
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
-/// detected by the content. `options` choose one of several skeletons and animations.
+/// detected by the content. `options` choose one of several skeletons and animations, and tell which axis
+/// points up.
 ///
 /// # Errors
 ///
@@ -39,7 +40,17 @@ pub fn parse(name: &str, text: &str, options: &OpenOptions) -> Result<Opened, Op
 
 fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let format = FileFormat::detect(source)?;
-    let OpenOptions { skeleton, animation } = options;
+    let mut opened = read_format(source, format, options)?;
+    turn_up::turn_up(&mut opened, format, options.up);
+    Ok(opened)
+}
+
+fn read_format(
+    source: &Source,
+    format: FileFormat,
+    options: &OpenOptions,
+) -> Result<Opened, OpenError> {
+    let OpenOptions { skeleton, animation, .. } = options;
     let (file, skeleton) = (source.name().to_owned(), skeleton.as_deref());
     let opened = match (format, skeleton) {
         (FileFormat::Gltf, _) => return gltf::read(source, options),

@@ -24,6 +24,7 @@ mod target_match;
 mod target_motion;
 mod target_order;
 mod target_space;
+mod up_axis;
 mod wavy_ring;
 
 pub use arm::{ArmPart, ArmRig};
@@ -44,4 +45,5 @@ pub use target::{Target, TargetKind};
 pub use target_motion::{TargetMotion, TargetPath};
 pub use target_order::TargetSpaceError;
 pub use target_space::TargetSpace;
+pub use up_axis::UpAxis;
 pub use wavy_ring::WavyRing;

@@ -90,6 +90,7 @@ impl Session {
             EditAction::PackSkin => self.pack_skin(),
             EditAction::SetSkin(skin) => self.set_skin(skin),
             EditAction::SetTranslation(to) => self.set_translation(to),
+            EditAction::TurnYUp => self.turn_y_up(),
             EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
             EditAction::SetHead(to) => self.set_head(to),
 

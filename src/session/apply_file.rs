@@ -55,6 +55,11 @@ impl Session {
         self.files.has_settled_recovery()
     }
 
+    /// Whether z seems to point up in the file of the document, which was not turned yet.
+    pub fn seems_z_up(&self) -> bool {
+        self.files.seems_z_up()
+    }
+
     pub(super) fn replace_document(&mut self, document: Document, file: Option<PathBuf>) {
         let playback = self.playback.restarted(&document.timeline);
         *self = Self {
@@ -182,8 +187,10 @@ impl Session {
                 return Some(Effect::Open { path, options });
             }
             FileAction::Opened { document, file, contents } => {
+                let seems_z_up = file.is_none() && document.looks_z_up();
                 self.replace_document(*document, file);
                 self.files.set_contents(contents);
+                self.files.set_seems_z_up(seems_z_up);
             }
             FileAction::NotOpened { path, why } => self.fail_open(&path, &why),
             FileAction::LocateSkin(path) => {
@@ -220,6 +227,7 @@ impl Session {
                 self.shell.take_dialog();
                 self.files.settle_recovery();
             }
+            FileAction::DeclineTurn => self.files.set_seems_z_up(false),
             FileAction::OpenExample(example) => self.open_example(example),
             FileAction::New => self.replace_document(new_document(), None),
             FileAction::NewSkeleton => self.new_skeleton(),

@@ -141,6 +141,8 @@ pub enum EditAction {
     SetHead(Vec3),
     /// Moves the origin of the skeleton to a point in world space.
     SetTranslation(Vec3),
+    /// Turns the skeleton, in which z points up, so that y does.
+    TurnYUp,
 
     /// Adds a target at the tip of a joint.
     AddTarget(JointId),

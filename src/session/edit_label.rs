@@ -53,6 +53,7 @@ impl EditAction {
             Self::SetFollowPath(_) => "Change path",
             Self::SetHead(_) => "Move head",
             Self::SetTranslation(_) => "Move skeleton",
+            Self::TurnYUp => "Turn to y up",
             Self::AddTarget(_) => "Add target",
             Self::RemoveTarget(_) => "Remove target",
             Self::SetTarget(_) => "Change target",

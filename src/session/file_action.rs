@@ -79,6 +79,8 @@ pub enum FileAction {
     },
     /// Discards the document that an earlier run left unsaved.
     DeclineRecovery,
+    /// Leaves the skeleton as it is in its file, although z seems to point up there.
+    DeclineTurn,
     /// Opens an example.
     OpenExample(Example),
     /// Opens a new document, which shows the arm.

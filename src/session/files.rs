@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use super::export::ExportJob;
 use super::file_action::FileAction;
 use super::file_contents::FileContents;
+use crate::io::Upwards;
 
 /// The document's file, recent files, the running export and pending requests.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +18,8 @@ pub(super) struct Files {
     opening: Option<u64>,
     /// What else the file of another program has that the document comes from.
     contents: Option<Box<FileContents>>,
+    /// Whether z seems to point up in the document's file, and this was not settled yet.
+    seems_z_up: bool,
     /// The action to apply once the document is saved; `None` if no action waits.
     after_save: Option<Box<FileAction>>,
 }
@@ -36,6 +39,7 @@ impl Files {
             recovery_settled: self.recovery_settled,
             opening: None,
             contents: None,
+            seems_z_up: false,
             after_save: None,
         }
     }
@@ -46,6 +50,22 @@ impl Files {
 
     pub fn set_contents(&mut self, contents: Option<Box<FileContents>>) {
         self.contents = contents;
+    }
+
+    pub fn seems_z_up(&self) -> bool {
+        self.seems_z_up
+    }
+
+    pub fn set_seems_z_up(&mut self, seems: bool) {
+        self.seems_z_up = seems;
+    }
+
+    /// Takes z as up when other animations of the file are opened.
+    pub fn take_z_as_up(&mut self) {
+        self.seems_z_up = false;
+        if let Some(contents) = &mut self.contents {
+            contents.options.up = Some(Upwards::Z);
+        }
     }
 
     pub fn file(&self) -> Option<&Path> {

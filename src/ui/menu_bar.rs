@@ -120,6 +120,13 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     bake(ui, session, actions);
+    let is_skeleton = session.rig() == RigKind::Skeleton;
+    let turn = ui.add_enabled(is_skeleton, Button::new("Turn to y up"));
+    let tooltip = "Turn a skeleton that stands along z by −90° about x";
+    let turn = turn.on_hover_text(tooltip);
+    if turn.on_disabled_hover_text("Show a skeleton: the arm is not turned").clicked() {
+        actions.push(EditAction::TurnYUp);
+    }
     ui.separator();
     if item(ui, "Copy pose as JSON line", "Ctrl+C") {
         actions.push(ShellAction::CopyPose);

@@ -9,7 +9,8 @@ use super::widgets::{self, format};
 use super::{mouse_hints, pose_summary};
 use crate::document::RigKind;
 use crate::session::{
-    Actions, Drag, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction, TurnDrag,
+    Actions, Drag, EditAction, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction,
+    TurnDrag,
 };
 
 /// Height in points.
@@ -39,6 +40,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 show_job(ui, job, actions);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                if session.seems_z_up() && session.drag().is_none() {
+                    offer_turn(ui, actions);
+                }
                 let is_error = session.drag().is_none() && session.has_failed();
                 match is_error {
                     true => widgets::error_label(ui, &line(session)),
@@ -69,6 +73,19 @@ fn expire(ui: &Ui, session: &Session, actions: &mut Actions) {
         true => ui.ctx().request_repaint_after(Duration::from_secs_f64(left)),
         false => actions.push(ShellAction::ClearMessage),
     }
+}
+
+/// Offers to turn a skeleton that stands along z.
+fn offer_turn(ui: &mut Ui, actions: &mut Actions) {
+    ui.add(Label::new("z seems to point up:").selectable(false));
+    let tooltip = "Turn the skeleton by −90° about x";
+    if ui.small_button("Turn to y up").on_hover_text(tooltip).clicked() {
+        actions.push(EditAction::TurnYUp);
+    }
+    if ui.small_button("Leave").on_hover_text("Keep the axes of the file").clicked() {
+        actions.push(FileAction::DeclineTurn);
+    }
+    ui.separator();
 }
 
 /// Shows the progress of an export, and a button that cancels it.

@@ -123,6 +123,7 @@ kinds! {
         SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
         SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
         SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());
+        TurnYUp: Build 1, |_| EditAction::TurnYUp;
         AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
         RemoveTarget: Solve 2, |v| EditAction::RemoveTarget(v.aimed());
         SetTarget: Solve 6, |v| EditAction::SetTarget(v.target());
@@ -231,6 +232,7 @@ kinds! {
         Discard: Files 1, |v| FileAction::Discard(Box::new(leaving(v)));
         Recover: Files 1, |v| FileAction::Recover { document: Box::new(v.document()), file: v.file() };
         DeclineRecovery: Look 1, |_| FileAction::DeclineRecovery;
+        DeclineTurn: Look 1, |_| FileAction::DeclineTurn;
         OpenExample: Files 1, |v| FileAction::OpenExample(v.example());
         New: Files 1, |_| FileAction::New;
         NewSkeleton: Files 1, |_| FileAction::NewSkeleton;

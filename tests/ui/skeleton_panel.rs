@@ -7,7 +7,7 @@ use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers, vec2};
 use glam::Vec3;
 use ik_arm::document::{RigKind, TargetPath};
-use ik_arm::io::{Example, FileAnimation, Group, OpenOptions};
+use ik_arm::io::{Example, FileAnimation, Group, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, FileContents, Iterate, PanelTab, PathDialog,
@@ -620,6 +620,34 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
     bench.click(Role::Button, "Run · 2.00 s · 3 joints");
     let options = OpenOptions::of_animation("Run");
     assert_eq!(bench.effects(), [Effect::Open { path: "two.glb".into(), options }]);
+}
+
+#[test]
+fn a_figure_that_stands_along_z_can_be_turned_or_left() {
+    let human = Example::find("human").expect("there").open().expect("opens").document;
+    let mut standing_along_z = human.clone();
+    (0..3).for_each(|_| standing_along_z.turn_y_up());
+    let mut bench = Bench::new();
+    for answer in ["Turn to y up", "Leave"] {
+        let mut contents = contents(&["rig"], &["Idle", "Run"]);
+        contents.options = OpenOptions::of_skeleton("rig");
+        let document = Box::new(standing_along_z.clone());
+        bench.apply([FileAction::Opened { document, file: None, contents: Some(contents) }]);
+        assert!(bench.says("z seems to point up"));
+        bench.click(Role::Button, answer);
+        assert!(!bench.says("z seems to point up"));
+        let is_turned = answer == "Turn to y up";
+        let transform = bench.session().skeleton().transform();
+        assert_eq!(transform == human.skeleton().transform(), is_turned);
+        let up = bench.session().contents().expect("it has contents").options.up;
+        assert_eq!(up, is_turned.then_some(Upwards::Z), "other animations are turned, too");
+        if is_turned {
+            bench.key_with(Modifiers::COMMAND, Key::Z);
+            assert_eq!(bench.session().document().skeleton(), standing_along_z.skeleton());
+        }
+    }
+    bench.choose(&["Edit", "Turn to y up"]);
+    assert_eq!(bench.session().skeleton().transform(), human.skeleton().transform());
 }
 
 #[test]
