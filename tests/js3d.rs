@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use common::Random;
 use common::damage::{message, mutations};
 use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
-use ik_arm::document::RigKind;
+use ik_arm::document::{RigKind, Timeline};
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::JointId;
 
@@ -59,7 +59,7 @@ fn the_camera_shows_all_of_a_small_skeleton_and_of_a_large_one() {
 fn everything_but_skeletons_is_counted_in_a_warning() {
     let mesh = "AAECAwQF".repeat(100_000);
     let text = format!(
-        r#"{{"animator":{{"FORMAT":"js3d-v1","splines":{{"a":{{}},"b":{{}}}}}},
+        r#"{{"animator":{{"FORMAT":"js3d-v1","splines":{{"a":{{"c":1,"d":2}},"b":{{}}}}}},
         "scene":{{"FORMAT":"js3d-v1","cameras":{{"c":1}},
         "skinned_meshes":{{"X":{{"mesh":{{"positions":"vec3:{mesh}"}},
         "skeleton":{{"bones":[{{"extent":[0,1,0],"colour":5}}]}}}},
@@ -78,6 +78,90 @@ fn everything_but_skeletons_is_counted_in_a_warning() {
         (said, opened.skeletons),
         (expected.map(str::to_owned).to_vec(), vec!["X".to_owned()])
     );
+}
+
+/// The value at `time` of a Catmull–Rom spline through the knots, from its cubic polynomial in f64.
+fn catmull_rom(knots: &[(f64, DVec3)], time: f64) -> DVec3 {
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    let mirrored =
+        |end: (f64, DVec3), next: (f64, DVec3)| (2.0 * end.0 - next.0, 2.0 * end.1 - next.1);
+    let (before, after) = (mirrored(first, knots[1]), mirrored(last, knots[knots.len() - 2]));
+    let all: Vec<_> = [before].into_iter().chain(knots.iter().copied()).chain([after]).collect();
+    if time <= first.0 || time >= last.0 {
+        return if time <= first.0 { first.1 } else { last.1 };
+    }
+    let at = (1..all.len() - 1).rev().find(|at| all[*at].0 <= time).expect("in between");
+    let [(t0, p0), (t1, p1), (t2, p2), (t3, p3)] = [all[at - 1], all[at], all[at + 1], all[at + 2]];
+    let (m1, m2) = ((p2 - p0) / (t2 - t0), (p3 - p1) / (t3 - t1));
+    let (h, s) = (t2 - t1, (time - t1) / (t2 - t1));
+    let (a, b) = (2.0 * (p1 - p2) + h * (m1 + m2), 3.0 * (p2 - p1) - h * (2.0 * m1 + m2));
+    ((a * s + b) * s + h * m1) * s + p1
+}
+
+#[test]
+fn the_splines_of_a_skeleton_become_keys_with_the_same_curves() {
+    let mut random = Random(81);
+    for _ in 0..30 {
+        let frames = [0.0, 7.0, 9.5, 24.0];
+        let mut knots = |size: f32| -> Vec<(f64, DVec3)> {
+            frames.iter().map(|frame| (*frame, random.vector(size).as_dvec3())).collect()
+        };
+        let (pose, base, target) = (knots(200.0), knots(2.0), knots(3.0));
+        let list = |knots: &[(f64, DVec3)]| {
+            let values = knots.iter().map(|(time, v)| format!("{time},[{},{},{}]", v.x, v.y, v.z));
+            values.collect::<Vec<_>>().join(",")
+        };
+        let text = format!(
+            r#"{{"scene":{{"skinned_meshes":{{"X":{{"skeleton":{{"base":[1,2,3],"bones":[
+            {{"extent":[0,1,0],"channel_id":7}},{{"extent":[0,2,0],"parent":0,"channel_id":9}}],
+            "handles":[{{"bone":1,"target":[0,0,0],"channel_id":4}}]}}}}}}}},
+            "animator":{{"FORMAT":"js3d-v1","splines":{{
+            "X":{{"base_offset":{{"type":"Vec3","knots":[{}]}},
+            "bone.9.pose":{{"type":"Vec3","knots":[{}]}},
+            "bone.8.pose":{{"type":"Vec3","knots":[0,[1,2,3]]}},
+            "handle.4.target":{{"type":"Vec3","knots":[{}]}},
+            "handle.4.enabled":{{"type":"bool","knots":[0,false,9.5,true]}}}},
+            "camera":{{"vertical_fov":{{"type":"float","knots":[0,60]}}}}}}}}}}"#,
+            list(&base),
+            list(&pose),
+            list(&target)
+        );
+        let opened = open(&text);
+        let said: Vec<_> = opened.warnings.iter().map(|remark| remark.reason.as_str()).collect();
+        assert_eq!(said, ["not read: 2 animated channels"]);
+        let document = &opened.document;
+        assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.8, frame_rate: 30.0 });
+        for step in -2..=28 {
+            let frame = f64::from(step) * 0.97;
+            let evaluated = document.evaluate(frame / 30.0);
+            let joints = evaluated.skeleton().joints();
+            let near = |found: Vec3, expected: DVec3, size: f64| {
+                assert!(
+                    found.as_dvec3().distance(expected) < 1e-5 * size,
+                    "frame {frame}: {found}"
+                );
+            };
+            let angles = catmull_rom(&pose, frame) * std::f64::consts::PI / 180.0;
+            near(joints[1].rotation, angles, 5.0);
+            near(joints[0].offset, DVec3::new(1.0, 2.0, 3.0) + catmull_rom(&base, frame), 5.0);
+            let target_now = evaluated.skeleton_rig.targets[0];
+            near(target_now.home, catmull_rom(&target, frame), 5.0);
+            assert_eq!(target_now.enabled, frame >= 9.5);
+        }
+    }
+}
+
+#[test]
+fn knots_that_are_no_times_and_values_are_left_out() {
+    let alone = bones(r#"{"extent":[0,1,0]}"#);
+    for knots in ["3", "[0]", "[0,1]", "[\"a\",[1,2,3]]", "[0,[1,2]]", "[1e20,[1,2,3]]"] {
+        let spline = format!(
+            r#"{{"animator":{{"frame_rate":24,"splines":{{"X":{{"bone.0.pose":{{"knots":{knots}}}}}}}}},"#
+        );
+        let opened = open(&alone.replacen('{', &spline, 1));
+        assert_eq!(opened.warnings.len(), 1, "{knots}: {:?}", opened.warnings);
+        assert!(opened.document.keys.is_empty());
+    }
 }
 
 #[test]

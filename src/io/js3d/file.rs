@@ -6,19 +6,23 @@ use std::marker::PhantomData;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
 
 use crate::io::value::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
 pub struct Js3dFile {
     pub scene: JsonObject<Js3dScene>,
-    animator: Option<JsonObject<Js3dAnimator>>,
+    pub animator: Option<JsonObject<Js3dAnimator>>,
 }
 
+/// Values of any kind: what cannot be read of them is left out.
 #[derive(Deserialize)]
-struct Js3dAnimator {
+pub struct Js3dAnimator {
     #[serde(default)]
-    splines: Unread,
+    pub splines: Value,
+    #[serde(default)]
+    pub frame_rate: Value,
 }
 
 #[derive(Deserialize)]
@@ -136,6 +140,8 @@ pub struct Js3dBone {
     parent: Option<Whole>,
     #[serde(default)]
     pub pose: JsonPoint,
+    /// Number in the names of its channels; `None` for the bone's index.
+    pub channel_id: Option<Whole>,
 }
 
 #[derive(Deserialize)]
@@ -143,18 +149,13 @@ pub struct Js3dHandle {
     pub bone: Whole,
     pub target: JsonPoint,
     pub enabled: Option<bool>,
+    /// Number in the names of its channels; `None` for the handle's index.
+    pub channel_id: Option<Whole>,
 }
 
 /// Number of entries of an object or array that is not read; 0 for any other value.
 #[derive(Clone, Copy, Default)]
 struct Unread(usize);
-
-impl Js3dFile {
-    /// Number of animated channels, which are not read.
-    pub fn animated_channels(&self) -> usize {
-        self.animator.as_ref().map_or(0, |JsonObject(animator)| animator.splines.0)
-    }
-}
 
 impl Js3dScene {
     /// Contents of the scene that are not read: their name in the singular, and how many there are.

@@ -13,8 +13,10 @@
 //! Bones are numbered from 0 in the file's order. A parent may come after its children; the number
 //! 4294967295 stands for no parent. The angles of a bone are measured in the frame
 //! [`Js3dBone::frame`](file::Js3dBone::frame). The skeleton has the transform of the first instance
-//! of its mesh. Animation and everything else in the scene are not read, with a warning.
+//! of its mesh. The splines of the skeleton become keys, see [`animator`]. Everything else in the scene is
+//! not read, with a warning.
 
+mod animator;
 mod bones;
 mod file;
 mod mesh;
@@ -32,6 +34,7 @@ use super::value::JsonObject;
 use crate::document::{Document, RigKind, SkeletonRig, Target};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::SkinFile;
+use animator::AnimatedSkeleton;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
@@ -56,11 +59,15 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
         });
     };
     let mut warnings = FieldWarnings::default();
-    let (rig, order) =
+    let ImportedRig { rig, order, handles, transform } =
         rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
-    warn_of_unread(&file, &mut warnings);
     let mut document =
         Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+    if let Some(JsonObject(animator)) = &file.animator {
+        let animated = AnimatedSkeleton::new(chosen, skeleton, &order, &handles, transform);
+        animator::add_keys(&mut document, animator, &animated, &mut warnings);
+    }
+    warn_of_unread(scene, &mut warnings);
     add_skin(&mut document, source, scene, chosen, &order, &mut warnings);
     document.camera = document.framing_camera();
     Ok(Opened {
@@ -101,19 +108,13 @@ fn add_skin(
     }
 }
 
-/// Warns of animation, and of everything else in the scene that is not read.
-fn warn_of_unread(file: &Js3dFile, warnings: &mut FieldWarnings) {
+/// Warns of everything else in the scene, which is not read.
+fn warn_of_unread(scene: &Js3dScene, warnings: &mut FieldWarnings) {
     let count = |count: usize, one: &str| match (count, one) {
         (1, _) => format!("1 {one}"),
         (_, "mesh") => format!("{count} meshes"),
         _ => format!("{count} {one}s"),
     };
-    let channels = file.animated_channels();
-    if channels > 0 {
-        let field = JsonPath::root().key("animator").key("splines");
-        warnings.push(field, format!("not read: {}", count(channels, "animated channel")));
-    }
-    let JsonObject(scene) = &file.scene;
     let unread: Vec<_> = scene.unread().map(|(one, many)| count(many, one)).collect();
     if !unread.is_empty() {
         warnings.push(JsonPath::root().key("scene"), format!("not read: {}", unread.join(", ")));
@@ -125,12 +126,23 @@ fn no_skeleton() -> FieldError {
     FieldError::new(field, "must have a mesh with a `skeleton`")
 }
 
+/// A skeleton with its targets.
+struct ImportedRig {
+    rig: SkeletonRig,
+    /// For each bone of the file its joint.
+    order: Vec<JointId>,
+    /// The handle of each target.
+    handles: Vec<usize>,
+    /// From the skeleton's own space to the world.
+    transform: DAffine3,
+}
+
 fn rig(
     scene: &Js3dScene,
     name: &str,
     file: &Js3dSkeleton,
     warnings: &mut FieldWarnings,
-) -> Result<(SkeletonRig, Vec<JointId>), FieldError> {
+) -> Result<ImportedRig, FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
     let transform = transform::of_mesh(scene, name, warnings)?;
     let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
@@ -138,11 +150,13 @@ fn rig(
         FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
     })?;
     let mut rig = SkeletonRig::new(skeleton);
-    rig.targets = targets(&at, file, transform, &order, rig.default_path_radius(), warnings)?;
-    Ok((rig, order))
+    let targets = targets(&at, file, transform, &order, rig.default_path_radius(), warnings)?;
+    let handles = targets.iter().map(|(handle, _)| *handle).collect();
+    rig.targets = targets.into_iter().map(|(_, target)| target).collect();
+    Ok(ImportedRig { rig, order, handles, transform })
 }
 
-/// Converts handles to targets. Of several handles on the same bone, the first enabled handle is
+/// Converts handles to targets, each with the index of its handle. Of several handles on the same bone, the first enabled handle is
 /// used, or the first handle if none is enabled; the others are ignored, with a warning each.
 fn targets(
     at: &JsonPath,
@@ -151,7 +165,7 @@ fn targets(
     order: &[JointId],
     path_radius: f32,
     warnings: &mut FieldWarnings,
-) -> Result<Vec<Target>, FieldError> {
+) -> Result<Vec<(usize, Target)>, FieldError> {
     let at_handle = |handle| at.clone().key("handles").index(handle);
     // `targets` has each target with the index of its handle. `target_of` has, for each joint, the
     // index of its target in `targets`.
@@ -172,7 +186,7 @@ fn targets(
         warnings.push(at_handle(ignored.0), reason);
         targets[index] = used;
     }
-    Ok(targets.into_iter().map(|(_, target)| target).collect())
+    Ok(targets)
 }
 
 fn target(
