@@ -586,3 +586,19 @@ fn a_bvh_motion_is_posed_at_a_time() {
     let tip = Scene::new(text).pose(&["--time", "1"]).joints[0].tip;
     assert!(tip.distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6, "{tip}");
 }
+
+#[test]
+fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
+    let mut document = Example::find("human").expect("there").open().expect("opens").document;
+    document.skeleton_rig.targets.clear();
+    let scene = Scene::document(&document);
+    for method in ["transpose", "ccd", "fabrik", "dls", "two_bone"] {
+        let output = scene.run(&["--solver", method]);
+        assert_eq!(output.status.code(), Some(0), "{method}: {output:?}");
+        assert!(complaint(&output).contains("no enabled target, so there is nothing to solve"));
+        let solved: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let fk = scene.run(&["--fk"]).stdout;
+        assert_eq!(solved, serde_json::from_slice::<serde_json::Value>(&fk).expect("JSON"));
+        assert!(solved["report"].is_null());
+    }
+}

@@ -190,6 +190,12 @@ fn of_several_skeletons_the_first_in_the_file_opens_or_the_one_that_is_named() {
     assert_eq!(length(open(&text)), 1.0);
     let named = |name| io::parse("x.js3d", &text, &io::OpenOptions::of_skeleton(name));
     assert_eq!(length(named("ant").expect("there")), 2.0);
+    let remarks = open(&text).warnings;
+    assert_eq!(
+        remarks.iter().map(|it| it.reason.as_str()).collect::<Vec<_>>(),
+        ["the skeleton \"zebra\" is read, one of 2: \"zebra\", \"ant\""]
+    );
+    assert_eq!(named("ant").expect("there").warnings, []);
     let error = named("Ant").expect_err("not there").to_string();
     assert_eq!(error, "x.js3d has no skeleton called \"Ant\"; it has \"zebra\", \"ant\"");
 }

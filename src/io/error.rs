@@ -14,11 +14,23 @@ pub enum OpenError {
         /// The system's error.
         source: io::Error,
     },
-    /// The file is larger than [`OpenError::MAX_BYTES`].
-    #[error("{file} must be at most {} MB large", OpenError::MAX_BYTES >> 20)]
+    /// The file is larger than [`OpenError::MAX_BYTES`], or for glTF [`OpenError::MAX_GLTF_BYTES`].
+    #[error("{file} must be at most {most_mb} MB large")]
     TooLarge {
         /// Name of the file.
         file: String,
+        /// The limit in MB.
+        most_mb: u64,
+    },
+    /// The file has a format of another program that cannot be read.
+    #[error("{file} is {what}, and only .json, .js3d, .glb, .gltf and .bvh can be read; {advice}")]
+    Foreign {
+        /// Name of the file.
+        file: String,
+        /// The format, like `an FBX file`.
+        what: &'static str,
+        /// What usually converts the file.
+        advice: &'static str,
     },
     /// The content is invalid.
     #[error("{file}, {remark}")]
@@ -52,8 +64,11 @@ pub enum OpenError {
 }
 
 impl OpenError {
-    /// Maximum size of a file that is read, in bytes.
+    /// Maximum size of a file that is read, in bytes, except for glTF.
     pub const MAX_BYTES: u64 = 64 << 20;
+    /// Maximum size in bytes of a glTF file, and of its buffers together. Most of it is textures; the numbers
+    /// of keys, vertices and pixels that are read have limits of their own.
+    pub const MAX_GLTF_BYTES: u64 = 1 << 30;
 }
 
 /// A message about a position in a file.

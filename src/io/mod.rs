@@ -20,6 +20,7 @@ mod field_error;
 mod file_animation;
 mod file_batch;
 mod file_format;
+mod foreign;
 mod format;
 mod frame_rate;
 mod frames;

@@ -1,7 +1,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::error::OpenError;
+use super::error::{OpenError, Remark};
 use super::file_format::FileFormat;
 use super::open_options::OpenOptions;
 use super::opened::Opened;
@@ -40,9 +40,27 @@ pub fn parse(name: &str, text: &str, options: &OpenOptions) -> Result<Opened, Op
 
 fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let format = FileFormat::detect(source)?;
+    if format != FileFormat::Gltf && source.text().len() as u64 > OpenError::MAX_BYTES {
+        return Err(source.too_large());
+    }
     let mut opened = read_format(source, format, options)?;
+    if options.skeleton.is_none() {
+        opened.warnings.extend(one_of_several(&opened.skeletons));
+    }
     turn_up::turn_up(&mut opened, format, options.up);
     Ok(opened)
+}
+
+/// Remarks that a file has several skeletons, of which the first is read.
+fn one_of_several(names: &[String]) -> Option<Remark> {
+    /// Maximum number of names that are listed.
+    const MOST: usize = 20;
+    let [first, _, ..] = names else { return None };
+    let quoted: Vec<_> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
+    let more = if names.len() > MOST { " …" } else { "" };
+    let (count, list) = (names.len(), quoted.join(", "));
+    let reason = format!("the skeleton {first:?} is read, one of {count}: {list}{more}");
+    Some(Remark { line: 0, column: 0, field: String::new(), reason })
 }
 
 fn read_format(

@@ -1,11 +1,12 @@
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
 use super::error::{OpenError, Remark, shortened};
 use super::field_error::{FieldError, FieldWarnings};
+use super::foreign::ForeignFormat;
 use super::gltf::chunks::{self, Chunks};
 use super::json_path::{JsonPath, byte_at, line_and_column};
 use super::translation::Translation;
@@ -27,12 +28,10 @@ pub struct Source {
 impl Source {
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let name = path.display().to_string();
-        let opened = File::open(path).and_then(|file| Ok((file.metadata()?.len(), file)));
+        let opened = File::open(path).and_then(|mut file| Ok((most_bytes(&mut file)?, file)));
         match opened {
-            Ok((length, _)) if length > OpenError::MAX_BYTES => {
-                Err(OpenError::TooLarge { file: name })
-            }
-            Ok((_, file)) => {
+            Ok((Some(most), _)) => Err(too_large(&name, most)),
+            Ok((None, file)) => {
                 let path = std::path::absolute(path).ok();
                 Ok(Self { path, ..Self::read(&name, file)? })
             }
@@ -42,19 +41,15 @@ impl Source {
 
     pub fn read(name: &str, input: impl Read) -> Result<Self, OpenError> {
         let file = name.to_owned();
-        let mut bytes = Vec::new();
-        let read = input.take(OpenError::MAX_BYTES + 1).read_to_end(&mut bytes);
-        if let Err(source) = read {
-            return Err(OpenError::Read { file, source });
-        }
-        if bytes.len() as u64 > OpenError::MAX_BYTES {
-            return Err(OpenError::TooLarge { file });
+        let bytes = read_limited(name, input)?;
+        if let Some(ForeignFormat { what, advice }) = ForeignFormat::of(&bytes) {
+            return Err(OpenError::Foreign { file, what, advice });
         }
         let mut checksum = crc32fast::Hasher::new();
         checksum.update(&bytes);
         if bytes.starts_with(chunks::MAGIC) {
             let Chunks { json, binary } =
-                chunks::split(&bytes).map_err(|reason| invalid_chunks(file, reason))?;
+                chunks::split(bytes).map_err(|reason| invalid_chunks(file, reason))?;
             return Ok(Self { binary: Some(binary), checksum, ..Self::new(name, &json) });
         }
         match String::from_utf8(bytes) {
@@ -84,6 +79,11 @@ impl Source {
             translated: Some((self.text.clone(), translation)),
             ..translated
         }
+    }
+
+    /// The error for a file that is larger than files other than glTF may be.
+    pub fn too_large(&self) -> OpenError {
+        too_large(&self.name, OpenError::MAX_BYTES)
     }
 
     pub fn name(&self) -> &str {
@@ -186,6 +186,52 @@ impl Source {
         let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));
         Remark { line, column, field, reason }
     }
+}
+
+/// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be read.
+fn most_bytes(file: &mut File) -> io::Result<Option<u64>> {
+    let length = file.metadata()?.len();
+    if length <= OpenError::MAX_BYTES {
+        return Ok(None);
+    }
+    let mut head = [0; 64];
+    let read = file.read(&mut head)?;
+    file.rewind()?;
+    let most = match can_be_gltf(&head[..read]) {
+        true => OpenError::MAX_GLTF_BYTES,
+        false => OpenError::MAX_BYTES,
+    };
+    Ok((length > most).then_some(most))
+}
+
+/// Whether a file that begins with these bytes can be glTF, binary or text.
+fn can_be_gltf(bytes: &[u8]) -> bool {
+    bytes.starts_with(chunks::MAGIC) || bytes.trim_ascii_start().starts_with(b"{")
+}
+
+fn too_large(name: &str, most: u64) -> OpenError {
+    OpenError::TooLarge { file: name.to_owned(), most_mb: most >> 20 }
+}
+
+/// Reads all bytes of a file, if there are not too many. A file that is longer than others may be is read on
+/// only if it can be glTF.
+fn read_limited(name: &str, input: impl Read) -> Result<Vec<u8>, OpenError> {
+    let read_error = |source| OpenError::Read { file: name.to_owned(), source };
+    let mut bytes = Vec::new();
+    let mut input = input.take(OpenError::MAX_BYTES + 1);
+    input.read_to_end(&mut bytes).map_err(read_error)?;
+    if bytes.len() as u64 <= OpenError::MAX_BYTES {
+        return Ok(bytes);
+    }
+    if !can_be_gltf(&bytes) {
+        return Err(too_large(name, OpenError::MAX_BYTES));
+    }
+    input.set_limit(OpenError::MAX_GLTF_BYTES - OpenError::MAX_BYTES);
+    input.read_to_end(&mut bytes).map_err(read_error)?;
+    if bytes.len() as u64 > OpenError::MAX_GLTF_BYTES {
+        return Err(too_large(name, OpenError::MAX_GLTF_BYTES));
+    }
+    Ok(bytes)
 }
 
 /// Message of serde_json for a number that overflows. Only this text identifies the error.

@@ -475,26 +475,66 @@ fn a_buffer_that_is_not_in_the_files_own_folder_is_refused() {
     assert!(error.contains("buffers[0].uri: must not be another file"), "{error}");
 }
 
+/// The size in bytes of a file that is too large for any format but glTF.
+const LARGE: usize = 70 << 20;
+
 #[test]
-fn a_file_of_200_mb_is_refused_before_it_is_read() {
+fn textures_do_not_count_in_the_size_of_a_file() {
+    let mut text = moving();
+    let image = text.view(&vec![7; LARGE]);
+    text.json["images"] = json!([{ "bufferView": image, "mimeType": "image/png" }]);
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("large.glb");
-    let file = std::fs::File::create(&path).expect("made");
-    file.set_len(200 << 20).expect("made long");
-    let error =
-        io::open(&path, &io::OpenOptions::default()).expect_err("it is refused").to_string();
-    assert!(error.ends_with("must be at most 64 MB large"), "{error}");
+    for (name, bytes) in [("a.glb", text.binary()), ("a.gltf", text.embedded().into_bytes())] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("written");
+        let opened =
+            io::open(&path, &io::OpenOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(opened.document.skeleton(), open(&moving()).document.skeleton());
+        assert_eq!(opened.document.keys, open(&moving()).document.keys);
+    }
 }
 
 #[test]
-fn buffers_that_are_larger_than_64_mb_together_are_refused() {
+fn a_file_of_2_gb_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, start) in [("large.glb", &b"glTF\x02\0\0\0"[..]), ("large.gltf", b" {")] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, start).expect("written");
+        let file = std::fs::OpenOptions::new().write(true).open(&path).expect("opened");
+        file.set_len(2 << 30).expect("made long");
+        let error = io::open(&path, &io::OpenOptions::default()).expect_err("it is refused");
+        assert!(error.to_string().ends_with("must be at most 1024 MB large"), "{error}");
+    }
+}
+
+#[test]
+fn buffers_that_are_larger_than_1_gb_together_are_refused() {
     let mut text = moving();
-    text.json["buffers"] = json!([null, { "byteLength": 67_108_860, "uri": "data:;base64," }]);
+    text.json["buffers"] = json!([null, { "byteLength": 1 << 30, "uri": "data:;base64," }]);
     text.json["bufferViews"][1]["buffer"] = json!(1);
     let error = refusal(&text.embedded());
     assert!(
-        error.ends_with("buffers[1].byteLength: must add up to at most 64 MB with those before it")
+        error.ends_with(
+            "buffers[1].byteLength: must add up to at most 1024 MB with those before it"
+        ),
+        "{error}"
     );
+}
+
+#[test]
+fn compressed_data_are_named_with_what_unpacks_them() {
+    for (extension, tool) in
+        [("EXT_meshopt_compression", "gltfpack"), ("KHR_draco_mesh_compression", "gltf-transform")]
+    {
+        let mut text = moving();
+        text.json["extensionsRequired"] = json!([extension]);
+        let packed =
+            json!({ "byteLength": 100, "extensions": { extension: { "fallback": true } } });
+        text.json["buffers"] = json!([null, packed]);
+        text.json["bufferViews"][1]["buffer"] = json!(1);
+        let error = refusal(&text.embedded());
+        assert!(error.contains(extension) && error.contains(tool), "{error}");
+    }
 }
 
 // Errors
@@ -518,7 +558,7 @@ fn error_with_value(pointer: &str, value: Value) -> String {
 fn errors_name_the_field() {
     let infinite = base64(&f32::INFINITY.to_le_bytes());
     for (pointer, value, said) in [
-        ("/asset/version", json!("1.0"), "asset.version: must be 2 or 2.x, got \"1.0\""),
+        ("/asset/version", json!("3.0"), "asset.version: must be 2 or 2.x, got \"3.0\""),
         ("/skins/0/joints", json!([]), "skins[0].joints: must have at least one joint"),
         (
             "/skins/0/joints/1",
@@ -772,7 +812,8 @@ fn errors_in_a_binary_file_have_no_line() {
     };
     for (bytes, expected) in [
         (&b"glTF\x02"[..], "x.glb, header must have 12 bytes, got 5"),
-        (&changed(4, 1), "x.glb, glTF version must be 2, got 1"),
+        (&changed(4, 1), "x.glb is a file of glTF 1, and only "),
+        (&changed(4, 3), "x.glb, glTF version must be 2, got 3"),
         (&changed(11, 1), "bytes, as its header says, got "),
         (&changed(16, b'X'), "x.glb, first chunk must be of the type JSON"),
         (&changed(15, 1), "x.glb, JSON chunk must have "),

@@ -17,7 +17,7 @@ use self::list::FileList;
 use super::argument::TimeArgument;
 use super::open;
 use super::open_args::OpenArgs;
-use super::report::fail;
+use super::report::{fail, say};
 use crate::document::{RigKind, SkeletonRig};
 use crate::io::{OpenError, Opened};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
@@ -37,7 +37,7 @@ The file is not changed. The output is one line of JSON, in world space:
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false}}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose. The report is that of --solver, or of the solver of the
-whole-body targets, else null. A solve that does not converge is not an error. For documents that
+whole-body targets, else null, also if there is nothing to solve. A solve that does not converge is not an error. For documents that
 show the arm use `ik-arm solve`.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#
@@ -154,6 +154,12 @@ fn posed(
     let Some(method) = args.solver else {
         return Ok(if args.fk { Posed::fk(rig, time) } else { Posed::evaluated(rig, time) });
     };
+    if rig.targets_at(time).is_empty() {
+        let reason =
+            "has no enabled target, so there is nothing to solve: --target JOINT=x,y,z sets one";
+        say(&format_args!("{file} {reason}"));
+        return Ok(Posed::fk(rig, time));
+    }
     let options = SolverOptions {
         method,
         iterations: args.iterations.or(rig.solver.iterations),

@@ -1,6 +1,8 @@
 //! The container of a `.glb` file: a header of 12 bytes, then chunks, each with a length, a type
 //! and its bytes. The first chunk is JSON, the second binary.
 
+use core::ops::Range;
+
 /// The first bytes of a binary glTF file.
 pub const MAGIC: &[u8] = b"glTF";
 
@@ -12,7 +14,18 @@ pub struct Chunks {
 }
 
 /// Splits a `.glb` file into its chunks. The error is the reason why the file is invalid.
-pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
+pub fn split(mut bytes: Vec<u8>) -> Result<Chunks, String> {
+    let (json, binary) = parts(&bytes)?;
+    let json = String::from_utf8(bytes[json].to_vec())
+        .map_err(|error| format!("JSON chunk must be UTF-8: {}", error.utf8_error()))?;
+    // The binary chunk can be large: it stays in its memory.
+    bytes.truncate(binary.end);
+    bytes.drain(..binary.start);
+    Ok(Chunks { json, binary: bytes })
+}
+
+/// Where the contents of the JSON chunk and of the binary chunk are; the second is empty if there is none.
+fn parts(bytes: &[u8]) -> Result<(Range<usize>, Range<usize>), String> {
     let short_header = || format!("header must have 12 bytes, got {}", bytes.len());
     let version = number(bytes, 4).ok_or_else(short_header)?;
     let length = number(bytes, 8).ok_or_else(short_header)? as usize;
@@ -23,13 +36,17 @@ pub fn split(bytes: &[u8]) -> Result<Chunks, String> {
         let size = bytes.len();
         return Err(format!("file must have {length} bytes, as its header says, got {size}"));
     };
-    let (json, rest) = chunk(bytes.get(12..).unwrap_or_default(), "JSON", *b"JSON")?;
-    let json = String::from_utf8(json.to_vec())
-        .map_err(|error| format!("JSON chunk must be UTF-8: {}", error.utf8_error()))?;
+    let (json, rest) = chunk(bytes.get(HEADER..).unwrap_or_default(), "JSON", *b"JSON")?;
+    let json = HEADER + CHUNK_HEADER..HEADER + CHUNK_HEADER + json.len();
     let is_binary = rest.get(4..8) == Some(b"BIN\0");
-    let binary = if is_binary { chunk(rest, "binary", *b"BIN\0")?.0.to_vec() } else { Vec::new() };
-    Ok(Chunks { json, binary })
+    let length = if is_binary { chunk(rest, "binary", *b"BIN\0")?.0.len() } else { 0 };
+    let start = if is_binary { json.end + CHUNK_HEADER } else { json.end };
+    Ok((json, start..start + length))
 }
+
+/// Length in bytes of the file's header, and of a chunk's.
+const HEADER: usize = 12;
+const CHUNK_HEADER: usize = 8;
 
 /// Returns the content of the first chunk and the bytes after this chunk. Fails if the chunk is not
 /// of the type `kind`. `name` is the type's name in errors.

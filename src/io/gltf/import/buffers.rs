@@ -17,14 +17,14 @@ pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 impl<'a> GltfBuffers<'a> {
     /// Reads the buffers with the indices `needed` from the binary chunk, from data URIs or from
     /// files in the folder of the glTF file. Fails if these buffers have more than
-    /// [`OpenError::MAX_BYTES`] together.
+    /// [`OpenError::MAX_GLTF_BYTES`] together.
     pub fn read(
         source: &'a Source,
         file: &GltfFile,
         needed: &BTreeSet<usize>,
     ) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
-        let mut remaining = OpenError::MAX_BYTES;
+        let mut remaining = OpenError::MAX_GLTF_BYTES;
         for &index in needed {
             let at = JsonPath::root().key("buffers").index(index);
             let (Some(buffer), Some(slot)) = (file.buffers.0.get(index), buffers.0.get_mut(index))
@@ -36,12 +36,12 @@ impl<'a> GltfBuffers<'a> {
             };
             let length = u64::from(buffer.length.0);
             if length > remaining {
-                let max = OpenError::MAX_BYTES >> 20;
+                let max = OpenError::MAX_GLTF_BYTES >> 20;
                 let reason = format!("must add up to at most {max} MB with those before it");
                 return Err(FieldError::new(at.key("byteLength"), reason));
             }
             remaining -= length;
-            *slot = Some(bytes(source, index, buffer, &at)?);
+            *slot = Some(bytes(source, index, buffer, &at).map_err(|error| file.blamed(error))?);
         }
         Ok(buffers)
     }

@@ -7,7 +7,9 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
+use crate::io::field_error::FieldError;
 use crate::io::gltf::generator::is_this_program;
+use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
@@ -37,6 +39,34 @@ pub struct GltfFile {
     pub images: List<GltfImage>,
 }
 
+/// The version of a file, in which everything else may be as in another version.
+#[derive(Deserialize)]
+pub struct VersionedFile {
+    pub asset: GltfAsset,
+}
+
+impl GltfFile {
+    /// Why compressed data cannot be read, and what makes them readable; `None` for a file whose data are all
+    /// there without extensions.
+    pub fn compression(&self) -> Option<String> {
+        let name = self.required.iter().find(|name| name.ends_with("_compression"))?;
+        let advice = match name.as_str() {
+            "KHR_draco_mesh_compression" => "; gltf-transform cp x.glb y.glb unpacks them",
+            "EXT_meshopt_compression" => "; gltfpack -i x.glb -o y.glb unpacks them",
+            _ => "",
+        };
+        Some(format!("its data are compressed by {name}, which is not read{advice}"))
+    }
+
+    /// The error, or for a file with compressed data the reason behind it.
+    pub fn blamed(&self, error: FieldError) -> FieldError {
+        match self.compression() {
+            Some(reason) => FieldError::new(JsonPath::root().key("extensionsRequired"), reason),
+            None => error,
+        }
+    }
+}
+
 #[derive(Deserialize)]
 pub struct GltfAsset {
     pub version: String,
@@ -44,6 +74,11 @@ pub struct GltfAsset {
 }
 
 impl GltfAsset {
+    /// Whether the file is of the first version of glTF.
+    pub fn is_version_1(&self) -> bool {
+        self.version.split('.').next() == Some("1")
+    }
+
     /// Whether this program has written the file.
     pub fn is_of_this_program(&self) -> bool {
         self.generator.as_deref().is_some_and(is_this_program)

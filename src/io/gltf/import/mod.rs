@@ -26,6 +26,7 @@ use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::file_animation::FileAnimation;
+use crate::io::foreign::ForeignFormat;
 use crate::io::json_path::JsonPath;
 use crate::io::open_options::OpenOptions;
 use crate::io::opened::Opened;
@@ -35,7 +36,7 @@ use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
 use animations::at_animation;
 use exact_tracks::ExactTracks;
-use file::{GltfFile, GltfSkin};
+use file::{GltfFile, GltfSkin, VersionedFile};
 use joint_tracks::JointTracks;
 use node_poser::{JointPlacement, NodePoser};
 use nodes::{NodeTree, at_node};
@@ -50,7 +51,11 @@ const MOST_SAMPLES: usize = 4_000_000;
 /// Reads a skeleton and one of the animations: the skin's joints, or without a skin the nodes that
 /// the animations move.
 pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
-    let JsonObject(file) = source.parse::<JsonObject<GltfFile>>(|_| {})?;
+    let parsed = source.parse::<JsonObject<GltfFile>>(|_| {});
+    let JsonObject(file) = parsed.map_err(|error| gltf_1(source).unwrap_or(error))?;
+    if file.asset.0.is_version_1() {
+        return Err(is_gltf_1(source));
+    }
     check(&file).map_err(|error| source.error(&error))?;
     let nodes = NodeTree::new(&file).map_err(|error| source.error(&error))?;
     let scans = animations::scan(source, &file, &nodes);
@@ -91,6 +96,17 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         animations: described,
         animation,
     })
+}
+
+/// The error for a file of glTF 1, whose lists are objects; `None` for another version.
+fn gltf_1(source: &Source) -> Option<OpenError> {
+    let file = source.parse::<VersionedFile>(|_| {}).ok()?;
+    file.asset.is_version_1().then(|| is_gltf_1(source))
+}
+
+fn is_gltf_1(source: &Source) -> OpenError {
+    let ForeignFormat { what, advice } = ForeignFormat::GLTF_1;
+    OpenError::Foreign { file: source.name().to_owned(), what, advice }
 }
 
 fn check(file: &GltfFile) -> Result<(), FieldError> {

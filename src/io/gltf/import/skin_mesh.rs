@@ -71,8 +71,7 @@ impl MeshImport<'_> {
         warnings: &mut FieldWarnings,
     ) -> Result<Option<(FileMesh, u32)>, FieldError> {
         let Self { source, file, nodes, joints, .. } = *self;
-        if let Some(compression) = file.required.iter().find(|it| it.ends_with("_compression")) {
-            let reason = format!("meshes are not read, because {compression} is not supported");
+        if let Some(reason) = file.compression() {
             return Err(FieldError::new(JsonPath::root().key("extensionsRequired"), reason));
         }
         let meshes = self.meshes()?;
