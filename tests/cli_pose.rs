@@ -592,7 +592,7 @@ fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
     let mut document = Example::find("human").expect("there").open().expect("opens").document;
     document.skeleton_rig.targets.clear();
     let scene = Scene::document(&document);
-    for method in ["transpose", "ccd", "fabrik", "dls", "two_bone"] {
+    for method in ["transpose", "ccd", "fabrik", "dls", "two-bone"] {
         let output = scene.run(&["--solver", method]);
         assert_eq!(output.status.code(), Some(0), "{method}: {output:?}");
         assert!(complaint(&output).contains("no enabled target, so there is nothing to solve"));
