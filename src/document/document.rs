@@ -29,6 +29,8 @@ pub struct Document {
     /// Length in metres of one unit of the shown rig, for exports; `None` for the rig's default,
     /// see [`Document::metres_per_unit`].
     pub metres_per_unit: Option<f32>,
+    /// Name of the animation that the keys come from, for exports.
+    pub animation_name: Option<String>,
 }
 
 impl Document {

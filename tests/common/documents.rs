@@ -75,6 +75,7 @@ pub fn document(random: &mut Random) -> Document {
         keys,
         timeline,
         metres_per_unit: random.coin().then(|| random.positive()),
+        animation_name: random.coin().then(|| random.one_of(&["Run", "", "läuft"]).to_owned()),
         camera: Camera {
             target: random.finite_vector(),
             yaw: random.finite(),

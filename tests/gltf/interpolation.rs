@@ -4,9 +4,11 @@ use glam::{DAffine3, DQuat, DVec3, DVec4, Quat, Vec3};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io;
 use ik_arm::kinematics::spline::Interpolation;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::common::Random;
+use crate::documents::glb;
+use crate::glb::{Glb, index};
 use crate::text::Text;
 
 /// A sampler of the file, as the specification has it: rows of times and values.
@@ -205,6 +207,59 @@ fn linear_and_stepped_keys_stay_the_keys_of_the_file() {
             let times: Vec<f32> = knots.iter().map(|knot| knot.time as f32).collect();
             assert_eq!(times, curve.times);
             assert!(knots.iter().all(|knot| knot.interpolation == interpolation));
+        }
+    }
+}
+
+/// Interpolations of the samplers of a file, by the names of their nodes and their paths.
+fn kinds(glb: &Glb) -> Vec<(String, String, String)> {
+    let animation = &glb.json["animations"][0];
+    let channels = animation["channels"].as_array().into_iter().flatten();
+    let kind = |channel: &Value| {
+        let sampler = &animation["samplers"][index(&channel["sampler"])];
+        let text = |value: &Value| value.as_str().expect("a text").to_owned();
+        let target = &channel["target"];
+        let node = glb.name(index(&target["node"])).to_owned();
+        (node, text(&target["path"]), text(&sampler["interpolation"]))
+    };
+    channels.map(kind).collect()
+}
+
+#[test]
+fn an_exported_file_keeps_the_keys_with_their_interpolation_and_the_curves_between() {
+    let all = ["LINEAR", "STEP", "CUBICSPLINE"];
+    let mut random = Random(19);
+    for case in 0..60 {
+        let turned = all[case % 2];
+        let file = File::random(&mut random, [turned, all[case / 2 % 3]]);
+        let before = document(&file.text());
+        let bytes = glb(&before);
+        let written = kinds(&Glb::new(&bytes));
+        for curve in &file.curves {
+            let node = format!("n{}", curve.node);
+            let is_it =
+                |(name, path, _): &&(String, String, String)| *name == node && path == curve.path;
+            let found =
+                written.iter().find(is_it).unwrap_or_else(|| panic!("{node} {}", curve.path));
+            assert_eq!(found.2, curve.kind, "{node} {}", curve.path);
+        }
+        let opened = io::read("x.glb", &bytes[..], &io::OpenOptions::default());
+        let after = opened.unwrap_or_else(|error| panic!("{error}")).document;
+        assert_eq!(after.animation_name, before.animation_name);
+        assert_eq!(after.timeline.start, before.timeline.start, "case {case}");
+        assert!(
+            (after.timeline.end - before.timeline.end).abs() < 1e-3 / before.timeline.frame_rate
+        );
+        for time in file.times(&mut random) {
+            let [was, is] = [&before, &after].map(|document| document.evaluate(time));
+            let (old, new) = (was.skeleton().pose(), is.skeleton().pose());
+            let size = old.points().map(|point| point.length()).fold(1.0, f32::max);
+            for joint in was.skeleton().ids() {
+                let name = &was.skeleton()[joint].name;
+                let found = is.skeleton().find(name).expect("a joint");
+                let far = new.base(found).distance(old.base(joint)) / size;
+                assert!(far < 1e-5, "case {case}, {name} at {time}: {far:e}");
+            }
         }
     }
 }

@@ -23,12 +23,14 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         other_rig_camera: _,
         display: _,
         metres_per_unit,
+        animation_name,
     } = a;
     *arm == b.arm
         && *skeleton_rig == b.skeleton_rig
         && *keys == b.keys
         && *timeline == b.timeline
         && *metres_per_unit == b.metres_per_unit
+        && *animation_name == b.animation_name
 }
 
 /// Names of the fields in which two documents differ.

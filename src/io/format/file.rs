@@ -33,6 +33,8 @@ pub struct DocumentFields {
     timeline: Option<JsonObject<TimelineFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     metres_per_unit: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation_name: Option<String>,
     camera: Option<JsonObject<CameraFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     other_camera: Option<JsonObject<CameraFields>>,
@@ -56,6 +58,7 @@ impl DocumentFields {
             channels,
             timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
             metres_per_unit: document.metres_per_unit.map(JsonNumber),
+            animation_name: document.animation_name.clone(),
             camera: Some(JsonObject(CameraFields::new(&document.camera))),
             other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
             overlays: Some(document.display.overlays().collect()),
@@ -97,6 +100,7 @@ impl DocumentFields {
             other_rig_camera: other_camera.transpose()?,
             display: overlays.unwrap_or_default(),
             metres_per_unit: metres.transpose()?,
+            animation_name: self.animation_name,
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document)?;
         if camera.is_none() && document.rig == RigKind::Skeleton {

@@ -1,7 +1,7 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use ::gltf::binary::{Glb, Header};
-use ::gltf::json::animation::{Channel, Interpolation, Property, Sampler, Target};
+use ::gltf::json::animation::{Channel, Property, Sampler, Target};
 use ::gltf::json::buffer::Target::{ArrayBuffer, ElementArrayBuffer};
 use ::gltf::json::image::MimeType;
 use ::gltf::json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
@@ -15,8 +15,9 @@ use ::gltf::json::{
 use glam::{DAffine3, DMat4};
 
 use super::error::GlbError;
+use super::joint_track::JointTrack;
 use super::mesh_part::{MeshPart, RigMesh};
-use super::motion::{JointAnimation, JointTrack};
+use super::motion::JointAnimation;
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
 use crate::io::gltf::colour::linear;
@@ -28,6 +29,7 @@ pub fn write(
     bones: &JointNodes,
     motion: &JointAnimation,
     mesh: &RigMesh,
+    name: Option<&str>,
 ) -> Result<Vec<u8>, GlbError> {
     let mut writer = GltfWriter::default();
     writer.root.asset = Asset { generator: Some(generator::this_program()), ..Asset::default() };
@@ -37,7 +39,7 @@ pub fn write(
     if let Some(node) = writer.root.nodes.get_mut(mesh_node.value()) {
         (node.mesh, node.skin) = (Some(mesh), Some(skin));
     }
-    add_animation(&mut writer, motion);
+    add_animation(&mut writer, motion, name);
     writer.root.scenes = vec![Scene {
         name: None,
         nodes: vec![armature, mesh_node],
@@ -226,44 +228,68 @@ fn add_skin(
 }
 
 /// Adds the animation, unless it is empty.
-fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation) {
+fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation, name: Option<&str>) {
     if motion.is_empty() {
         return;
     }
-    let times: Vec<[f32; 1]> = motion.times.iter().map(|time| [*time]).collect();
-    let input = writer.bounded(&times, None, AccessorKind::NUMBER);
+    let lists = TimeLists::new(writer, motion);
     let start = writer.bytes.len();
     let view = Index::new(u32::try_from(writer.root.buffer_views.len()).unwrap_or(u32::MAX));
     let mut animation = Animation {
         channels: Vec::new(),
         samplers: Vec::new(),
-        name: None,
+        name: name.map(str::to_owned),
         extensions: None,
         extras: Extras::default(),
     };
-    let mut recorder = Recorder { writer, animation: &mut animation, input, view, start };
+    let mut tracks = AnimationWriter { writer, animation: &mut animation, lists, view, start };
     for track in &motion.rotations {
-        recorder.add(track, Property::Rotation, AccessorKind::QUATERNION);
+        tracks.add(track, Property::Rotation, AccessorKind::QUATERNION);
     }
     for track in &motion.translations {
-        recorder.add(track, Property::Translation, AccessorKind::POINT);
+        tracks.add(track, Property::Translation, AccessorKind::POINT);
     }
     writer.view(start, None);
     writer.root.push(animation);
 }
 
+/// The accessors of the times of keys. Tracks with the same times share one.
+struct TimeLists(HashMap<Vec<u32>, Index<Accessor>>);
+
+impl TimeLists {
+    fn new(writer: &mut GltfWriter, motion: &JointAnimation) -> Self {
+        let mut lists = Self(HashMap::new());
+        let rotations = motion.rotations.iter().map(|track| &track.times);
+        for times in rotations.chain(motion.translations.iter().map(|track| &track.times)) {
+            lists.0.entry(bits(times)).or_insert_with(|| {
+                let rows: Vec<[f32; 1]> = times.iter().map(|time| [*time]).collect();
+                writer.bounded(&rows, None, AccessorKind::NUMBER)
+            });
+        }
+        lists
+    }
+
+    fn of(&self, times: &[f32]) -> Index<Accessor> {
+        self.0[&bits(times)]
+    }
+}
+
+fn bits(times: &[f32]) -> Vec<u32> {
+    times.iter().map(|time| time.to_bits()).collect()
+}
+
 /// Writes tracks one after the other into the same buffer view. The caller adds the view after the
 /// last track.
-struct Recorder<'a> {
+struct AnimationWriter<'a> {
     writer: &'a mut GltfWriter,
     animation: &'a mut Animation,
-    input: Index<Accessor>,
+    lists: TimeLists,
     view: Index<buffer::View>,
     /// The byte of the buffer at which the view begins.
     start: usize,
 }
 
-impl Recorder<'_> {
+impl AnimationWriter<'_> {
     fn add<const N: usize>(&mut self, track: &JointTrack<N>, path: Property, kind: AccessorKind) {
         let offset = self.writer.bytes.len() - self.start;
         self.writer.bytes.extend(floats(&track.values));
@@ -271,9 +297,9 @@ impl Recorder<'_> {
         let sampler = Index::push(
             &mut self.animation.samplers,
             Sampler {
-                input: self.input,
+                input: self.lists.of(&track.times),
                 output,
-                interpolation: Valid(Interpolation::Linear),
+                interpolation: Valid(track.curve),
                 extensions: None,
                 extras: Extras::default(),
             },

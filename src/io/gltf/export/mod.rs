@@ -2,17 +2,21 @@
 
 mod error;
 mod file;
+mod joint_track;
+mod kept_tracks;
 mod limbs;
 mod mesh_part;
 mod motion;
 mod nodes;
 mod rig;
 mod skin_mesh;
+mod track_recorder;
 mod writer;
 
 use crate::document::{Document, Timeline};
 use crate::io::progress::Progress;
 pub use error::GlbError;
+use kept_tracks::KeptTracks;
 use limbs::LimbMesh;
 use mesh_part::RigMesh;
 use motion::JointAnimation;
@@ -20,9 +24,9 @@ use nodes::JointNodes;
 use rig::GltfRig;
 
 /// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is the skin of
-/// the skeleton; without one, cones around the bones. The frame
+/// the skeleton; without one, cones around the bones. The motion has a key at every frame. The frame
 /// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 0.01
-/// to 1000. Lengths are in metres, and no node has a scale.
+/// to 1000. With `None`, tracks whose keys glTF can have are written as they are. Lengths are in metres, and no node has a scale.
 ///
 /// # Errors
 ///
@@ -38,10 +42,14 @@ pub fn glb(
     let timeline = Timeline { frame_rate, ..document.timeline };
     let mut rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;
-    let motion = JointAnimation::new(&mut rig, &bones, timeline, progress)?;
+    let kept = match frames_per_second {
+        None if timeline.is_valid() => KeptTracks::new(document, &rig, timeline),
+        _ => KeptTracks::default(),
+    };
+    let motion = JointAnimation::new(&mut rig, &bones, timeline, kept, progress)?;
     let mesh = match RigMesh::of_skin(document) {
         Some(skin) => skin,
         None => LimbMesh::new(&rig, &bones)?.into(),
     };
-    file::write(&bones, &motion, &mesh)
+    file::write(&bones, &motion, &mesh, document.animation_name.as_deref())
 }

@@ -13,7 +13,7 @@ use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 /// Computed in f64, so that a skeleton far from the origin is exact.
 pub struct GltfRig {
     document: Document,
-    metres_per_unit: f64,
+    pub metres_per_unit: f64,
     /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their joints.
     /// Nodes keep these directions where bones follow connected joints: the skin follows the nodes.
     axes: Vec<DVec3>,

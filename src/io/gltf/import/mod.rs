@@ -86,7 +86,8 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     warn_of_left_out(&moving, &joints, &mut warnings);
     let import = GltfImport { source, file: &file, nodes: &nodes, index, joints: &joints };
     let imported = import.read(animation, &names[index], &mut warnings);
-    let ImportedRig { document, kept } = imported.map_err(|error| source.error(&error))?;
+    let ImportedRig { mut document, kept } = imported.map_err(|error| source.error(&error))?;
+    document.animation_name = animation.map(|chosen| described[chosen].name.clone());
     let order = joints.order.iter().chain(&joints.added);
     Ok(Opened {
         document,
