@@ -242,7 +242,7 @@ fn a_sequence_replaces_all_existing_files_or_none() {
 #[test]
 fn a_dropped_batch_leaves_no_file() {
     let desk = Desk::moving();
-    let mut batch = FileBatch::beside(&desk.out("x")).expect("a folder");
+    let batch = FileBatch::beside(&desk.out("x")).expect("a folder");
     batch.add("x".as_ref(), b"new").expect("written");
     drop(batch);
     assert_eq!(desk.names(), ["file"]);

@@ -6,6 +6,7 @@
 
 mod error;
 mod format;
+mod frame_writers;
 mod numbered_name;
 mod options;
 mod pictures;

@@ -1,7 +1,9 @@
 use std::io::Write;
 use std::path::Path;
+use std::thread;
 
 use super::error::ExportError;
+use super::frame_writers::{Frame, FrameWriters};
 use super::numbered_name::NumberedName;
 use super::options::ExportOptions;
 use crate::document::{Document, Theme};
@@ -37,14 +39,22 @@ pub fn sequence(
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
     let frames = ExportFrames::of_picture(document, options.fps)?;
-    let mut batch = FileBatch::beside(path)?;
+    let batch = FileBatch::beside(path)?;
     let gpu = Gpu::headless()?;
     let mut renderer = FrameRenderer::new(document, options, &gpu)?;
-    for frame in 0..frames.count() {
-        progress.step(frame, frames.count())?;
-        let pixels = renderer.pixels(frames.time(frame))?;
-        batch.add(&name.with_number(frame), &png(options.size, &pixels)?)?;
-    }
+    let write = |(number, pixels): Frame| {
+        Ok(batch.add(&name.with_number(number), &png(options.size, &pixels)?)?)
+    };
+    thread::scope(|scope| {
+        let writers = FrameWriters::new(scope, &write);
+        for frame in 0..frames.count() {
+            progress.step(frame, frames.count())?;
+            if !writers.add((frame, renderer.pixels(frames.time(frame))?)) {
+                break;
+            }
+        }
+        writers.finish()
+    })?;
     progress.step(frames.count(), frames.count())?;
     batch.finish()?;
     Ok(Vec::new())

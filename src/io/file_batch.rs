@@ -2,6 +2,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use tempfile::TempDir;
 
@@ -19,7 +20,7 @@ pub struct FileBatch {
     /// Temporary folder of the new files, with the subfolder [`BACKUP`] for the files that they
     /// replace. Deleted when the batch is dropped.
     temporary: TempDir,
-    names: Vec<OsString>,
+    names: Mutex<Vec<OsString>>,
 }
 
 /// Name of the subfolder that holds the replaced files.
@@ -38,18 +39,19 @@ impl FileBatch {
             .tempdir_in(&folder)
             .map_err(|source| failed(path, source))?;
         fs::create_dir(temporary.path().join(BACKUP)).map_err(|source| failed(path, source))?;
-        Ok(Self { folder, temporary, names: Vec::new() })
+        Ok(Self { folder, temporary, names: Mutex::default() })
     }
 
-    /// Adds a file. Its name must differ from the names of the other files in the batch.
+    /// Adds a file. Its name must differ from the names of the other files in the batch. Several threads can
+    /// add files at once.
     ///
     /// # Errors
     ///
     /// Fails if the file cannot be written.
-    pub fn add(&mut self, name: &OsStr, bytes: &[u8]) -> Result<(), WriteError> {
+    pub fn add(&self, name: &OsStr, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.new_path(name);
         fs::write(path, bytes).map_err(|source| failed(&self.folder.join(name), source))?;
-        self.names.push(name.to_owned());
+        self.names.lock().unwrap_or_else(PoisonError::into_inner).push(name.to_owned());
         Ok(())
     }
 
@@ -59,9 +61,10 @@ impl FileBatch {
     ///
     /// Fails if a file cannot be moved. The final folder is then restored as far as possible.
     pub fn finish(self) -> Result<(), WriteError> {
-        for (index, name) in self.names.iter().enumerate() {
+        let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        for (index, name) in names.iter().enumerate() {
             if let Err(source) = self.install(name) {
-                self.names[..index].iter().rev().for_each(|name| self.restore(name));
+                names[..index].iter().rev().for_each(|name| self.restore(name));
                 return Err(failed(&self.folder.join(name), source));
             }
         }

@@ -143,14 +143,13 @@ impl Session {
     /// Turns the skeleton so that y points up in place of z, and frames it. Other animations of its file
     /// will be turned, too.
     pub(super) fn turn_y_up(&mut self) {
-        if self.rig() != RigKind::Skeleton {
-            return;
-        }
         self.discard_unkeyed_edits();
         self.refresh();
         self.edit_keys(Document::turn_y_up);
-        self.glide_to(self.framing_all());
         self.files.take_z_as_up();
+        if self.rig() == RigKind::Skeleton {
+            self.glide_to(self.framing_all());
+        }
     }
 
     /// Adds a target for a joint that has none.
