@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use ik_arm::document::Document;
-use ik_arm::io::{self, OpenOptions, Opened};
+use ik_arm::io::{self, OpenOptions, Opened, Upwards};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
@@ -30,7 +30,13 @@ pub fn every_skeleton(bytes: &[u8]) {
         for animation in first.animations.iter().skip(1).take(ENOUGH) {
             opened(bytes, &OpenOptions::of_animation(&animation.name));
         }
+        turned(bytes);
     }
+}
+
+/// The file with z up.
+pub fn turned(bytes: &[u8]) {
+    opened(bytes, &OpenOptions::of_up(Upwards::Z));
 }
 
 /// The message is not empty and fits a window.
