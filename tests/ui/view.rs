@@ -6,7 +6,10 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
-use ik_arm::session::{CameraMotion, Navigation, ShellAction, ViewAction};
+use ik_arm::io::Example;
+use ik_arm::session::{
+    CameraMotion, FileAction, Navigation, PlaybackAction, ShellAction, ViewAction,
+};
 
 use crate::bench::Bench;
 
@@ -213,4 +216,20 @@ fn dragging_the_corner_axes_orbits_the_view() {
     bench.settle();
     assert_ne!(bench.session().camera().yaw, Camera::default().yaw);
     assert!(!bench.session().camera().orthographic);
+}
+
+#[test]
+fn the_camera_follows_the_selection_while_it_is_ticked_in_the_menu() {
+    let mut bench = Bench::new();
+    let walk = Example::find("walk").expect("there").open().expect("opens").document;
+    bench.apply([FileAction::Opened { document: Box::new(walk), file: None, contents: None }]);
+    bench.choose(&["View", "Follow selection"]);
+    assert!(bench.session().follows_selection());
+    bench.settle();
+    let before = bench.session().camera().target;
+    let end = bench.session().document().timeline.end;
+    bench.apply([PlaybackAction::SetTime(0.6 * end)]);
+    assert!(bench.session().camera().target.distance(before) > 1e-3);
+    bench.choose(&["View", "Follow selection"]);
+    assert!(!bench.session().follows_selection());
 }
