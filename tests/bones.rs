@@ -129,6 +129,18 @@ fn leaves_end_at_nodes_outside_the_skin_else_like_their_siblings_else_half_as_lo
     assert_near(bone(&open(&drawn), "one"), Vec3::X * 0.1);
 }
 
+#[test]
+fn the_bone_of_a_head_with_eyes_goes_on_to_its_end() {
+    let document = open(&file(&[
+        ("neck", None, [0.0, 1.5, 0.0]),
+        ("head", Some(0), [0.0, 0.1, 0.0]),
+        ("eye.L", Some(1), [0.03, 0.07, 0.09]),
+        ("end of head", Some(1), [0.0, 0.2, 0.01]),
+        ("eye.R", Some(1), [-0.03, 0.07, 0.09]),
+    ]));
+    assert_near(bone(&document, "head"), Vec3::new(0.0, 0.2, 0.01));
+}
+
 /// A chain of a BVH file whose inner joints slide along their parents.
 fn sliding(random: &mut Random, joints: usize, frames: usize) -> String {
     let mut hierarchy = String::new();

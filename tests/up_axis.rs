@@ -129,6 +129,32 @@ fn a_file_with_z_up_is_recognised_and_the_remark_says_what_turns_it() {
     }
 }
 
+/// With y up, and as long or wide along z as many a figure is high.
+const FISH: [(&str, usize, [f32; 3]); 6] = [
+    ("mouth", 0, [0.0, 30.0, 50.0]),
+    ("v1", 1, [0.0, 0.0, -40.0]),
+    ("v2", 2, [0.0, 0.0, -40.0]),
+    ("top", 3, [0.0, 14.0, -12.0]),
+    ("bottom", 3, [0.0, -14.0, -12.0]),
+    ("side", 2, [12.0, 0.0, 0.0]),
+];
+
+#[test]
+fn animals_that_are_long_or_round_are_not_taken_for_figures_that_stand_along_z() {
+    let mut random = Random(75);
+    let mut spider = vec![("body", 0, [0.0, 30.0, 0.0])];
+    for leg in 0..8 {
+        let (z, x) = (0.4 + 0.785 * leg as f32).sin_cos();
+        spider.push(("thigh", 1, [20.0 * x, 20.0, 20.0 * z]));
+        spider.push(("shin", 2, [50.0 * x, -50.0, 50.0 * z]));
+    }
+    for figure in [&FISH[..], &spider[..]] {
+        let up = open(&bvh(figure, &Y_UP, &mut random), None).warnings;
+        let turned = |remark: &ik_arm::io::Remark| remark.reason.contains("--up");
+        assert!(!up.iter().any(turned), "{up:?}");
+    }
+}
+
 #[test]
 fn the_options_turn_or_leave_the_skeleton() {
     let mut random = Random(72);

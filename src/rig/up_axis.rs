@@ -16,7 +16,8 @@ impl UpAxis {
     /// legs, or lies.
     ///
     /// Feet are joints whose names say so. Without any, they are at least two leaves that are the lowest
-    /// points along an axis and stand apart, of a figure that is twice as high as it is deep.
+    /// points along an axis and stand apart along x, of a figure that is twice as high as it is deep; and the
+    /// highest points are leaves above the middle between them.
     pub fn of(skeleton: &Skeleton, pose: &SkeletonPose) -> Option<Self> {
         let feet: Vec<JointId> =
             skeleton.iter().filter(|(_, joint)| is_foot(&joint.name)).map(|(id, _)| id).collect();
@@ -49,10 +50,23 @@ impl UpAxis {
         const NEAR: f32 = 0.05;
         let near = NEAR * size[component];
         let tips = pose.ids().filter(|joint| is_leaf[joint.index()]).map(|joint| pose.tip(joint));
-        let standing: Vec<Vec3> =
-            tips.filter(|tip| tip[component] < low[component] + near).collect();
-        let first = standing.first()?;
-        standing.iter().any(|tip| tip.distance(*first) > near).then_some(axis)
+        let (mut feet, mut heads) = (Vec::new(), Vec::new());
+        for tip in tips {
+            if tip[component] < low[component] + near {
+                feet.push(tip);
+            } else if tip[component] > high[component] - near {
+                heads.push(tip);
+            }
+        }
+        // Feet are beside each other, and the head is above the middle between them.
+        let range = |points: &[Vec3]| {
+            let x = points.iter().map(|point| point.x);
+            Some((x.clone().reduce(f32::min)?, x.reduce(f32::max)?))
+        };
+        let ((left, right), (from, to)) = (range(&feet)?, range(&heads)?);
+        let middle = 0.5 * left + 0.5 * right;
+        let is_above = (from - middle).abs().max((to - middle).abs()) < near;
+        (right - left > near && is_above).then_some(axis)
     }
 
     /// The axis along which a length is more than twice that along the other.

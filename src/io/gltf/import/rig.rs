@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::file::{GltfFile, GltfNode};
 use super::joint_tracks::JointTracks;
@@ -22,7 +22,7 @@ pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]
         let name = name.filter(|name| !name.trim().is_empty());
         let name = names.free(name.unwrap_or(&format!("joint_{index}")));
         let parent = joints.parents[index];
-        let origin = parent.map_or(glam::DVec3::ZERO, |parent| bind_pose[parent].base);
+        let origin = parent.map_or(DVec3::ZERO, |parent| bind_pose[parent].base);
         Joint {
             offset: (bind_pose[index].base - origin).as_vec3(),
             frame: bind_pose[index].frame.as_mat3(),
@@ -51,8 +51,9 @@ pub struct BoneEnds {
 }
 
 impl BoneEnds {
-    /// The ends of leaves: a node below that is no joint and has nothing to draw, as many programs write
-    /// for the tips of fingers and heads. Files of this program are complete.
+    /// The ends of leaves, and of joints whose end is straighter ahead than any child: a node below that is
+    /// no joint and has nothing to draw, as many programs write for the tips of fingers and heads. Files of
+    /// this program are complete.
     pub fn new(
         file: &GltfFile,
         nodes: &NodeTree,
@@ -66,17 +67,23 @@ impl BoneEnds {
             let draws = mesh.is_some() || camera.is_some() || skin.is_some();
             !draws && !is_joint.contains(node) && nodes.children[*node].is_empty()
         };
-        let is_parent: HashSet<usize> = joints.parents.iter().flatten().copied().collect();
-        let end = |joint: usize| {
-            if is_parent.contains(&joint) {
-                return None;
-            }
-            let base = bind_pose[joint].base;
+        let from_base = |joint: usize, to: DVec3| (to - bind_pose[joint].base).as_vec3();
+        let longest_end = |joint: usize| {
             let empty = nodes.children[joints.nodes[joint]].iter().copied().filter(is_empty);
-            let ends = empty.map(|node| (worlds[node].translation - base).as_vec3());
+            let ends = empty.map(|node| from_base(joint, worlds[node].translation));
             let longer = |a: &Vec3, b: &Vec3| a.length().total_cmp(&b.length());
             ends.filter(|end| end.is_finite() && *end != Vec3::ZERO).max_by(longer)
         };
+        // A head has eyes below it, but its bone goes on to its end.
+        let is_straighter = |joint: usize, end: &Vec3| {
+            let children = (0..joints.nodes.len()).filter(|it| joints.parents[*it] == Some(joint));
+            let Some(parent) = joints.parents[joint] else { return children.count() == 0 };
+            let arriving = from_base(parent, bind_pose[joint].base).normalize_or_zero();
+            let bend = |leaving: Vec3| leaving.normalize_or_zero().dot(arriving);
+            let mut leaving = children.map(|child| from_base(joint, bind_pose[child].base));
+            leaving.all(|leaving| bend(leaving) < bend(*end))
+        };
+        let end = |joint| longest_end(joint).filter(|end| is_straighter(joint, end));
         Self {
             of: (0..joints.nodes.len()).map(end).collect(),
             are_complete: file.asset.0.is_of_this_program(),
