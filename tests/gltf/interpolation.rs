@@ -253,7 +253,7 @@ fn an_exported_file_keeps_the_keys_with_their_interpolation_and_the_curves_betwe
         for time in file.times(&mut random) {
             let [was, is] = [&before, &after].map(|document| document.evaluate(time));
             let (old, new) = (was.skeleton().pose(), is.skeleton().pose());
-            let size = old.points().map(|point| point.length()).fold(1.0, f32::max);
+            let size = old.points().map(Vec3::length).fold(1.0, f32::max);
             for joint in was.skeleton().ids() {
                 let name = &was.skeleton()[joint].name;
                 let found = is.skeleton().find(name).expect("a joint");
