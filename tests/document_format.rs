@@ -414,6 +414,17 @@ fn deep_nesting_is_an_error_or_ignored_and_no_crash() {
 }
 
 #[test]
+fn a_text_that_is_in_memory_already_has_no_limit() {
+    let document = Document::default();
+    let text = io::to_json(&document).expect("written") + &" ".repeat(65 << 20);
+    let parsed = io::parse("long", &text, &io::OpenOptions::default()).expect("it is read");
+    assert_eq!(parsed.document, document);
+    let error =
+        io::read("long", text.as_bytes(), &io::OpenOptions::default()).expect_err("refused");
+    assert_eq!(error.to_string(), "long must be at most 64 MB large");
+}
+
+#[test]
 fn a_file_that_cannot_be_read_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("missing.json");

@@ -17,7 +17,7 @@ use super::{bvh, format, gltf, js3d, turn_up};
 /// Fails if the file cannot be read, has none of these formats, has invalid content, or has no
 /// skeleton or animation of the given name.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
-    open_source(&Source::open(path)?, options)
+    open_source(&limited(Source::open(path)?)?, options)
 }
 
 /// Like [`open`], but reads the content from `input`. Errors call the file `name`.
@@ -26,7 +26,7 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
 ///
 /// See [`open`].
 pub fn read(name: &str, input: impl Read, options: &OpenOptions) -> Result<Opened, OpenError> {
-    open_source(&Source::read(name, input)?, options)
+    open_source(&limited(Source::read(name, input)?)?, options)
 }
 
 /// Like [`open`], but takes the content as a text. Errors call the file `name`.
@@ -38,11 +38,17 @@ pub fn parse(name: &str, text: &str, options: &OpenOptions) -> Result<Opened, Op
     open_source(&Source::new(name, text), options)
 }
 
+/// Refuses a file that is larger than files other than glTF may be.
+fn limited(source: Source) -> Result<Source, OpenError> {
+    let is_large = source.text().len() as u64 > OpenError::MAX_BYTES;
+    match is_large && FileFormat::detect(&source)? != FileFormat::Gltf {
+        true => Err(source.too_large()),
+        false => Ok(source),
+    }
+}
+
 fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let format = FileFormat::detect(source)?;
-    if format != FileFormat::Gltf && source.text().len() as u64 > OpenError::MAX_BYTES {
-        return Err(source.too_large());
-    }
     let mut opened = read_format(source, format, options)?;
     if options.skeleton.is_none() {
         opened.warnings.extend(one_of_several(&opened.skeletons));
