@@ -3,6 +3,7 @@
 pub mod angle;
 pub mod batch;
 pub mod chain_ik;
+pub mod diagnosis;
 pub mod euler;
 pub mod fk;
 pub mod follow;

@@ -44,6 +44,7 @@ mod ccd;
 mod configuration;
 mod coordinates;
 mod damped_least_squares;
+mod diagnose;
 mod error;
 mod escape;
 mod fabrik;
@@ -60,6 +61,7 @@ mod target;
 mod transpose;
 mod two_bone;
 
+pub use diagnose::diagnose;
 pub use error::{OptionField, SolveError, TwoBoneRefusal};
 pub use jacobian::jacobian;
 pub use method::{Method, ParseMethodError};

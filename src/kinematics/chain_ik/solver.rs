@@ -87,6 +87,12 @@ impl ChainSolver {
         self.report
     }
 
+    /// Distance in world units: the solver has converged if no tip is farther from its target.
+    #[must_use]
+    pub fn tolerance(&self) -> f32 {
+        saturate(self.tolerance)
+    }
+
     /// Makes one iteration, unless the solver has converged or stalled. The maximum number of
     /// iterations is ignored.
     pub fn step(&mut self) -> Report {

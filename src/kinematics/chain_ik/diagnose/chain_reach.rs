@@ -1,0 +1,85 @@
+use glam::Vec3;
+
+use super::solve_inputs::SolveInputs;
+use crate::kinematics::chain_ik::{Root, TipTarget};
+use crate::kinematics::diagnosis::{Boundary, Cause, Remedy};
+use crate::kinematics::skeleton::Skeleton;
+
+/// Distances that the tip of a chain can have from the base of its root, whatever the joints turn, in
+/// skeleton space.
+struct ChainReach {
+    base: Vec3,
+    shortest: f32,
+    longest: f32,
+}
+
+/// A target that the bones do not reach.
+pub(super) struct OutOfReach {
+    pub cause: Cause,
+    /// The nearest point that they do reach, in the world.
+    point: Vec3,
+    /// Factor of the lengths with which they reach the target; `None` if longer bones do not help.
+    factor: Option<f32>,
+    target: TipTarget,
+}
+
+impl ChainReach {
+    fn new(skeleton: &Skeleton, target: &TipTarget) -> Self {
+        let path = || skeleton.ancestors(target.joint);
+        let inner = path().filter(|joint| skeleton[*joint].parent.is_some());
+        let segments = inner.map(|joint| skeleton[joint].offset.length());
+        let segments = segments.chain([skeleton[target.joint].axis.length()]);
+        let (longest, greatest) =
+            segments.fold((0.0, 0.0_f32), |(sum, most), it| (sum + it, most.max(it)));
+        let base = path().last().map_or(Vec3::ZERO, |root| skeleton[root].offset);
+        Self { base, shortest: (2.0 * greatest - longest).max(0.0), longest }
+    }
+}
+
+impl OutOfReach {
+    /// `None` if the bones reach the target, or come within `tolerance` (in the world) of it.
+    pub fn of(inputs: &SolveInputs, target: &TipTarget, tolerance: f32) -> Option<Self> {
+        // Part of the way in that rounding of lengths may take.
+        const INSIDE: f32 = 1e-6;
+        if inputs.options.root == Root::Free {
+            return None;
+        }
+        let skeleton = &inputs.skeleton;
+        let reach = ChainReach::new(skeleton, target);
+        let transform = skeleton.transform();
+        let scale = transform.matrix3.determinant().abs().cbrt();
+        let at = transform.inverse().transform_point3(target.point);
+        let (towards, distance) = (at - reach.base, at.distance(reach.base));
+        let least = reach.shortest * (1.0 + INSIDE);
+        let nearest = distance.clamp(least, (reach.longest * (1.0 - INSIDE)).max(least));
+        let direction = towards.try_normalize().unwrap_or(Vec3::X);
+        let point = transform.transform_point3(reach.base + direction * nearest);
+        if !(point.distance(target.point) > tolerance) {
+            return None;
+        }
+        let is_far = distance > reach.longest;
+        let factor = (is_far && reach.longest > 0.0).then(|| distance / reach.longest);
+        let cause = Cause::OutOfReach {
+            distance: distance * scale,
+            shortest: reach.shortest * scale,
+            longest: reach.longest * scale,
+            boundary: Boundary::Bones,
+        };
+        Some(Self { cause, point, factor, target: *target })
+    }
+
+    /// What could bring the tip to the target.
+    pub fn remedies(&self) -> impl Iterator<Item = Remedy> {
+        // Longer than needed, so that rounding does not leave a residual.
+        const LONGER: f32 = 1.001;
+        let joint = self.target.joint;
+        let factor = self.factor.map(|factor| factor * LONGER);
+        [
+            Some(Remedy::MoveTarget { joint, point: self.point }),
+            factor.map(|factor| Remedy::Lengthen { joint, factor }),
+            Some(Remedy::SetRoot(Root::Free)),
+        ]
+        .into_iter()
+        .flatten()
+    }
+}

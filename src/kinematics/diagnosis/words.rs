@@ -1,0 +1,173 @@
+//! Diagnoses and remedies in words.
+
+use super::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
+use crate::kinematics::chain_ik::Root;
+use crate::kinematics::skeleton::JointId;
+
+/// Names of joints.
+type Names<'a> = &'a dyn Fn(JointId) -> String;
+
+impl Diagnosis {
+    /// The cause as a sentence without a full stop, such as "the limits of elbow keep hand from its
+    /// target". `name` gives the names of joints.
+    pub fn sentence(&self, name: Names<'_>) -> String {
+        let target = name(self.target);
+        match self.cause {
+            Cause::OutOfReach { distance, shortest, longest, boundary } => {
+                out_of_reach(&target, distance, [shortest, longest], boundary)
+            }
+            Cause::Limits => {
+                format!(
+                    "The limits of {} keep {target} from its target",
+                    listed(&self.joints, name)
+                )
+            }
+            Cause::Locked => {
+                let verb = if self.joints.len() == 1 { "is" } else { "are" };
+                format!(
+                    "{} {verb} locked, and {target} needs to turn there",
+                    listed(&self.joints, name)
+                )
+            }
+            Cause::Conflict { with } => {
+                let other = name(with);
+                format!("{target} and {other} reach their targets one at a time, not together")
+            }
+            Cause::Stalled => {
+                format!(
+                    "The solver stopped where no small turn helps, though {target} can get nearer"
+                )
+            }
+            Cause::Singular { .. } => {
+                format!("No joint can move {target} towards its target from a chain this straight")
+            }
+            Cause::OutOfIterations { iterations } => {
+                let s = if iterations == 1 { "" } else { "s" };
+                format!(
+                    "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
+                )
+            }
+            Cause::Influence { influence } => {
+                let percent = significant(100.0 * influence);
+                format!("{target} is only {percent} % of the way from its FK pose to its target")
+            }
+        }
+    }
+}
+
+impl Remedy {
+    /// The change as an imperative without a full stop, such as "Unlock elbow". `name` gives the names
+    /// of joints.
+    pub fn sentence(&self, name: Names<'_>) -> String {
+        match self {
+            Self::MoveTarget { joint, .. } => {
+                format!("Move the target of {} within reach", name(*joint))
+            }
+            Self::Lengthen { factor, .. } => {
+                format!("Lengthen the bones by {}", percent(*factor - 1.0))
+            }
+            Self::SetRoot(Root::Free) => "Let the root move".to_owned(),
+            Self::SetRoot(Root::Turns) => "Let the root turn".to_owned(),
+            Self::SetRoot(Root::Locked) => "Lock the root".to_owned(),
+            Self::WidenLimits(widened) => widen(widened, name),
+            Self::Unlock(joints) => format!("Unlock {}", listed(joints, name)),
+            Self::SwitchOff(joint) => format!("Switch off the target of {}", name(*joint)),
+            Self::SetWeight { joint, weight } => {
+                format!("Give the target of {} the weight {}", name(*joint), significant(*weight))
+            }
+            Self::UseMethod(method) => format!("Solve by {}", method.title()),
+            Self::StartFrom(Start { is_bend: true, .. }) => {
+                "Bend the chain a little first".to_owned()
+            }
+            Self::StartFrom(_) => "Start from the middle of the limits".to_owned(),
+            Self::AllowIterations(iterations) => format!("Allow {iterations} iterations"),
+            Self::FullInfluence(joint) => {
+                format!("Set the influence of the target of {} to 1", name(*joint))
+            }
+            Self::Stretch { max_stretch, .. } => {
+                format!("Let the limb stretch by up to {}", percent(*max_stretch - 1.0))
+            }
+            Self::HardLimits(_) => "Turn the soft limits off".to_owned(),
+        }
+    }
+}
+
+fn widen(widened: &[WidenedLimit], name: Names<'_>) -> String {
+    let degrees = |it: &WidenedLimit| it.by.to_degrees().round();
+    match widened {
+        [one] => {
+            format!(
+                "Widen the limit of {} about {} by {}°",
+                name(one.joint),
+                one.axis,
+                degrees(one)
+            )
+        }
+        several => {
+            let most = several.iter().map(degrees).fold(0.0, f32::max);
+            format!("Widen {} limits by up to {most}°", several.len())
+        }
+    }
+}
+
+/// Joints as a list in words, at most three of them by name.
+fn listed(joints: &[JointId], name: Names<'_>) -> String {
+    let names: Vec<_> = joints.iter().map(|joint| name(*joint)).collect();
+    match &names[..] {
+        [] => "the chain".to_owned(),
+        [one] => one.clone(),
+        [one, two] => format!("{one} and {two}"),
+        [one, two, three] => format!("{one}, {two} and {three}"),
+        [one, two, rest @ ..] => format!("{one}, {two} and {} more joints", rest.len()),
+    }
+}
+
+fn out_of_reach(
+    target: &str,
+    distance: f32,
+    [shortest, longest]: [f32; 2],
+    boundary: Boundary,
+) -> String {
+    let (at, least, most) = (significant(distance), significant(shortest), significant(longest));
+    match (distance > shortest, boundary) {
+        (true, Boundary::SoftLimit) => {
+            format!(
+                "The soft limit slows {target} down before its target, {at} away: the bones reach {most}"
+            )
+        }
+        (true, _) => format!(
+            "{target} is too far from its target: it is {at} away, and the bones reach {most}"
+        ),
+        (false, Boundary::ElbowAngle) => {
+            format!(
+                "The smallest elbow angle keeps {target} at least {least} away; its target is at {at}"
+            )
+        }
+        (false, Boundary::SoftLimit) => {
+            format!("The soft limit keeps {target} at least {least} away; its target is at {at}")
+        }
+        (false, Boundary::Bones) => {
+            format!(
+                "{target} is too close: its target is {at} away, and the bones fold to {least} at most"
+            )
+        }
+    }
+}
+
+/// A fraction in percent, rounded up.
+fn percent(fraction: f32) -> String {
+    format!("{} %", (100.0 * fraction).ceil())
+}
+
+/// A number with three significant digits.
+fn significant(value: f32) -> String {
+    let magnitude = value.abs().log10().floor();
+    let decimals =
+        if magnitude.is_finite() { (2.0 - magnitude).clamp(0.0, 8.0) as usize } else { 0 };
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
