@@ -48,6 +48,11 @@ impl SkeletonRig {
         }
     }
 
+    /// Distance in world units within which a tip counts as at its target.
+    pub fn tolerance(&self) -> f32 {
+        self.solver.tolerance.unwrap_or_else(|| 1e-4 * self.reach())
+    }
+
     /// The joints, for editing. They are copied first if other rigs share them.
     pub fn skeleton_mut(&mut self) -> &mut Skeleton {
         self.skeleton.make_mut()

@@ -64,8 +64,7 @@ impl SolverStatus {
 impl Session {
     /// Distance in world units within which a tip counts as at its target.
     pub fn solver_tolerance(&self) -> f32 {
-        let rig = self.skeleton_rig();
-        rig.solver.tolerance.unwrap_or_else(|| 1e-4 * rig.reach())
+        self.skeleton_rig().tolerance()
     }
 
     /// The enabled target of the evaluated pose that is farthest from its tip: its index in

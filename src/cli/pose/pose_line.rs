@@ -2,6 +2,7 @@ use glam::{Mat4, Vec3};
 use serde::Serialize;
 
 use super::posed::Posed;
+use super::why_line::WhyLine;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
 use crate::kinematics::saturate_vector;
@@ -14,6 +15,7 @@ pub struct PoseLine<'a> {
     joints: Vec<JointLine<'a>>,
     targets: Vec<TargetLine>,
     report: Option<ReportLine>,
+    why: Vec<WhyLine<'a>>,
 }
 
 #[derive(Serialize)]
@@ -53,7 +55,7 @@ impl<'a> PoseLine<'a> {
     ///
     /// Fails with the name of a joint whose position overflows.
     pub fn new(
-        rig: &SkeletonRig,
+        rig: &'a SkeletonRig,
         posed: &'a Posed,
         order: &[JointId],
         time: f64,
@@ -98,7 +100,9 @@ impl<'a> PoseLine<'a> {
             }
         });
         let targets = targets.collect();
-        Ok(Self { joints, targets, report: posed.report.as_ref().map(ReportLine::new) })
+        let report = posed.report.as_ref().map(ReportLine::new);
+        let why = posed.why.iter().map(|found| WhyLine::new(found, rig)).collect();
+        Ok(Self { joints, targets, report, why })
     }
 }
 

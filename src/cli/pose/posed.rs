@@ -1,6 +1,7 @@
 use crate::document::SkeletonRig;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{self, Report, SolveError, SolverOptions};
+use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::Skeleton;
 use crate::rig::TargetOutcome;
 
@@ -8,12 +9,14 @@ use crate::rig::TargetOutcome;
 pub struct Posed {
     pub skeleton: Shared<Skeleton>,
     pub report: Option<Report>,
+    /// Why targets are not reached.
+    pub why: Vec<Diagnosis>,
 }
 
 impl Posed {
     /// The FK pose.
     pub fn fk(rig: &SkeletonRig, time: f64) -> Self {
-        Self { skeleton: rig.fk_at(time), report: None }
+        Self { skeleton: rig.fk_at(time), report: None, why: Vec::new() }
     }
 
     /// The pose by the rig's targets.
@@ -23,7 +26,7 @@ impl Posed {
             TargetOutcome::WholeBody(report) => Some(report),
             _ => None,
         });
-        Self { skeleton: evaluated.solved, report }
+        Self { skeleton: evaluated.solved, report, why: rig.diagnose(time) }
     }
 
     /// The FK pose after a solve for all enabled targets.
@@ -37,7 +40,9 @@ impl Posed {
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         let mut skeleton = rig.fk_at(time);
-        let report = chain_ik::solve(skeleton.make_mut(), &rig.targets_at(time), options)?;
-        Ok(Self { skeleton, report: Some(report) })
+        let targets = rig.targets_at(time);
+        let why = chain_ik::diagnose(&skeleton, &targets, options)?;
+        let report = chain_ik::solve(skeleton.make_mut(), &targets, options)?;
+        Ok(Self { skeleton, report: Some(report), why })
     }
 }

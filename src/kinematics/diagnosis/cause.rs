@@ -8,6 +8,8 @@ use crate::kinematics::skeleton::JointId;
 pub enum Cause {
     /// The target is farther from the chain's base than the bones reach, or closer than they fold.
     OutOfReach {
+        /// The joint at the chain's base.
+        base: JointId,
         /// Distance from the chain's base to the target.
         distance: f32,
         /// The nearest distance of the tip from the base.

@@ -31,3 +31,13 @@ impl Diagnosis {
         self.remedies.first().map_or(self.residual, |tried| tried.residual)
     }
 }
+
+/// The most likely cause for each target, then the second one for each, and so on.
+pub(crate) fn in_turn(mut lists: Vec<Vec<Diagnosis>>) -> Vec<Diagnosis> {
+    let mut all = Vec::new();
+    lists.iter_mut().for_each(|list| list.reverse());
+    while lists.iter().any(|list| !list.is_empty()) {
+        all.extend(lists.iter_mut().filter_map(Vec::pop));
+    }
+    all
+}

@@ -4,33 +4,40 @@ use super::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
 use crate::kinematics::chain_ik::Root;
 use crate::kinematics::skeleton::JointId;
 
-/// Names of joints.
-type Names<'a> = &'a dyn Fn(JointId) -> String;
+/// Names for sentences.
+#[derive(Clone, Copy)]
+pub struct Names<'a> {
+    /// The name of a joint.
+    pub joint: &'a dyn Fn(JointId) -> String,
+    /// The name of what the target of a joint moves: the hand of an arm's lower bone, or the joint.
+    pub tip: &'a dyn Fn(JointId) -> String,
+}
 
 impl Diagnosis {
-    /// The cause as a sentence without a full stop, such as "the limits of elbow keep hand from its
-    /// target". `name` gives the names of joints.
-    pub fn sentence(&self, name: Names<'_>) -> String {
-        let target = name(self.target);
+    /// The cause as a sentence without a full stop, such as "The limits of elbow keep hand away from
+    /// its target".
+    pub fn sentence(&self, names: Names<'_>) -> String {
+        let target = (names.tip)(self.target);
         match self.cause {
-            Cause::OutOfReach { distance, shortest, longest, boundary } => {
-                out_of_reach(&target, distance, [shortest, longest], boundary)
+            Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
+                let base = (names.joint)(base);
+                out_of_reach([&target, &base], distance, [shortest, longest], boundary)
             }
             Cause::Limits => {
                 format!(
-                    "The limits of {} keep {target} from its target",
-                    listed(&self.joints, name)
+                    "The limits of {} keep {target} away from its target",
+                    listed(&self.joints, names)
                 )
             }
             Cause::Locked => {
                 let verb = if self.joints.len() == 1 { "is" } else { "are" };
                 format!(
                     "{} {verb} locked, and {target} needs to turn there",
-                    listed(&self.joints, name)
+                    listed(&self.joints, names)
                 )
             }
             Cause::Conflict { with } => {
-                let other = name(with);
+                let other = (names.tip)(with);
                 format!("{target} and {other} reach their targets one at a time, not together")
             }
             Cause::Stalled => {
@@ -56,12 +63,11 @@ impl Diagnosis {
 }
 
 impl Remedy {
-    /// The change as an imperative without a full stop, such as "Unlock elbow". `name` gives the names
-    /// of joints.
-    pub fn sentence(&self, name: Names<'_>) -> String {
+    /// The change as an imperative without a full stop, such as "Unlock elbow".
+    pub fn sentence(&self, names: Names<'_>) -> String {
         match self {
             Self::MoveTarget { joint, .. } => {
-                format!("Move the target of {} within reach", name(*joint))
+                format!("Move the target of {} within reach", (names.tip)(*joint))
             }
             Self::Lengthen { factor, .. } => {
                 format!("Lengthen the bones by {}", percent(*factor - 1.0))
@@ -69,11 +75,15 @@ impl Remedy {
             Self::SetRoot(Root::Free) => "Let the root move".to_owned(),
             Self::SetRoot(Root::Turns) => "Let the root turn".to_owned(),
             Self::SetRoot(Root::Locked) => "Lock the root".to_owned(),
-            Self::WidenLimits(widened) => widen(widened, name),
-            Self::Unlock(joints) => format!("Unlock {}", listed(joints, name)),
-            Self::SwitchOff(joint) => format!("Switch off the target of {}", name(*joint)),
+            Self::WidenLimits(widened) => widen(widened, names),
+            Self::Unlock(joints) => format!("Unlock {}", listed(joints, names)),
+            Self::SwitchOff(joint) => format!("Switch off the target of {}", (names.tip)(*joint)),
             Self::SetWeight { joint, weight } => {
-                format!("Give the target of {} the weight {}", name(*joint), significant(*weight))
+                format!(
+                    "Give the target of {} the weight {}",
+                    (names.tip)(*joint),
+                    significant(*weight)
+                )
             }
             Self::UseMethod(method) => format!("Solve by {}", method.title()),
             Self::StartFrom(Start { is_bend: true, .. }) => {
@@ -82,7 +92,7 @@ impl Remedy {
             Self::StartFrom(_) => "Start from the middle of the limits".to_owned(),
             Self::AllowIterations(iterations) => format!("Allow {iterations} iterations"),
             Self::FullInfluence(joint) => {
-                format!("Set the influence of the target of {} to 1", name(*joint))
+                format!("Set the influence of the target of {} to 1", (names.tip)(*joint))
             }
             Self::Stretch { max_stretch, .. } => {
                 format!("Let the limb stretch by up to {}", percent(*max_stretch - 1.0))
@@ -92,13 +102,13 @@ impl Remedy {
     }
 }
 
-fn widen(widened: &[WidenedLimit], name: Names<'_>) -> String {
+fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
     let degrees = |it: &WidenedLimit| it.by.to_degrees().round();
     match widened {
         [one] => {
             format!(
                 "Widen the limit of {} about {} by {}°",
-                name(one.joint),
+                (names.joint)(one.joint),
                 one.axis,
                 degrees(one)
             )
@@ -111,8 +121,8 @@ fn widen(widened: &[WidenedLimit], name: Names<'_>) -> String {
 }
 
 /// Joints as a list in words, at most three of them by name.
-fn listed(joints: &[JointId], name: Names<'_>) -> String {
-    let names: Vec<_> = joints.iter().map(|joint| name(*joint)).collect();
+fn listed(joints: &[JointId], names: Names<'_>) -> String {
+    let names: Vec<_> = joints.iter().map(|joint| (names.joint)(*joint)).collect();
     match &names[..] {
         [] => "the chain".to_owned(),
         [one] => one.clone(),
@@ -123,34 +133,27 @@ fn listed(joints: &[JointId], name: Names<'_>) -> String {
 }
 
 fn out_of_reach(
-    target: &str,
+    [target, base]: [&str; 2],
     distance: f32,
     [shortest, longest]: [f32; 2],
     boundary: Boundary,
 ) -> String {
     let (at, least, most) = (significant(distance), significant(shortest), significant(longest));
-    match (distance > shortest, boundary) {
-        (true, Boundary::SoftLimit) => {
-            format!(
-                "The soft limit slows {target} down before its target, {at} away: the bones reach {most}"
-            )
-        }
-        (true, _) => format!(
-            "{target} is too far from its target: it is {at} away, and the bones reach {most}"
+    let is_far = distance > 0.5 * (shortest + longest);
+    match boundary {
+        Boundary::Bones if is_far => format!(
+            "{target} cannot reach that far: its target is {at} from {base}, and the bones are {most} long"
         ),
-        (false, Boundary::ElbowAngle) => {
-            format!(
-                "The smallest elbow angle keeps {target} at least {least} away; its target is at {at}"
-            )
+        Boundary::Bones => format!(
+            "{target} cannot come that near: its target is {at} from {base}, and the folded bones span {least}"
+        ),
+        Boundary::SoftLimit => {
+            let end = if is_far { "straight" } else { "folded" };
+            format!("The soft limits slow {target} down before the limb is {end}")
         }
-        (false, Boundary::SoftLimit) => {
-            format!("The soft limit keeps {target} at least {least} away; its target is at {at}")
-        }
-        (false, Boundary::Bones) => {
-            format!(
-                "{target} is too close: its target is {at} away, and the bones fold to {least} at most"
-            )
-        }
+        Boundary::ElbowAngle => format!(
+            "The smallest elbow angle keeps {target} away from its target, {at} from {base}"
+        ),
     }
 }
 

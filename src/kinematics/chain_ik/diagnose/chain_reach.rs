@@ -3,11 +3,12 @@ use glam::Vec3;
 use super::solve_inputs::SolveInputs;
 use crate::kinematics::chain_ik::{Root, TipTarget};
 use crate::kinematics::diagnosis::{Boundary, Cause, Remedy};
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Distances that the tip of a chain can have from the base of its root, whatever the joints turn, in
 /// skeleton space.
 struct ChainReach {
+    root: JointId,
     base: Vec3,
     shortest: f32,
     longest: f32,
@@ -31,8 +32,9 @@ impl ChainReach {
         let segments = segments.chain([skeleton[target.joint].axis.length()]);
         let (longest, greatest) =
             segments.fold((0.0, 0.0_f32), |(sum, most), it| (sum + it, most.max(it)));
-        let base = path().last().map_or(Vec3::ZERO, |root| skeleton[root].offset);
-        Self { base, shortest: (2.0 * greatest - longest).max(0.0), longest }
+        let root = path().last().unwrap_or(target.joint);
+        let base = skeleton[root].offset;
+        Self { root, base, shortest: (2.0 * greatest - longest).max(0.0), longest }
     }
 }
 
@@ -60,6 +62,7 @@ impl OutOfReach {
         let is_far = distance > reach.longest;
         let factor = (is_far && reach.longest > 0.0).then(|| distance / reach.longest);
         let cause = Cause::OutOfReach {
+            base: reach.root,
             distance: distance * scale,
             shortest: reach.shortest * scale,
             longest: reach.longest * scale,

@@ -1,8 +1,11 @@
 use super::chain_reach::OutOfReach;
 use super::pull::{Pulls, opponent};
 use super::solve_inputs::{SolveInputs, Solved};
-use super::{starts, widen};
+use super::starts;
 use crate::kinematics::chain_ik::{Method, Root, Status};
+use crate::kinematics::diagnosis::widening::{
+    Angle, limited_angles, remove_limits, widen_to_contain,
+};
 use crate::kinematics::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy};
 use crate::kinematics::skeleton::JointId;
 
@@ -142,11 +145,13 @@ impl<'a> Case<'a> {
     /// which it pushes, all of the chain.
     fn limits(&self) -> Option<Diagnosis> {
         let Examination { settled, pose, .. } = self.examination;
-        let pushed = widen::pushed(self.pulls.against_limits(&pose.skeleton));
-        let all = widen::all_limited(&settled.skeleton, self.joint);
+        let pushed = self.pulls.against_limits(&pose.skeleton);
+        let pushed: Vec<Angle> = pushed.map(|pull| (pull.joint, pull.axis)).collect();
+        let free = |joint: &JointId| !settled.skeleton[*joint].locked;
+        let all = limited_angles(&settled.skeleton, self.path().into_iter().filter(free));
         let sets = [&pushed[..pushed.len().min(1)], &pushed[..], &all[..]];
         let mut best: Option<TriedRemedy> = None;
-        let mut last: &[widen::Angle] = &[];
+        let mut last: &[Angle] = &[];
         for angles in sets {
             if angles.len() <= last.len()
                 || best.as_ref().is_some_and(|it| self.is_reached(it.residual))
@@ -166,14 +171,15 @@ impl<'a> Case<'a> {
         Some(self.diagnosis(Cause::Limits, joints, vec![best]))
     }
 
-    fn try_without_limits(&self, angles: &[widen::Angle]) -> Option<TriedRemedy> {
+    fn try_without_limits(&self, angles: &[Angle]) -> Option<TriedRemedy> {
         let settled = &self.examination.settled;
-        let free = widen::without_limits(settled, angles);
+        let mut free = settled.clone();
+        remove_limits(&mut free.skeleton, angles);
         let pose = free.solve().ok()?;
         if pose.residual(&free, self.joint) > WORTH * self.residual {
             return None;
         }
-        self.try_remedy(widen::to_contain(&settled.skeleton, &pose.skeleton, angles)?)
+        self.try_remedy(widen_to_contain(&settled.skeleton, &pose.skeleton, angles)?)
     }
 
     /// Tries to reach the target with the most strongly pulled locked joint unlocked, then with all.

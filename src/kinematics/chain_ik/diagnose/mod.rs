@@ -27,12 +27,11 @@ mod examination;
 mod pull;
 mod solve_inputs;
 mod starts;
-mod widen;
 
 use self::examination::Examination;
 use self::solve_inputs::SolveInputs;
 use super::{SolveError, SolverOptions, TipTarget};
-use crate::kinematics::diagnosis::Diagnosis;
+use crate::kinematics::diagnosis::{Diagnosis, in_turn};
 use crate::kinematics::skeleton::Skeleton;
 
 /// The causes for which the tips of `skeleton`, which is in its FK pose, are not at their targets
@@ -81,14 +80,4 @@ pub fn diagnose(
     let examination = Examination::new(inputs, solved);
     let found = missed.into_iter().map(|(joint, residual)| examination.examine(joint, residual));
     Ok(in_turn(found.collect()))
-}
-
-/// The most likely cause for each target, then the second one for each, and so on.
-fn in_turn(mut lists: Vec<Vec<Diagnosis>>) -> Vec<Diagnosis> {
-    let mut all = Vec::new();
-    lists.iter_mut().for_each(|list| list.reverse());
-    while lists.iter().any(|list| !list.is_empty()) {
-        all.extend(lists.iter_mut().filter_map(Vec::pop));
-    }
-    all
 }

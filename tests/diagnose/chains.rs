@@ -1,9 +1,7 @@
-//! Why targets are not reached, on random rigs that have exactly one cause by construction.
+//! Targets of chains, on random rigs that have exactly one cause by construction.
 
-mod common;
-
-use common::Random;
-use common::skeletons::{chain, length, reachable, shake, transform, tree};
+use crate::common::Random;
+use crate::common::skeletons::{chain, length, reachable, shake, transform, tree};
 use glam::{Quat, Vec3};
 use ik_arm::kinematics::chain_ik::{
     Method, Root, SolverOptions, Status, TipTarget, diagnose, solve,
@@ -11,8 +9,7 @@ use ik_arm::kinematics::chain_ik::{
 use ik_arm::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
-const CASES: usize = 100;
-const ENOUGH: usize = 95;
+use crate::{CASES, ENOUGH};
 
 const ITERATIVE: [Method; 5] = [
     Method::TransposeFixed,
