@@ -81,6 +81,18 @@ struct Answer {
     joints: Vec<Joint>,
     targets: Vec<Target>,
     report: Option<Report>,
+    why: Vec<Why>,
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Why {
+    cause: String,
+    target: String,
+    joints: Vec<String>,
+    sentence: String,
+    remedy: Option<String>,
+    residual_with_remedy: Option<f32>,
 }
 
 #[derive(Debug, Deserialize, PartialEq)]
@@ -126,7 +138,7 @@ const BENT: &str = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"bones":[
 #[test]
 fn an_answer_has_exactly_these_keys_in_this_order() {
     let bone = r#"{"scene":{"skinned_meshes":{"X":{"skeleton":{"base":[0,0,5],
-        "bones":[{"extent":[0,1,0]}],"handles":[{"bone":0,"target":[0,1,4]}]}}}}}"#;
+        "bones":[{"extent":[0,1,0]}],"handles":[{"bone":0,"target":[0,1,5]}]}}}}}"#;
     let output = Scene::new(bone).run(&[]);
     assert_eq!(
         String::from_utf8_lossy(&output.stdout),
@@ -134,9 +146,9 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             r#"{"joints":[{"index":0,"name":"bone_0","parent":null,"rotation_deg":[0.0,0.0,0.0],"#,
             r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
             r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
-            r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,4.0],"#,
-            r#""tip":[0.0,1.0,5.0],"error":1.0}],"#,
-            r#""report":null}"#,
+            r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,5.0],"#,
+            r#""tip":[0.0,1.0,5.0],"error":0.0}],"#,
+            r#""report":null,"why":[]}"#,
             "\n"
         )
     );
@@ -145,7 +157,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
 
 #[test]
 fn joints_keep_the_order_of_the_file_and_are_in_world_space() {
-    let Answer { joints, targets, report } = Scene::new(BENT).pose(&[]);
+    let Answer { joints, targets, report, .. } = Scene::new(BENT).pose(&[]);
     let names: Vec<_> = joints.iter().map(|joint| (joint.index, joint.name.as_str())).collect();
     assert_eq!(names, [(0, "bone_0"), (1, "bone_1")]);
     assert_eq!([joints[0].parent, joints[1].parent], [Some(1), None]);
@@ -222,7 +234,7 @@ fn every_solver_reports_its_error() {
 
 #[test]
 fn the_closed_form_reaches_the_target_of_a_mirrored_skeleton() {
-    let Answer { joints, targets, report } = Scene::new(BENT).pose(&["--solver", "two-bone"]);
+    let Answer { joints, targets, report, .. } = Scene::new(BENT).pose(&["--solver", "two-bone"]);
     let report = report.expect("it solved");
     assert!(report.converged, "{report:?}");
     assert!(joints[0].tip.distance(Vec3::new(9.0, 1.0, 0.0)) < 1e-4, "{:?}", joints[0]);
@@ -601,4 +613,94 @@ fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
         assert_eq!(solved, serde_json::from_slice::<serde_json::Value>(&fk).expect("JSON"));
         assert!(solved["report"].is_null());
     }
+}
+
+// Why targets are not reached
+
+/// A document of a chain from a locked root along +y, with bones of the given joints and whole-body
+/// targets.
+fn chain_document(joints: &str, targets: &str, solver: &str) -> Scene {
+    Scene::new(&format!(
+        r#"{{"format":"ik-arm","version":2,"rig":"skeleton","skeleton":{{"joints":[
+        {{"name":"root","parent":null,"axis":[0,0,0],"locked":true}},{joints}]}},
+        "solver":{{{solver}}},"targets":[{targets}]}}"#
+    ))
+}
+
+fn two_bones() -> &'static str {
+    r#"{"name":"upper","parent":0,"axis":[0,1,0]},
+    {"name":"lower","parent":1,"offset":[0,1,0],"axis":[0,1,0]}"#
+}
+
+fn first_why(scene: &Scene, arguments: &[&str]) -> Why {
+    let answer = scene.pose(arguments);
+    answer.why.into_iter().next().expect("a cause")
+}
+
+#[test]
+fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
+    let scene = chain_document(
+        two_bones(),
+        r#"{"joint":2,"home":[3,0,0],"influence":1}"#,
+        r#""method":"dls""#,
+    );
+    let why = first_why(&scene, &[]);
+    assert_eq!((why.cause.as_str(), why.target.as_str()), ("out_of_reach", "lower"));
+    assert_eq!(
+        why.sentence,
+        "lower cannot reach that far: its target is 3 from root, and the bones are 2 long"
+    );
+    assert!(why.residual_with_remedy.expect("a remedy") < 1e-3);
+    for solver in ["fabrik", "ccd", "transpose", "transpose-fixed", "two-bone"] {
+        assert_eq!(first_why(&scene, &["--solver", solver]).cause, "out_of_reach", "{solver}");
+    }
+}
+
+#[test]
+fn limits_locked_joints_few_iterations_and_little_influence_are_named() {
+    let limited = r#"{"name":"upper","parent":0,"axis":[0,1,0]},
+        {"name":"lower","parent":1,"offset":[0,1,0],"axis":[0,1,0],
+        "limits":{"x":[0,0],"y":[0,0],"z":[0,0.785]}}"#;
+    let near = r#"{"joint":2,"home":[1,0,0],"influence":1}"#;
+    let why = first_why(&chain_document(limited, near, ""), &[]);
+    assert_eq!((why.cause.as_str(), &why.joints[..]), ("limits", &["lower".to_owned()][..]));
+    assert!(why.remedy.expect("a remedy").starts_with("Widen the limit of lower about z by "));
+
+    let locked = r#"{"name":"upper","parent":0,"axis":[0,1,0]},
+        {"name":"lower","parent":1,"offset":[0,1,0],"axis":[0,1,0],"locked":true}"#;
+    let why = first_why(&chain_document(locked, near, ""), &[]);
+    assert_eq!((why.cause.as_str(), why.remedy.as_deref()), ("locked", Some("Unlock lower")));
+
+    let scene = chain_document(two_bones(), near, r#""method":"ccd""#);
+    assert_eq!(scene.pose(&[]).why, []);
+    let why = first_why(&scene, &["--solver", "ccd", "--iterations", "1"]);
+    assert_eq!(why.cause, "out_of_iterations");
+    let remedy = why.remedy.expect("a remedy");
+    let iterations = remedy.split(' ').nth(1).expect("a number");
+    let enough = scene.pose(&["--solver", "ccd", "--iterations", iterations]);
+    assert!(enough.report.expect("a report").converged, "{remedy}");
+
+    let half = r#"{"joint":2,"home":[1,0,0],"influence":0.5}"#;
+    let why = first_why(&chain_document(two_bones(), half, ""), &[]);
+    assert_eq!(why.cause, "influence");
+    assert_eq!(why.sentence, "lower is only 50 % of the way from its FK pose to its target");
+}
+
+#[test]
+fn targets_that_pull_apart_name_each_other() {
+    let joints = r#"{"name":"trunk","parent":0,"axis":[0,2,0]},
+        {"name":"left","parent":1,"offset":[0,2,0],"axis":[1,0,0]},
+        {"name":"right","parent":1,"offset":[0,2,0],"axis":[-1,0,0]}"#;
+    let targets = r#"{"joint":2,"home":[2.5,0,0],"influence":1},
+        {"joint":3,"home":[-2.5,0,0],"influence":1}"#;
+    let why = chain_document(joints, targets, "").pose(&[]).why;
+    let causes: Vec<_> = why.iter().map(|why| (why.cause.as_str(), why.target.as_str())).collect();
+    assert_eq!(&causes[..2], [("conflict", "left"), ("conflict", "right")]);
+    assert_eq!(why[0].joints, ["left", "right"]);
+}
+
+#[test]
+fn the_fk_pose_has_no_causes() {
+    let scene = chain_document(two_bones(), r#"{"joint":2,"home":[3,0,0],"influence":1}"#, "");
+    assert_eq!(scene.pose(&["--fk"]).why, []);
 }

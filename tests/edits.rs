@@ -9,6 +9,7 @@ use ik_arm::document::{
 use ik_arm::io::to_json;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
+use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -26,6 +27,10 @@ const INNER: usize = 3;
 const LEAF: usize = 18;
 /// A channel that no other example changes.
 const KEYED: Channel = Channel::Overlay(Overlay::Shadow);
+
+fn remedy(remedy: Remedy) -> EditAction {
+    EditAction::ApplyRemedy { target: JointId::new(AIMED), remedy }
+}
 
 /// The examples of every variant; a variant without examples does not compile.
 macro_rules! examples {
@@ -120,6 +125,12 @@ examples! {
         joint: JointId::new(AIMED),
         space: TargetSpace::Joint(JointId::new(INNER)),
     }];
+    ApplyRemedy: [
+        remedy(Remedy::Unlock(vec![JointId::new(0)])),
+        remedy(Remedy::MoveTarget { joint: JointId::new(AIMED), point: Vec3::ONE }),
+        remedy(Remedy::Lengthen { joint: JointId::new(AIMED), factor: 1.5 }),
+        remedy(Remedy::AllowIterations(77)),
+    ];
     SetSolver: [EditAction::SetSolver(
         SolverOptions::new(Method::Fabrik).with_damping(0.3),
     )];

@@ -14,6 +14,11 @@ impl SkeletonRig {
         self.with_names(|names| remedy.sentence(names))
     }
 
+    /// [`Remedy::done`] with the names of the rig.
+    pub fn remedy_done(&self, remedy: &Remedy) -> String {
+        self.with_names(|names| remedy.done(names))
+    }
+
     fn with_names(&self, say: impl FnOnce(Names<'_>) -> String) -> String {
         let joint = |joint: JointId| {
             self.skeleton.joint(joint).map_or_else(String::new, |it| it.name.clone())

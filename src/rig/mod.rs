@@ -39,6 +39,7 @@ pub use file_mesh::FileMesh;
 pub use follow_path::FollowPath;
 pub use limb_settings::LimbSettings;
 pub use mesh_skin::{MeshSkin, SkinFile, SkinFileError};
+pub use remedy::RemedyError;
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{Skin, SkinMeshError, SkinSource};
 pub use skin_part::SkinPart;

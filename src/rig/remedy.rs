@@ -1,5 +1,8 @@
+use thiserror::Error;
+
 use super::skeleton_rig::SkeletonRig;
 use super::target::Target;
+use crate::kinematics::chain_ik::SolveError;
 use crate::kinematics::diagnosis::Remedy;
 use crate::kinematics::skeleton::{JointId, SkeletonError};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
@@ -7,17 +10,34 @@ use crate::kinematics::soft_reach::{SoftReach, SoftReachError};
 /// Changed soft limits.
 type Changed = Result<SoftReach, SoftReachError>;
 
+/// A remedy that cannot be applied.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RemedyError {
+    /// It names a joint that the skeleton does not have, or changes an angle or a length to an invalid
+    /// one.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    /// It changes a target to an invalid one.
+    #[error(transparent)]
+    Target(#[from] SolveError),
+}
+
 impl SkeletonRig {
     /// Applies a remedy at a time in seconds, at which a moved target is at its new position.
     ///
     /// # Errors
     ///
-    /// [`SkeletonError`] for joints that the skeleton does not have, and for lengths that overflow. The
-    /// rig may then be changed in part.
-    pub fn apply_remedy(&mut self, remedy: &Remedy, time: f64) -> Result<(), SkeletonError> {
+    /// See [`RemedyError`]. The rig may then be changed in part.
+    pub fn apply_remedy(&mut self, remedy: &Remedy, time: f64) -> Result<(), RemedyError> {
+        check(remedy)?;
         if let Remedy::MoveTarget { joint, point } = remedy {
             let pose = self.skeleton_at(time);
-            self.change_target(*joint, |target| *target = target.placed(&pose, time, *point));
+            self.change_target(*joint, |target| {
+                let moved = target.placed(&pose, time, *point);
+                if moved.home.is_finite() {
+                    *target = moved;
+                }
+            });
         }
         remedy.change_skeleton(self.skeleton_mut())?;
         remedy.change_options(&mut self.solver);
@@ -53,5 +73,18 @@ impl SkeletonRig {
                 limb.soft_reach = change(limb.soft_reach).unwrap_or(limb.soft_reach);
             }
         });
+    }
+}
+
+/// Checks the numbers of a remedy for a target.
+fn check(remedy: &Remedy) -> Result<(), SolveError> {
+    match *remedy {
+        Remedy::MoveTarget { joint, point } if !point.is_finite() => {
+            Err(SolveError::Point { joint, point })
+        }
+        Remedy::SetWeight { joint, weight } if !(weight.is_finite() && weight > 0.0) => {
+            Err(SolveError::Weight { joint, weight })
+        }
+        _ => Ok(()),
     }
 }

@@ -109,6 +109,7 @@ impl Session {
             EditAction::SetPoleSpace { joint, space } => {
                 self.convert_target(|document, time| document.set_pole_space(joint, space, time));
             }
+            EditAction::ApplyRemedy { target, remedy } => self.apply_remedy(target, &remedy),
             EditAction::SetSolver(solver) => self.set_solver(solver),
             EditAction::SetIterationsPerFrame(iterations) => {
                 self.edit_skeleton(|rig| {

@@ -7,6 +7,7 @@ use crate::document::{
     TwistReferenceKind,
 };
 use crate::kinematics::chain_ik::SolverOptions;
+use crate::kinematics::diagnosis::Remedy;
 use crate::kinematics::skeleton::{JointId, Limit};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::spline::{Interpolation, Slopes};
@@ -169,6 +170,13 @@ pub enum EditAction {
     MatchTargetToFk(JointId),
     /// Writes the shown pose to the FK angles of the joints that the target of a joint moves.
     MatchFkToPose(JointId),
+    /// Applies a remedy for a target that is not reached.
+    ApplyRemedy {
+        /// Joint of the target.
+        target: JointId,
+        /// The remedy.
+        remedy: Remedy,
+    },
     /// Sets the solver and its options.
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.

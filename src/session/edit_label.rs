@@ -2,6 +2,7 @@ use super::drag::Grip;
 use super::edit_action::EditAction;
 use super::pose_mode::PoseMode;
 use crate::document::{Channel, Overlay, RigKind};
+use crate::kinematics::diagnosis::Remedy;
 
 /// Label of a transaction without edits.
 pub(super) const CHANGE: &str = "Change";
@@ -61,6 +62,7 @@ impl EditAction {
             Self::MatchFkToPose(_) => "Write pose to FK",
             Self::SetTargetSpace { .. } => "Change target space",
             Self::SetPoleSpace { .. } => "Change pole space",
+            Self::ApplyRemedy { remedy, .. } => remedy_label(remedy),
             Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",
             Self::ApplyPose => "Apply pose",
             Self::Key(channels) => match channels[..] {
@@ -96,6 +98,23 @@ impl Grip {
             Self::Tip(..) => "Pose joints",
             Self::Ring(..) => "Turn joint",
         }
+    }
+}
+
+fn remedy_label(remedy: &Remedy) -> &'static str {
+    match remedy {
+        Remedy::MoveTarget { .. } => "Move target",
+        Remedy::Lengthen { .. } => "Lengthen bones",
+        Remedy::SetRoot(_) => "Change root",
+        Remedy::WidenLimits(_) => "Widen limits",
+        Remedy::Unlock(_) => "Unlock joints",
+        Remedy::SwitchOff(_) => "Switch off target",
+        Remedy::SetWeight { .. } => "Change weight",
+        Remedy::UseMethod(_) => "Change solver",
+        Remedy::StartFrom(_) => "Change start",
+        Remedy::AllowIterations(_) => "Allow iterations",
+        Remedy::FullInfluence(_) => "Change influence",
+        Remedy::Stretch { .. } | Remedy::HardLimits(_) => "Change soft reach",
     }
 }
 

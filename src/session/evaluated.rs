@@ -6,6 +6,7 @@ use super::skin_areas::SkinAreas;
 use super::transport::TransportPath;
 use crate::document::{Arm, Document};
 use crate::kinematics::Shared;
+use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::skin::TriangleMesh;
 use crate::kinematics::two_bone::TwoBonePose;
@@ -19,6 +20,8 @@ pub(super) struct Evaluated {
     skeleton_pose: SkeletonPose,
     transport_path: TransportPath,
     pops: Pops,
+    /// Why each target is not reached.
+    why: Cached<Vec<Cached<Vec<Diagnosis>>>>,
     trail: Cached<Vec<Vec3>>,
     posed_skin: Cached<TriangleMesh>,
     skin_areas: Cached<Option<SkinAreas>>,
@@ -34,6 +37,7 @@ impl Evaluated {
             skeleton,
             transport_path: TransportPath::new(&document.arm),
             pops: Pops::new(&document.arm, pose, 0.0),
+            why: Cached::default(),
             trail: Cached::default(),
             posed_skin: Cached::default(),
             skin_areas: Cached::default(),
@@ -60,6 +64,13 @@ impl Evaluated {
         &self.pops
     }
 
+    /// The diagnoses of the target with this index, which the skeleton has.
+    pub fn why(&self, index: usize, diagnose: impl FnOnce() -> Vec<Diagnosis>) -> &[Diagnosis] {
+        let targets = self.skeleton.targets.len();
+        let why = self.why.get(|| vec![Cached::default(); targets]);
+        why.get(index).map_or(&[], |why| why.get(diagnose))
+    }
+
     pub fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
         self.trail.get(sample)
     }
@@ -83,6 +94,7 @@ impl Evaluated {
         self.skeleton = Shared::from(shown.skeleton_rig.evaluate(time));
         self.skeleton.solved.write_pose(&mut self.skeleton_pose);
         self.posed_skin.clear();
+        self.why.clear();
     }
 
     pub fn reset_transport(&mut self, arm: &Arm) {

@@ -75,6 +75,7 @@ mod turn_drag;
 mod view;
 mod view_action;
 mod view_drag;
+mod why;
 
 pub use action::{Action, Actions};
 pub use arm_joint::ArmJoint;

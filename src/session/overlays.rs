@@ -20,6 +20,8 @@ pub struct Overlays {
     pub selection: Vec<JointId>,
     /// The joint under the mouse.
     pub hovered: Option<JointId>,
+    /// The joints that keep a tip from its target.
+    pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.
     pub ghosts: Vec<SolverGhost>,
     /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.

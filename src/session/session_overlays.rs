@@ -24,6 +24,10 @@ impl Session {
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
         overlays.hovered = self.hovered();
+        overlays.concerned.clear();
+        if let (Some(found), true) = (self.why().first(), self.solvers.is_idle()) {
+            overlays.concerned.extend_from_slice(&found.joints);
+        }
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());

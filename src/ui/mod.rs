@@ -19,6 +19,7 @@ pub mod style;
 mod timeline;
 mod tour;
 mod viewport;
+mod why;
 mod widgets;
 
 pub use frame_times::{FrameTime, FrameTimes, TimeSpread};

@@ -70,6 +70,9 @@ fn describe_crowd(crowd: &Crowd) -> String {
 
 fn describe_skeleton(session: &Session) -> String {
     let rig = session.skeleton_rig();
+    if let (Some(found), None) = (session.why().first(), session.shown_iteration()) {
+        return rig.sentence(found);
+    }
     let joints = rig.skeleton.joints();
     let count = |count: usize, one: &str| match count {
         1 => format!("1 {one}"),

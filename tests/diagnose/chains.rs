@@ -211,7 +211,10 @@ fn a_target_nearer_than_a_stiff_chain_may_curl_is_kept_off_by_limits() {
 fn a_target_that_a_locked_joint_forbids_is_kept_off_by_it() {
     first_causes("locked", |random| {
         let (mut skeleton, tip) = any_chain(random);
-        shake(random, &mut skeleton);
+        // Half of the chains are in line, where no target pulls at the locked joints.
+        if random.coin() {
+            shake(random, &mut skeleton);
+        }
         for joint in 2..=tip.index() {
             skeleton.change(joint.into(), |joint| joint.locked = true).expect("joint");
         }

@@ -131,6 +131,7 @@ kinds! {
         MatchFkToPose: Solve 2, |v| EditAction::MatchFkToPose(v.aimed());
         SetTargetSpace: Solve 2, |v| EditAction::SetTargetSpace { joint: v.aimed(), space: v.space() };
         SetPoleSpace: Solve 1, |v| EditAction::SetPoleSpace { joint: v.aimed(), space: v.space() };
+        ApplyRemedy: Solve 3, |v| EditAction::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
         SetSolver: Solve 3, |v| EditAction::SetSolver(v.options());
         SetIterationsPerFrame: Solve 1, |v| EditAction::SetIterationsPerFrame(v.iterations_per_frame());
         ApplyPose: Solve 3, |_| EditAction::ApplyPose;

@@ -214,6 +214,11 @@ impl Bench {
         self.harness.query_all_by_label_contains(text).next().is_some()
     }
 
+    /// Number of widgets whose name contains a text.
+    pub fn count(&self, text: &str) -> usize {
+        self.harness.query_all_by_label_contains(text).count()
+    }
+
     pub fn rect(&self, role: Role, name: &str) -> Rect {
         self.node(role, name).rect()
     }

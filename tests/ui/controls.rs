@@ -19,12 +19,12 @@ const MENUS: [&str; 5] = ["File", "Edit", "View", "Examples", "Help"];
 const TALL: Vec2 = vec2(1280.0, 2400.0);
 
 /// First words of tooltips.
-const VERBS: [&str; 46] = [
-    "Add", "Bend", "Blend", "Change", "Choose", "Clear", "Click", "Colour", "Compare", "Delete",
-    "Drag", "Enable", "End", "Fix", "Give", "Go", "Hide", "Iterate", "Keep", "Key", "Let", "Limit",
-    "Make", "Measure", "Move", "Play", "Pose", "Raise", "Remove", "Rename", "Repeat", "Reset",
-    "Restart", "Rotate", "Run", "Select", "Set", "Show", "Slow", "Solve", "Stop", "Turn", "Use",
-    "View", "Weigh", "Write",
+const VERBS: [&str; 47] = [
+    "Add", "Apply", "Bend", "Blend", "Change", "Choose", "Clear", "Click", "Colour", "Compare",
+    "Delete", "Drag", "Enable", "End", "Fix", "Give", "Go", "Hide", "Iterate", "Keep", "Key",
+    "Let", "Limit", "Make", "Measure", "Move", "Play", "Pose", "Raise", "Remove", "Rename",
+    "Repeat", "Reset", "Restart", "Rotate", "Run", "Select", "Set", "Show", "Slow", "Solve",
+    "Stop", "Turn", "Use", "View", "Weigh", "Write",
 ];
 
 #[derive(Clone, Debug, PartialEq)]

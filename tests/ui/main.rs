@@ -41,3 +41,4 @@ mod timeline_looks;
 mod tour;
 mod view;
 mod view_keys;
+mod why;

@@ -61,7 +61,7 @@ mod target;
 mod transpose;
 mod two_bone;
 
-pub use diagnose::diagnose;
+pub use diagnose::{diagnose, diagnose_targets};
 pub use error::{OptionField, SolveError, TwoBoneRefusal};
 pub use jacobian::jacobian;
 pub use method::{Method, ParseMethodError};

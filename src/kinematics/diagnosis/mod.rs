@@ -16,3 +16,5 @@ pub(crate) use diagnosis::in_turn;
 pub use diagnosis::{Diagnosis, TriedRemedy};
 pub use remedy::{Remedy, Start, WidenedLimit};
 pub use words::Names;
+#[cfg(feature = "document")]
+pub(crate) use words::significant;

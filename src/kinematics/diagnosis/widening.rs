@@ -1,5 +1,7 @@
 //! How far limits must be widened to contain a pose.
 
+use core::f32::consts::TAU;
+
 use super::{Remedy, WidenedLimit};
 use crate::kinematics::skeleton::{JointId, Limit, RotationAxis, Skeleton};
 
@@ -16,6 +18,11 @@ pub(crate) fn limited_angles(
         limits.filter_map(move |(axis, limit)| limit.map(|_| (joint, axis)))
     });
     limited.collect()
+}
+
+/// Whether the limits of an angle leave it one value.
+pub(crate) fn is_fixed(skeleton: &Skeleton, (joint, axis): Angle) -> bool {
+    skeleton[joint].limits[axis as usize].is_some_and(|limit| limit.min == limit.max)
 }
 
 /// Removes the limits of some angles.
@@ -42,13 +49,18 @@ pub(crate) fn widen_to_contain(
     (!widened.is_empty()).then_some(Remedy::WidenLimits(widened))
 }
 
-/// A limit widened by whole degrees to contain an angle; `None` if it contains the angle.
+/// A limit widened by whole degrees to contain an angle or the same angle after a full turn, whichever
+/// is nearer; `None` if it contains the angle.
 fn widened(limit: Limit, angle: f32) -> Option<Limit> {
     let degrees = |by: f32| by.to_degrees().ceil().to_radians();
-    if angle < limit.min {
-        Some(Limit { min: limit.min - degrees(limit.min - angle), ..limit })
-    } else if angle > limit.max {
-        Some(Limit { max: limit.max + degrees(angle - limit.max), ..limit })
+    let excess = |angle: f32| (limit.min - angle).max(angle - limit.max);
+    let nearest = [angle, angle - TAU, angle + TAU]
+        .into_iter()
+        .min_by(|one, other| excess(*one).total_cmp(&excess(*other)))?;
+    if nearest < limit.min {
+        Some(Limit { min: limit.min - degrees(limit.min - nearest), ..limit })
+    } else if nearest > limit.max {
+        Some(Limit { max: limit.max + degrees(nearest - limit.max), ..limit })
     } else {
         None
     }

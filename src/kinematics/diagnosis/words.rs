@@ -54,6 +54,9 @@ impl Diagnosis {
                     "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
                 )
             }
+            Cause::Influence { influence: 0.0 } => {
+                format!("The target of {target} has no influence: the joint angles alone pose it")
+            }
             Cause::Influence { influence } => {
                 let percent = significant(100.0 * influence);
                 format!("{target} is only {percent} % of the way from its FK pose to its target")
@@ -65,39 +68,95 @@ impl Diagnosis {
 impl Remedy {
     /// The change as an imperative without a full stop, such as "Unlock elbow".
     pub fn sentence(&self, names: Names<'_>) -> String {
+        let (verb, rest) = self.words(names);
+        format!("{} {rest}", verb.imperative())
+    }
+
+    /// What the change did, without a full stop, such as "Unlocked elbow".
+    pub fn done(&self, names: Names<'_>) -> String {
+        let (verb, rest) = self.words(names);
+        format!("{} {rest}", verb.past())
+    }
+
+    fn words(&self, names: Names<'_>) -> (Verb, String) {
+        let tip = |joint: &JointId| (names.tip)(*joint);
         match self {
             Self::MoveTarget { joint, .. } => {
-                format!("Move the target of {} within reach", (names.tip)(*joint))
+                (Verb::Move, format!("the target of {} within reach", tip(joint)))
             }
             Self::Lengthen { factor, .. } => {
-                format!("Lengthen the bones by {}", percent(*factor - 1.0))
+                (Verb::Lengthen, format!("the bones by {}", percent(*factor - 1.0)))
             }
-            Self::SetRoot(Root::Free) => "Let the root move".to_owned(),
-            Self::SetRoot(Root::Turns) => "Let the root turn".to_owned(),
-            Self::SetRoot(Root::Locked) => "Lock the root".to_owned(),
-            Self::WidenLimits(widened) => widen(widened, names),
-            Self::Unlock(joints) => format!("Unlock {}", listed(joints, names)),
-            Self::SwitchOff(joint) => format!("Switch off the target of {}", (names.tip)(*joint)),
+            Self::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
+            Self::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
+            Self::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),
+            Self::WidenLimits(widened) => (Verb::Widen, widen(widened, names)),
+            Self::Unlock(joints) => (Verb::Unlock, listed(joints, names)),
+            Self::SwitchOff(joint) => (Verb::SwitchOff, format!("the target of {}", tip(joint))),
             Self::SetWeight { joint, weight } => {
-                format!(
-                    "Give the target of {} the weight {}",
-                    (names.tip)(*joint),
-                    significant(*weight)
-                )
+                let weight = significant(*weight);
+                (Verb::Set, format!("the weight of the target of {} to {weight}", tip(joint)))
             }
-            Self::UseMethod(method) => format!("Solve by {}", method.title()),
+            Self::UseMethod(method) => (Verb::Set, format!("the solver to {}", method.title())),
             Self::StartFrom(Start { is_bend: true, .. }) => {
-                "Bend the chain a little first".to_owned()
+                (Verb::Bend, "the chain a little".to_owned())
             }
-            Self::StartFrom(_) => "Start from the middle of the limits".to_owned(),
-            Self::AllowIterations(iterations) => format!("Allow {iterations} iterations"),
+            Self::StartFrom(_) => {
+                (Verb::Move, "the joints to the middle of their limits".to_owned())
+            }
+            Self::AllowIterations(iterations) => (Verb::Allow, format!("{iterations} iterations")),
             Self::FullInfluence(joint) => {
-                format!("Set the influence of the target of {} to 1", (names.tip)(*joint))
+                (Verb::Set, format!("the influence of the target of {} to 1", tip(joint)))
             }
             Self::Stretch { max_stretch, .. } => {
-                format!("Let the limb stretch by up to {}", percent(*max_stretch - 1.0))
+                (Verb::Let, format!("the limb stretch by up to {}", percent(*max_stretch - 1.0)))
             }
-            Self::HardLimits(_) => "Turn the soft limits off".to_owned(),
+            Self::HardLimits(_) => (Verb::SwitchOff, "the soft limits".to_owned()),
+        }
+    }
+}
+
+/// What a remedy does.
+enum Verb {
+    Allow,
+    Bend,
+    Lengthen,
+    Let,
+    Lock,
+    Move,
+    Set,
+    SwitchOff,
+    Unlock,
+    Widen,
+}
+
+impl Verb {
+    fn imperative(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allow",
+            Self::Bend => "Bend",
+            Self::Lengthen => "Lengthen",
+            Self::Let => "Let",
+            Self::Lock => "Lock",
+            Self::Move => "Move",
+            Self::Set => "Set",
+            Self::SwitchOff => "Switch off",
+            Self::Unlock => "Unlock",
+            Self::Widen => "Widen",
+        }
+    }
+
+    fn past(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allowed",
+            Self::Bend => "Bent",
+            Self::Lengthen => "Lengthened",
+            Self::Lock => "Locked",
+            Self::Move => "Moved",
+            Self::Let | Self::Set => self.imperative(),
+            Self::SwitchOff => "Switched off",
+            Self::Unlock => "Unlocked",
+            Self::Widen => "Widened",
         }
     }
 }
@@ -107,7 +166,7 @@ fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
     match widened {
         [one] => {
             format!(
-                "Widen the limit of {} about {} by {}°",
+                "the limit of {} about {} by {}°",
                 (names.joint)(one.joint),
                 one.axis,
                 degrees(one)
@@ -115,7 +174,7 @@ fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
         }
         several => {
             let most = several.iter().map(degrees).fold(0.0, f32::max);
-            format!("Widen {} limits by up to {most}°", several.len())
+            format!("{} limits by up to {most}°", several.len())
         }
     }
 }
@@ -163,7 +222,7 @@ fn percent(fraction: f32) -> String {
 }
 
 /// A number with three significant digits.
-fn significant(value: f32) -> String {
+pub(crate) fn significant(value: f32) -> String {
     let magnitude = value.abs().log10().floor();
     let decimals =
         if magnitude.is_finite() { (2.0 - magnitude).clamp(0.0, 8.0) as usize } else { 0 };

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::rig_case::RigCase;
 use crate::kinematics::diagnosis::widening::{
-    Angle, limited_angles, remove_limits, widen_to_contain,
+    Angle, is_fixed, limited_angles, remove_limits, widen_to_contain,
 };
 use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, TriedRemedy};
 use crate::kinematics::limb_ik::{Limb, LimbReach};
@@ -110,15 +110,12 @@ impl RigCase<'_> {
     fn limb_limits(&self, limb: Limb, reach: LimbReach) -> Option<Diagnosis> {
         let skeleton = &self.full.skeleton;
         let of = |joints: &[JointId]| limited_angles(skeleton, joints.iter().copied());
-        let is_free = |(joint, axis): &Angle| {
-            let limit = skeleton[*joint].limits[*axis as usize];
-            limit.is_some_and(|limit| limit.max > limit.min)
-        };
         let named = match reach {
             LimbReach::Limited(joint) => joint,
             _ => limb.lower,
         };
-        let hinge: Vec<Angle> = of(&[named]).into_iter().filter(is_free).collect();
+        let hinge: Vec<Angle> =
+            of(&[named]).into_iter().filter(|it| !is_fixed(skeleton, *it)).collect();
         let sets = [hinge, of(&[named]), of(&[limb.upper, limb.lower])];
         let tried = sets.iter().filter(|angles| !angles.is_empty());
         let tried: TriedRemedy =

@@ -9,6 +9,7 @@ use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
 use crate::kinematics::chain_ik::{self, TipTarget};
 use crate::kinematics::diagnosis::{Diagnosis, in_turn};
+use crate::kinematics::skeleton::JointId;
 
 impl SkeletonRig {
     /// The causes for which the tips are not at their enabled targets at a time in seconds, the most
@@ -17,9 +18,19 @@ impl SkeletonRig {
     /// Every remedy was tried: its residual is that of [`SkeletonRig::evaluate`] after
     /// [`SkeletonRig::apply_remedy`].
     pub fn diagnose(&self, time: f64) -> Vec<Diagnosis> {
+        let all: Vec<usize> = (0..self.targets.len()).collect();
+        self.diagnose_targets(&all, time)
+    }
+
+    /// [`SkeletonRig::diagnose`] for the targets with these indices.
+    ///
+    /// # Panics
+    ///
+    /// If there is no target with one of the indices.
+    pub fn diagnose_targets(&self, targets: &[usize], time: f64) -> Vec<Diagnosis> {
         let evaluated = self.evaluate(time);
-        let mut missed: Vec<usize> =
-            (0..self.targets.len()).filter(|index| self.is_missed(*index, &evaluated)).collect();
+        let is_missed = |index: &usize| self.is_missed(*index, &evaluated);
+        let mut missed: Vec<usize> = targets.iter().copied().filter(is_missed).collect();
         if missed.is_empty() {
             return Vec::new();
         }
@@ -70,12 +81,14 @@ impl SkeletonRig {
         evaluated: &EvaluatedSkeleton,
         time: f64,
     ) -> Vec<Diagnosis> {
-        let is_whole_body = |target: &Target| target.kind == TargetKind::WholeBody;
-        if !missed.iter().any(|index| is_whole_body(&self.targets[*index])) {
+        let is_whole_body = |target: &&Target| target.kind == TargetKind::WholeBody;
+        let missed = missed.iter().map(|index| &self.targets[*index]).filter(is_whole_body);
+        let missed: Vec<JointId> = missed.map(|target| target.joint).collect();
+        if missed.is_empty() {
             return Vec::new();
         }
-        let active = self.targets.iter().filter(|it| it.is_posing() && is_whole_body(it));
+        let active = self.targets.iter().filter(|it| it.is_posing()).filter(is_whole_body);
         let tips: Vec<TipTarget> = active.map(|it| it.tip_target(&evaluated.fk, time)).collect();
-        chain_ik::diagnose(&evaluated.fk, &tips, &self.solver).unwrap_or_default()
+        chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
     }
 }

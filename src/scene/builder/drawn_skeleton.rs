@@ -102,6 +102,19 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
+    /// Adds a see-through cover around a bone and its joint, which also shows through what hides it.
+    pub fn add_outline(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
+        // Ratio of the cover's radius to the bone's.
+        const WIDER: f32 = 1.5;
+        let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
+        let [radius, tip_radius] =
+            [self.radius(joint), self.tip_radius(joint)].map(|it| it * WIDER);
+        if base != tip {
+            scene.add_guide_solid(base, tip, radius, tip_radius, colour);
+        }
+        scene.guide_balls.push(Ball { centre: base, radius: radius * 1.1, colour });
+    }
+
     /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of that
     /// bone, so that no bone floats.
     pub fn add_link(&self, scene: &mut Scene, joint: JointId) {

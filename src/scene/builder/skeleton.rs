@@ -69,6 +69,12 @@ pub(super) fn add(
         let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
         drawn.add_fk_pose(scene, fk_pose, is_shown);
     }
+    // Fraction of the accent colour in the covers of joints.
+    const COVER: f32 = 0.4;
+    let cover = scene.palette.accent.with_opacity(COVER);
+    for joint in overlays.concerned.iter().filter(|joint| joint.index() < joints.len()) {
+        drawn.add_outline(scene, *joint, cover);
+    }
     drawn.add_solver_ghosts(scene, &overlays.ghosts, display);
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {

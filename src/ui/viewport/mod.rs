@@ -3,6 +3,7 @@
 mod drag_hint;
 mod navigation;
 pub(in crate::ui) mod projection;
+mod why_note;
 
 use projection::ScreenProjection;
 
@@ -58,6 +59,7 @@ pub(in crate::ui) fn ui(
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
+    why_note::ui(ui, session, &screen, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {
         invite(ui, rect);
     }

@@ -3,8 +3,9 @@
 use glam::{Affine3A, Vec3};
 use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
+use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
     Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
@@ -223,6 +224,36 @@ impl Values<'_> {
         options.step = self.above_0(2.0);
         options.root = if self.chance(0.4) { self.one_of(&Root::ALL) } else { Root::Turns };
         options
+    }
+
+    pub fn remedy(&mut self) -> Remedy {
+        let joint = self.aimed();
+        match self.random.below(12) {
+            0 => Remedy::MoveTarget { joint, point: self.small_point() },
+            1 => Remedy::Lengthen { joint, factor: self.above_0(2.0) },
+            2 => Remedy::SetRoot(self.one_of(&Root::ALL)),
+            3 => {
+                let limit = self.limit().unwrap_or(Limit { min: 0.0, max: 0.0 });
+                let axis = self.one_of(&RotationAxis::ALL);
+                Remedy::WidenLimits(vec![WidenedLimit {
+                    joint: self.joint(),
+                    axis,
+                    limit,
+                    by: 0.1,
+                }])
+            }
+            4 => Remedy::Unlock(self.some_joints()),
+            5 => Remedy::SwitchOff(joint),
+            6 => Remedy::SetWeight { joint, weight: self.above_0(10.0) },
+            7 => Remedy::UseMethod(self.one_of(&Method::ALL)),
+            8 => {
+                let angles = vec![(self.joint(), self.angles())];
+                Remedy::StartFrom(Start { is_bend: self.coin(), angles })
+            }
+            9 => Remedy::AllowIterations(self.one_of(&[0, 1, 20, 500])),
+            10 => Remedy::FullInfluence(joint),
+            _ => Remedy::Stretch { joint, max_stretch: self.above_0(3.0) },
+        }
     }
 
     pub fn iterations_per_frame(&mut self) -> u32 {

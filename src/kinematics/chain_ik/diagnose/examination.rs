@@ -4,7 +4,7 @@ use super::solve_inputs::{SolveInputs, Solved};
 use super::starts;
 use crate::kinematics::chain_ik::{Method, Root, Status};
 use crate::kinematics::diagnosis::widening::{
-    Angle, limited_angles, remove_limits, widen_to_contain,
+    Angle, is_fixed, limited_angles, remove_limits, widen_to_contain,
 };
 use crate::kinematics::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy};
 use crate::kinematics::skeleton::JointId;
@@ -146,7 +146,9 @@ impl<'a> Case<'a> {
     fn limits(&self) -> Option<Diagnosis> {
         let Examination { settled, pose, .. } = self.examination;
         let pushed = self.pulls.against_limits(&pose.skeleton);
-        let pushed: Vec<Angle> = pushed.map(|pull| (pull.joint, pull.axis)).collect();
+        let mut pushed: Vec<Angle> = pushed.map(|pull| (pull.joint, pull.axis)).collect();
+        // A hinge would rather turn farther than become a ball joint.
+        pushed.sort_by_key(|angle| is_fixed(&settled.skeleton, *angle));
         let free = |joint: &JointId| !settled.skeleton[*joint].locked;
         let all = limited_angles(&settled.skeleton, self.path().into_iter().filter(free));
         let sets = [&pushed[..pushed.len().min(1)], &pushed[..], &all[..]];
@@ -184,13 +186,12 @@ impl<'a> Case<'a> {
 
     /// Tries to reach the target with the most strongly pulled locked joint unlocked, then with all.
     fn locked(&self) -> Option<Diagnosis> {
-        let Examination { inputs, pose, .. } = self.examination;
+        let inputs = &self.examination.inputs;
         let keeps_roots = inputs.options.root == Root::Locked;
         let is_root = |joint: JointId| inputs.skeleton[joint].parent.is_none();
         let is_locked = |joint: JointId| inputs.skeleton[joint].locked;
-        let joints = self
-            .pulls
-            .on_locked(&pose.skeleton, |joint| is_locked(joint) || (keeps_roots && is_root(joint)));
+        let is_kept = |joint: &JointId| is_locked(*joint) || (keeps_roots && is_root(*joint));
+        let joints: Vec<JointId> = self.pulls.joints().into_iter().filter(is_kept).collect();
         let unlock = |joints: &[JointId]| match joints {
             [root] if !is_locked(*root) => Remedy::SetRoot(Root::Turns),
             joints => Remedy::Unlock(joints.to_vec()),

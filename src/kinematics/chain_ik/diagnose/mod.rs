@@ -32,7 +32,7 @@ use self::examination::Examination;
 use self::solve_inputs::SolveInputs;
 use super::{SolveError, SolverOptions, TipTarget};
 use crate::kinematics::diagnosis::{Diagnosis, in_turn};
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// The causes for which the tips of `skeleton`, which is in its FK pose, are not at their targets
 /// after a solve, the most likely first; empty if all are reached.
@@ -65,17 +65,30 @@ pub fn diagnose(
     targets: &[TipTarget],
     options: &SolverOptions,
 ) -> Result<Vec<Diagnosis>, SolveError> {
+    let joints: Vec<_> = targets.iter().map(|target| target.joint).collect();
+    diagnose_targets(skeleton, targets, options, &joints)
+}
+
+/// [`diagnose`] for the targets of some joints, which are solved together with all others.
+///
+/// # Errors
+///
+/// See [`SolveError`].
+pub fn diagnose_targets(
+    skeleton: &Skeleton,
+    targets: &[TipTarget],
+    options: &SolverOptions,
+    joints: &[JointId],
+) -> Result<Vec<Diagnosis>, SolveError> {
     let inputs =
         SolveInputs { skeleton: skeleton.clone(), targets: targets.to_vec(), options: *options };
     let solved = inputs.solve()?;
     if solved.report.converged() {
         return Ok(Vec::new());
     }
-    let mut missed: Vec<_> = targets
-        .iter()
-        .map(|target| (target.joint, solved.residual(&inputs, target.joint)))
-        .filter(|(_, residual)| *residual > solved.tolerance)
-        .collect();
+    let residual = |joint: &JointId| (*joint, solved.residual(&inputs, *joint));
+    let is_missed = |(_, residual): &(JointId, f32)| *residual > solved.tolerance;
+    let mut missed: Vec<_> = joints.iter().map(residual).filter(is_missed).collect();
     missed.sort_by(|(_, one), (_, other)| other.total_cmp(one));
     let examination = Examination::new(inputs, solved);
     let found = missed.into_iter().map(|(joint, residual)| examination.examine(joint, residual));

@@ -1,5 +1,3 @@
-use core::cmp::Ordering;
-
 use glam::Vec3;
 
 use super::solve_inputs::SolveInputs;
@@ -48,39 +46,36 @@ impl Pulls {
         };
         let greatest = [Vec3::X, Vec3::Y, Vec3::Z].map(speed).into_iter().fold(0.0, f32::max);
         let mobility = if greatest > 0.0 { speed(direction) / greatest } else { 0.0 };
-        all.sort_by(|one, other| other.strength(one));
+        all.sort_by(|one, other| other.strength().total_cmp(&one.strength()));
         Self { all, mobility }
     }
 
     /// Pulls that push limited angles outwards of joints that may turn, the strongest first.
     pub fn against_limits<'a>(&'a self, pose: &'a Skeleton) -> impl Iterator<Item = Pull> + 'a {
-        self.strong().filter(|pull| {
+        self.all.iter().copied().filter(|pull| {
             let joint = &pose[pull.joint];
-            !joint.locked && pull.is_outward(joint.limits, joint.rotation)
+            pull.strength() > 0.0 && !joint.locked && pull.is_outward(joint.limits, joint.rotation)
         })
     }
 
-    /// Joints that solvers may not turn and that the target pulls, the most strongly pulled first.
-    pub fn on_locked(&self, pose: &Skeleton, is_locked: impl Fn(JointId) -> bool) -> Vec<JointId> {
+    /// Joints between the root and the tip, the most strongly pulled first; those that are not pulled,
+    /// as in a straight chain, from the tip to the root.
+    pub fn joints(&self) -> Vec<JointId> {
         let mut joints = Vec::new();
-        for pull in
-            self.strong().filter(|pull| pose.joint(pull.joint).is_some() && is_locked(pull.joint))
-        {
-            if !joints.contains(&pull.joint) {
-                joints.push(pull.joint);
+        for Pull { joint, .. } in &self.all {
+            if !joints.contains(joint) {
+                joints.push(*joint);
             }
         }
         joints
     }
-
-    fn strong(&self) -> impl Iterator<Item = Pull> + '_ {
-        self.all.iter().copied().filter(|pull| pull.moment.abs() > LEAST)
-    }
 }
 
 impl Pull {
-    fn strength(&self, other: &Self) -> Ordering {
-        self.moment.abs().total_cmp(&other.moment.abs())
+    /// The moment's size, or 0 if it does not count.
+    fn strength(&self) -> f32 {
+        let size = self.moment.abs();
+        if size > LEAST { size } else { 0.0 }
     }
 
     fn is_outward(&self, limits: [Option<Limit>; 3], angles: Vec3) -> bool {

@@ -71,7 +71,7 @@ pub(in crate::ui) fn selected(
     actions: &mut Actions,
 ) {
     let step = session.shown().grid_cell() * 0.1;
-    status::ui(ui, session, &target);
+    status::ui(ui, session, &target, actions);
     influence(ui, session, target, actions);
     kind::ui(ui, session, target, actions);
     place(ui, session, target, step, actions);

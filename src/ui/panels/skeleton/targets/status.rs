@@ -1,17 +1,23 @@
-//! Whether a target is reached and, if not, why.
+//! Whether a target is reached and, if not, why, with what helps.
 
 use egui::{RichText, Ui};
 
 use crate::document::Target;
 use crate::kinematics::chain_ik::Status;
+use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::limb_ik::LimbReach;
 use crate::rig::{TargetOutcome, TargetReport};
-use crate::session::Session;
-use crate::ui::style;
+use crate::session::{Actions, Session};
 use crate::ui::widgets::format;
+use crate::ui::{style, why};
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target) {
+pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let Some(report) = session.target_report(target.joint) else { return };
+    let why =
+        session.skeleton_rig().target(target.joint).map_or(&[][..], |it| session.why_target(it));
+    if !why.is_empty() {
+        return explain(ui, session, report.error, why, actions);
+    }
     let text = text(session, target, report);
     let is_reached = match &report.outcome {
         TargetOutcome::Off => true,
@@ -22,6 +28,22 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target) {
     };
     let colour = if is_reached { ui.visuals().weak_text_color() } else { style::accent(ui) };
     ui.label(RichText::new(text).color(colour));
+}
+
+/// Shows how far a target is from being reached, each cause and its remedies.
+fn explain(
+    ui: &mut Ui,
+    session: &Session,
+    error: f32,
+    causes: &[Diagnosis],
+    actions: &mut Actions,
+) {
+    let gap = format::short(error);
+    ui.label(RichText::new(format!("Not reached: {gap} away")).color(style::accent(ui)));
+    for found in causes {
+        why::cause(ui, session, found);
+        ui.horizontal_wrapped(|ui| why::remedies(ui, session, found, usize::MAX, actions));
+    }
 }
 
 fn text(session: &Session, target: &Target, report: &TargetReport) -> String {

@@ -1,0 +1,72 @@
+use super::session::Session;
+use crate::document::RigKind;
+use crate::kinematics::diagnosis::{Diagnosis, Remedy, significant};
+use crate::kinematics::skeleton::JointId;
+use crate::rig::SkeletonRig;
+
+/// Why targets are not reached.
+impl Session {
+    /// The causes for which the target of the selected joint is not reached, the most likely first;
+    /// without such a target, those of the posing target that is farthest from its tip. Empty if all
+    /// are reached, while something is dragged or plays, and for other rigs than skeletons.
+    pub fn why(&self) -> &[Diagnosis] {
+        let index = self.examined_target();
+        index.map_or(&[], |index| self.why_target(index))
+    }
+
+    /// The causes for which the target with this index in
+    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached.
+    pub fn why_target(&self, index: usize) -> &[Diagnosis] {
+        let rig = self.skeleton_rig();
+        let is_still = !(self.is_editing() || self.is_playing() || rig.is_on_path(self.time()));
+        if self.rig() != RigKind::Skeleton || !is_still || index >= rig.targets.len() {
+            return &[];
+        }
+        self.evaluated.why(index, || rig.diagnose_targets(&[index], self.time()))
+    }
+
+    /// The selected joint's target if it is not reached, or else the posing one farthest from its
+    /// tip.
+    fn examined_target(&self) -> Option<usize> {
+        let rig = self.skeleton_rig();
+        let is_missed = |index: &usize| {
+            let report = self.evaluated_skeleton().targets.get(*index);
+            report.is_some_and(|report| report.error > rig.tolerance())
+        };
+        let selected = self.selected().and_then(|joint| rig.target_of_end(joint));
+        let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
+        let errors = rig.targets.iter().zip(&self.evaluated_skeleton().targets).enumerate();
+        let posing = errors.filter(|(_, (target, _))| target.is_posing());
+        let farthest =
+            posing.max_by(|(_, (_, one)), (_, (_, other))| one.error.total_cmp(&other.error));
+        selected.or(farthest.map(|(index, _)| index)).filter(is_missed)
+    }
+
+    /// Applies a remedy for a target that is not reached, and says what it did.
+    pub(super) fn apply_remedy(&mut self, target: JointId, remedy: &Remedy) {
+        let time = self.time();
+        let edited =
+            self.edit_document(|document| document.skeleton_rig.apply_remedy(remedy, time));
+        if edited.is_none() {
+            return;
+        }
+        let rig = self.skeleton_rig();
+        let done = rig.remedy_done(remedy);
+        let result = match rig.target(target).filter(|index| rig.targets[*index].enabled) {
+            Some(index) => self.describe_result(rig, index),
+            None => String::new(),
+        };
+        self.say(format!("{done}{result}"));
+    }
+
+    fn describe_result(&self, rig: &SkeletonRig, index: usize) -> String {
+        let Some(report) = self.evaluated_skeleton().targets.get(index) else {
+            return String::new();
+        };
+        let name = &rig.skeleton[rig.end_of(&rig.targets[index])].name;
+        match report.error <= rig.tolerance() {
+            true => format!(": {name} is at its target now"),
+            false => format!(": {name} is {} from its target now", significant(report.error)),
+        }
+    }
+}

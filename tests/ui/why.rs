@@ -1,0 +1,137 @@
+//! Why targets are not reached: the note beside the target, the panel and the status bar.
+
+use egui::accesskit::Role;
+use egui::{PointerButton, vec2};
+use glam::Vec3;
+use ik_arm::document::Target;
+use ik_arm::io::Example;
+use ik_arm::kinematics::diagnosis::Remedy;
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::session::{
+    EditAction, FileAction, PlaybackAction, SelectAction, SolverAction, TransactionAction,
+};
+
+use crate::bench::Bench;
+
+const TOO_FAR: &str = "left_hand cannot reach that far: its target is";
+const MOVE: &str = "Move the target of left_hand within reach";
+const STRETCH: &str = "Let the limb stretch by up to";
+
+/// The Human with the target of its left hand too far away.
+fn bench() -> Bench {
+    let mut bench =
+        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..target(&bench) };
+    bench.apply([EditAction::SetTarget(target)]);
+    bench.settle();
+    bench
+}
+
+fn target(bench: &Bench) -> Target {
+    let rig = bench.session().skeleton_rig();
+    rig.targets[rig.target_of_end(joint(bench, "left_hand")).expect("a target")]
+}
+
+fn joint(bench: &Bench, name: &str) -> JointId {
+    bench.session().skeleton().find(name).expect("a joint")
+}
+
+fn error(bench: &Bench) -> f32 {
+    let target = target(bench);
+    bench.session().target_report(target.joint).expect("a report").error
+}
+
+/// Number of labels that begin with this text.
+fn labels(bench: &Bench, text: &str) -> usize {
+    bench.count(text)
+}
+
+#[test]
+fn a_note_beside_the_target_and_the_status_bar_say_why() {
+    let mut bench = bench();
+    assert_eq!(labels(&bench, TOO_FAR), 3);
+    let at = bench.on_screen(target(&bench).home);
+    let button = bench.rect(Role::Button, MOVE);
+    assert!(bench.viewport().contains_rect(button), "{button:?}");
+    assert!(button.distance_to_pos(at) < 260.0 && !button.contains(at), "{button:?} {at:?}");
+
+    // The panel adds one, with all remedies.
+    let hand = joint(&bench, "left_hand");
+    bench.apply([SelectAction::Joints(vec![hand])]);
+    bench.settle();
+    assert_eq!(labels(&bench, TOO_FAR), 4);
+    assert_eq!(labels(&bench, STRETCH), 1);
+}
+
+#[test]
+fn the_button_of_the_note_applies_the_remedy_as_one_undo_step_and_says_what_it_did() {
+    let mut bench = bench();
+    let before = bench.session().document().clone();
+    bench.click(Role::Button, MOVE);
+    bench.settle();
+    assert!(error(&bench) <= bench.session().skeleton_rig().tolerance());
+    assert_eq!(labels(&bench, TOO_FAR), 0);
+    let done = "Moved the target of left_hand within reach: left_hand is at its target now";
+    assert!(bench.says(done), "{:?}", bench.session().message());
+    bench.apply([TransactionAction::Undo]);
+    assert_eq!(bench.session().document(), &before);
+}
+
+#[test]
+fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
+    let mut bench = bench();
+    let hand = joint(&bench, "left_hand");
+    bench.apply([SelectAction::Joints(vec![hand])]);
+    bench.settle();
+    let tried: Vec<_> = bench.session().why().iter().flat_map(|it| it.remedies.clone()).collect();
+    assert!(matches!(tried[..], [_, _]), "{tried:?}");
+    for tried in tried {
+        let name = bench.session().skeleton_rig().remedy_sentence(&tried.remedy);
+        if matches!(tried.remedy, Remedy::Stretch { .. }) {
+            bench.reveal(Role::Button, &name);
+            bench.click(Role::Button, &name);
+        } else {
+            let target = target(&bench).joint;
+            bench.apply([EditAction::ApplyRemedy { target, remedy: tried.remedy.clone() }]);
+        }
+        assert!((error(&bench) - tried.residual).abs() < 1e-4, "{name}");
+        bench.apply([TransactionAction::Undo]);
+        bench.settle();
+    }
+}
+
+#[test]
+fn nothing_is_said_during_a_drag_while_time_passes_or_while_a_solver_run_is_watched() {
+    let mut bench = bench();
+    let at = bench.on_screen(target(&bench).home);
+    bench.move_to(at);
+    bench.press(PointerButton::Primary);
+    bench.move_to(at + vec2(20.0, 0.0));
+    assert_eq!(labels(&bench, TOO_FAR), 0);
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    assert_eq!(labels(&bench, TOO_FAR), 3);
+
+    bench.apply_moving([PlaybackAction::Play(true)]);
+    bench.frame([]);
+    assert_eq!(labels(&bench, TOO_FAR), 0);
+    bench.apply([PlaybackAction::Play(false)]);
+    bench.apply([SolverAction::Step]);
+    bench.settle();
+    assert!(!bench.shows(Role::Button, MOVE));
+    bench.apply([SolverAction::Reset]);
+    bench.settle();
+    assert!(bench.shows(Role::Button, MOVE));
+}
+
+#[test]
+fn a_cancelled_drag_says_why_again() {
+    let mut bench = bench();
+    let at = bench.on_screen(target(&bench).home);
+    bench.move_to(at);
+    bench.press(PointerButton::Primary);
+    bench.move_to(at + vec2(-40.0, 30.0));
+    bench.apply([TransactionAction::Cancel]);
+    bench.settle();
+    assert!(bench.shows(Role::Button, MOVE));
+}
