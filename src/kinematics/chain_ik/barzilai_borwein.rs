@@ -26,6 +26,7 @@
 
 use super::configuration::Configuration;
 use super::coordinates::Coordinates;
+use super::inside::{Event, Recorder};
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
@@ -75,7 +76,12 @@ impl BarzilaiBorwein {
 
     /// Makes a step and returns `true`. If no step is accepted, restores the configuration and
     /// returns `false`.
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
         std::mem::swap(&mut self.descent, &mut self.last_descent);
         self.wrenches.descend(problem, config, &mut self.descent);
         if self.iterations > 0 {
@@ -84,7 +90,9 @@ impl BarzilaiBorwein {
         self.costs[self.iterations % COSTS] = config.cost(problem);
         self.iterations += 1;
         self.before.copy_from(config);
-        self.search(problem, config)
+        recorder
+            .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
+        self.search(problem, config, recorder)
     }
 
     /// The step length that fits the curvature along the last step. Without curvature, the last step
@@ -106,19 +114,30 @@ impl BarzilaiBorwein {
     }
 
     /// Halves the step until it is accepted.
-    fn search(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+    fn search(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
         // Number of halvings after which angles change by less than their rounding.
         const HALVINGS: u32 = 40;
         const DECREASE: f64 = 1e-4;
         let known = self.iterations.min(COSTS);
         let greatest = self.costs[..known].iter().copied().fold(0.0, f64::max);
-        for _ in 0..HALVINGS {
+        for tries in 0..HALVINGS {
             advance(problem, &self.before, &self.descent, self.step, config);
             let mut expected = 0.0;
             self.for_each_change(problem, config, |change, _, descent| {
                 expected += change * descent;
             });
             if expected > 0.0 && config.cost(problem) <= greatest - DECREASE * expected {
+                recorder.record(config, || Event::Step {
+                    by: self.descent.clone(),
+                    factor: self.step,
+                    tries,
+                    damping: None,
+                });
                 return true;
             }
             self.step *= 0.5;

@@ -20,6 +20,7 @@ use glam::{Mat3A, Quat, Vec3A};
 
 use super::align::{PointPair, align, align_within};
 use super::configuration::Configuration;
+use super::inside::{Event, Recorder};
 use super::problem::Problem;
 use crate::kinematics::skeleton::JointAngles;
 
@@ -42,14 +43,47 @@ impl Ccd {
         }
     }
 
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) {
         for index in (0..problem.links.len()).rev() {
             self.rotations[index] = self.rotate(problem, config, index);
+            self.record(problem, config, index, recorder);
         }
         self.update(problem, config);
         if problem.free_roots {
             move_roots(problem, config);
+            recorder.record(config, || Event::MoveRoots);
         }
+    }
+
+    /// Records the rotation of a link, with the configuration in which the links before it in the
+    /// sweep have not been rotated yet.
+    fn record(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+        recorder: &mut Recorder,
+    ) {
+        if !recorder.is_on() {
+            return;
+        }
+        let mut part = self.clone();
+        part.rotations[..index].fill(Quat::IDENTITY);
+        let mut turned = config.clone();
+        part.update(problem, &mut turned);
+        let link = &problem.links[index];
+        let targets =
+            problem.below(link).iter().map(|effector| problem.effectors[*effector].target);
+        let pairs = self.pairs.iter().zip(targets);
+        let rotation = self.rotations[index];
+        let base = config.bases[index];
+        let pairs = pairs.map(|(pair, target)| [base + rotation.inverse() * pair.from, target]);
+        recorder.record(&turned, || Event::Turn { link: index, rotation, pairs: pairs.collect() });
     }
 
     /// Finds the rotation of one link that brings the tips below it nearest to their targets, applies

@@ -16,6 +16,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::configuration::Configuration;
 use super::coordinates::Coordinates;
+use super::inside::{Event, Recorder};
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
@@ -65,16 +66,28 @@ impl DampedLeastSquares {
 
     /// Makes a step that lowers the cost and returns `true`. If there is no such step, restores the
     /// configuration and returns `false`.
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
         // Number of tries after which the step is below rounding.
         const TRIES: u32 = 12;
         const GROWTH: f32 = 4.0;
         self.set_residuals(problem, config);
         let cost = config.cost(problem);
-        for _ in 0..TRIES {
+        self.record_gradient(problem, config, recorder);
+        for tries in 0..TRIES {
             if self.solve_within(problem, config) {
                 advance(problem, &self.before, &self.step, 1.0, config);
                 if config.cost(problem) < cost {
+                    recorder.record(config, || Event::Step {
+                        by: self.step.clone(),
+                        factor: 1.0,
+                        tries,
+                        damping: Some(self.damping * self.raised),
+                    });
                     self.raised = (self.raised / GROWTH).max(1.0);
                     return true;
                 }
@@ -83,6 +96,20 @@ impl DampedLeastSquares {
             self.raised *= GROWTH;
         }
         false
+    }
+
+    fn record_gradient(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        recorder: &mut Recorder,
+    ) {
+        if recorder.is_on() {
+            let mut descent = Coordinates::default();
+            self.wrenches.descend(problem, config, &mut descent);
+            let damping = Some(self.damping * self.raised);
+            recorder.record(config, || Event::Gradient { descent, damping });
+        }
     }
 
     /// Sets the weighted and clamped residuals, and stores the angles and shifts before the step.

@@ -34,6 +34,7 @@ use glam::{Mat3A, Quat, Vec3A};
 use super::align::{PointPair, align, align_within};
 use super::ccd::Ccd;
 use super::configuration::Configuration;
+use super::inside::{Event, LinkSegment, Recorder};
 use super::problem::{Link, Problem};
 use crate::kinematics::skeleton::JointAngles;
 use crate::kinematics::{normalize, rotation_between};
@@ -130,32 +131,39 @@ impl Fabrik {
         lists
     }
 
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) {
         if !self.limited {
-            return self.reach(problem, config);
+            return self.reach(problem, config, recorder);
         }
         // Fraction of the cost that passes may leave without a sweep.
         const ENOUGH: f64 = 0.5;
         self.before.copy_from(config);
-        self.reach(problem, config);
+        self.reach(problem, config, recorder);
         let left = config.cost(problem) / self.before.cost(problem);
         if left <= ENOUGH {
             return;
         }
         if left >= 1.0 {
             config.copy_from(&self.before);
+            recorder.record(config, || Event::Undo);
         }
-        self.ccd.iterate(problem, config);
+        self.ccd.iterate(problem, config, recorder);
     }
 
     /// Makes the inward and the outward pass.
-    fn reach(&mut self, problem: &Problem, config: &mut Configuration) {
+    fn reach(&mut self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
         if self.is_out_of_reach(problem, config) {
             self.destinations.fill(problem.effectors[0].target);
         } else {
             for link in (0..problem.links.len()).rev() {
                 self.reach_inward(problem, config, link);
             }
+            recorder.record(config, || Event::Backward(self.inward_chain()));
         }
         if problem.free_roots {
             self.move_roots(problem, config);
@@ -166,6 +174,29 @@ impl Fabrik {
             }
             self.reach_outward(problem, config, index);
         }
+        recorder.record(config, || Event::Forward(self.outward_chain(config)));
+    }
+
+    /// Each link as the pairs of its joint and its points after the inward pass.
+    fn inward_chain(&self) -> Vec<LinkSegment> {
+        let links = self.ranges.iter().zip(&self.base_destinations).enumerate();
+        let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
+            let base = *base;
+            let points = &self.destinations[range.0..range.1];
+            points.iter().map(move |point| LinkSegment { link, ends: [base, *point] })
+        };
+        links.flat_map(segments).collect()
+    }
+
+    /// Each link as the pairs of its joint and its points.
+    fn outward_chain(&self, config: &Configuration) -> Vec<LinkSegment> {
+        let links = self.ranges.iter().zip(&config.bases).enumerate();
+        let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
+            let ends = |point: &LinkPoint| [*base, point.position_in(config)];
+            let points = self.points[range.0..range.1].iter();
+            points.map(|point| LinkSegment { link, ends: ends(point) }).collect::<Vec<_>>()
+        };
+        links.flat_map(segments).collect()
     }
 
     /// Whether the problem is a chain without limits, with a fixed root, whose one target is out of

@@ -3,6 +3,7 @@ use super::ccd::Ccd;
 use super::configuration::Configuration;
 use super::damped_least_squares::DampedLeastSquares;
 use super::fabrik::Fabrik;
+use super::inside::Recorder;
 use super::problem::Problem;
 use super::transpose::Transpose;
 use super::two_bone::TwoBones;
@@ -60,24 +61,29 @@ impl MethodState {
     }
 
     /// Makes one iteration. Returns whether another iteration could improve the result.
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
         match self {
             Self::Transpose(transpose) => {
-                transpose.iterate(problem, config);
+                transpose.iterate(problem, config, recorder);
                 true
             }
-            Self::BarzilaiBorwein(descent) => descent.iterate(problem, config),
-            Self::DampedLeastSquares(damped) => damped.iterate(problem, config),
+            Self::BarzilaiBorwein(descent) => descent.iterate(problem, config, recorder),
+            Self::DampedLeastSquares(damped) => damped.iterate(problem, config, recorder),
             Self::Ccd(ccd) => {
-                ccd.iterate(problem, config);
+                ccd.iterate(problem, config, recorder);
                 true
             }
             Self::Fabrik(fabrik) => {
-                fabrik.iterate(problem, config);
+                fabrik.iterate(problem, config, recorder);
                 true
             }
             Self::TwoBone(limbs) => {
-                limbs.solve(problem, config);
+                limbs.solve(problem, config, recorder);
                 false
             }
         }

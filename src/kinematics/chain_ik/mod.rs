@@ -48,6 +48,7 @@ mod diagnose;
 mod error;
 mod escape;
 mod fabrik;
+mod inside;
 mod jacobian;
 mod method;
 mod method_state;
@@ -63,6 +64,9 @@ mod two_bone;
 
 pub use diagnose::{diagnose, diagnose_targets};
 pub use error::{OptionField, SolveError, TwoBoneRefusal};
+pub use inside::{
+    AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
+};
 pub use jacobian::jacobian;
 pub use method::{Method, ParseMethodError};
 pub use options::{Root, SolverOptions};

@@ -1,5 +1,6 @@
 use super::configuration::Configuration;
 use super::escape::Escape;
+use super::inside::{Event, Recorder, SubStep, sub_steps};
 use super::method_state::MethodState;
 use super::problem::{self, Problem};
 use super::stall::StallDetector;
@@ -96,22 +97,43 @@ impl ChainSolver {
     /// Makes one iteration, unless the solver has converged or stalled. The maximum number of
     /// iterations is ignored.
     pub fn step(&mut self) -> Report {
+        self.step_with(&mut Recorder::off())
+    }
+
+    /// Makes one iteration like [`ChainSolver::step`], with the same bits, and returns what the method
+    /// computed in it, in the order in which it did; the last sub-step has the pose after the
+    /// iteration, as [`ChainSolver::write`] writes it to `skeleton`: the skeleton for which the solver
+    /// was made, in the FK pose.
+    pub fn step_inside(&mut self, skeleton: &Skeleton) -> (Report, Vec<SubStep>) {
+        let mut recorder = Recorder::on();
+        let report = self.step_with(&mut recorder);
+        let pose = |config: &Configuration| {
+            let mut pose = skeleton.clone();
+            self.write_configuration(config, &mut pose);
+            pose
+        };
+        (report, sub_steps(recorder.into_records(), &self.problem, skeleton.transform(), pose))
+    }
+
+    fn step_with(&mut self, recorder: &mut Recorder) -> Report {
         if matches!(self.report.status, Status::Converged | Status::Stalled) {
             return self.report;
         }
         if self.report.iterations == 0 {
-            self.start();
+            self.start(recorder);
         }
-        let can_go_on = self.state.iterate(&self.problem, &mut self.config);
+        let can_go_on = self.state.iterate(&self.problem, &mut self.config, recorder);
         self.report.iterations += 1;
         self.measure();
         if !self.report.converged()
             && (!can_go_on || self.stall.observe(&self.problem, &self.config))
         {
             self.escape_or_stall();
+            recorder.record_change(&self.config, Event::Restart);
         }
         if self.report.status == Status::OutOfIterations {
             self.escape.restore_best(&self.problem, &mut self.config);
+            recorder.record_change(&self.config, Event::Restart);
             self.measure();
         }
         self.report
@@ -160,12 +182,16 @@ impl ChainSolver {
     /// the skeleton for which the solver was made. Of all equivalent angles of a joint, it writes
     /// those nearest to the joint's present angles.
     pub fn write(&self, skeleton: &mut Skeleton) {
+        self.write_configuration(&self.config, skeleton);
+    }
+
+    fn write_configuration(&self, config: &Configuration, skeleton: &mut Skeleton) {
         if self.problem.free_roots {
             for (index, tree) in self.problem.trees.iter().enumerate() {
-                let offset = self.problem.root_offset(index, self.config.shifts[index]);
+                let offset = self.problem.root_offset(index, config.shifts[index]);
                 skeleton.write_local(tree.root, |root| root.offset = offset);
             }
-        } else if self.config.is_same(&self.start) {
+        } else if config.is_same(&self.start) {
             // Nothing has moved: writes the angles from before the run, bit for bit, also if other
             // angles have been written since.
             for link in &self.problem.links {
@@ -173,7 +199,7 @@ impl ChainSolver {
             }
             return;
         }
-        let mut config = self.config.clone();
+        let mut config = config.clone();
         if let MethodState::Fabrik(fabrik) = &self.state {
             fabrik.update_orientations(&mut config);
         }
@@ -211,9 +237,11 @@ impl ChainSolver {
     }
 
     /// Bends straight chains that no method can bend. Without any, the configuration keeps its bits.
-    fn start(&mut self) {
+    fn start(&mut self, recorder: &mut Recorder) {
         self.escape.best.copy_from(&self.config);
-        if !self.bend() {
+        if self.bend() {
+            recorder.record(&self.config, || Event::Bend);
+        } else {
             self.config.copy_from(&self.escape.best);
         }
     }

@@ -17,6 +17,7 @@
 
 use super::configuration::Configuration;
 use super::coordinates::Coordinates;
+use super::inside::{Event, Recorder};
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
 
@@ -35,9 +36,22 @@ impl Transpose {
         Self { step, ..Self::default() }
     }
 
-    pub fn iterate(&mut self, problem: &Problem, config: &mut Configuration) {
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) {
         self.wrenches.descend(problem, config, &mut self.descent);
+        recorder
+            .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
         self.before.copy_from(config);
         advance(problem, &self.before, &self.descent, self.step, config);
+        recorder.record(config, || Event::Step {
+            by: self.descent.clone(),
+            factor: self.step,
+            tries: 0,
+            damping: None,
+        });
     }
 }

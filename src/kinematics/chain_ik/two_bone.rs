@@ -9,6 +9,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::ccd::move_roots;
 use super::configuration::Configuration;
+use super::inside::{Event, Recorder};
 use super::perturb::bent_angles;
 use super::problem::Problem;
 use super::{SolveError, TwoBoneRefusal};
@@ -57,15 +58,18 @@ impl TwoBones {
         Ok(Self { limbs })
     }
 
-    pub fn solve(&self, problem: &Problem, config: &mut Configuration) {
+    pub fn solve(&self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
         for limb in &self.limbs {
             self.bend_if_straight(problem, config, *limb);
             place_elbow(problem, config, *limb);
+            recorder.record(config, || Event::PlaceElbow(limb.lower));
             aim_hand(problem, config, *limb);
+            recorder.record(config, || Event::Aim(limb.lower));
         }
         if problem.free_roots {
             move_roots(problem, config);
             config.forward(problem);
+            recorder.record(config, || Event::MoveRoots);
         }
     }
 

@@ -89,6 +89,11 @@ impl Problem {
         f64::from(self.length) / self.unit * self.scale()
     }
 
+    /// Factor from skeleton units to the problem's units.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
     /// Converts a length from the world's units to the problem's, by the transform's mean scale.
     pub fn length_from_world(&self, length: f64) -> f64 {
         length / self.scale() * self.unit
