@@ -82,7 +82,7 @@ impl Session {
             let passed = self.playback.advance_frame(seconds);
             self.view.advance_crowd(passed);
             self.advance_playhead(passed);
-            self.advance_solvers();
+            self.advance_solvers(passed);
         }
     }
 

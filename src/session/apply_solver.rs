@@ -40,7 +40,11 @@ impl Session {
         match action {
             SolverAction::Run(true) | SolverAction::Step => self.show_tab(PanelTab::Solver),
             SolverAction::Compare => self.show_tab(PanelTab::Race),
-            SolverAction::Run(false) | SolverAction::Reset | SolverAction::Show(_) => {}
+            SolverAction::Run(false)
+            | SolverAction::Reset
+            | SolverAction::Show(_)
+            | SolverAction::ShowPart { .. }
+            | SolverAction::Walk(_) => {}
         }
         match action {
             SolverAction::Run(true) => self.solve(Solvers::start),
@@ -52,6 +56,8 @@ impl Session {
             }),
             SolverAction::Reset => self.solvers.end(),
             SolverAction::Show(iteration) => self.solvers.show(iteration),
+            SolverAction::ShowPart { iteration, part } => self.solvers.show_part(iteration, part),
+            SolverAction::Walk(walks) => self.solvers.walk(walks),
         }
     }
 
@@ -66,8 +72,10 @@ impl Session {
         }
     }
 
-    /// Makes one frame's iterations of the solver run or of the comparison.
-    pub(super) fn advance_solvers(&mut self) {
+    /// Makes one frame's iterations of the solver run or of the comparison, `passed` seconds after the
+    /// last frame.
+    pub(super) fn advance_solvers(&mut self, passed: f64) {
+        self.solvers.advance_walk(passed);
         let plays = self.is_playing() && self.has_motion();
         let is_dragged = self.drag().is_some();
         self.solvers.advance(self.skeleton_rig().iterations_per_frame, plays || is_dragged);

@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::inside_layer::InsideLayers;
 use super::panel_tab::PanelTab;
 use super::session::{ASPECT, Session};
 use super::view_action::ViewAction;
@@ -23,6 +24,11 @@ impl Session {
     /// The drag of the camera; `None` if the camera is not dragged.
     pub fn view_drag(&self) -> Option<&ViewDrag> {
         self.view.drag()
+    }
+
+    /// What is shown of the part of an iteration that is looked at.
+    pub fn inside_layers(&self) -> InsideLayers {
+        self.view.inside_layers
     }
 
     /// Whether the camera is gliding, which is a smooth move to another camera.
@@ -116,6 +122,9 @@ impl Session {
                 }
             }
             ViewAction::FollowSelection(follows) => self.follow_selection(follows),
+            ViewAction::ShowInside(layer, shown) => {
+                self.view.inside_layers = self.view.inside_layers.with(layer, shown);
+            }
             ViewAction::ShowCrowd(shown) => {
                 if self.view.show_crowd(shown) {
                     self.forget_pause();

@@ -1,10 +1,11 @@
 use glam::Vec3;
 
+use super::inside_layer::InsideLayers;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
 use crate::document::Document;
 use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::{Method, TipTarget};
+use crate::kinematics::chain_ik::{Method, SubStep, TipTarget};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::rig::{Crowd, EvaluatedSkeleton};
@@ -24,6 +25,8 @@ pub struct Overlays {
     pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.
     pub ghosts: Vec<SolverGhost>,
+    /// The part of an iteration that is looked at.
+    pub inside: Option<InsideView>,
     /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.
     pub transported: Option<TransportedFrame>,
     /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
@@ -35,6 +38,15 @@ pub struct Overlays {
     pub has_handles: bool,
     /// The crowd that is shown instead of the rig; `None` to show the rig.
     pub crowd: Option<Crowd>,
+}
+
+/// A part of an iteration, as the view shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InsideView {
+    /// The part.
+    pub part: Shared<SubStep>,
+    /// What is shown of it.
+    pub layers: InsideLayers,
 }
 
 /// The shown iterate of a solver.

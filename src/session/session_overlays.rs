@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::onion_skins::write_onion_skins;
-use super::overlays::{Overlays, SolverGhost};
+use super::overlays::{InsideView, Overlays, SolverGhost};
 use super::session::Session;
 use super::solver_run::SolverRun;
 use super::trail::{has_trail, sample_trail};
@@ -28,11 +28,19 @@ impl Session {
         if let (Some(found), true) = (self.why().first(), self.solvers.is_idle()) {
             overlays.concerned.extend_from_slice(&found.joints);
         }
+        overlays.inside = self.inside();
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());
         write_ghosts(self.solvers.runs(), &mut overlays.ghosts);
         write_onion_skins(self.document(), self.shown(), self.time(), &mut overlays.onion_skins);
+    }
+
+    /// The part of the shown iteration that is looked at.
+    fn inside(&self) -> Option<InsideView> {
+        let run = self.solver_run()?;
+        let part = run.parts().get(run.shown_part()?)?;
+        Some(InsideView { part: part.clone(), layers: self.inside_layers() })
     }
 
     /// World positions of the hand or the active joint's tip in all frames; empty if the motion

@@ -1,8 +1,10 @@
 use std::time::{Duration, Instant};
 
+use super::inside::Inside;
 use super::iterates::{Iterate, Iterates};
 use super::solver_inputs::SolverInputs;
-use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, TipTarget};
+use crate::kinematics::Shared;
+use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SubStep, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
 /// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of them
@@ -17,7 +19,8 @@ pub struct SolverRun {
     iterates: Iterates,
     /// Number of the iteration to show; `None` for the latest.
     held: Option<u32>,
-    /// The skeleton in the shown iterate.
+    inside: Inside,
+    /// The skeleton in the shown iterate, or in the shown part of its iteration.
     skeleton: Skeleton,
     running: bool,
     elapsed: Duration,
@@ -36,6 +39,7 @@ impl SolverRun {
             iterates: Iterates::new(Iterate::new(solver.report(), &skeleton)),
             solver,
             held: None,
+            inside: Inside::default(),
             skeleton,
             running: false,
             elapsed: Duration::ZERO,
@@ -47,6 +51,8 @@ impl SolverRun {
         let mut anew = Self::new(inputs)?;
         (anew.wanted, anew.held, anew.running) = (self.wanted, self.held, self.running);
         anew.make_wanted(Self::MOST_ANEW);
+        anew.inside.walk(self.inside.is_walking());
+        anew.show_part(self.inside.part());
         Ok(anew)
     }
 
@@ -94,7 +100,7 @@ impl SolverRun {
         self.iterates.at(self.held.unwrap_or(u32::MAX))
     }
 
-    /// The skeleton in the shown iterate.
+    /// The skeleton in the shown iterate, or in the shown part of its iteration.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }
@@ -103,18 +109,108 @@ impl SolverRun {
     /// made.
     pub(super) fn hold(&mut self, held: Option<u32>) {
         self.held = held;
-        self.iterates.at(held.unwrap_or(u32::MAX)).write(&mut self.skeleton);
+        self.inside.clear();
+        self.write_shown();
+    }
+
+    /// What the method computes in the shown iteration, part by part; empty for iteration 0.
+    pub fn parts(&self) -> &[Shared<SubStep>] {
+        self.inside.parts(|| self.replay(self.shown().iteration))
+    }
+
+    /// Index of the part of the shown iteration that is looked at; `None` if the whole iteration is
+    /// shown, or while the run goes on.
+    pub fn shown_part(&self) -> Option<usize> {
+        let part = self.inside.part().filter(|_| !self.running)?;
+        Some(part.min(self.parts().len().checked_sub(1)?))
+    }
+
+    /// Whether the parts of all iterations are shown one after the other.
+    pub fn is_walking(&self) -> bool {
+        self.inside.is_walking()
+    }
+
+    /// Makes an iteration again and returns its parts.
+    fn replay(&self, iteration: u32) -> Vec<SubStep> {
+        let SolverInputs { fk, targets, options } = &self.inputs;
+        let solver = ChainSolver::new(fk, targets, options);
+        let (Ok(mut solver), Some(before)) = (solver, iteration.checked_sub(1)) else {
+            return Vec::new();
+        };
+        for _ in 0..before {
+            solver.step();
+        }
+        solver.step_inside(fk).1
+    }
+
+    /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at the
+    /// whole iteration.
+    pub(super) fn show_part(&mut self, part: Option<usize>) {
+        self.inside.show(part);
+        self.write_shown();
+    }
+
+    /// Shows the parts of all iterations one after the other, from the shown one on, or stops that.
+    pub(super) fn walk(&mut self, walks: bool) {
+        if walks {
+            self.running = false;
+            self.show_part(self.inside.part().or(Some(0)));
+        }
+        self.inside.walk(walks);
+    }
+
+    /// Lets time pass, in seconds, while the parts are shown one after the other.
+    pub(super) fn advance_walk(&mut self, passed: f64) {
+        if self.is_walking() && self.inside.advance(passed, self.parts().len()) {
+            self.next_part();
+        }
+    }
+
+    /// Shows the next part; after the last part of an iteration, the first one of the next, which is
+    /// made if need be. At the end of the run, the parts no longer follow each other.
+    fn next_part(&mut self) {
+        let next = self.shown_part().map_or(0, |part| part + 1);
+        if next < self.parts().len() {
+            return self.show_part(Some(next));
+        }
+        let iteration = self.shown().iteration;
+        if self.iterates.after(iteration).is_none() {
+            self.advance(1);
+        }
+        match self.iterates.after(iteration).map(|after| after.iteration) {
+            Some(after) => {
+                self.hold(Some(after));
+                self.show_part(Some(0));
+            }
+            None => self.inside.walk(false),
+        }
+    }
+
+    /// Writes the shown iterate, or the shown part of its iteration, to the skeleton.
+    fn write_shown(&mut self) {
+        match self.shown_part() {
+            Some(part) => {
+                let pose = self.parts()[part].pose.clone();
+                self.skeleton = pose;
+            }
+            None => self.iterates.at(self.held.unwrap_or(u32::MAX)).write(&mut self.skeleton),
+        }
     }
 
     /// Starts or pauses the run.
     pub(super) fn set_running(&mut self, running: bool) {
         self.running = running;
+        if running {
+            self.inside.walk(false);
+        }
+        self.write_shown();
     }
 
     /// Pauses a run that is over. From now on, other inputs are solved until the solver ends.
     pub(super) fn finish(&mut self) {
         self.running = false;
         self.wanted = None;
+        self.write_shown();
     }
 
     /// Makes `iterations` further iterations, fewer if the solver ends.

@@ -49,7 +49,9 @@ impl Solvers {
 
     /// Whether the run or the comparison makes iterations.
     pub fn is_busy(&self) -> bool {
-        self.is_running() || self.comparison().is_some_and(Comparison::is_running)
+        self.is_running()
+            || self.run().is_some_and(SolverRun::is_walking)
+            || self.comparison().is_some_and(Comparison::is_running)
     }
 
     /// Runs the solver for `inputs`, or continues the run if there is one.
@@ -106,6 +108,28 @@ impl Solvers {
             Self::Idle => {}
             Self::Run(run) => run.hold(held),
             Self::Comparison(comparison) => comparison.hold(held),
+        }
+    }
+
+    /// Shows a part of an iteration of the run.
+    pub fn show_part(&mut self, iteration: u32, part: Option<usize>) {
+        self.show(iteration);
+        if let Self::Run(run) = self {
+            run.show_part(part);
+        }
+    }
+
+    /// Shows the parts of the iterations of the run one after the other, or stops that.
+    pub fn walk(&mut self, walks: bool) {
+        if let Self::Run(run) = self {
+            run.walk(walks);
+        }
+    }
+
+    /// Lets time pass, in seconds, while the parts of iterations are shown one after the other.
+    pub fn advance_walk(&mut self, passed: f64) {
+        if let Self::Run(run) = self {
+            run.advance_walk(passed);
         }
     }
 

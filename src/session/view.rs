@@ -1,5 +1,6 @@
 use glam::{Vec2, Vec3};
 
+use super::inside_layer::InsideLayers;
 use super::view_drag::{CameraMotion, Glide, ViewDrag};
 use crate::document::Camera;
 use crate::kinematics::two_bone::TwoBone;
@@ -11,6 +12,8 @@ pub(super) struct View {
     drag: Option<ViewDrag>,
     glide: Option<Glide>,
     follows_selection: bool,
+    /// What is shown of a part of an iteration.
+    pub inside_layers: InsideLayers,
     crowd_shown: bool,
     crowd_size: u32,
     crowd_solver: Processor,
@@ -25,6 +28,7 @@ impl Default for View {
             drag: None,
             glide: None,
             follows_selection: false,
+            inside_layers: InsideLayers::default(),
             crowd_shown: false,
             crowd_size: 1_000,
             crowd_solver: Processor::Cpu,

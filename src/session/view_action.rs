@@ -1,5 +1,6 @@
 use glam::Vec2;
 
+use super::inside_layer::InsideLayer;
 use super::panel_tab::PanelTab;
 use super::view_drag::CameraMotion;
 use crate::document::Camera;
@@ -28,6 +29,8 @@ pub enum ViewAction {
     /// Keeps the camera at its distance and direction from the selected joints, or from the middle of all
     /// joints, while the time changes; or lets it stand again.
     FollowSelection(bool),
+    /// Shows or hides something of the part of an iteration that is looked at.
+    ShowInside(InsideLayer, bool),
     /// Shows a crowd of arms instead of the rig, or the rig again.
     ShowCrowd(bool),
     /// Sets the number of arms, from 1 to [`Crowd::MOST`](crate::rig::Crowd::MOST).

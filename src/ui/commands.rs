@@ -3,7 +3,8 @@
 use crate::document::{AxisView, Camera};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Dialog, EditAction, FileAction, PathDialog, Session, ShellAction, ViewAction,
+    Action, Dialog, EditAction, FileAction, PathDialog, Session, ShellAction, SolverAction,
+    ViewAction,
 };
 
 pub(in crate::ui) fn open() -> FileAction {
@@ -69,4 +70,38 @@ pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
         Some(target) => EditAction::RemoveTarget(rig.targets[target].joint),
         None => EditAction::AddTarget(joint),
     })
+}
+
+/// Shows the part before the shown one: in the shown iteration, or the last part of the one before.
+/// `None` at the first part of the first iteration, or without a solver run.
+pub(in crate::ui) fn previous_part(session: &Session) -> Option<SolverAction> {
+    let run = session.solver_run()?;
+    let iteration = run.shown().iteration;
+    match run.shown_part() {
+        Some(0) => {
+            let before = run.iterates().at(iteration.checked_sub(1)?).iteration;
+            let part = Some(usize::MAX);
+            (before > 0).then_some(SolverAction::ShowPart { iteration: before, part })
+        }
+        Some(part) => Some(SolverAction::ShowPart { iteration, part: Some(part - 1) }),
+        None if iteration > 0 => Some(SolverAction::ShowPart { iteration, part: Some(usize::MAX) }),
+        None => None,
+    }
+}
+
+/// Shows the next part: of the shown iteration, or the first part of the next one, which is made if
+/// need be. Empty at the end of a run that is over.
+pub(in crate::ui) fn next_part(session: &Session) -> Vec<SolverAction> {
+    let first_of = |iteration| SolverAction::ShowPart { iteration, part: Some(0) };
+    let Some(run) = session.solver_run() else { return vec![SolverAction::Step, first_of(1)] };
+    let iteration = run.shown().iteration;
+    let next = run.shown_part().map_or(0, |part| part + 1);
+    if next < run.parts().len() {
+        return vec![SolverAction::ShowPart { iteration, part: Some(next) }];
+    }
+    match run.iterates().after(iteration) {
+        Some(after) => vec![first_of(after.iteration)],
+        None if run.is_over() => Vec::new(),
+        None => vec![SolverAction::Step, first_of(run.report().iterations + 1)],
+    }
 }

@@ -6,6 +6,7 @@ mod drawn_skeleton;
 mod elbow_circle;
 mod globe;
 mod hand;
+mod inside;
 mod motion;
 mod references;
 mod scratch;

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::drawn_skeleton::DrawnSkeleton;
+use super::inside::InsideDrawing;
 use super::scratch::Scratch;
 use super::skin::ShownSkin;
 use super::targets;
@@ -76,6 +77,10 @@ pub(super) fn add(
         drawn.add_outline(scene, *joint, cover);
     }
     drawn.add_solver_ghosts(scene, &overlays.ghosts, display);
+    if let (Some(view), Some(ghost)) = (&overlays.inside, overlays.ghosts.first()) {
+        let (targets, selection) = (&ghost.targets[..], &overlays.selection[..]);
+        InsideDrawing { view, targets, selection, reach }.add(scene);
+    }
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
             drawn.add_target(scene, target, report);

@@ -52,6 +52,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
                 ("One iteration", "S"),
                 ("Previous iteration", ","),
                 ("Next iteration", "."),
+                ("Previous part of an iteration", "Shift ,"),
+                ("Next part of an iteration", "Shift ."),
                 ("End the solver run or the race", "Esc"),
             ],
         ),

@@ -55,6 +55,13 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
         let next = shown.next.filter(|_| pressed(Key::Period));
         actions.extend(previous.or(next).map(SolverAction::Show));
     }
+    let shifted = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.shift_only());
+    if shifted(Key::Comma) {
+        actions.extend(commands::previous_part(session));
+    }
+    if shifted(Key::Period) {
+        actions.extend(commands::next_part(session));
+    }
 }
 
 fn view(ui: &Ui, session: &Session, actions: &mut Actions) {

@@ -1,7 +1,6 @@
 use glam::Vec3;
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::Column;
 use crate::kinematics::skeleton::JointId;
 
 /// The velocities that a tip has while all angles together turn at one radian per second: the
@@ -19,11 +18,11 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The ellipsoid of the columns of one tip.
-    pub(super) fn of(tip: JointId, centre: Vec3, columns: &[Column]) -> Self {
+    /// The ellipsoid of a tip whose velocities, one for each angle, are `columns`.
+    pub(super) fn of(tip: JointId, centre: Vec3, columns: impl Iterator<Item = Vec3>) -> Self {
         let mut square = Matrix3::<f64>::zeros();
-        for column in columns.iter().filter(|column| column.tip == tip) {
-            let by = nalgebra::Vector3::from(column.by.as_dvec3().to_array());
+        for column in columns {
+            let by = Vector3::from(column.as_dvec3().to_array());
             square += by * by.transpose();
         }
         let eigen = SymmetricEigen::new(square);

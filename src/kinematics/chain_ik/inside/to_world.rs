@@ -84,7 +84,9 @@ impl World<'_> {
         let columns = self.columns(config);
         let tips = self.problem.effectors.iter().zip(&config.tips);
         let ellipsoids = tips.map(|(effector, tip)| {
-            Ellipsoid::of(effector.joint, self.point(effector.tree, *tip), &columns)
+            let own = columns.iter().filter(|column| column.tip == effector.joint);
+            let centre = self.point(effector.tree, *tip);
+            Ellipsoid::of(effector.joint, centre, own.map(|column| column.by))
         });
         let ellipsoids = ellipsoids.collect();
         Gradient { columns, ellipsoids, damping: damping.map(|damping| self.length(damping)) }

@@ -3,6 +3,7 @@
 mod can_solve;
 mod comparison;
 mod convergence;
+mod inside;
 mod iteration;
 mod skin_areas;
 
@@ -22,6 +23,9 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
     // The comparison shows its own table.
     if session.comparison().is_none() {
         report(ui, session, actions);
+    }
+    if session.solver_run().is_some() {
+        widgets::section(ui, "Inside the iteration", |ui| inside::ui(ui, session, actions));
     }
     widgets::section(ui, "Convergence", |ui| {
         iterations(
