@@ -527,6 +527,8 @@ fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
         assert_eq!(again.document, opened.document, "{}", example.name);
         let folder = match example.group {
             Group::Basics => "assets",
+            Group::WhyNot => "assets/why",
+            Group::InsideSolver => "assets/inside",
             Group::HardCases => "assets/hard",
         };
         let path = format!("{}/{folder}/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);

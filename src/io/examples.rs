@@ -24,6 +24,10 @@ pub struct Example {
 pub enum Group {
     /// Introduction to what the program can do.
     Basics,
+    /// Targets that are not reached, one example for each cause.
+    WhyNot,
+    /// Iterations that are looked at part by part.
+    InsideSolver,
     /// One example for each case that is hard for IK.
     HardCases,
 }
@@ -38,7 +42,7 @@ pub fn new_document() -> Document {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 31] = [
         Self {
             group: Group::Basics,
             name: "arm",
@@ -119,6 +123,69 @@ impl Example {
             sentence: "Cases that break careless solvers: a bone without length, a target at the \
                        root, a straight chain, targets out of reach, all of it in a mirror.",
             text: include_str!("../../assets/degenerate.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "out-of-reach",
+            title: "Out of reach",
+            sentence: "The target is farther away than the bones are long; the note beside it offers what would help.",
+            text: include_str!("../../assets/why/out-of-reach.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "at-a-limit",
+            title: "At a limit",
+            sentence: "The shin cannot bend far enough for the target; the note says by how much its limit must be widened.",
+            text: include_str!("../../assets/why/at-a-limit.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "locked",
+            title: "Locked",
+            sentence: "A locked joint keeps the chain from its target, which it would reach if that joint could turn.",
+            text: include_str!("../../assets/why/locked.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "pulled-apart",
+            title: "Pulled apart",
+            sentence: "Two targets are too far apart for the two arms of a Y: each can be reached alone, not both.",
+            text: include_str!("../../assets/why/pulled-apart.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "gimbal-lock",
+            title: "Gimbal lock",
+            sentence: "At y = 90° two of a joint's angles turn about one axis, and none turns towards the target.",
+            text: include_str!("../../assets/why/gimbal-lock.json"),
+        },
+        Self {
+            group: Group::WhyNot,
+            name: "too-few-iterations",
+            title: "Too few iterations",
+            sentence: "The solver stops after 20 iterations, while the tip is still coming nearer.",
+            text: include_str!("../../assets/why/too-few-iterations.json"),
+        },
+        Self {
+            group: Group::InsideSolver,
+            name: "inside-dls",
+            title: "Inside damped least squares",
+            sentence: "One iteration, part by part: the columns of the Jacobian, its ellipsoid and what the damping leaves of it, and the step; Shift . shows the next part.",
+            text: include_str!("../../assets/inside/inside-dls.json"),
+        },
+        Self {
+            group: Group::InsideSolver,
+            name: "inside-ccd",
+            title: "Inside CCD",
+            sentence: "One iteration, part by part: each joint in turn swings the tip towards the target; Shift . shows the next part.",
+            text: include_str!("../../assets/inside/inside-ccd.json"),
+        },
+        Self {
+            group: Group::InsideSolver,
+            name: "inside-fabrik",
+            title: "Inside FABRIK",
+            sentence: "One iteration, part by part: the points go to the target and then back to the root; Shift . shows the next part.",
+            text: include_str!("../../assets/inside/inside-fabrik.json"),
         },
         Self {
             group: Group::HardCases,

@@ -9,8 +9,9 @@ use super::file_action::FileAction;
 use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
 use super::session::{ASPECT, Session};
+use super::solver_action::SolverAction;
 use crate::document::{Document, RigKind};
-use crate::io::{Example, new_document};
+use crate::io::{Example, Group, new_document};
 use crate::kinematics::skeleton::JointId;
 
 /// Opening, saving and exporting files.
@@ -240,6 +241,10 @@ impl Session {
         match example.open() {
             Ok(opened) => {
                 self.replace_document(opened.document, None);
+                if example.group == Group::InsideSolver {
+                    self.apply_solver(SolverAction::Step);
+                    self.apply_solver(SolverAction::ShowPart { iteration: 1, part: Some(0) });
+                }
                 self.say(example.sentence);
             }
             Err(error) => self.fail(error.to_string()),

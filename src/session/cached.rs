@@ -10,6 +10,11 @@ impl<T> Cached<T> {
         self.0.get_or_init(compute)
     }
 
+    /// The value, if it was computed.
+    pub fn known(&self) -> Option<&T> {
+        self.0.get()
+    }
+
     /// Discards the value; the next [`Self::get`] computes it again.
     pub fn clear(&mut self) {
         self.0.take();

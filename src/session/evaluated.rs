@@ -71,6 +71,17 @@ impl Evaluated {
         why.get(index).map_or(&[], |why| why.get(diagnose))
     }
 
+    /// Whether the diagnoses of any target were made.
+    pub fn knows_why(&self) -> bool {
+        self.why.known().is_some()
+    }
+
+    /// The diagnoses of the target with this index, if they were made.
+    pub fn known_why(&self, index: usize) -> &[Diagnosis] {
+        let why = self.why.known().and_then(|why| why.get(index)?.known());
+        why.map_or(&[], Vec::as_slice)
+    }
+
     pub fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
         self.trail.get(sample)
     }

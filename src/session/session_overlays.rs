@@ -25,7 +25,7 @@ impl Session {
         overlays.selection.extend_from_slice(self.selection());
         overlays.hovered = self.hovered();
         overlays.concerned.clear();
-        if let (Some(found), true) = (self.why().first(), self.solvers.is_idle()) {
+        if let (Some(found), true) = (self.known_why().first(), self.solvers.is_idle()) {
             overlays.concerned.extend_from_slice(&found.joints);
         }
         overlays.inside = self.inside();

@@ -14,15 +14,33 @@ impl Session {
         index.map_or(&[], |index| self.why_target(index))
     }
 
+    /// [`Session::why`] without finding it out: empty if it was not called since the last change.
+    pub fn known_why(&self) -> &[Diagnosis] {
+        if !self.evaluated.knows_why() {
+            return &[];
+        }
+        self.examined_target().map_or(&[], |index| self.known_why_target(index))
+    }
+
     /// The causes for which the target with this index in
     /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached.
     pub fn why_target(&self, index: usize) -> &[Diagnosis] {
         let rig = self.skeleton_rig();
-        let is_still = !(self.is_editing() || self.is_playing() || rig.is_on_path(self.time()));
-        if self.rig() != RigKind::Skeleton || !is_still || index >= rig.targets.len() {
+        if !self.can_examine() || index >= rig.targets.len() {
             return &[];
         }
         self.evaluated.why(index, || rig.diagnose_targets(&[index], self.time()))
+    }
+
+    /// [`Session::why_target`] without finding it out.
+    pub fn known_why_target(&self, index: usize) -> &[Diagnosis] {
+        if self.can_examine() { self.evaluated.known_why(index) } else { &[] }
+    }
+
+    fn can_examine(&self) -> bool {
+        let is_moving = self.is_editing() || self.is_playing();
+        let is_on_path = self.skeleton_rig().is_on_path(self.time());
+        self.rig() == RigKind::Skeleton && !is_moving && !is_on_path
     }
 
     /// The selected joint's target if it is not reached, or else the posing one farthest from its

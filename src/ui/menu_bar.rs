@@ -280,6 +280,8 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn examples(ui: &mut Ui, actions: &mut Actions) {
     examples_of(Group::Basics, ui, actions);
     ui.separator();
+    ui.menu_button("Why not?", |ui| examples_of(Group::WhyNot, ui, actions));
+    ui.menu_button("Inside a solver", |ui| examples_of(Group::InsideSolver, ui, actions));
     ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
 }
 

@@ -70,7 +70,7 @@ fn describe_crowd(crowd: &Crowd) -> String {
 
 fn describe_skeleton(session: &Session) -> String {
     let rig = session.skeleton_rig();
-    if let (Some(found), None) = (session.why().first(), session.shown_iteration()) {
+    if let (Some(found), None) = (session.known_why().first(), session.shown_iteration()) {
         return rig.sentence(found);
     }
     let joints = rig.skeleton.joints();

@@ -6,6 +6,16 @@ use crate::kinematics::diagnosis::{Diagnosis, TriedRemedy};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{self, format};
 
+/// Why the target is not reached that the session examines. While a mouse button is down nothing is
+/// found out that is not known, so that scrubbing does not wait.
+pub(in crate::ui) fn found<'a>(ui: &Ui, session: &'a Session) -> &'a [Diagnosis] {
+    if is_held(ui) { session.known_why() } else { session.why() }
+}
+
+pub(in crate::ui) fn is_held(ui: &Ui) -> bool {
+    ui.input(|input| input.pointer.any_down())
+}
+
 /// Shows the cause of a diagnosis as a sentence.
 pub(in crate::ui) fn cause(ui: &mut Ui, session: &Session, found: &Diagnosis) {
     let sentence = session.skeleton_rig().sentence(found);

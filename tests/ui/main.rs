@@ -20,6 +20,7 @@ mod habits;
 mod hand;
 mod hand_keys;
 mod history;
+mod inside;
 mod looks;
 mod numbers;
 mod panel;

@@ -132,6 +132,7 @@ fn a_cancelled_drag_says_why_again() {
     bench.press(PointerButton::Primary);
     bench.move_to(at + vec2(-40.0, 30.0));
     bench.apply([TransactionAction::Cancel]);
+    bench.release(PointerButton::Primary);
     bench.settle();
     assert!(bench.shows(Role::Button, MOVE));
 }

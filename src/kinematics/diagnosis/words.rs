@@ -46,7 +46,7 @@ impl Diagnosis {
                 )
             }
             Cause::Singular { .. } => {
-                format!("No joint can move {target} towards its target from a chain this straight")
+                format!("No joint can move {target} in the direction of its target")
             }
             Cause::OutOfIterations { iterations } => {
                 let s = if iterations == 1 { "" } else { "s" };

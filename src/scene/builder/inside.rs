@@ -18,7 +18,7 @@ const THIN: f32 = 0.004;
 const THICK: f32 = 0.009;
 /// Radius of the arcs of turned angles and of points, as fractions of the reach.
 const ARC: f32 = 0.09;
-const POINT: f32 = 0.012;
+const POINT: f32 = 0.014;
 /// Angle in radians from which a turn is drawn.
 const LEAST_TURN: f32 = 2e-3;
 
@@ -127,7 +127,7 @@ impl InsideDrawing<'_> {
 
     fn add_chain(&self, scene: &mut Scene, chain: &[[Vec3; 2]], colour: Colour) {
         for [from, to] in chain.iter().copied() {
-            let radius = THIN * self.reach;
+            let radius = 0.7 * THICK * self.reach;
             if from != to {
                 scene.add_guide_solid(from, to, radius, radius, colour);
             }
@@ -171,10 +171,11 @@ impl InsideDrawing<'_> {
     }
 }
 
-/// Factor with which an ellipsoid is drawn: 1, unless it is longer than the skeleton.
+/// Factor with which an ellipsoid is drawn, so that its longest axis is a part of the reach.
 fn ellipsoid_scale(ellipsoid: &Ellipsoid, reach: f32) -> f32 {
+    const PART: f32 = 0.4;
     let longest = ellipsoid.values[0];
-    if longest > reach { reach / longest } else { 1.0 }
+    if longest > 0.0 { PART * reach / longest } else { 1.0 }
 }
 
 /// Adds the three ellipses in which an ellipsoid meets the planes of its axes.

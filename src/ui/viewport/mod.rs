@@ -20,7 +20,7 @@ use crate::session::{
 };
 use crate::ui::gizmo::{Gizmo, locked_axis, view_axes};
 use crate::ui::keyboard::{self, focus};
-use crate::ui::{commands, mouse_hints, pose_summary};
+use crate::ui::{commands, mouse_hints, pose_summary, why};
 use navigation::{motion, show_cursor, wheel};
 
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside it.
@@ -32,6 +32,8 @@ pub(in crate::ui) fn ui(
     picture: Option<TextureId>,
     actions: &mut Actions,
 ) -> Rect {
+    // What follows, and the status bar, say what is found here.
+    why::found(ui, session);
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
     // The edges are those of the resizable panels beside the view.
     let inside = rect.shrink(PANEL_EDGE);

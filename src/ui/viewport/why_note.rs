@@ -25,7 +25,7 @@ pub(in crate::ui) fn ui(
     let is_shown = session.rig() == RigKind::Skeleton
         && session.crowd().is_none()
         && session.solver_runs().next().is_none();
-    let Some(found) = session.why().first().filter(|_| is_shown) else { return };
+    let Some(found) = why::found(ui, session).first().filter(|_| is_shown) else { return };
     let Some(report) = session.target_report(found.target) else { return };
     let Some(target) = screen.place(report.position) else { return };
     let id = Id::unique("why not reached");

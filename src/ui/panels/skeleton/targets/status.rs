@@ -1,6 +1,6 @@
 //! Whether a target is reached and, if not, why, with what helps.
 
-use egui::{RichText, Ui};
+use egui::{Id, RichText, Ui};
 
 use crate::document::Target;
 use crate::kinematics::chain_ik::Status;
@@ -11,13 +11,31 @@ use crate::session::{Actions, Session};
 use crate::ui::widgets::format;
 use crate::ui::{style, why};
 
+/// Shows the status. During a drag it keeps its height, so that no slider moves away from the mouse.
 pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let Some(report) = session.target_report(target.joint) else { return };
-    let why =
-        session.skeleton_rig().target(target.joint).map_or(&[][..], |it| session.why_target(it));
-    if !why.is_empty() {
-        return explain(ui, session, report.error, why, actions);
+    let id = Id::unique("height of the status");
+    let is_held = why::is_held(ui) || session.is_editing();
+    let shown = ui.scope(|ui| {
+        if is_held {
+            ui.set_min_height(ui.data(|data| data.get_temp(id)).unwrap_or_default());
+        }
+        let index = session.skeleton_rig().target(target.joint);
+        let why = index.map_or(&[][..], |index| match is_held {
+            true => session.known_why_target(index),
+            false => session.why_target(index),
+        });
+        match why.is_empty() {
+            true => status(ui, session, target, report),
+            false => explain(ui, session, report.error, why, actions),
+        }
+    });
+    if !is_held {
+        ui.data_mut(|data| data.insert_temp(id, shown.response.rect.height()));
     }
+}
+
+fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport) {
     let text = text(session, target, report);
     let is_reached = match &report.outcome {
         TargetOutcome::Off => true,

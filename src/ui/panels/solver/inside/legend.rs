@@ -50,7 +50,7 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
                     InsideLayer::Ellipsoid,
                     vec![guide, accent],
                     "Ellipsoid of J·Jᵀ",
-                    "how fast the tip can go in each direction, and what the damping λ leaves of it",
+                    "how fast the tip can go in each direction, not to scale, and what the damping λ leaves of it",
                 )
             });
             [columns].into_iter().chain(ellipsoid).collect()

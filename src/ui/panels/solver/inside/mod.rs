@@ -48,8 +48,9 @@ fn slider(ui: &mut Ui, run: &SolverRun, shown: usize, count: usize, actions: &mu
     let mut number = shown + 1;
     ui.horizontal(|ui| {
         let label = ui.label("Part");
-        let value_width = ui.spacing().interact_size.x + ui.spacing().item_spacing.x;
-        ui.spacing_mut().slider_width = (ui.available_width() - value_width).max(40.0);
+        // Room for the numbers of a long sweep, such as "100 / 100".
+        const VALUE_WIDTH: f32 = 72.0;
+        ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).max(40.0);
         // Without a second value the slider could not be laid out.
         let slider = Slider::new(&mut number, 1..=count.max(2)).suffix(format!(" / {count}"));
         let slider = ui.add(slider).labelled_by(label.id);

@@ -107,7 +107,7 @@ fn table<const N: usize>(ui: &mut Ui, id: &str, titles: [&str; N], rows: &[[Stri
     if rows.is_empty() {
         return;
     }
-    Grid::new(id).num_columns(N).spacing(vec2(10.0, 2.0)).striped(true).show(ui, |ui| {
+    Grid::new(id).num_columns(N).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
         for (column, title) in titles.into_iter().enumerate() {
             cell(ui, column, RichText::new(title).weak().small());
         }
