@@ -9,6 +9,7 @@
 //! edit copies only the parts that it changes.
 
 mod arm;
+mod arm_diagnosis;
 mod arm_solve;
 mod bake;
 mod camera;

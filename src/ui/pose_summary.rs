@@ -9,35 +9,14 @@ use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
 /// One sentence about the reach of the arm.
 pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
-    let gap = arm.format_length(pose.hand.distance(arm.cursor_in_root()));
     if !arm.uses_ik() {
         return "FK (joint angles → hand): the angles place the hand.".to_owned();
     }
-    if arm.influence < 1.0 {
-        return format!("Between FK and IK: the hand is {gap} from the Cursor.");
-    }
-    if pose.stretch > 1.0 {
+    if arm.influence == 1.0 && pose.stretch > 1.0 {
         let reached = if pose.reach == Some(Reach::Reached) { "" } else { ", the maximum" };
         return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
     }
-    match pose.reach {
-        Some(Reach::Reached) | None => "Reached: the hand is at the Cursor.".to_owned(),
-        Some(Reach::TooFar) if arm.soft_reach.softness() > 0.0 => {
-            format!("Soft: the hand stays {gap} behind the Cursor, so the elbow does not snap.")
-        }
-        Some(Reach::TooClose) if arm.soft_reach.softness() > 0.0 => {
-            format!("Soft: the hand stays off the shoulder, {gap} from the Cursor.")
-        }
-        Some(Reach::TooClose) if arm.soft_reach.min_elbow_angle() > 0.0 => {
-            format!("Too close: the elbow is at its minimum angle, the hand {gap} past the Cursor.")
-        }
-        Some(Reach::TooFar) => {
-            format!("Too far: the arm is straight and points at the Cursor, {gap} short.")
-        }
-        Some(Reach::TooClose) => {
-            format!("Too close: the arm is folded and overshoots the Cursor by {gap}.")
-        }
-    }
+    arm.why(pose).unwrap_or_else(|| "Reached: the hand is at the Cursor.".to_owned())
 }
 
 /// Description of the pose for screen readers.

@@ -211,12 +211,12 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,
-            "Too far: the arm is straight and points at the Cursor, 37.2 short.",
+            "The hand cannot reach that far: its target is 537 from the shoulder, and the bones are 500 long.",
         ),
         (
             Vec3::new(60.0, 0.0, 0.0),
             Reach::TooClose,
-            "Too close: the arm is folded and overshoots the Cursor by 40.0.",
+            "The hand cannot come that near: its target is 60 from the shoulder, and the folded bones span 100.",
         ),
     ] {
         let bench = Bench::after([EditAction::SetHand(hand)]);

@@ -71,7 +71,8 @@ fn a_hand_at_the_minimum_elbow_angle_says_so() {
     let soft_reach = SoftReach::new(0.0, 1.0, core::f32::consts::FRAC_PI_2).expect("soft limits");
     let bench =
         Bench::after([EditAction::SetHand(Vec3::X * 300.0), EditAction::SetSoftReach(soft_reach)]);
-    let said = "Too close: the elbow is at its minimum angle, the hand 60.6 past the Cursor.";
+    let said =
+        "The smallest elbow angle keeps the hand away from its target, 300 from the shoulder.";
     assert!(bench.says(said));
 }
 
