@@ -19,6 +19,7 @@ pub mod skeleton;
 pub mod skin;
 pub mod soft_reach;
 pub mod spline;
+pub mod swing;
 pub mod twist;
 pub mod two_bone;
 

@@ -83,6 +83,9 @@ impl Session {
             self.view.advance_crowd(passed);
             self.advance_playhead(passed);
             self.advance_solvers(passed);
+            if let Some(wiggle) = &mut self.wiggle {
+                wiggle.advance(passed);
+            }
         }
     }
 

@@ -30,6 +30,7 @@ impl Session {
         match action {
             SelectAction::Joints(joints) => self.select(joints),
             SelectAction::Hover(joint) => self.hover(joint),
+            SelectAction::Wiggle(wiggled) => self.set_wiggle(wiggled),
             SelectAction::ArmJoint(joint) => self.selection.set_arm_joint(joint),
             SelectAction::Keys(keys) => {
                 self.selection.set_keys(keys);

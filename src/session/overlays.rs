@@ -3,6 +3,7 @@ use glam::Vec3;
 use super::inside_layer::InsideLayers;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
+use super::wiggle::WiggleView;
 use crate::document::Document;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{Method, SubStep, TipTarget};
@@ -27,6 +28,8 @@ pub struct Overlays {
     pub ghosts: Vec<SolverGhost>,
     /// The part of an iteration that is looked at.
     pub inside: Option<InsideView>,
+    /// An angle that swings.
+    pub wiggle: Option<WiggleView>,
     /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.
     pub transported: Option<TransportedFrame>,
     /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail

@@ -1,7 +1,7 @@
 use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::Channel;
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
 
 /// Changes the selection or the copied keys.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +10,8 @@ pub enum SelectAction {
     Joints(Vec<JointId>),
     /// Sets the joint under the mouse; `None` if there is none.
     Hover(Option<JointId>),
+    /// Lets an angle of a joint swing in the view; `None` stops it.
+    Wiggle(Option<(JointId, RotationAxis)>),
     /// Selects a joint of the arm, or none.
     ArmJoint(Option<ArmJoint>),
     /// Selects these keys and no others.

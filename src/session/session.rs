@@ -10,6 +10,7 @@ use super::solvers::Solvers;
 use super::tour::TourState;
 use super::transport::TransportPath;
 use super::view::View;
+use super::wiggle::Wiggle;
 use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
 use crate::io;
 use crate::kinematics::Shared;
@@ -28,6 +29,7 @@ pub struct Session {
     pub(super) editing: Editing,
     pub(super) evaluated: Evaluated,
     pub(super) selection: Selection,
+    pub(super) wiggle: Option<Wiggle>,
     pub(super) playback: Playback,
     pub(super) solvers: Solvers,
     pub(super) view: View,
@@ -60,6 +62,7 @@ impl Session {
             evaluated: Evaluated::new(editing.shown()),
             editing,
             selection: Selection::default(),
+            wiggle: None,
             playback: Playback::default(),
             solvers: Solvers::default(),
             view: View::default(),
@@ -138,6 +141,7 @@ impl Session {
             || self.playback.is_playing()
             || self.view.is_crowd_moving()
             || self.solvers.is_busy()
+            || self.wiggle.is_some()
     }
 
     /// Evaluates the document at the playhead and updates all that depends on it.

@@ -29,6 +29,7 @@ impl Session {
             overlays.concerned.extend_from_slice(&found.joints);
         }
         overlays.inside = self.inside();
+        overlays.wiggle = self.wiggle_view();
         overlays.transported = Some(self.transport_path().transported());
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());

@@ -58,6 +58,9 @@ fn hints(navigation: Navigation, pointed: Option<Grip>) -> Vec<MouseHint> {
         ],
     };
     match pointed {
+        Some(grip @ Grip::Ring(..)) => {
+            vec![("", Left, drag_of(grip)), ("Alt: ", Fingers, "wiggle"), view[2]]
+        }
         Some(grip) => vec![("", Left, drag_of(grip)), view[2]],
         None => view.to_vec(),
     }

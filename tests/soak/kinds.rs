@@ -2,11 +2,13 @@
 
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::OpenOptions;
+use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmJoint, BakeAction, EditAction, FileAction, Navigation, PanelTab, PlaybackAction,
-    PoseMode, SelectAction, ShellAction, SolverAction, TourAction, TransactionAction, ViewAction,
+    Action, ArmJoint, BakeAction, EditAction, FileAction, InsideLayer, Navigation, PanelTab,
+    PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction, TourAction,
+    TransactionAction, ViewAction,
 };
 
 use crate::values::Values;
@@ -160,6 +162,10 @@ kinds! {
     Select(SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
         Hover: Look 2, |v| SelectAction::Hover(if v.coin() { None } else { Some(v.joint()) });
+        Wiggle: Look 1, |v| {
+            let axis = v.one_of(&RotationAxis::ALL);
+            SelectAction::Wiggle(if v.coin() { None } else { Some((v.joint(), axis)) })
+        };
         ArmJoint: Look 1, |v| {
             let joints = [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow)];
             SelectAction::ArmJoint(v.one_of(&joints))
@@ -183,6 +189,7 @@ kinds! {
         };
         ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
         FollowSelection: Look 1, |v| ViewAction::FollowSelection(v.coin());
+        ShowInside: Look 1, |v| ViewAction::ShowInside(v.one_of(&InsideLayer::ALL), v.coin());
         ShowCrowd: Look 1, |v| ViewAction::ShowCrowd(v.coin());
         SetCrowdSize: Look 1, |v| ViewAction::SetCrowdSize(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));
         SetCrowdSolver: Look 1, |v| ViewAction::SetCrowdSolver(v.one_of(&[Processor::Cpu, Processor::Gpu]));
@@ -202,6 +209,11 @@ kinds! {
         Step: Solve 4, |_| SolverAction::Step;
         Compare: Solve 1, |_| SolverAction::Compare;
         Reset: Solve 1, |_| SolverAction::Reset;
+        ShowPart: Solve 3, |v| SolverAction::ShowPart {
+            iteration: v.random.below(30) as u32,
+            part: if v.coin() { None } else { Some(v.one_of(&[0, 1, 2, 9, usize::MAX])) },
+        };
+        Walk: Solve 1, |v| SolverAction::Walk(v.coin());
         Show: Solve 4, |v| SolverAction::Show(v.random.below(30) as u32);
     }
     Bake(BakeAction) {

@@ -43,3 +43,4 @@ mod tour;
 mod view;
 mod view_keys;
 mod why;
+mod wiggle;

@@ -15,6 +15,7 @@ mod skeleton;
 mod skin;
 mod solver_ghosts;
 mod targets;
+mod wiggle;
 
 use super::{Palette, Planes, Scene};
 use crate::document::{Document, Overlay, RigKind, Theme};

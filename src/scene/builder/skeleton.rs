@@ -5,6 +5,7 @@ use super::inside::InsideDrawing;
 use super::scratch::Scratch;
 use super::skin::ShownSkin;
 use super::targets;
+use super::wiggle;
 use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId};
@@ -80,6 +81,9 @@ pub(super) fn add(
     if let (Some(view), Some(ghost)) = (&overlays.inside, overlays.ghosts.first()) {
         let (targets, selection) = (&ghost.targets[..], &overlays.selection[..]);
         InsideDrawing { view, targets, selection, reach }.add(scene);
+    }
+    if let Some(view) = &overlays.wiggle {
+        wiggle::add(scene, &drawn, skeleton, view);
     }
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {

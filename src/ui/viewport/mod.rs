@@ -13,7 +13,7 @@ use egui::{
 };
 
 use crate::document::{Camera, Overlay, RigKind};
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::session::{
     Action, Actions, ArmJoint, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction,
     SelectAction, Session, TransactionAction, ViewAction,
@@ -66,6 +66,7 @@ pub(in crate::ui) fn ui(
         invite(ui, rect);
     }
 
+    wiggle(ui, session, pointed.filter(|_| held_grip.is_none()), actions);
     let Some(mouse) = mouse else {
         keys(ui, &response, session, actions);
         return rect;
@@ -144,6 +145,18 @@ fn joint_at(
         return gizmo.joint_at(mouse);
     }
     session.joint_on_skin(screen.ray(mouse)).or_else(|| gizmo.joint_at(mouse))
+}
+
+/// Lets the angle swing whose ring is at the mouse while Alt is held and no button is.
+fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actions) {
+    let is_asked = ui.input(|input| input.modifiers.alt && !input.pointer.any_down());
+    let wiggled = match pointed.filter(|_| is_asked) {
+        Some(Grip::Ring(joint, axis)) => RotationAxis::ALL.get(axis).map(|axis| (joint, *axis)),
+        _ => None,
+    };
+    if wiggled != session.wiggled() {
+        actions.push(SelectAction::Wiggle(wiggled));
+    }
 }
 
 /// Pushes an action if the hovered joint has changed.
