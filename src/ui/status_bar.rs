@@ -8,9 +8,10 @@ use egui::{Align, Id, Label, Layout, ProgressBar, Ui};
 use super::widgets::{self, format};
 use super::{mouse_hints, pose_summary};
 use crate::document::RigKind;
+use crate::kinematics::swing::Swing;
 use crate::session::{
     Actions, Drag, EditAction, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction,
-    TurnDrag,
+    TurnDrag, WiggleTarget, WiggleView,
 };
 
 /// Height in points.
@@ -105,7 +106,26 @@ fn line(session: &Session) -> String {
     if let Some(drag) = session.drag() {
         return describe_drag(session, drag);
     }
+    if let Some(wiggle) = session.wiggle_view() {
+        return describe_wiggle(session, &wiggle);
+    }
     session.message().map_or_else(|| pose_summary::describe(session), ToOwned::to_owned)
+}
+
+/// Describes the angle that swings, and how the residual changes with it.
+fn describe_wiggle(session: &Session, wiggle: &WiggleView) -> String {
+    let Swing { joint, axis, .. } = wiggle.swing;
+    let name = session.skeleton().joint(joint).map_or("", |joint| &joint.name);
+    let by = wiggle.by.to_degrees();
+    let turn = format!("Wiggle {name} about {axis}: {by:+.1}°");
+    match wiggle.target {
+        Some(WiggleTarget { before, now, predicted, .. }) => format!(
+            "{turn}, error {:+.4}; the Jacobian predicts {:+.4}",
+            now - before,
+            predicted - before
+        ),
+        None => turn,
+    }
 }
 
 fn describe_drag(session: &Session, drag: &Drag) -> String {

@@ -1,9 +1,12 @@
-use glam::Vec3;
+use core::f32::consts::TAU;
 
+use glam::{Quat, Vec3};
+
+use super::arc::add_arc;
 use super::shadow::above_ground;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
-use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
 use crate::session::Overlays;
 /// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
 /// reach.
@@ -102,17 +105,27 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Adds a see-through cover around a bone and its joint, which also shows through what hides it.
+    /// Adds lines around a bone, like those of a cage, and a circle around its joint.
     pub fn add_outline(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
-        // Ratio of the cover's radius to the bone's.
-        const WIDER: f32 = 1.5;
+        // Ratio of the cage's radius to the bone's, and number of lines along the bone.
+        const WIDER: f32 = 1.35;
+        const LINES: u8 = 8;
         let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
-        let [radius, tip_radius] =
-            [self.radius(joint), self.tip_radius(joint)].map(|it| it * WIDER);
-        if base != tip {
-            scene.add_guide_solid(base, tip, radius, tip_radius, colour);
+        let axis = (tip - base).try_normalize().unwrap_or(Vec3::Y);
+        let side = axis.any_orthonormal_vector();
+        let radius = WIDER * self.radius(joint);
+        add_arc(scene, base, radius * side, axis, TAU, colour);
+        if base == tip {
+            return add_arc(scene, base, radius * axis, side, TAU, colour);
         }
-        scene.guide_balls.push(Ball { centre: base, radius: radius * 1.1, colour });
+        let tip_radius = WIDER * self.tip_radius(joint);
+        add_arc(scene, tip, tip_radius * side, axis, TAU, colour);
+        for nth in 0..LINES {
+            let around =
+                Quat::from_axis_angle(axis, TAU * f32::from(nth) / f32::from(LINES)) * side;
+            let (from, to) = (base + radius * around, tip + tip_radius * around);
+            scene.lines.push(Line { from, to, colour, dashed: false });
+        }
     }
 
     /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of that

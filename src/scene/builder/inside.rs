@@ -2,8 +2,9 @@
 
 use core::f32::consts::TAU;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
+use super::arc::{SEGMENTS, add_arc};
 use crate::kinematics::chain_ik::{
     Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipTarget, Turn,
 };
@@ -11,8 +12,6 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{InsideLayer, InsideView};
 
-/// Number of lines of a whole circle.
-const SEGMENTS: u16 = 64;
 /// Radius of thin and thick arrows, as fractions of the skeleton's reach.
 const THIN: f32 = 0.004;
 const THICK: f32 = 0.009;
@@ -188,15 +187,4 @@ fn add_ellipses(scene: &mut Scene, centre: Vec3, axes: [Vec3; 3], colour: Colour
         let line = |index| Line { from: point(index), to: point(index + 1), colour, dashed: false };
         scene.lines.extend((0..SEGMENTS).map(line));
     }
-}
-
-/// Adds an arc that begins at `centre + start` and goes round `axis`.
-fn add_arc(scene: &mut Scene, centre: Vec3, start: Vec3, axis: Vec3, angle: f32, colour: Colour) {
-    let Some(axis) = axis.try_normalize() else { return };
-    let count = (f32::from(SEGMENTS) * angle.abs() / TAU).ceil().clamp(1.0, 256.0) as u16;
-    let point = |index: u16| {
-        centre + Quat::from_axis_angle(axis, angle * f32::from(index) / f32::from(count)) * start
-    };
-    let line = |index| Line { from: point(index), to: point(index + 1), colour, dashed: false };
-    scene.lines.extend((0..count).map(line));
 }

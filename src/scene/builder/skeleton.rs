@@ -71,11 +71,9 @@ pub(super) fn add(
         let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
         drawn.add_fk_pose(scene, fk_pose, is_shown);
     }
-    // Fraction of the accent colour in the covers of joints.
-    const COVER: f32 = 0.4;
-    let cover = scene.palette.accent.with_opacity(COVER);
+    let accent = scene.palette.accent;
     for joint in overlays.concerned.iter().filter(|joint| joint.index() < joints.len()) {
-        drawn.add_outline(scene, *joint, cover);
+        drawn.add_outline(scene, *joint, accent);
     }
     drawn.add_solver_ghosts(scene, &overlays.ghosts, display);
     if let (Some(view), Some(ghost)) = (&overlays.inside, overlays.ghosts.first()) {
@@ -95,6 +93,9 @@ pub(super) fn add(
                 drawn.add_gap(scene, target.joint, report.position, scene.palette.accent);
             }
         }
+    }
+    if display.shows(Overlay::ElbowCircle) {
+        rig.targets.iter().for_each(|target| drawn.add_elbow_circle(scene, target));
     }
     if display.shows(Overlay::Pointer) {
         add_path(scene, rig, overlays.time);

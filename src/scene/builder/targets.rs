@@ -1,5 +1,8 @@
+use core::f32::consts::TAU;
+
 use glam::Vec3;
 
+use super::arc::add_arc;
 use super::drawn_skeleton::DrawnSkeleton;
 use crate::document::{Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -41,6 +44,23 @@ impl DrawnSkeleton<'_> {
             let label = Label::new(at, radius, LabelSide::Above, colour);
             let decimals = residual_decimals(self.reach);
             scene.add_label(label, format_args!("{gap:.decimals$}"));
+        }
+    }
+
+    /// Adds the circle of all places where the elbow of a limb could be with the tip where it is, and a
+    /// spoke to the elbow; nothing for another target, or for a straight limb.
+    pub fn add_elbow_circle(&self, scene: &mut Scene, target: &Target) {
+        // Radius as a fraction of the reach from which the circle is drawn.
+        const LEAST: f32 = 1e-4;
+        let Some(upper) = self.upper_of(target).filter(|_| target.is_posing()) else { return };
+        let [base, elbow] = [upper, target.joint].map(|joint| self.pose.base(joint));
+        let Some(axis) = (self.pose.tip(target.joint) - base).try_normalize() else { return };
+        let out = (elbow - base).reject_from_normalized(axis);
+        if out.length() > LEAST * self.reach {
+            let centre = elbow - out;
+            add_arc(scene, centre, out, axis, TAU, scene.palette.guide);
+            let colour = scene.palette.accent;
+            scene.lines.push(Line { from: centre, to: elbow, colour, dashed: false });
         }
     }
 

@@ -33,15 +33,7 @@ pub(super) fn add(
     let radius = 0.014 * drawn.reach;
     scene.guide_balls.push(Ball { centre: tip, radius, colour: accent });
     let label = Label::new(tip, radius, LabelSide::Above, accent);
-    let by = wiggle.by.to_degrees();
-    match wiggle.target {
-        Some(WiggleTarget { before, now, predicted, .. }) => {
-            let (real, linear) = (now - before, predicted - before);
-            scene.add_label(
-                label,
-                format_args!("{by:+.1}°: error {real:+.4}, by the Jacobian {linear:+.4}"),
-            );
-        }
-        None => scene.add_label(label, format_args!("{by:+.1}°")),
+    if let Some(WiggleTarget { before, now, .. }) = wiggle.target {
+        scene.add_label(label, format_args!("{:+.4}", now - before));
     }
 }

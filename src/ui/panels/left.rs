@@ -53,9 +53,9 @@ fn guides(session: &Session) -> &'static [Overlay] {
     match session.rig() {
         RigKind::Arm => &Overlay::GUIDES,
         RigKind::Skeleton if session.skeleton_rig().follow_path.is_some() => {
-            &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose]
+            &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose, Overlay::ElbowCircle]
         }
-        RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose],
+        RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle],
     }
 }
 
