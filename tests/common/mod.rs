@@ -5,6 +5,7 @@
 pub mod damage;
 #[cfg(feature = "document")]
 pub mod documents;
+pub mod missed_targets;
 mod random;
 pub mod skeletons;
 pub mod strategies;
