@@ -648,7 +648,7 @@ fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
     assert_eq!((why.cause.as_str(), why.target.as_str()), ("out_of_reach", "lower"));
     assert_eq!(
         why.sentence,
-        "lower cannot reach that far: its target is 3 from root, and the bones are 2 long"
+        "lower cannot reach that far: the target is 3 from root, the bones are 2 long"
     );
     assert!(why.residual_with_remedy.expect("a remedy") < 1e-3);
     for solver in ["fabrik", "ccd", "transpose", "transpose-fixed", "two-bone"] {

@@ -282,8 +282,8 @@ fn sentences_name_hands_joints_and_lengths() {
     let Cause::OutOfReach { distance, longest, .. } = found.cause else { panic!("{found:?}") };
     assert!((distance / longest - 2.0).abs() < 1e-3);
     let sentence = rig.sentence(found);
-    assert!(sentence.starts_with("hand cannot reach that far: its target is "), "{sentence}");
-    assert!(sentence.contains("from upper, and the bones are"), "{sentence}");
+    assert!(sentence.starts_with("hand cannot reach that far: the target is "), "{sentence}");
+    assert!(sentence.contains("from upper, the bones are"), "{sentence}");
     let remedies: Vec<_> =
         found.remedies.iter().map(|tried| rig.remedy_sentence(&tried.remedy)).collect();
     assert_eq!(

@@ -13,7 +13,7 @@ use ik_arm::session::{
 
 use crate::bench::Bench;
 
-const TOO_FAR: &str = "left_hand cannot reach that far: its target is";
+const TOO_FAR: &str = "left_hand cannot reach that far: the target is";
 const MOVE: &str = "Move the target of left_hand within reach";
 const STRETCH: &str = "Let the limb stretch by up to";
 

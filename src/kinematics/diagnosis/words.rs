@@ -201,10 +201,10 @@ fn out_of_reach(
     let is_far = distance > 0.5 * (shortest + longest);
     match boundary {
         Boundary::Bones if is_far => format!(
-            "{target} cannot reach that far: its target is {at} from {base}, and the bones are {most} long"
+            "{target} cannot reach that far: the target is {at} from {base}, the bones are {most} long"
         ),
         Boundary::Bones => format!(
-            "{target} cannot come that near: its target is {at} from {base}, and the folded bones span {least}"
+            "{target} cannot come that near: the target is {at} from {base}, the bones fold to {least}"
         ),
         Boundary::SoftLimit => {
             let end = if is_far { "straight" } else { "folded" };

@@ -41,8 +41,8 @@ impl ChainReach {
 impl OutOfReach {
     /// `None` if the bones reach the target, or come within `tolerance` (in the world) of it.
     pub fn of(inputs: &SolveInputs, target: &TipTarget, tolerance: f32) -> Option<Self> {
-        // Part of the way in that rounding of lengths may take.
-        const INSIDE: f32 = 1e-6;
+        // Part of the reach by which a moved target is inside of it, where solvers are fast.
+        const INSIDE: f32 = 2e-3;
         if inputs.options.root == Root::Free {
             return None;
         }
@@ -52,11 +52,13 @@ impl OutOfReach {
         let scale = transform.matrix3.determinant().abs().cbrt();
         let at = transform.inverse().transform_point3(target.point);
         let (towards, distance) = (at - reach.base, at.distance(reach.base));
-        let least = reach.shortest * (1.0 + INSIDE);
-        let nearest = distance.clamp(least, (reach.longest * (1.0 - INSIDE)).max(least));
+        let bounds = [reach.shortest, reach.longest.max(reach.shortest)];
+        let nearest = distance.clamp(bounds[0], bounds[1]);
+        let inside = nearest + INSIDE * (0.5 * (bounds[0] + bounds[1]) - nearest);
         let direction = towards.try_normalize().unwrap_or(Vec3::X);
-        let point = transform.transform_point3(reach.base + direction * nearest);
-        if !(point.distance(target.point) > tolerance) {
+        let in_world =
+            |distance: f32| transform.transform_point3(reach.base + direction * distance);
+        if !(in_world(nearest).distance(target.point) > tolerance) {
             return None;
         }
         let is_far = distance > reach.longest;
@@ -68,13 +70,13 @@ impl OutOfReach {
             longest: reach.longest * scale,
             boundary: Boundary::Bones,
         };
-        Some(Self { cause, point, factor, target: *target })
+        Some(Self { cause, point: in_world(inside), factor, target: *target })
     }
 
     /// What could bring the tip to the target.
     pub fn remedies(&self) -> impl Iterator<Item = Remedy> {
-        // Longer than needed, so that rounding does not leave a residual.
-        const LONGER: f32 = 1.001;
+        // Longer than needed: solvers are slow where the chain is straight.
+        const LONGER: f32 = 1.01;
         let joint = self.target.joint;
         let factor = self.factor.map(|factor| factor * LONGER);
         [

@@ -44,10 +44,12 @@ impl Examination {
             return vec![found];
         }
         let mut found: Vec<Diagnosis> = case.out_of_iterations().into_iter().collect();
-        for find in [Case::stalled, Case::conflict] {
-            if !found.iter().any(|it| case.is_remedied(it)) {
-                found.extend(find(&case));
-            }
+        if found.iter().all(|it| !case.is_remedied(it)) {
+            let conflict = case.conflict();
+            // Where another target is known to pull, one other method shows that the solver has not
+            // just stalled.
+            let most = if conflict.is_some() { 1 } else { usize::MAX };
+            found.extend(case.stalled(most).or(conflict));
         }
         if !found.iter().any(|it| case.is_remedied(it)) {
             found.extend(case.limits());
@@ -106,8 +108,10 @@ impl<'a> Case<'a> {
         Some(self.diagnosis(Cause::OutOfIterations { iterations }, self.path(), tried))
     }
 
-    /// Tries other starts and methods until one reaches the target.
-    fn stalled(&self) -> Option<Diagnosis> {
+    /// Tries other methods and starts, at most `most` of them, until one reaches the target.
+    fn stalled(&self, most: usize) -> Option<Diagnosis> {
+        // Speeds towards the target below this fraction are as good as none.
+        const SINGULAR: f32 = 0.02;
         const OTHERS: [Method; 3] = [Method::DampedLeastSquares, Method::Fabrik, Method::Ccd];
         let settled = &self.examination.settled;
         let present = settled.options.method;
@@ -115,12 +119,15 @@ impl<'a> Case<'a> {
         let others = others.map(|method| Remedy::UseMethod(method));
         let bent = Remedy::StartFrom(starts::bent(&settled.skeleton, self.joint));
         let middle = Remedy::StartFrom(starts::middle(&settled.skeleton, self.joint));
-        let found = [bent].into_iter().chain(others).chain([middle]).find_map(|remedy| {
+        let is_singular = self.pulls.mobility < SINGULAR;
+        // A bend is what helps at a singular pose; elsewhere a method is easier to change.
+        let [first, last] =
+            if is_singular { [vec![bent], Vec::new()] } else { [Vec::new(), vec![bent]] };
+        let all = first.into_iter().chain(others).chain(last).chain([middle]);
+        let found = all.take(most).find_map(|remedy| {
             let residual = self.residual_unless_others_suffer(&remedy)?;
             self.is_reached(residual).then(|| self.tell(remedy, residual))
         })?;
-        // Speeds towards the target below this fraction are as good as none.
-        const SINGULAR: f32 = 0.02;
         let mobility = self.pulls.mobility;
         let cause = if mobility < SINGULAR { Cause::Singular { mobility } } else { Cause::Stalled };
         Some(self.diagnosis(cause, self.path(), vec![found]))

@@ -66,8 +66,8 @@ pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
 }
 
 fn sentence(ui: &mut Ui, session: &Session) {
-    // Always two lines high, so that nothing below moves.
-    let height = 2.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
+    // Always as high as the longest sentence, so that nothing below moves.
+    let height = 3.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
         ui.label(pose_summary::sentence(session.arm(), session.pose()));
