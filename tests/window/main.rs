@@ -11,6 +11,7 @@ mod places;
 mod recovery;
 mod screen;
 mod typing;
+mod why;
 
 use places::Places;
 use screen::Program;

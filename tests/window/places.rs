@@ -7,7 +7,7 @@ use ik_arm::ui::{self, Machine};
 use crate::screen::SIZE;
 
 /// Margin of the test harness around the panels; the window has none.
-const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
+pub const HARNESS_MARGIN: egui::Vec2 = egui::Vec2::splat(8.0);
 
 /// Positions of widgets in the window, in points, from laying out the same panels without a window.
 pub struct Places {

@@ -39,7 +39,17 @@ impl Program {
 
     /// Also sets `IK_ARM_DEBUG`.
     pub fn open_to_debug(settings: &Path, debug: &str) -> Self {
+        Self::start(settings, debug, None)
+    }
+
+    /// Also opens a document.
+    pub fn open_file(settings: &Path, file: &Path) -> Self {
+        Self::start(settings, "", Some(file))
+    }
+
+    fn start(settings: &Path, debug: &str, file: Option<&Path>) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+            .args(file)
             .env("XDG_CONFIG_HOME", settings)
             .env("XDG_DATA_HOME", settings)
             .env("IK_ARM_DEBUG", debug)
@@ -71,7 +81,7 @@ impl Program {
     fn place_window(&self) {
         let window = wait_for("the window", || {
             assert!(!self.has_ended(), "{}", self.errors());
-            let found = xdotool(&["search", "--onlyvisible", "--name", "^ik-arm"]);
+            let found = xdotool(&["search", "--onlyvisible", "--name", "ik-arm"]);
             found.lines().next().map(str::to_owned)
         });
         xdotool(&["windowmove", &window, "0", "0", "windowfocus", &window]);
