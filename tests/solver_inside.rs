@@ -185,7 +185,7 @@ fn damping_takes_away_less_along_short_axes() {
 
 /// Whether a transform scales all directions alike.
 fn is_even(transform: Affine3A) -> bool {
-    let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.length());
+    let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(glam::Vec3A::length);
     (x - y).abs() < 1e-4 * x && (x - z).abs() < 1e-4 * x
 }
 

@@ -6,6 +6,7 @@
 //! adds those of limbs and of targets that share a pose with FK.
 
 mod cause;
+#[expect(clippy::module_inception, reason = "the type Diagnosis, in the file of its name")]
 mod diagnosis;
 mod remedy;
 pub(crate) mod widening;

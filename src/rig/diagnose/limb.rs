@@ -69,7 +69,8 @@ impl RigCase<'_> {
         const INSIDE: f32 = 1e-4;
         let &LimbSpan { base, shortest, longest, distance, .. } = span;
         let nearest = distance.clamp(shortest, longest);
-        if !((distance - nearest).abs() > self.tolerance) {
+        let missing = (distance - nearest).abs();
+        if missing.is_nan() || missing <= self.tolerance {
             return None;
         }
         let joint = self.target.joint;

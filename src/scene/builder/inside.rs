@@ -161,7 +161,7 @@ impl InsideDrawing<'_> {
         let radius = radius * self.reach;
         let (length, to) = (by.length(), from + by);
         let head = HEAD.0 * radius;
-        if !(length > head) {
+        if length.is_nan() || length <= head {
             return scene.lines.push(Line { from, to, colour, dashed: false });
         }
         let neck = to - by * (head / length);

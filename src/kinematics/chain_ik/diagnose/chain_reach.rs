@@ -58,7 +58,8 @@ impl OutOfReach {
         let direction = towards.try_normalize().unwrap_or(Vec3::X);
         let in_world =
             |distance: f32| transform.transform_point3(reach.base + direction * distance);
-        if !(in_world(nearest).distance(target.point) > tolerance) {
+        let missing = in_world(nearest).distance(target.point);
+        if missing.is_nan() || missing <= tolerance {
             return None;
         }
         let is_far = distance > reach.longest;

@@ -116,7 +116,7 @@ impl<'a> Case<'a> {
         let settled = &self.examination.settled;
         let present = settled.options.method;
         let others = OTHERS.into_iter().filter(|method| *method != present).take(2);
-        let others = others.map(|method| Remedy::UseMethod(method));
+        let others = others.map(Remedy::UseMethod);
         let bent = Remedy::StartFrom(starts::bent(&settled.skeleton, self.joint));
         let middle = Remedy::StartFrom(starts::middle(&settled.skeleton, self.joint));
         let is_singular = self.pulls.mobility < SINGULAR;
