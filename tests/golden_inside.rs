@@ -1,5 +1,5 @@
-//! Pictures of what a solver computes in a part of an iteration, of a wiggle, and of why a target is not
-//! reached, compared with those in `tests/golden`.
+//! Pictures of what a solver computes in a part of an iteration, of a wiggle, of why a target is not
+//! reached, and of the arm's figures, compared with those in `tests/golden`.
 #![cfg(feature = "render")]
 
 mod pictures;
@@ -11,8 +11,8 @@ use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    EditAction, FileAction, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
-    ViewAction,
+    ArmFigure, EditAction, FileAction, PlaybackAction, Preferences, SelectAction, Session,
+    SolverAction, ViewAction,
 };
 
 fn example(name: &str) -> Session {
@@ -97,4 +97,38 @@ fn the_circles_of_the_elbows_and_knees_of_a_figure() {
     let camera = Camera { distance: 2.6, ..*session.camera() };
     session.apply(ViewAction::SetCamera(camera));
     check("limb_circles", &session);
+}
+
+/// The arm with a line of its figures lit up.
+fn lit(figure: ArmFigure) -> Session {
+    let mut session = Session::new(Preferences::default());
+    session.apply(EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0)));
+    session.apply(EditAction::SetTwist(0.5));
+    session.apply(SelectAction::Figure(Some(figure)));
+    session
+}
+
+#[test]
+fn the_axes_of_root_limb_and_socket() {
+    let mut session = lit(ArmFigure::Distance);
+    session.apply(SelectAction::Figure(None));
+    session.apply(EditAction::ShowOverlay(Overlay::Frames, true));
+    check("frames", &session);
+}
+
+#[test]
+fn the_yaw_and_the_pitch_of_the_pointer() {
+    check("figure_yaw", &lit(ArmFigure::Yaw));
+    check("figure_pitch", &lit(ArmFigure::Pitch));
+}
+
+#[test]
+fn the_coordinates_of_the_elbow() {
+    check("figure_elbow", &lit(ArmFigure::Elbow));
+}
+
+#[test]
+fn a_limb_and_the_angle_at_the_elbow() {
+    check("figure_upper", &lit(ArmFigure::Upper));
+    check("figure_elbow_angle", &lit(ArmFigure::ElbowAngle));
 }

@@ -110,6 +110,12 @@ impl Arm {
         self.bones = TwoBone::new(upper, lower).unwrap_or(self.bones);
     }
 
+    /// The point of Root space that the Pointer goes through: the Cursor, or the hand where FK has a
+    /// part in the pose.
+    pub fn pointed_at(&self, pose: &TwoBonePose) -> Vec3 {
+        if self.influence == 1.0 { self.cursor_in_root() } else { pose.hand }
+    }
+
     /// The hierarchy Root → Limb → Socket of a pose.
     pub fn rig(&self, pose: &TwoBonePose) -> ArmRig {
         ArmRig::new(self.bones, self.reach_limits(), self.root, self.cursor_in_root(), pose)

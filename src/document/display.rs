@@ -50,6 +50,8 @@ pub enum Overlay {
     TwistReferences,
     /// The hand of the arm, and stripes along its forearm.
     Hand,
+    /// The axes of the arm's Root, Limb and Socket.
+    Frames,
     /// The skeleton's FK pose, beside the pose that the targets give it.
     FkPose,
     /// The skin of a skeleton that has one.
@@ -86,6 +88,7 @@ impl Overlay {
             Self::SingularityGlobe => "singularity_globe",
             Self::TwistReferences => "twist_references",
             Self::Hand => "hand",
+            Self::Frames => "frames",
             Self::FkPose => "fk_pose",
             Self::Skin => "skin",
             Self::Bones => "bones",
@@ -111,7 +114,8 @@ impl Overlay {
         [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit, Self::ElbowCircle];
 
     /// Overlays of the arm besides [`Self::GUIDES`].
-    pub const ARM: [Self; 3] = [Self::Hand, Self::SingularityGlobe, Self::TwistReferences];
+    pub const ARM: [Self; 4] =
+        [Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Overlays of the skeleton alone.
     pub const SKELETON: [Self; 6] = [

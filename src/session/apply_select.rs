@@ -1,3 +1,4 @@
+use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
 use super::effect::Effect;
 use super::select_action::SelectAction;
@@ -26,12 +27,18 @@ impl Session {
         self.selection.arm_joint()
     }
 
+    /// The line of the arm's figures under the mouse.
+    pub fn figure(&self) -> Option<ArmFigure> {
+        self.selection.figure()
+    }
+
     pub(super) fn apply_selection(&mut self, action: SelectAction) -> Option<Effect> {
         match action {
             SelectAction::Joints(joints) => self.select(joints),
             SelectAction::Hover(joint) => self.hover(joint),
             SelectAction::Wiggle(wiggled) => self.set_wiggle(wiggled),
             SelectAction::ArmJoint(joint) => self.selection.set_arm_joint(joint),
+            SelectAction::Figure(figure) => self.selection.set_figure(figure),
             SelectAction::Keys(keys) => {
                 self.selection.set_keys(keys);
                 self.retain_keys();

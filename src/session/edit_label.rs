@@ -140,6 +140,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Wireframe => "Toggle wireframe",
         Overlay::SkinWeights => "Toggle skin weights",
         Overlay::CompareSkinning => "Toggle comparison of skinning",
+        Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",
         Overlay::TwistReferences => "Toggle references",
         Overlay::Hand => "Toggle hand",

@@ -15,6 +15,7 @@ mod apply_view;
 mod apply_wiggle;
 mod arm_drag;
 mod arm_edits;
+mod arm_figure;
 mod arm_joint;
 mod bake_action;
 mod cached;
@@ -82,6 +83,7 @@ mod why;
 mod wiggle;
 
 pub use action::{Action, Actions};
+pub use arm_figure::ArmFigure;
 pub use arm_joint::ArmJoint;
 pub use bake_action::{BakeAction, BakeJob};
 pub use comparison::{ComparedSolver, Comparison};

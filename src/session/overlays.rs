@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::arm_figure::ArmFigure;
 use super::inside_layer::InsideLayers;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
@@ -22,6 +23,8 @@ pub struct Overlays {
     pub selection: Vec<JointId>,
     /// The joint under the mouse.
     pub hovered: Option<JointId>,
+    /// The line of the arm's figures that lights up.
+    pub figure: Option<ArmFigure>,
     /// The joints that keep a tip from its target.
     pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.

@@ -1,3 +1,4 @@
+use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::Channel;
@@ -14,6 +15,8 @@ pub enum SelectAction {
     Wiggle(Option<(JointId, RotationAxis)>),
     /// Selects a joint of the arm, or none.
     ArmJoint(Option<ArmJoint>),
+    /// Lights up a line of the arm's figures in the view; `None` stops it.
+    Figure(Option<ArmFigure>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),
     /// Selects these channels and no others.

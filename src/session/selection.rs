@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
+use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
 use super::key::Key;
 use crate::document::{Channel, Document};
@@ -18,6 +19,7 @@ pub(super) struct Selection {
     joints: Vec<JointId>,
     hovered: Option<JointId>,
     arm_joint: Option<ArmJoint>,
+    figure: Option<ArmFigure>,
     keys: Vec<Key>,
     channels: BTreeSet<Channel>,
     clipboard: Clipboard,
@@ -34,6 +36,10 @@ impl Selection {
 
     pub fn arm_joint(&self) -> Option<ArmJoint> {
         self.arm_joint
+    }
+
+    pub fn figure(&self) -> Option<ArmFigure> {
+        self.figure
     }
 
     pub fn keys(&self) -> &[Key] {
@@ -58,6 +64,10 @@ impl Selection {
 
     pub fn set_arm_joint(&mut self, joint: Option<ArmJoint>) {
         self.arm_joint = joint;
+    }
+
+    pub fn set_figure(&mut self, figure: Option<ArmFigure>) {
+        self.figure = figure;
     }
 
     pub fn set_keys(&mut self, keys: Vec<Key>) {

@@ -24,6 +24,7 @@ impl Session {
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
         overlays.hovered = self.hovered();
+        overlays.figure = self.figure();
         overlays.concerned.clear();
         if let (Some(found), true) = (self.known_why().first(), self.solvers.is_idle()) {
             overlays.concerned.extend_from_slice(&found.joints);

@@ -87,6 +87,7 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
             ("Compare", "Show the skin three times, once for each way of blending")
         }
         (_, Overlay::Hand) => ("Hand", "Show the hand, and stripes for the forearm roll"),
+        (_, Overlay::Frames) => ("Frames", "Show the axes of Root, Limb and Socket"),
         (_, Overlay::SingularityGlobe) => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")
         }

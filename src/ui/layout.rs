@@ -4,7 +4,7 @@ use egui::{CentralPanel, Panel, Rect, TextureId, Ui, UiBuilder};
 
 use super::panels::{crowd, left, right};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, tour, viewport};
-use crate::session::{Actions, Session};
+use crate::session::{Actions, SelectAction, Session};
 
 /// Least height of the view beside an open timeline, in points.
 const VIEW_HEIGHT: f32 = 360.0;
@@ -47,8 +47,9 @@ pub fn show(
     }
     let viewport =
         CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
-    if let Some(explain) = explain {
-        right::ui(&mut explain.ui(ui), session, actions);
+    let figure = explain.and_then(|explain| right::ui(&mut explain.ui(ui), session, actions));
+    if figure != session.figure() {
+        actions.push(SelectAction::Figure(figure));
     }
     if let Some(keys) = keys {
         timeline::ui(&mut keys.ui(ui), session, actions);

@@ -170,6 +170,9 @@ kinds! {
             let joints = [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow)];
             SelectAction::ArmJoint(v.one_of(&joints))
         };
+        Figure: Look 1, |v| {
+            SelectAction::Figure(if v.coin() { None } else { Some(v.one_of(&ArmFigure::ALL)) })
+        };
         Keys: Look 3, |v| SelectAction::Keys(v.keys());
         Channels: Look 1, |v| SelectAction::Channels(v.channels());
         CopyKeys: Look 2, |_| SelectAction::CopyKeys;

@@ -12,6 +12,7 @@ mod controls;
 mod crowd;
 mod dialogs;
 mod export;
+mod figures;
 mod first_click;
 mod gallery;
 mod glossary;

@@ -5,6 +5,7 @@ mod arm;
 mod axes;
 mod drawn_skeleton;
 mod elbow_circle;
+mod figure;
 mod globe;
 mod hand;
 mod inside;
@@ -86,6 +87,12 @@ impl SceneBuilder {
                 arm::add(scene, &document.arm, &pose, display, overlays.has_handles);
                 if display.shows(Overlay::ElbowCircle) {
                     elbow_circle::add(scene, &document.arm, &pose);
+                }
+                if display.shows(Overlay::Frames) {
+                    figure::add_frames(scene, &document.arm, &pose);
+                }
+                if let Some(figure) = overlays.figure {
+                    figure::add(scene, &document.arm, &pose, figure);
                 }
                 if display.shows(Overlay::TwistReferences) {
                     references::add(scene, &document.arm, overlays.transported);

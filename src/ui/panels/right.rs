@@ -4,7 +4,7 @@ use egui::{ScrollArea, Ui};
 
 use super::{explain, solver};
 use crate::document::RigKind;
-use crate::session::{Actions, PanelTab, Session, ViewAction};
+use crate::session::{Actions, ArmFigure, PanelTab, Session, ViewAction};
 use crate::ui::widgets::{self, Tab};
 
 /// Least width of the window with this panel, in points.
@@ -15,7 +15,12 @@ pub(in crate::ui) fn has_room(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() >= WINDOW_WIDTH
 }
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// Shows the chosen page, and returns the arm's figure under the mouse.
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    actions: &mut Actions,
+) -> Option<ArmFigure> {
     let shown = shown(session);
     ui.add_space(4.0);
     let tabs: Vec<_> = tabs(session)
@@ -24,19 +29,21 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     actions.extend(widgets::tabs(ui, shown, &tabs).map(ViewAction::ShowTab));
     ui.separator();
     // Each page is scrolled on its own.
+    let mut figure = None;
     ScrollArea::vertical().id_salt(shown).auto_shrink(false).show(ui, |ui| {
         match (session.rig(), shown) {
             (RigKind::Arm, PanelTab::Solver) => explain::closed_form(ui, session),
             (RigKind::Arm, PanelTab::Twist) => explain::twist(ui, session, actions),
             (RigKind::Arm, PanelTab::Reach) => explain::reach(ui, session),
             (RigKind::Arm, PanelTab::Pops) => explain::pops(ui, session, actions),
-            (RigKind::Arm, _) => explain::triangle(ui, session),
+            (RigKind::Arm, _) => figure = explain::triangle(ui, session, actions),
             (RigKind::Skeleton, PanelTab::Race) => solver::race(ui, session, actions),
             (RigKind::Skeleton, PanelTab::Skin) => solver::skin(ui, session),
             (RigKind::Skeleton, _) => solver::solver(ui, session, actions),
         }
         ui.add_space(8.0);
     });
+    figure
 }
 
 /// The tabs of the rig. The page of the skin is there while the skin is compared.

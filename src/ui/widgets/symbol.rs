@@ -53,7 +53,7 @@ fn parts(text: &str) -> impl Iterator<Item = (&str, bool)> {
         let lowered = if index == 0 {
             0
         } else {
-            part.find(|c: char| !c.is_alphanumeric()).unwrap_or(part.len())
+            part.find(|c: char| !c.is_alphabetic() && !c.is_ascii_digit()).unwrap_or(part.len())
         };
         let (low, rest) = part.split_at(lowered);
         [(low, true), (rest, false)].into_iter().filter(|(part, _)| !part.is_empty())

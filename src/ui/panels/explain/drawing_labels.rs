@@ -1,0 +1,115 @@
+//! Labels beside the lines of a drawing, where they cover nothing.
+
+use std::sync::Arc;
+
+use egui::{Color32, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
+
+use crate::session::ArmFigure;
+use crate::ui::widgets::symbol;
+
+const SIZE: f32 = 13.0;
+
+/// A place for a label: beside a point, on the side in the direction `away`; centred on it for 0.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub at: Pos2,
+    pub away: Vec2,
+}
+
+impl Place {
+    fn rect(self, size: Vec2) -> Rect {
+        let extent = self.away.x.abs() * size.x + self.away.y.abs() * size.y;
+        Rect::from_center_size(self.at + self.away * extent * 0.5, size)
+    }
+}
+
+/// Places to the left of a line, seen from its first point: near its middle first.
+pub(super) fn beside(from: Pos2, to: Pos2) -> Vec<Place> {
+    const GAP: f32 = 6.0;
+    let along = (to - from).normalized();
+    let away = vec2(along.y, -along.x);
+    let parts = [0.5, 0.35, 0.65, 0.2, 0.8];
+    parts.map(|part| Place { at: from + (to - from) * part + away * GAP, away }).to_vec()
+}
+
+/// Places around a corner, outside the arc of its angle: near the direction `middle` first, in radians
+/// clockwise from the right.
+pub(super) fn around(corner: Pos2, arc: f32, middle: f32) -> Vec<Place> {
+    let directions = [0.0, 0.4, -0.4, 3.1, 2.3, -2.3];
+    let places = [16.0, 24.0, 34.0].map(|gap| {
+        let at = |turn: f32| corner + (arc + gap) * Vec2::angled(middle + turn);
+        directions.map(|turn| Place { at: at(turn), away: Vec2::ZERO })
+    });
+    places.concat()
+}
+
+/// Labels of a drawing, beside its lines.
+pub(super) struct Labels<'a> {
+    painter: &'a Painter,
+    ui: &'a Ui,
+    /// The rectangle that labels stay in.
+    room: Rect,
+    lines: Vec<[Pos2; 2]>,
+    written: Vec<(Rect, ArmFigure)>,
+}
+
+impl<'a> Labels<'a> {
+    pub fn new(painter: &'a Painter, ui: &'a Ui, lines: Vec<[Pos2; 2]>) -> Self {
+        Self { painter, ui, room: painter.clip_rect().shrink(3.0), lines, written: Vec::new() }
+    }
+
+    /// Writes a label at the first clear place, if there is one.
+    pub fn write(&mut self, text: &str, colour: Color32, figure: ArmFigure, places: &[Place]) {
+        let galley = self.galley(text, colour);
+        let rects = places.iter().map(|place| place.rect(galley.size()));
+        if let Some(rect) = rects.into_iter().find(|rect| self.is_clear(*rect)) {
+            self.paint(rect, galley, colour, figure);
+        }
+    }
+
+    /// Writes a label at the first clear place, or else at the first one, moved into the room.
+    pub fn write_always(
+        &mut self,
+        text: &str,
+        colour: Color32,
+        figure: ArmFigure,
+        places: &[Place],
+    ) {
+        let galley = self.galley(text, colour);
+        let mut rects = places.iter().map(|place| place.rect(galley.size()));
+        let Some(first) = rects.clone().next() else { return };
+        let rect = rects.find(|rect| self.is_clear(*rect)).unwrap_or_else(|| self.moved_in(first));
+        self.paint(rect, galley, colour, figure);
+    }
+
+    /// The rectangles of the labels that were written.
+    pub fn written(self) -> Vec<(Rect, ArmFigure)> {
+        self.written
+    }
+
+    fn moved_in(&self, rect: Rect) -> Rect {
+        let inwards = (self.room.min - rect.min).max(Vec2::ZERO);
+        rect.translate(inwards + (self.room.max - rect.max).min(Vec2::ZERO))
+    }
+
+    fn galley(&self, text: &str, colour: Color32) -> Arc<Galley> {
+        self.ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(text, SIZE, colour)))
+    }
+
+    fn paint(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32, figure: ArmFigure) {
+        self.painter.galley(rect.min, galley, colour);
+        self.written.push((rect, figure));
+    }
+
+    fn is_clear(&self, rect: Rect) -> bool {
+        let rect = rect.expand(2.0);
+        let is_crossed = |[from, to]: &[Pos2; 2]| {
+            const STEPS: usize = 64;
+            (0..=STEPS)
+                .any(|step| rect.contains(*from + (*to - *from) * (step as f32 / STEPS as f32)))
+        };
+        self.room.contains_rect(rect)
+            && !self.lines.iter().any(is_crossed)
+            && !self.written.iter().any(|(other, _)| other.expand2(vec2(6.0, 0.0)).intersects(rect))
+    }
+}

@@ -1,0 +1,222 @@
+//! The arm's figures and formulas: their numbers, and the lines that light up in the view.
+
+use egui::accesskit::Role;
+use egui::{Pos2, Rect, lerp, vec2};
+use egui_kittest::kittest::Queryable as _;
+use glam::Vec3;
+use ik_arm::document::Overlay;
+use ik_arm::session::{ArmFigure, EditAction, PanelTab};
+
+use crate::bench::{Bench, SMALL};
+
+/// The rows of the page, with what they light up.
+const ROWS: [(&str, ArmFigure); 18] = [
+    ("Root", ArmFigure::Root),
+    ("Limb", ArmFigure::Limb),
+    ("Socket", ArmFigure::Socket),
+    ("Upper limb", ArmFigure::Upper),
+    ("Lower limb", ArmFigure::Lower),
+    ("Yaw theta z", ArmFigure::Yaw),
+    ("Level h c", ArmFigure::Level),
+    ("Pitch theta y", ArmFigure::Pitch),
+    ("Distance D", ArmFigure::Distance),
+    ("Upper d 1", ArmFigure::Upper),
+    ("Lower d 2", ArmFigure::Lower),
+    ("Along h e", ArmFigure::Along),
+    ("Out o e", ArmFigure::Out),
+    ("Shoulder theta e", ArmFigure::ShoulderAngle),
+    ("Elbow angle phi", ArmFigure::ElbowAngle),
+    ("Cursor c", ArmFigure::Cursor),
+    ("Elbow in Socket", ArmFigure::Out),
+    ("Elbow e", ArmFigure::Elbow),
+];
+
+fn hover(bench: &mut Bench, at: Pos2) -> Option<ArmFigure> {
+    bench.move_to(at);
+    bench.settle();
+    bench.session().figure()
+}
+
+/// Scrolls to the row of a name on the right side of the window, and returns the name's rectangle.
+fn row(bench: &mut Bench, name: &str) -> Rect {
+    let find = |bench: &Bench| {
+        let right = bench.viewport().right();
+        let names = bench.harness.query_all_by_role_and_label(Role::Label, name);
+        names.map(|node| node.rect()).find(|rect| rect.left() > right).expect("a row")
+    };
+    for _ in 0..40 {
+        let rect = find(bench);
+        if rect.bottom() < bench.viewport().bottom() - 8.0 {
+            return rect;
+        }
+        bench.move_to(Pos2::new(rect.center().x, bench.viewport().center().y));
+        bench.wheel(-3.0);
+        bench.settle();
+    }
+    panic!("{name} cannot be scrolled to");
+}
+
+#[test]
+fn every_row_lights_up_what_it_is_about_while_the_mouse_is_over_it() {
+    for mut bench in [Bench::new(), Bench::of_size(SMALL)] {
+        let mut seen = Vec::new();
+        for (name, figure) in ROWS {
+            let at = row(&mut bench, name).center();
+            assert_eq!(hover(&mut bench, at), Some(figure), "{name}");
+            assert_eq!(bench.session().overlays().figure, Some(figure), "{name}");
+            seen.push(figure);
+        }
+        assert!(ArmFigure::ALL.iter().all(|figure| seen.contains(figure)), "{seen:?}");
+        let away = bench.empty_point();
+        assert_eq!(hover(&mut bench, away), None);
+    }
+}
+
+#[test]
+fn the_value_at_the_end_of_a_row_lights_up_the_same_thing() {
+    let mut bench = Bench::new();
+    let row = row(&mut bench, "Pitch theta y");
+    let value = Pos2::new(bench.harness.ctx.content_rect().right() - 40.0, row.center().y);
+    assert_eq!(hover(&mut bench, value), Some(ArmFigure::Pitch));
+}
+
+#[test]
+fn the_sides_of_the_triangle_light_up_the_limbs() {
+    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(360.0, 0.0, 0.0))]);
+    let panel = triangle(&bench);
+    let mut seen = Vec::new();
+    for row in 0..60 {
+        for column in 0..40 {
+            let part = vec2(column as f32 / 39.0, row as f32 / 59.0);
+            let at = panel.lerp_inside(part);
+            bench.move_to(at);
+            bench.frame([]);
+            if let Some(figure) = bench.session().figure()
+                && !seen.contains(&figure)
+            {
+                seen.push(figure);
+            }
+        }
+    }
+    for figure in [
+        ArmFigure::Upper,
+        ArmFigure::Lower,
+        ArmFigure::Distance,
+        ArmFigure::Along,
+        ArmFigure::Out,
+        ArmFigure::ShoulderAngle,
+        ArmFigure::ElbowAngle,
+    ] {
+        assert!(seen.contains(&figure), "{figure:?} in {seen:?}");
+    }
+}
+
+/// The rectangle of the triangle's drawing.
+fn triangle(bench: &Bench) -> Rect {
+    let name = "Triangle: upper limb 200.0, lower limb 300.0, distance 360.0, angle at the shoulder \
+                56.4 degrees";
+    bench.rect(Role::Image, name)
+}
+
+#[test]
+fn both_right_triangles_light_up_level_yaw_and_pitch() {
+    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0))]);
+    let name = "Right triangles: x 250.0, z 200.0, level 320.2 from above; level 320.2, y 150.0 from \
+                the side";
+    bench.reveal(Role::Image, name);
+    let drawing = bench.rect(Role::Image, name);
+    let mut seen = [Vec::new(), Vec::new()];
+    for column in 0..60 {
+        for row in 0..40 {
+            let x = lerp(drawing.x_range().min..=drawing.x_range().max, column as f32 / 59.0);
+            let y = lerp(drawing.y_range().min..=drawing.y_range().max, row as f32 / 39.0);
+            bench.move_to(Pos2::new(x, y));
+            bench.frame([]);
+            let half = usize::from(column >= 30);
+            seen[half].extend(bench.session().figure());
+        }
+    }
+    for (half, figures) in [
+        [ArmFigure::Level, ArmFigure::Yaw, ArmFigure::Cursor],
+        [ArmFigure::Distance, ArmFigure::Pitch, ArmFigure::Cursor],
+    ]
+    .iter()
+    .enumerate()
+    {
+        for figure in figures {
+            assert!(seen[half].contains(figure), "{figure:?}");
+        }
+    }
+}
+
+#[test]
+fn another_page_and_a_closed_panel_light_nothing_up() {
+    let mut bench = Bench::new();
+    let at = row(&mut bench, "Root").center();
+    assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
+    bench.show_tab(PanelTab::Reach);
+    assert_eq!(bench.session().figure(), None);
+    bench.show_tab(PanelTab::Triangle);
+    assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
+    bench.choose(&["View", "Explain panel"]);
+    assert_eq!(bench.session().figure(), None);
+}
+
+#[test]
+fn the_hierarchy_shows_the_axes_of_its_frames_in_the_view() {
+    let mut bench = Bench::new();
+    bench.click(Role::CheckBox, "Axes in the view");
+    assert!(bench.session().document().display.shows(Overlay::Frames));
+    bench.click(Role::CheckBox, "Axes in the view");
+    assert!(!bench.session().document().display.shows(Overlay::Frames));
+}
+
+#[test]
+fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
+    // A triangle of the sides 200, 300 and 400.
+    let bench = Bench::after([EditAction::SetHand(Vec3::new(240.0, 0.0, 320.0))]);
+    let cosine =
+        (200.0_f64.powi(2) + 400.0_f64.powi(2) - 300.0_f64.powi(2)) / (2.0 * 200.0 * 400.0);
+    let angle = cosine.acos().to_degrees();
+    for line in [
+        "d 2² = d 1² + D² − 2 d 1 D cos theta e".to_owned(),
+        "300.0² = 200.0² + 400.0² − 2 · 200.0 · 400.0 cos theta e".to_owned(),
+        format!("cos theta e = {cosine:.4}, so theta e = {angle:.1}°"),
+    ] {
+        assert!(bench.shows(Role::Label, &line), "{line}");
+    }
+}
+
+#[test]
+fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not() {
+    for distance in [499.99_f32, 499.999, 100.001] {
+        let bench = Bench::after([EditAction::SetHand(Vec3::new(distance, 0.0, 0.0))]);
+        let pose = *bench.session().pose();
+        let exact = {
+            // Heron's formula in f64.
+            let (a, b, c) = (200.0, f64::from(pose.distance), 300.0);
+            let s = 0.5 * (a + b + c);
+            2.0 * ((s - a) * (s - b)).sqrt().atan2((s * (s - c)).sqrt())
+        };
+        let d = pose.distance;
+        let cosine = (200.0 * 200.0 + d * d - 300.0 * 300.0) / (2.0 * 200.0 * d);
+        let errors = [cosine.clamp(-1.0, 1.0).acos(), pose.shoulder_angle()]
+            .map(|angle| (f64::from(angle) - exact).abs().to_degrees() * 1e6);
+        assert!(errors[0] > 20.0 * errors[1], "{distance}: {errors:?}");
+        for error in errors {
+            let text = format!("{error:.1}");
+            assert!(bench.shows(Role::Label, &text), "{distance}: {text}");
+        }
+    }
+}
+
+#[test]
+fn positions_are_those_of_the_pose_in_root_and_socket_space() {
+    let hand = Vec3::new(240.0, 0.0, 320.0);
+    let bench = Bench::after([EditAction::SetHand(hand)]);
+    let pose = bench.session().pose();
+    let text = |point: Vec3| format!("({:.1}, {:.1}, {:.1})", point.x, point.y, point.z);
+    for point in [hand, Vec3::new(pose.along, pose.out, 0.0), pose.elbow] {
+        assert!(bench.says(&text(point)), "{point}");
+    }
+}
