@@ -195,22 +195,17 @@ fn coordinates_lead_from_the_shoulder_along_the_axes_to_cursor_and_elbow() {
                 let others = along.element_sum() - along.max_element();
                 assert!(others < bound, "case {case}, {figure:?}: along one axis");
             }
-            let [x, y, z] = point.to_array().map(|it| arm.format_length(it));
-            assert_eq!(lit.labels.len(), 3);
-            for label in [format!("x {x}"), format!("y {y}"), format!("z {z}")] {
-                let near = lit.labels.iter().any(|it| is_near(it, &label));
-                assert!(near, "case {case}: {label} in {:?}", lit.labels);
+            let numbers = lit.labels[0].trim_matches(['(', ')']).split(", ");
+            for (number, coordinate) in numbers.zip(point.as_dvec3().to_array()) {
+                let digits = number.split('.').nth(1).map_or(0, str::len) as i32;
+                let off = (number.parse::<f64>().expect("a number") - coordinate).abs();
+                assert!(
+                    off <= 0.51 * 10_f64.powi(-digits) + bound,
+                    "case {case}: {number} {coordinate}"
+                );
             }
         }
     }
-}
-
-/// Whether two labels have the same letter, and numbers that differ by rounding.
-fn is_near(a: &str, b: &str) -> bool {
-    let number = |text: &str| text[2..].parse::<f64>().unwrap_or(f64::NAN);
-    let (x, y) = (number(a), number(b));
-    let digits = b.split('.').nth(1).map_or(0, str::len) as i32;
-    a[..1] == b[..1] && (x - y).abs() <= 1.01 * 10_f64.powi(-digits) + 1e-5 * y.abs()
 }
 
 #[test]

@@ -105,6 +105,8 @@ fn lit(figure: ArmFigure) -> Session {
     session.apply(EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0)));
     session.apply(EditAction::SetTwist(0.5));
     session.apply(SelectAction::Figure(Some(figure)));
+    let camera = Camera { distance: 640.0, ..*session.camera() };
+    session.apply(ViewAction::SetCamera(camera));
     session
 }
 

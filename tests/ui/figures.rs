@@ -121,8 +121,8 @@ fn triangle(bench: &Bench) -> Rect {
 #[test]
 fn both_right_triangles_light_up_level_yaw_and_pitch() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0))]);
-    let name = "Right triangles: x 250.0, z 200.0, level 320.2 from above; level 320.2, y 150.0 from \
-                the side";
+    let name =
+        "Cursor from above: x 250.0, z 200.0, level 320.2; from the side: level 320.2, y 150.0";
     bench.reveal(Role::Image, name);
     let drawing = bench.rect(Role::Image, name);
     let mut seen = [Vec::new(), Vec::new()];

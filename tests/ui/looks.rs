@@ -49,6 +49,7 @@ fn every_control_has_a_tooltip_that_can_be_read() {
         for name in
             ["Yaw theta z", "Distance D", "Level h c", "Sum L", "Along h e", "Elbow angle phi"]
         {
+            bench.reveal(Role::Label, name);
             assert!(has_tooltip(&mut bench, Role::Label, name), "{name}");
         }
     }

@@ -132,7 +132,7 @@ impl<'a> FigureDrawing<'a> {
             let colour = scene.palette.axes[nth];
             scene.add_guide_solid(origin, neck, radius, radius, colour);
             scene.add_guide_solid(neck, to, 2.2 * radius, 0.0, colour);
-            let label = Label::new(to, radius, LabelSide::Above, colour);
+            let label = Label::new(to, radius, LabelSide::Above, scene.palette.text);
             scene.add_label(label, format_args!("{part:?} {letter}"));
         }
     }
@@ -157,10 +157,9 @@ impl<'a> FigureDrawing<'a> {
         scene.lines.push(Line { from, to, colour: scene.palette.guide, dashed: true });
     }
 
-    /// Adds the way from the shoulder to a point along x, then y, then z, with the coordinates.
+    /// Adds the way from the shoulder to a point along x, then z, then y, with the coordinates.
     fn add_coordinates(&self, scene: &mut Scene, point: Vec3) {
         let radius = THICK * self.length;
-        let way = point - self.shoulder;
         let mut from = self.shoulder;
         // x and z lie in the horizontal plane of the shoulder; the height comes last.
         for nth in [0, 2, 1] {
@@ -170,11 +169,12 @@ impl<'a> FigureDrawing<'a> {
             if from != to {
                 scene.add_guide_solid(from, to, radius, radius, colour);
             }
-            let label = Label::new(from.midpoint(to), radius, LabelSide::Below, colour);
-            let (letter, length) = (["x", "y", "z"][nth], self.arm.format_length(way[nth]));
-            scene.add_label(label, format_args!("{letter} {length}"));
             from = to;
         }
+        let label = Label::new(point, radius, LabelSide::Below, scene.palette.text);
+        let way = (point - self.shoulder).to_array();
+        let [x, y, z] = way.map(|coordinate| self.arm.format_length(coordinate));
+        scene.add_label(label, format_args!("({x}, {y}, {z})"));
     }
 
     /// Adds an angle from `start`, a unit vector, about `axis`, with its degrees.
@@ -187,7 +187,8 @@ impl<'a> FigureDrawing<'a> {
         }
         let Some(axis) = axis.try_normalize() else { return };
         let middle = Quat::from_axis_angle(axis, 0.5 * angle) * start;
-        let label = Label::new(centre + 1.1 * radius * middle, 0.0, LabelSide::Above, colour);
+        let at = centre + 1.1 * radius * middle;
+        let label = Label::new(at, 0.0, LabelSide::Above, scene.palette.text);
         scene.add_label(label, format_args!("{:.1}°", angle.to_degrees()));
     }
 }

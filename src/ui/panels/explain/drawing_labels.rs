@@ -1,5 +1,6 @@
 //! Labels beside the lines of a drawing, where they cover nothing.
 
+use core::f32::consts::PI;
 use std::sync::Arc;
 
 use egui::{Color32, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
@@ -35,12 +36,14 @@ pub(super) fn beside(from: Pos2, to: Pos2) -> Vec<Place> {
 /// Places around a corner, outside the arc of its angle: near the direction `middle` first, in radians
 /// clockwise from the right.
 pub(super) fn around(corner: Pos2, arc: f32, middle: f32) -> Vec<Place> {
-    let directions = [0.0, 0.4, -0.4, 3.1, 2.3, -2.3];
-    let places = [16.0, 24.0, 34.0].map(|gap| {
-        let at = |turn: f32| corner + (arc + gap) * Vec2::angled(middle + turn);
-        directions.map(|turn| Place { at: at(turn), away: Vec2::ZERO })
-    });
-    places.concat()
+    let place = |radius: f32, turn: f32| Place {
+        at: corner + radius * Vec2::angled(middle + turn),
+        away: Vec2::ZERO,
+    };
+    let inside = [14.0, 22.0, 30.0].map(|gap| [0.0, 0.3, -0.3].map(|turn| place(arc + gap, turn)));
+    let behind =
+        [16.0, 22.0].map(|radius| [PI, PI - 0.8, PI + 0.8].map(|turn| place(radius, turn)));
+    [inside.concat(), behind.concat()].concat()
 }
 
 /// Labels of a drawing, beside its lines.

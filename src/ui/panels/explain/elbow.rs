@@ -3,7 +3,7 @@
 use egui::Ui;
 use glam::Vec3;
 
-use super::formulas::{FormulaRow, degrees, length, point, table};
+use super::formulas::{FormulaRow, degrees, length, pair, point, table};
 use super::lit::Lit;
 use crate::session::{ArmFigure, Session};
 use crate::ui::style;
@@ -16,7 +16,16 @@ pub(super) fn triangle(ui: &mut Ui, session: &Session, lit: &mut Lit) {
 
 /// Shows the positions of Cursor and elbow.
 pub(super) fn positions(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    table(ui, "positions", &places(session), lit);
+    let (arm, pose) = (session.arm(), session.pose());
+    let in_socket = Vec3::new(pose.along, pose.out, 0.0);
+    let cursor =
+        ["Cursor c", "x_c, y_c and z_c: the Cursor in Root space; where FK has a part, the hand"];
+    let socket = ["Elbow in Socket", "h_e along the Pointer and o_e away from it"];
+    let elbow =
+        ["Elbow e", "x_e, y_e and z_e: the elbow in Root space, turned there by Socket and Limb"];
+    pair(ui, lit, ArmFigure::Cursor, cursor, point(arm, arm.pointed_at(pose)));
+    pair(ui, lit, ArmFigure::Out, socket, point(arm, in_socket));
+    pair(ui, lit, ArmFigure::Elbow, elbow, point(arm, pose.elbow));
 }
 
 fn quantities(ui: &Ui, session: &Session) -> [FormulaRow; 8] {
@@ -89,36 +98,6 @@ fn quantities(ui: &Ui, session: &Session) -> [FormulaRow; 8] {
             meaning: "Inner angle at the elbow: 180° straight, 0° folded",
             colour: None,
             figure: Some(ArmFigure::ElbowAngle),
-        },
-    ]
-}
-
-fn places(session: &Session) -> [FormulaRow; 3] {
-    let (arm, pose) = (session.arm(), session.pose());
-    [
-        FormulaRow {
-            symbol: "Cursor c",
-            formula: "",
-            value: point(arm, arm.pointed_at(pose)),
-            meaning: "x_c, y_c and z_c: the Cursor in Root space; where FK has a part, the hand",
-            colour: None,
-            figure: Some(ArmFigure::Cursor),
-        },
-        FormulaRow {
-            symbol: "Elbow in Socket",
-            formula: "",
-            value: point(arm, Vec3::new(pose.along, pose.out, 0.0)),
-            meaning: "h_e along the Pointer, o_e away from it: the elbow in Socket space",
-            colour: None,
-            figure: Some(ArmFigure::Out),
-        },
-        FormulaRow {
-            symbol: "Elbow e",
-            formula: "",
-            value: point(arm, pose.elbow),
-            meaning: "x_e, y_e and z_e: the elbow in Root space, turned there by Socket and Limb",
-            colour: None,
-            figure: Some(ArmFigure::Elbow),
         },
     ]
 }

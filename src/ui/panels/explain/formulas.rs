@@ -1,6 +1,6 @@
 //! Rows of quantities: symbol, formula and value.
 
-use egui::{Align, Color32, Grid, Layout, Rect, RichText, Ui, vec2};
+use egui::{Align, Color32, Grid, Layout, Rect, Response, RichText, Ui, vec2};
 use glam::Vec3;
 
 use super::lit::Lit;
@@ -27,9 +27,12 @@ pub(super) fn table(ui: &mut Ui, id: &str, rows: &[FormulaRow], lit: &mut Lit) {
     Grid::new(id).num_columns(3).min_col_width(24.0).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         for row in rows {
             match row.figure {
-                Some(figure) => lit.row(ui, figure, |ui| show(ui, row, right)),
+                Some(figure) => {
+                    let is_lit = lit.shows(figure);
+                    lit.row(ui, figure, |ui| show(ui, row, is_lit, right));
+                }
                 None => {
-                    show(ui, row, right);
+                    show(ui, row, false, right);
                 }
             }
             ui.end_row();
@@ -38,14 +41,13 @@ pub(super) fn table(ui: &mut Ui, id: &str, rows: &[FormulaRow], lit: &mut Lit) {
 }
 
 /// Shows a row that ends at `right`, and returns its rectangle.
-fn show(ui: &mut Ui, row: &FormulaRow, right: f32) -> Rect {
+fn show(ui: &mut Ui, row: &FormulaRow, is_lit: bool, right: f32) -> Rect {
     let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
-    let colour = row.colour.unwrap_or(text);
-    let symbol = symbol::label(ui, row.symbol, SIZE, colour).on_hover_text(row.meaning);
+    let symbol = explained(ui, row.symbol, row.colour.unwrap_or(text), row.meaning);
     if row.formula.is_empty() {
         ui.label("");
     } else {
-        symbol::label(ui, row.formula, SIZE, weak).on_hover_text(row.meaning);
+        explained(ui, row.formula, if is_lit { text } else { weak }, row.meaning);
     }
     let value = ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.label(RichText::new(&row.value).monospace())
@@ -53,6 +55,35 @@ fn show(ui: &mut Ui, row: &FormulaRow, right: f32) -> Rect {
     let mut rect = symbol.rect.union(value.inner.rect);
     rect.max.x = rect.max.x.min(right);
     rect
+}
+
+/// Shows a name or formula with a tooltip; both may have symbols.
+fn explained(ui: &mut Ui, text: &str, colour: Color32, meaning: &str) -> Response {
+    let shown = symbol::label(ui, text, SIZE, colour);
+    shown.on_hover_ui(|ui| {
+        let colour = ui.visuals().text_color();
+        symbol::label(ui, meaning, SIZE, colour);
+    })
+}
+
+/// Shows the name and the value of a quantity that has no formula.
+pub(super) fn pair(
+    ui: &mut Ui,
+    lit: &mut Lit,
+    figure: ArmFigure,
+    [name, meaning]: [&str; 2],
+    value: String,
+) {
+    let colour = ui.visuals().text_color();
+    lit.row(ui, figure, |ui| {
+        let row = ui.horizontal(|ui| {
+            explained(ui, name, colour, meaning);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(value).monospace());
+            });
+        });
+        row.response.rect
+    });
 }
 
 /// Writes a formula on a line of its own.

@@ -82,5 +82,5 @@ impl FigureLine {
 }
 
 fn fill(ui: &Ui) -> egui::Color32 {
-    style::colour(style::palette(ui).accent).gamma_multiply(0.45)
+    style::colour(style::palette(ui).accent).gamma_multiply(0.3)
 }

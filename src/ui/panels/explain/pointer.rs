@@ -13,9 +13,9 @@ use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
 use crate::ui::style;
 
-const HEIGHT: f32 = 136.0;
+const HEIGHT: f32 = 140.0;
 /// Room for labels at the sides, and above and below.
-const MARGINS: Vec2 = vec2(26.0, 30.0);
+const MARGINS: Vec2 = vec2(24.0, 26.0);
 /// Radius of the arcs of the angles, in points.
 const ARC: f32 = 18.0;
 
@@ -59,16 +59,14 @@ fn drawing(ui: &mut Ui, session: &Session, lit: &mut Lit) {
 fn description(arm: &Arm, cursor: Vec3) -> String {
     let [x, y, z] = cursor.to_array().map(|it| length(arm, it));
     let level = length(arm, cursor.x.hypot(cursor.z));
-    format!(
-        "Right triangles: x {x}, z {z}, level {level} from above; level {level}, y {y} from the side"
-    )
+    format!("Cursor from above: x {x}, z {z}, level {level}; from the side: level {level}, y {y}")
 }
 
-/// Points per unit of length. All Cursors in reach have the same scale, unless one would not fit.
+/// Points per unit of length. A Cursor near the shoulder is not enlarged, so that it looks near.
 fn scale(arm: &Arm, room: Vec2, cursor: Vec3, level: f32) -> f32 {
-    let least = 0.7 * arm.bones.outer_limit();
+    let least = 0.4 * arm.bones.outer_limit();
     let wide = level.max(least);
-    let high = cursor.y.abs().max(cursor.z.abs()).max(0.6 * least);
+    let high = cursor.y.abs().max(cursor.z.abs()).max(0.5 * least);
     (room.x / wide).min(room.y / high)
 }
 
