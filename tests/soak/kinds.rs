@@ -6,8 +6,8 @@ use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmJoint, BakeAction, EditAction, FileAction, InsideLayer, Navigation, PanelTab,
-    PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction, TourAction,
+    Action, ArmFigure, ArmJoint, BakeAction, EditAction, FileAction, InsideLayer, Navigation,
+    PanelTab, PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction, TourAction,
     TransactionAction, ViewAction,
 };
 
