@@ -1,11 +1,13 @@
-//! Time of one solve, including the sine and cosine of the twist.
+//! Time of one solve, including the sine and cosine of the twist, and of the same for another program's
+//! joints.
 //!
 //! The baseline, measured in the same run, is the textbook solution by angles.
 
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use glam::{Mat3, Vec3};
+use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
+use ik_arm::kinematics::job::TwoBoneJob;
 use ik_arm::kinematics::two_bone::TwoBone;
 
 /// Different cursors, so that the branch predictor cannot learn them.
@@ -56,7 +58,33 @@ fn two_bone(criterion: &mut Criterion) {
             }
         });
     });
+    group.bench_function("job", |bencher| {
+        let jobs = jobs(arm, &cursors);
+        bencher.iter(|| {
+            for job in &jobs {
+                let _ = black_box(black_box(job).run());
+            }
+        });
+    });
     group.finish();
+}
+
+/// Jobs of a limb of a skeleton that stands somewhere, bent, with a pole, a hinge and a twist.
+fn jobs(arm: TwoBone, cursors: &[(Vec3, f32)]) -> Vec<TwoBoneJob> {
+    let local = |turn: f32, along: f32| {
+        let turn = Quat::from_euler(EulerRot::XYZ, 0.3 * turn.sin(), 0.2, 0.9 + 0.5 * turn.cos());
+        Affine3A::from_rotation_translation(turn, along * Vec3::X)
+    };
+    let job = |(cursor, twist): &(Vec3, f32)| {
+        let stand = Affine3A::from_rotation_translation(Quat::from_rotation_y(*twist), *cursor);
+        let start = stand * local(*twist, 0.0);
+        let middle = start * local(2.0 * twist, arm.upper());
+        let end = middle * local(0.0, arm.lower());
+        let target = start.transform_point3(*cursor);
+        let job = TwoBoneJob::new(start, middle, end, target);
+        TwoBoneJob { pole: Some(Vec3::Y), hinge: Some(Vec3::Z), twist: *twist, ..job }
+    };
+    cursors.iter().map(job).collect()
 }
 
 criterion_group!(benches, two_bone);
