@@ -1,6 +1,6 @@
 use glam::{Affine3A, DMat3, DQuat, DVec3};
 
-use super::error::{JobError, JobField, check_similarity};
+use super::error::{JobError, JobField, similarity_scale};
 
 /// The three joints of a job in start joint space, in the unit of this space.
 pub(super) struct JointChain {
@@ -17,23 +17,33 @@ pub(super) struct JointChain {
     upper_ss: DVec3,
     /// l, the vector from the middle joint to the end joint.
     lower_ss: DVec3,
+    /// Lengths of u and l.
+    lengths_ss: [f64; 2],
     /// M_s⁻¹·M_m: the middle joint's axes, as columns; 0 if no joint can turn.
     middle_ss: DMat3,
-    /// Rotation that takes axes of turns from middle joint space to start joint space: that of
-    /// `middle_ss`, without its scale and mirror. (A mirrored turn about an axis is the opposite
-    /// turn about the mirrored axis.)
-    pub middle_turn: DQuat,
+    /// Its inverse; 0 for a middle joint of scale 0.
+    middle_inverse: DMat3,
+    /// Scale of the middle joint in start joint space, negative for one that mirrors.
+    middle_scale: f64,
     /// Rounding of the joints' positions: about an ulp of their largest model space coordinate,
     /// times the largest factor by which M_s⁻¹ lengthens an axis.
     rounding_ss: f64,
 }
 
-/// Vectors along the two bones in start joint space, divided by the chain's length `unit`.
+/// The two bones in start joint space. Lengths are in units of the chain's length.
 pub(super) struct LimbBones {
+    /// û, the direction from the start joint to the middle joint; NaN for a bone of length 0.
     pub upper_ss: DVec3,
+    /// The direction from the middle joint to the end joint; NaN for a bone of length 0.
     pub lower_ss: DVec3,
-    /// The chain's length, in start joint space.
-    pub unit: f64,
+    /// d₁.
+    pub upper: f64,
+    /// d₂.
+    pub lower: f64,
+    /// Direction from the start joint to the uncorrected hand, of any length.
+    pub hand_ss: DVec3,
+    /// 1 / L, with the chain's length L in start joint space.
+    pub per_unit: f64,
     /// Whether both bones have lengths above 0 and the middle joint can turn the lower bone.
     pub is_jointed: bool,
     /// Displacement of a joint by the rounding of its coordinates, in chain lengths.
@@ -53,25 +63,31 @@ impl JointChain {
             inverse(axes).ok_or(JobError::NotInvertible { field: JobField::Start })?;
         let middle_axes = if can_turn { middle_axes } else { DMat3::ZERO };
         let middle_ss = axes_inverse * middle_axes;
-        check_similarity(JobField::Middle, middle_ss)?;
-        let largest = [start, middle, end].map(|point| point.abs().max_element());
-        let largest = largest.into_iter().fold(0.0, f64::max);
+        let middle_scale = similarity_scale(JobField::Middle, middle_ss)?;
+        let middle_inverse = adjugate_inverse(middle_ss).unwrap_or(DMat3::ZERO);
+        let largest = start.abs().max(middle.abs()).max(end.abs()).max_element();
+        let upper_ss = axes_inverse * (middle - start);
+        let lower_ss = axes_inverse * (end - middle);
         Ok(Self {
             start,
             axes,
             axes_inverse,
             can_turn,
-            upper_ss: axes_inverse * (middle - start),
-            lower_ss: axes_inverse * (end - middle),
+            upper_ss,
+            lower_ss,
+            lengths_ss: [upper_ss.length(), lower_ss.length()],
             middle_ss,
-            middle_turn: nearest_turn(middle_ss),
-            rounding_ss: largest * f64::from(f32::EPSILON) * longest_axis(axes_inverse),
+            middle_inverse,
+            middle_scale: middle_scale.copysign(middle_inverse.determinant()),
+            rounding_ss: largest
+                * f64::from(f32::EPSILON)
+                * longest_axis_squared(axes_inverse).sqrt(),
         })
     }
 
     /// The chain's length L, in start joint space.
     pub fn length_ss(&self) -> f64 {
-        self.upper_ss.length() + self.lower_ss.length()
+        self.lengths_ss[0] + self.lengths_ss[1]
     }
 
     /// Converts a point from model space to start joint space.
@@ -92,65 +108,82 @@ impl JointChain {
     /// The two bones; `None` if the start joint cannot turn, or if the chain neither bends nor
     /// points in a direction.
     pub fn limb(&self) -> Option<LimbBones> {
-        let unit = self.length_ss();
-        let (upper_ss, lower_ss) = (self.upper_ss / unit, self.lower_ss / unit);
-        let is_jointed = self.upper_ss != DVec3::ZERO
-            && self.lower_ss != DVec3::ZERO
-            && self.middle_ss != DMat3::ZERO;
-        let can_point = (upper_ss + lower_ss).try_normalize().is_some();
-        let rounding = self.rounding_ss / unit;
-        let limb = LimbBones { upper_ss, lower_ss, unit, is_jointed, rounding };
-        (self.can_turn && (is_jointed || can_point)).then_some(limb)
+        let [upper, lower] = self.lengths_ss;
+        let per_unit = (upper + lower).recip();
+        let per_product = (upper * lower).recip();
+        let is_jointed = upper > 0.0 && lower > 0.0 && self.middle_ss != DMat3::ZERO;
+        let hand_ss = self.upper_ss + self.lower_ss;
+        let limb = LimbBones {
+            upper_ss: self.upper_ss * (lower * per_product),
+            lower_ss: self.lower_ss * (upper * per_product),
+            upper: upper * per_unit,
+            lower: lower * per_unit,
+            hand_ss,
+            per_unit,
+            is_jointed,
+            rounding: self.rounding_ss * per_unit,
+        };
+        (self.can_turn && (is_jointed || hand_ss != DVec3::ZERO)).then_some(limb)
+    }
+
+    /// The direction in start joint space of an axis of turns in middle joint space. (A mirrored turn
+    /// about an axis is the opposite turn about the mirrored axis.)
+    pub fn axis_ss(&self, axis: DVec3) -> DVec3 {
+        self.middle_ss * axis * 1.0_f64.copysign(self.middle_scale)
+    }
+
+    /// Converts the axis of a turn from start joint space to middle joint space, without changing its
+    /// length.
+    ///
+    /// The rotation Q nearest to M = M_s⁻¹·M_m is the polar decomposition of M; for a similarity up to
+    /// rounding, one step of Newton's iteration is exact: Q = (M/s + (M/s)⁻ᵀ) / 2.
+    pub fn axis_in_middle(&self, axis_ss: DVec3) -> DVec3 {
+        if self.middle_scale == 0.0 || axis_ss == DVec3::ZERO {
+            return axis_ss;
+        }
+        let by_transpose = transpose_times(self.middle_ss, axis_ss) / self.middle_scale;
+        let by_inverse = self.middle_inverse * axis_ss * self.middle_scale;
+        let axis = by_transpose + by_inverse;
+        axis * (axis_ss.length_squared() / axis.length_squared()).sqrt()
     }
 
     /// Position of the hand in start joint space after the turns `start` and `middle` of the
     /// joints, computed by the job's matrices.
     pub fn hand_ss(&self, start: DQuat, middle: DQuat) -> DVec3 {
-        let lower_ss = if self.middle_ss == DMat3::ZERO {
+        let lower_ss = if self.middle_scale == 0.0 {
             self.lower_ss
         } else {
-            self.middle_ss * (middle * (self.middle_ss.inverse() * self.lower_ss))
+            self.middle_ss * (middle * (self.middle_inverse * self.lower_ss))
         };
         start * (self.upper_ss + lower_ss)
     }
 }
 
-impl LimbBones {
-    /// The bones' lengths d₁ and d₂, in chain lengths.
-    pub fn lengths(&self) -> (f64, f64) {
-        (self.upper_ss.length(), self.lower_ss.length())
-    }
-
-    /// Position of the uncorrected hand relative to the start joint.
-    pub fn hand_ss(&self) -> DVec3 {
-        self.upper_ss + self.lower_ss
-    }
+/// Product of a transposed matrix and a vector.
+fn transpose_times(matrix: DMat3, vector: DVec3) -> DVec3 {
+    let DMat3 { x_axis, y_axis, z_axis } = matrix;
+    DVec3::new(x_axis.dot(vector), y_axis.dot(vector), z_axis.dot(vector))
 }
 
 /// Inverse of a matrix; `None` for a condition number above a million, where rounding an axis to
 /// f32 moves points by some percent.
 fn inverse(axes: DMat3) -> Option<DMat3> {
     const WORST_CONDITION: f64 = 1e6;
-    if axes.determinant() == 0.0 {
-        return None;
-    }
-    let inverse = axes.inverse();
-    let condition = longest_axis(axes) * longest_axis(inverse);
-    (condition <= WORST_CONDITION).then_some(inverse)
+    let inverse = adjugate_inverse(axes)?;
+    let condition_squared = longest_axis_squared(axes) * longest_axis_squared(inverse);
+    (condition_squared <= WORST_CONDITION * WORST_CONDITION).then_some(inverse)
 }
 
-fn longest_axis(axes: DMat3) -> f64 {
-    axes.x_axis.length().max(axes.y_axis.length()).max(axes.z_axis.length())
+/// Inverse by cross products; `None` without one.
+fn adjugate_inverse(axes: DMat3) -> Option<DMat3> {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = axes;
+    let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
+    let determinant = x.dot(yz);
+    let scale = determinant.recip();
+    (determinant != 0.0).then(|| DMat3::from_cols(yz * scale, zx * scale, xy * scale).transpose())
 }
 
-/// The rotation nearest to a matrix, without scale and mirror: its polar decomposition by Newton's
-/// iteration, which converges quadratically. The identity for the zero matrix.
-fn nearest_turn(axes: DMat3) -> DQuat {
-    const STEPS: usize = 3;
-    if axes == DMat3::ZERO {
-        return DQuat::IDENTITY;
-    }
-    let even = axes * axes.determinant().cbrt().recip();
-    let nearest = (0..STEPS).fold(even, |m, _| (m + m.inverse().transpose()) * 0.5);
-    DQuat::from_mat3(&nearest).normalize()
+fn longest_axis_squared(axes: DMat3) -> f64 {
+    let DMat3 { x_axis, y_axis, z_axis } = axes;
+    x_axis.length_squared().max(y_axis.length_squared()).max(z_axis.length_squared())
 }

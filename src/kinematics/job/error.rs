@@ -98,10 +98,27 @@ impl fmt::Display for JobField {
     }
 }
 
-/// Refuses a matrix that is not a similarity: a rotation with an even scale (or 0), mirrored or
-/// not.
-pub(super) fn check_similarity(field: JobField, axes: DMat3) -> Result<(), JobError> {
-    const DIFFERENT: f64 = 1e-3;
+/// Largest difference of lengths, and largest cosine between axes, of a similarity.
+const DIFFERENT: f64 = 1e-3;
+
+/// The scale of a matrix. Refuses one that is not a similarity: a rotation with an even scale (or 0),
+/// mirrored or not.
+pub(super) fn similarity_scale(field: JobField, axes: DMat3) -> Result<f64, JobError> {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = axes;
+    let squares = DVec3::new(x.length_squared(), y.length_squared(), z.length_squared());
+    let cosines = DVec3::new(x.dot(y), y.dot(z), z.dot(x));
+    let (longest, shortest) = (squares.max_element(), squares.min_element());
+    // Squares differ by twice as much; a smaller difference is certainly allowed.
+    if longest - shortest <= DIFFERENT * longest
+        && cosines.abs().max_element() <= 0.5 * DIFFERENT * longest
+    {
+        return Ok((squares.element_sum() / 3.0).sqrt());
+    }
+    check_similarity(field, axes)?;
+    Ok((squares.element_sum() / 3.0).sqrt())
+}
+
+fn check_similarity(field: JobField, axes: DMat3) -> Result<(), JobError> {
     let lengths = [axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length()];
     let longest = lengths.into_iter().fold(0.0, f64::max);
     let shortest = lengths.into_iter().fold(longest, f64::min);

@@ -13,14 +13,21 @@ pub(super) struct BentLimb {
     pub turn_ss: DQuat,
     /// x̂, the unit vector from the start joint to the hand.
     hand_ss: DVec3,
-    /// Unit vector perpendicular to x̂ on the side of the elbow; `None` for a limb that cannot
-    /// bend.
-    outward_ss: Option<DVec3>,
+    /// k, the unit axis about which a positive turn opens the limb; `None` for a limb that cannot
+    /// bend. The elbow is on the side of k × x̂.
+    axis_ss: Option<DVec3>,
+}
+
+/// Half of an angle.
+#[derive(Clone, Copy)]
+struct HalfAngle {
+    sin: f64,
+    cos: f64,
 }
 
 /// D, the hand's distance from the start joint for a target at the distance `target`.
 pub(super) fn soften(limb: &LimbBones, target: f64, soft_reach: SoftReach) -> f64 {
-    let (upper, lower) = limb.lengths();
+    let (upper, lower) = (limb.upper, limb.lower);
     let hard = target.clamp((upper - lower).abs(), upper + lower);
     if soft_reach.is_hard() {
         return hard;
@@ -45,33 +52,83 @@ pub(super) fn middle_joint(
     pole_ss: Option<DVec3>,
 ) -> BentLimb {
     if !limb.is_jointed {
-        let hand_ss = limb.hand_ss().normalize();
-        return BentLimb { turn_ss: DQuat::IDENTITY, hand_ss, outward_ss: None };
+        let hand_ss = limb.hand_ss.normalize();
+        return BentLimb { turn_ss: DQuat::IDENTITY, hand_ss, axis_ss: None };
     }
-    let (upper, lower) = limb.lengths();
-    let (upper_ss, lower_ss) = (limb.upper_ss / upper, limb.lower_ss / lower);
-    let angle = inner_angle(upper, lower, distance);
-
-    let (axis_ss, turn_ss) = match normal(limb, upper_ss, lower_ss) {
-        Some(normal_ss) => {
-            let axis_ss = on_side_of(normal_ss, hinge_ss);
-            let sin = axis_ss.dot(lower_ss.cross(upper_ss));
-            let now = sin.atan2(-upper_ss.dot(lower_ss));
-            (axis_ss, DQuat::from_axis_angle(axis_ss, angle - now))
+    let bend = Bend::new(limb, distance);
+    let (axis_ss, turn_ss) = match normal(limb) {
+        Some((normal_ss, sin)) => {
+            let side = side(normal_ss, hinge_ss);
+            let now = HalfAngle::of(side * sin, -limb.upper_ss.dot(limb.lower_ss));
+            let axis_ss = side * normal_ss;
+            (axis_ss, bend.inner_angle.minus(now).about(axis_ss))
         }
         None => {
-            let axis_ss = bending_axis(upper_ss, hinge_ss, pole_ss);
-            let is_straight = upper_ss.dot(lower_ss) > 0.0;
-            let (flat_ss, now) =
-                if is_straight { (upper_ss, core::f64::consts::PI) } else { (-upper_ss, 0.0) };
-            let bend = DQuat::from_axis_angle(axis_ss, angle - now);
-            (axis_ss, bend * least_rotation(lower_ss, flat_ss))
+            let axis_ss = bending_axis(limb.upper_ss, hinge_ss, pole_ss);
+            let is_straight = limb.upper_ss.dot(limb.lower_ss) > 0.0;
+            let (flat_ss, now) = match is_straight {
+                true => (limb.upper_ss, HalfAngle { sin: 1.0, cos: 0.0 }),
+                false => (-limb.upper_ss, HalfAngle { sin: 0.0, cos: 1.0 }),
+            };
+            let turn = bend.inner_angle.minus(now).about(axis_ss);
+            (axis_ss, turn * least_rotation(limb.lower_ss, flat_ss))
         }
     };
+    let hand_ss = bend.along * limb.upper_ss - bend.out * axis_ss.cross(limb.upper_ss);
+    BentLimb { turn_ss, hand_ss: near_unit(hand_ss), axis_ss: Some(axis_ss) }
+}
 
-    let hand_ss = limb.upper_ss + turn_ss * limb.lower_ss;
-    let hand_ss = hand_direction(hand_ss, limb.upper_ss, axis_ss, distance);
-    BentLimb { turn_ss, hand_ss, outward_ss: Some(axis_ss.cross(hand_ss).normalize()) }
+/// The closed form of the bent limb.
+struct Bend {
+    /// φ/2, half of the inner angle of the middle joint.
+    inner_angle: HalfAngle,
+    /// hₑ and oₑ, divided by d₁.
+    along: f64,
+    out: f64,
+}
+
+impl Bend {
+    fn new(limb: &LimbBones, distance: f64) -> Self {
+        let (upper, lower) = (limb.upper, limb.lower);
+        // L is 1.
+        let difference = upper - lower;
+        let open = ((distance - difference) * (distance + difference)).max(0.0);
+        let closed = ((1.0 - distance) * (1.0 + distance)).max(0.0);
+        // 4 d₁ d₂, which is 0 for a bone that is lost in the rounding of the other.
+        let sum = open + closed;
+        let (open, closed) = if sum > 0.0 { (open / sum, closed / sum) } else { (1.0, 0.0) };
+        let inner_angle = HalfAngle { sin: open.sqrt(), cos: closed.sqrt() };
+        let doubled = distance + if distance > 0.0 { difference / distance } else { 0.0 };
+        let along = (0.5 * doubled / upper).clamp(-1.0, 1.0);
+        let out = ((1.0 - along) * (1.0 + along)).sqrt();
+        Self { inner_angle, along, out }
+    }
+}
+
+impl HalfAngle {
+    /// Half of the angle between −180° and 180° with this sine and cosine.
+    fn of(sin: f64, cos: f64) -> Self {
+        let larger = (0.5 + 0.5 * cos.abs()).sqrt();
+        let smaller = 0.5 * sin / larger;
+        let is_sharp = cos >= 0.0;
+        // Beyond 90°, the half is between 45° and 90°, on the side of the angle.
+        Self {
+            sin: if is_sharp { smaller } else { larger.copysign(sin) },
+            cos: if is_sharp { larger } else { smaller.abs() },
+        }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        Self {
+            sin: self.sin * other.cos - self.cos * other.sin,
+            cos: self.cos * other.cos + self.sin * other.sin,
+        }
+    }
+
+    /// The rotation by the whole angle about a unit axis.
+    fn about(self, axis: DVec3) -> DQuat {
+        DQuat::from_vec4((axis * self.sin).extend(self.cos))
+    }
 }
 
 /// Rotation of the start joint that points the bent limb's hand at the target and its elbow in the
@@ -85,15 +142,21 @@ pub(super) fn start_joint(
 ) -> DQuat {
     const ON_LINE: f64 = 1e-6;
     let towards = target_ss.unwrap_or(bend.hand_ss);
-    let least = least_rotation(bend.hand_ss, towards);
-    let aside = pole_ss.map(|pole| pole.reject_from_normalized(towards));
-    let to_pole = match (bend.outward_ss, aside) {
-        (Some(outward), Some(aside)) if aside.length() > ON_LINE => {
-            frame(towards, aside.normalize()) * frame(bend.hand_ss, outward).inverse()
+    let (sin, cos) = if twist == 0.0 { (0.0, 1.0) } else { twist.sin_cos() };
+    let aside = pole_ss.map(|pole| (pole, pole.reject_from_normalized(towards)));
+    match (bend.axis_ss, aside) {
+        (Some(axis), Some((pole, aside)))
+            if aside.length_squared() > ON_LINE * ON_LINE * pole.length_squared() =>
+        {
+            let aside = aside.normalize();
+            let across = towards.cross(aside);
+            let outward = aside * cos + across * sin;
+            let to = [towards, outward, towards.cross(outward)];
+            let from = [bend.hand_ss, axis.cross(bend.hand_ss), axis];
+            rotation_between(from, to)
         }
-        _ => least,
-    };
-    (DQuat::from_axis_angle(towards, twist) * to_pole).normalize()
+        _ => HalfAngle::of(sin, cos).about(towards) * least_rotation(bend.hand_ss, towards),
+    }
 }
 
 /// The rotation about the axis of `turn` by the fraction `part` of its angle, taken as at most
@@ -109,30 +172,24 @@ pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     DQuat::from_vec4((axis * sin).extend(cos))
 }
 
-/// Inner angle φ of the middle joint for a hand at `distance`, computed from half the angle, so
-/// that it is exact for straight and folded limbs.
-fn inner_angle(upper: f64, lower: f64, distance: f64) -> f64 {
-    let (sum, difference) = (upper + lower, upper - lower);
-    let open = (distance - difference) * (distance + difference);
-    let closed = (sum - distance) * (sum + distance);
-    2.0 * open.max(0.0).sqrt().atan2(closed.max(0.0).sqrt())
-}
-
-/// Unit normal of the plane of the bones, about which a positive turn opens the limb; `None` if the
-/// bones are in one line, to within rounding.
-fn normal(limb: &LimbBones, upper_ss: DVec3, lower_ss: DVec3) -> Option<DVec3> {
+/// Unit normal of the plane of the bones, about which a positive turn opens the limb, and the sine of
+/// the inner angle; `None` if the bones are in one line, to within rounding.
+fn normal(limb: &LimbBones) -> Option<(DVec3, f64)> {
     const IN_LINE: f64 = 1e-3;
-    let (upper, lower) = limb.lengths();
-    let blurred = 2.0 * limb.rounding / upper.min(lower);
-    let normal_ss = lower_ss.cross(upper_ss);
-    (normal_ss.length() > IN_LINE + blurred).then(|| normal_ss.normalize())
+    let shorter = limb.upper.min(limb.lower);
+    let normal_ss = limb.lower_ss.cross(limb.upper_ss);
+    let sin = normal_ss.length();
+    (sin * shorter > IN_LINE * shorter + 2.0 * limb.rounding).then(|| (normal_ss / sin, sin))
 }
 
-/// The normal, negated if the hinge axis is on its other side.
-fn on_side_of(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> DVec3 {
+/// −1 if the hinge axis is on the other side of the normal, else 1.
+fn side(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> f64 {
     const IN_PLANE: f64 = 1e-3;
-    let is_opposite = hinge_ss.is_some_and(|hinge| hinge.dot(normal_ss) < -IN_PLANE);
-    if is_opposite { -normal_ss } else { normal_ss }
+    let is_opposite = hinge_ss.is_some_and(|hinge| {
+        let cos = hinge.dot(normal_ss);
+        cos < 0.0 && cos * cos > IN_PLANE * IN_PLANE * hinge.length_squared()
+    });
+    if is_opposite { -1.0 } else { 1.0 }
 }
 
 /// Unit axis, perpendicular to the bones, about which bones in one line bend: from the hinge axis,
@@ -140,32 +197,31 @@ fn on_side_of(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> DVec3 {
 fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>) -> DVec3 {
     const ALONG: f64 = 1e-3;
     let across = |axis: DVec3| {
-        let axis = axis.reject_from_normalized(upper_ss);
+        let axis = axis.try_normalize()?.reject_from_normalized(upper_ss);
         (axis.length() > ALONG).then(|| axis.normalize())
     };
-    let to_pole = || across(upper_ss.cross(pole_ss?));
+    let to_pole = || across(upper_ss.cross(pole_ss?.try_normalize()?));
     hinge_ss.and_then(across).or_else(to_pole).unwrap_or_else(|| upper_ss.any_orthonormal_vector())
 }
 
-/// x̂, the direction of the hand. For a hand near the start joint it is computed by the closed
-/// form: there both bones have nearly the same length, and oₑ is nearly d₁.
-fn hand_direction(hand_ss: DVec3, upper_ss: DVec3, axis_ss: DVec3, distance: f64) -> DVec3 {
-    const NEAR: f64 = 1e-6;
-    if distance > NEAR {
-        return hand_ss.normalize();
+/// The rotation that maps the axes of one right-handed frame to those of another.
+fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> DQuat {
+    const NEAR_HALF_TURN: f64 = 1e-4;
+    let ([a, b, c], [x, y, z]) = (from, to);
+    // 1 + the trace of the rotation is 4 cos²(θ/2); the sum of the cross products is 2 sin θ along
+    // the axis.
+    let cos = 1.0 + a.dot(x) + b.dot(y) + c.dot(z);
+    if cos > NEAR_HALF_TURN {
+        let sin = a.cross(x) + b.cross(y) + c.cross(z);
+        return DQuat::from_vec4(sin.extend(cos)).normalize();
     }
-    let upper = upper_ss.length();
-    let along = 0.5 * if distance == 0.0 { 0.0 } else { distance + (2.0 * upper - 1.0) / distance };
-    let along = along.clamp(-upper, upper);
-    let out = (upper * upper - along * along).sqrt();
-    (upper_ss * along - axis_ss.cross(upper_ss) * out).normalize()
+    let from = DMat3::from_cols(a, b, c);
+    DQuat::from_mat3(&(DMat3::from_cols(x, y, z) * from.transpose())).normalize()
 }
 
-/// The rotation that maps +x to the unit vector `x`, and +y to the unit vector `y`, which is
-/// perpendicular to `x`.
-fn frame(x: DVec3, y: DVec3) -> DQuat {
-    let z = x.cross(y).normalize();
-    DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize()
+/// Normalises a vector whose length is 1 to within 1e-8.
+fn near_unit(vector: DVec3) -> DVec3 {
+    vector * (1.5 - 0.5 * vector.length_squared())
 }
 
 /// Rotation by the smallest angle from one unit vector to another; about any perpendicular axis if

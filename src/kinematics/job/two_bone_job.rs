@@ -1,4 +1,4 @@
-use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
+use glam::{Affine3A, DQuat, Quat, Vec3};
 
 use super::chain::JointChain;
 use super::correction::TwoBoneCorrection;
@@ -86,19 +86,23 @@ impl TwoBoneJob {
     /// The correction of weight 1; `None` if there is nothing to turn.
     fn solve(&self, chain: &JointChain, soft_reach: SoftReach) -> Option<FullCorrection> {
         let limb = chain.limb()?;
-        let target_ss = chain.point_ss(self.target.as_dvec3()) / limb.unit;
-        let pole = self.pole.map(|pole| chain.vector_ss(pole.as_dvec3()));
-        let pole_ss = pole.and_then(DVec3::try_normalize);
-        let hinge = self.hinge.and_then(|hinge| hinge.as_dvec3().try_normalize());
-        let hinge_ss = hinge.map(|axis| chain.middle_turn * axis);
+        let target_ss = chain.point_ss(self.target.as_dvec3()) * limb.per_unit;
+        let target = target_ss.length();
+        let pole_ss = self.pole.map(|pole| chain.vector_ss(pole.as_dvec3()));
+        let hinge_ss = self.hinge.map(|axis| chain.axis_ss(axis.as_dvec3()));
 
-        let distance = stages::soften(&limb, target_ss.length(), soft_reach);
+        let distance = stages::soften(&limb, target, soft_reach);
         let bend = stages::middle_joint(&limb, distance, hinge_ss, pole_ss);
-        let towards_ss = target_ss.try_normalize().or(limb.hand_ss().try_normalize());
+        let towards_ss = match target > 0.0 {
+            true => Some(target_ss / target),
+            false => limb.hand_ss.try_normalize(),
+        };
+        let turn = bend.turn_ss;
+        let middle = chain.axis_in_middle(turn.xyz());
         Some(FullCorrection {
             start: stages::start_joint(&bend, towards_ss, pole_ss, self.twist.into()),
-            middle: chain.middle_turn.inverse() * bend.turn_ss * chain.middle_turn,
-            left: (target_ss.length() - distance).abs(),
+            middle: DQuat::from_vec4(middle.extend(turn.w)),
+            left: (target - distance).abs(),
         })
     }
 
@@ -118,9 +122,10 @@ impl TwoBoneJob {
         let target_ss = chain.point_ss(self.target.as_dvec3());
         let hand_ss = chain.hand_ss(start.as_dquat(), middle.as_dquat());
         let off_ss = hand_ss - target_ss;
-        let reach = if off_ss.length() <= NEAR * chain.length_ss() && left <= AT_LIMIT {
+        let near_ss = NEAR * chain.length_ss();
+        let reach = if off_ss.length_squared() <= near_ss * near_ss && left <= AT_LIMIT {
             Reach::Reached
-        } else if hand_ss.length() > target_ss.length() {
+        } else if hand_ss.length_squared() > target_ss.length_squared() {
             Reach::TooClose
         } else {
             Reach::TooFar
