@@ -2,10 +2,12 @@
 
 mod argument;
 mod bake;
+mod completions;
 mod convert;
 mod examples;
 mod export;
 mod gui;
+mod manual;
 mod open;
 mod open_args;
 mod pose;
@@ -20,13 +22,15 @@ mod view_name;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use bake::BakeArgs;
+use completions::CompletionsArgs;
 use convert::ConvertArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
 use gui::GuiArgs;
+use manual::ManualArgs;
 use pose::PoseArgs;
 use render::RenderArgs;
 use skin::SkinArgs;
@@ -64,6 +68,10 @@ enum Command {
     Examples(ExamplesArgs),
     /// Print the text of the tour that the window gives
     Tour,
+    /// Print the completions of commands and options for a shell
+    Completions(CompletionsArgs),
+    /// Write pages for man to a folder
+    Manual(ManualArgs),
     /// Open the window (also without a command)
     Gui(GuiArgs),
 }
@@ -87,6 +95,8 @@ pub fn run() -> ExitCode {
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Tour) => tour::run(),
+        Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
+        Some(Command::Manual(args)) => manual::run(&args, Cli::command()),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&window),
     }
