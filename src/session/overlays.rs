@@ -51,6 +51,10 @@ pub struct Overlays {
 pub struct InsideView {
     /// The part.
     pub part: Shared<SubStep>,
+    /// The part before it; `None` for the first one of an iteration.
+    pub previous: Option<Shared<SubStep>>,
+    /// The pose before the part, in world space.
+    pub before: Shared<SkeletonPose>,
     /// What is shown of it.
     pub layers: InsideLayers,
 }

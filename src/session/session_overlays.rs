@@ -41,8 +41,11 @@ impl Session {
     /// The part of the shown iteration that is looked at.
     fn inside(&self) -> Option<InsideView> {
         let run = self.solver_run()?;
-        let part = run.parts().get(run.shown_part()?)?;
-        Some(InsideView { part: part.clone(), layers: self.inside_layers() })
+        let shown = run.shown_part()?;
+        let part = run.parts().get(shown)?.clone();
+        let previous = shown.checked_sub(1).and_then(|before| run.parts().get(before)).cloned();
+        let (before, layers) = (run.before_part().clone(), self.inside_layers());
+        Some(InsideView { part, previous, before, layers })
     }
 
     /// World positions of the hand or the active joint's tip in all frames; empty if the motion

@@ -5,7 +5,7 @@ use super::iterates::{Iterate, Iterates};
 use super::solver_inputs::SolverInputs;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Method, Report, SolveError, SubStep, TipTarget};
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 
 /// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of them
 /// is shown. The document does not change.
@@ -22,6 +22,8 @@ pub struct SolverRun {
     inside: Inside,
     /// The skeleton in the shown iterate, or in the shown part of its iteration.
     skeleton: Skeleton,
+    /// The pose before the shown part, in world space.
+    before: Shared<SkeletonPose>,
     running: bool,
     elapsed: Duration,
 }
@@ -40,6 +42,7 @@ impl SolverRun {
             solver,
             held: None,
             inside: Inside::default(),
+            before: Shared::from(skeleton.pose()),
             skeleton,
             running: false,
             elapsed: Duration::ZERO,
@@ -125,6 +128,11 @@ impl SolverRun {
         Some(part.min(self.parts().len().checked_sub(1)?))
     }
 
+    /// The pose before the shown part, in world space; of no meaning without one.
+    pub(super) fn before_part(&self) -> &Shared<SkeletonPose> {
+        &self.before
+    }
+
     /// Whether the parts of all iterations are shown one after the other.
     pub fn is_walking(&self) -> bool {
         self.inside.is_walking()
@@ -190,11 +198,20 @@ impl SolverRun {
     fn write_shown(&mut self) {
         match self.shown_part() {
             Some(part) => {
-                let pose = self.parts()[part].pose.clone();
-                self.skeleton = pose;
+                self.before = Shared::from(self.pose_before(part));
+                self.skeleton = self.parts()[part].pose.clone();
             }
             None => self.iterates.at(self.held.unwrap_or(u32::MAX)).write(&mut self.skeleton),
         }
+    }
+
+    fn pose_before(&self, part: usize) -> SkeletonPose {
+        let Some(previous) = part.checked_sub(1) else {
+            let mut skeleton = Skeleton::clone(&self.inputs.fk);
+            self.iterates.at(self.shown().iteration.saturating_sub(1)).write(&mut skeleton);
+            return skeleton.pose();
+        };
+        self.parts()[previous].pose.pose()
     }
 
     /// Starts or pauses the run.

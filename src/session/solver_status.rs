@@ -57,7 +57,9 @@ impl SolverStatus {
             Status::Iterating => SolverState::Paused,
             status => SolverState::Ended(status),
         };
-        Self { state, error: run.shown().error, iteration: Some(run.shown().iteration) }
+        let part = run.shown_part().and_then(|part| run.parts().get(part));
+        let error = part.map_or(run.shown().error, |part| part.error);
+        Self { state, error, iteration: Some(run.shown().iteration) }
     }
 }
 

@@ -204,3 +204,23 @@ fn selecting_a_joint_lists_its_columns_alone() {
     assert_eq!(bench.count("joint_3 x"), 0);
     assert_eq!(bench.count("joint_1 x"), 1);
 }
+
+#[test]
+fn the_report_and_the_thin_lines_are_those_of_the_part_that_is_looked_at() {
+    let mut bench = after_a_step(Method::Ccd);
+    look_inside(&mut bench);
+    let parts = run(&bench).parts().len();
+    let mut before = bench.session().skeleton().pose();
+    for part in 0..parts {
+        bench.apply([SolverAction::ShowPart { iteration: 1, part: Some(part) }]);
+        let shown = &run(&bench).parts()[part];
+        let status = bench.session().solver_status().expect("a report");
+        assert_eq!(status.error, shown.error, "part {part}");
+        let view = bench.session().overlays().inside.expect("a part");
+        assert_eq!(*view.before, before, "part {part}");
+        before = shown.pose.pose();
+    }
+    bench.apply([SolverAction::ShowPart { iteration: 1, part: None }]);
+    let status = bench.session().solver_status().expect("a report");
+    assert_eq!(status.error, run(&bench).shown().error);
+}

@@ -23,6 +23,9 @@ impl Diagnosis {
                 let base = (names.joint)(base);
                 out_of_reach([&target, &base], distance, [shortest, longest], boundary)
             }
+            Cause::Limits if self.joints == [self.target] => {
+                format!("The limits of {target} itself keep its tip away from the target")
+            }
             Cause::Limits => {
                 format!(
                     "The limits of {} keep {target} away from its target",

@@ -2,14 +2,14 @@
 
 use core::f32::consts::TAU;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::arc::{SEGMENTS, add_arc};
 use crate::kinematics::chain_ik::{
     Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipTarget, Turn,
 };
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::scene::{Ball, Colour, Line, Scene};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
 use crate::session::{InsideLayer, InsideView};
 
 /// Radius of thin and thick arrows, as fractions of the skeleton's reach.
@@ -37,37 +37,67 @@ impl InsideDrawing<'_> {
         match &part.kind {
             SubStepKind::Gradient(gradient) => {
                 if shows(InsideLayer::Columns) {
-                    self.add_columns(scene, &gradient.columns);
+                    self.add_columns(scene, &gradient.columns, &part.pose);
                 }
                 if shows(InsideLayer::Ellipsoid) {
                     self.add_ellipsoids(scene, gradient);
                 }
             }
             SubStepKind::Step(step) if shows(InsideLayer::Step) => {
+                self.add_before(scene);
                 self.add_step(scene, step, &part.pose);
             }
-            SubStepKind::Turn(turn) if shows(InsideLayer::Rays) => self.add_turn(scene, turn),
+            SubStepKind::Turn(turn) if shows(InsideLayer::Rays) => {
+                self.add_before(scene);
+                self.add_turn(scene, turn);
+            }
             SubStepKind::Backward(chain) if shows(InsideLayer::Passes) => {
                 self.add_chain(scene, chain, scene.palette.accent);
             }
             SubStepKind::Forward(chain) if shows(InsideLayer::Passes) => {
+                if let Some(SubStepKind::Backward(backward)) = self.previous() {
+                    self.add_chain(scene, backward, scene.palette.accent);
+                }
                 self.add_chain(scene, chain, scene.palette.guide);
             }
             SubStepKind::PlaceElbow(lower) | SubStepKind::Aim(lower)
                 if shows(InsideLayer::Triangle) =>
             {
+                self.add_before(scene);
                 self.add_triangle(scene, *lower, &part.pose);
             }
             _ => {}
         }
     }
 
-    fn add_columns(&self, scene: &mut Scene, columns: &[Column]) {
+    fn previous(&self) -> Option<&SubStepKind> {
+        self.view.previous.as_ref().map(|previous| &previous.kind)
+    }
+
+    /// Adds the pose before the part, as lines.
+    fn add_before(&self, scene: &mut Scene) {
+        let before = &self.view.before;
+        let colour = scene.palette.guide.with_opacity(0.6);
+        let bones = before.ids().map(|joint| (before.base(joint), before.tip(joint)));
+        let bones = bones.filter(|(base, tip)| base != tip);
+        scene.lines.extend(bones.map(|(from, to)| Line { from, to, colour, dashed: false }));
+    }
+
+    /// Adds the columns as arrows. Long ones have the names of their joint and axis.
+    fn add_columns(&self, scene: &mut Scene, columns: &[Column], skeleton: &Skeleton) {
+        // As a fraction of the reach.
+        const LONG: f32 = 0.25;
         let is_selected = |column: &&Column| self.selection.contains(&column.joint);
         let any = columns.iter().any(|column| is_selected(&column));
         for column in columns.iter().filter(|column| !any || is_selected(column)) {
             let colour = scene.palette.axes[column.axis as usize];
             self.add_arrow(scene, column.at, column.by, THIN, colour);
+            if column.by.length() > LONG * self.reach {
+                let at = column.at + column.by;
+                let label = Label::new(at, 0.0, LabelSide::Above, scene.palette.text);
+                let (name, axis) = (&skeleton[column.joint].name, column.axis);
+                scene.add_label(label, format_args!("{name} {axis}"));
+            }
         }
     }
 
@@ -108,7 +138,7 @@ impl InsideDrawing<'_> {
 
     fn add_turn(&self, scene: &mut Scene, turn: &Turn) {
         // Radius of the arc as a fraction of the distance to the tip.
-        const PART: f32 = 0.4;
+        const PART: f32 = 0.6;
         let (guide, accent) = (scene.palette.guide, scene.palette.accent);
         let base = turn.base;
         scene.guide_balls.push(Ball {
@@ -119,7 +149,12 @@ impl InsideDrawing<'_> {
         for [from, target, to] in turn.tips.iter().copied() {
             scene.lines.push(Line { from: base, to: from, colour: guide, dashed: true });
             scene.lines.push(Line { from: base, to: target, colour: accent, dashed: false });
-            add_arc(scene, base, PART * (from - base), turn.axis, turn.angle, accent);
+            let start = PART * (from - base);
+            add_arc(scene, base, start, turn.axis, turn.angle, accent);
+            let Some(axis) = turn.axis.try_normalize() else { continue };
+            let middle = Quat::from_axis_angle(axis, 0.5 * turn.angle) * start;
+            let label = Label::new(base + middle, 0.0, LabelSide::Above, scene.palette.text);
+            scene.add_label(label, format_args!("{:.1}°", turn.angle.to_degrees()));
             self.add_point(scene, to, accent);
         }
     }

@@ -59,13 +59,13 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
             InsideLayer::Step,
             vec![accent, guide],
             "Step",
-            "how the tip moved, dashed where the Jacobian sent it, and by how much each angle turned",
+            "how the tip moved, dashed where the Jacobian sent it, and by how much each angle turned; in thin lines, the pose before",
         )],
         SubStepKind::Turn(_) => vec![entry(
             InsideLayer::Rays,
             vec![guide, accent],
             "Rays and arc",
-            "the rays from the joint to the tip and to its target, and the turn between them",
+            "the rays from the joint to the tip and to its target, and the turn between them; in thin lines, the pose before",
         )],
         SubStepKind::Backward(_) => vec![entry(
             InsideLayer::Passes,
@@ -75,15 +75,15 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
         )],
         SubStepKind::Forward(_) => vec![entry(
             InsideLayer::Passes,
-            vec![guide],
+            vec![accent, guide],
             "Forward pass",
-            "the root back in its place and each joint pushed after it, at its distance",
+            "after the backward pass, the root back in its place and each joint pushed after it, at its distance",
         )],
         SubStepKind::PlaceElbow(_) | SubStepKind::Aim(_) => vec![entry(
             InsideLayer::Triangle,
             vec![accent, guide],
             "Triangle and circle",
-            "the triangle of shoulder, elbow and target, and the circle of all elbows",
+            "the triangle of shoulder, elbow and target, and the circle of all elbows; in thin lines, the pose before",
         )],
         _ => Vec::new(),
     }
