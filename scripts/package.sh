@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Packages ik-arm for Linux: target/package/ik-arm_VERSION_ARCHITECTURE.deb, and a .tar.gz of the same files.
+# Packages ik-arm for Linux: target/package/ik-arm_VERSION-1_ARCHITECTURE.deb, and a .tar.gz of the same files.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -8,6 +8,7 @@ source scripts/setup.sh
 target=${CARGO_TARGET_DIR:-target}
 packages=$target/package
 program=$target/release/ik-arm
+maintainer='The ik-arm developers <ik-arm@users.noreply.github.com>'
 tree=
 
 main() {
@@ -78,7 +79,18 @@ install_documents() {
     install_file 644 assets/linux/copyright "$folder/copyright"
     install_file 644 CHANGELOG.md "$folder/changelog"
     dependencies | install -D -m 644 /dev/stdin "$tree/usr/$folder/dependencies"
-    compress "$tree/usr/$folder/changelog" "$tree/usr/$folder/dependencies"
+    debian_changelog | install -D -m 644 /dev/stdin "$tree/usr/$folder/changelog.Debian"
+    compress "$tree/usr/$folder"/{changelog,changelog.Debian,dependencies}
+}
+
+debian_changelog() {
+    cat <<END
+ik-arm ($(version)-1) unstable; urgency=medium
+
+  * See changelog.gz.
+
+ -- $maintainer  $(date -R -u -r CHANGELOG.md)
+END
 }
 
 # compress FILE...: without names and times, so that the same files give the same package.
@@ -130,7 +142,7 @@ pack_tar() {
 
 pack_deb() {
     local package
-    package=$packages/ik-arm_$(version)_$(architecture).deb
+    package=$packages/ik-arm_$(version)-1_$(architecture).deb
     install -d "$tree/DEBIAN"
     control >"$tree/DEBIAN/control"
     (cd "$tree" && find usr -type f -exec md5sum {} +) >"$tree/DEBIAN/md5sums"
@@ -141,9 +153,9 @@ pack_deb() {
 control() {
     cat <<END
 Package: ik-arm
-Version: $(version)
+Version: $(version)-1
 Architecture: $(architecture)
-Maintainer: The ik-arm developers <ik-arm@users.noreply.github.com>
+Maintainer: $maintainer
 Installed-Size: $(du -sk "$tree/usr" | cut -f 1)
 Depends: libc6 (>= $(least_libc)), libgcc-s1, ${window_libraries[0]#*:}$(printf ', %s' "${window_libraries[@]:1}" | sed 's/[^ ]*://g')
 Recommends: mesa-vulkan-drivers
