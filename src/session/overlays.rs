@@ -66,6 +66,8 @@ pub struct SolverGhost {
     pub method: Method,
     /// Number of iterations made to the iterate.
     pub iteration: u32,
+    /// The part of the iteration that is looked at, counted from 1, and the number of its parts.
+    pub part: Option<[usize; 2]>,
     /// The targets that are solved for.
     pub targets: Vec<TipTarget>,
     /// The pose, in world space.

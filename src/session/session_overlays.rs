@@ -67,6 +67,7 @@ fn write_ghosts<'a>(runs: impl Iterator<Item = &'a SolverRun>, ghosts: &mut Vec<
         }
         let ghost = &mut ghosts[count];
         (ghost.method, ghost.iteration) = (run.method(), run.shown().iteration);
+        ghost.part = run.shown_part().map(|part| [part + 1, run.parts().len()]);
         ghost.targets.clear();
         ghost.targets.extend_from_slice(run.targets());
         run.skeleton().write_pose(&mut ghost.pose);

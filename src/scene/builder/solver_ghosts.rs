@@ -19,7 +19,7 @@ impl DrawnSkeleton<'_> {
                 }
             }
             if is_single && display.shows(Overlay::Labels) {
-                drawn.add_iteration(scene, ghost.iteration, colour);
+                drawn.add_iteration(scene, ghost, colour);
             }
         }
     }
@@ -36,12 +36,17 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    /// Adds the number of an iteration as a label above the highest tip.
-    fn add_iteration(&self, scene: &mut Scene, iteration: u32, colour: Colour) {
+    /// Adds the number of an iteration and of its part as a label above the highest tip.
+    fn add_iteration(&self, scene: &mut Scene, ghost: &SolverGhost, colour: Colour) {
         let tips = self.pose.ids().map(|joint| (joint, self.pose.tip(joint)));
         if let Some((joint, at)) = tips.max_by(|(_, a), (_, b)| a.y.total_cmp(&b.y)) {
             let label = Label::new(at, self.radius(joint), LabelSide::Above, colour);
-            scene.add_label(label, format_args!("Iteration {iteration}"));
+            let iteration = ghost.iteration;
+            match ghost.part {
+                Some([part, of]) => scene
+                    .add_label(label, format_args!("Iteration {iteration}, part {part} of {of}")),
+                None => scene.add_label(label, format_args!("Iteration {iteration}")),
+            }
         }
     }
 }
