@@ -4,7 +4,7 @@ mod common;
 
 use common::Random;
 use common::skeletons::{
-    chain, forest, length, limit, reachable, shake, space_f64, transform, tree,
+    ITERATIVE, chain, forest, length, limit, reachable, shake, space_f64, target, transform, tree,
 };
 use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
@@ -14,19 +14,6 @@ use ik_arm::kinematics::chain_ik::{
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 const CASES: usize = 1_000;
-
-/// All methods but the closed form, which needs two bones.
-const ITERATIVE: [Method; 5] = [
-    Method::TransposeFixed,
-    Method::Transpose,
-    Method::DampedLeastSquares,
-    Method::Ccd,
-    Method::Fabrik,
-];
-
-fn target(joint: JointId, point: Vec3) -> TipTarget {
-    TipTarget { joint, point, weight: 1.0 }
-}
 
 /// Up from a locked root, bones of length 1.
 fn straight(joints: usize) -> Skeleton {

@@ -7,15 +7,7 @@ use ik_arm::kinematics::chain_ik::{Method, SolverOptions, Status, TipTarget, sol
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 use super::Random;
-use super::skeletons::{chain, length, reachable, shake, transform, tree};
-
-const ITERATIVE: [Method; 5] = [
-    Method::TransposeFixed,
-    Method::Transpose,
-    Method::DampedLeastSquares,
-    Method::Ccd,
-    Method::Fabrik,
-];
+use super::skeletons::{ITERATIVE, chain, length, reachable, shake, target, transform, tree};
 
 /// A skeleton with targets that it misses.
 pub struct MissedTargets {
@@ -51,10 +43,6 @@ impl MissedTargets {
         let scale = self.skeleton.transform().matrix3.determinant().abs().cbrt();
         scale * length(&self.skeleton, &tips)
     }
-}
-
-fn target(joint: JointId, point: Vec3) -> TipTarget {
-    TipTarget { joint, point, weight: 1.0 }
 }
 
 /// A chain of two to six joints after a locked root.

@@ -1,10 +1,24 @@
 //! Random skeletons and targets, the same on every run.
 
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm::kinematics::chain_ik::TipTarget;
+use ik_arm::kinematics::chain_ik::{Method, TipTarget};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 use super::Random;
+
+/// All methods but the closed form, which needs two bones.
+pub const ITERATIVE: [Method; 5] = [
+    Method::TransposeFixed,
+    Method::Transpose,
+    Method::DampedLeastSquares,
+    Method::Ccd,
+    Method::Fabrik,
+];
+
+/// A target of weight 1.
+pub fn target(joint: JointId, point: Vec3) -> TipTarget {
+    TipTarget { joint, point, weight: 1.0 }
+}
 
 /// A locked root and a chain of `joints`, straight or crooked, with bones 0.5 to 1.5 units long.
 pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
