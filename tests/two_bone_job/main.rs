@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod any_start;
+mod batch;
 mod cases;
 #[path = "../common/mod.rs"]
 mod common;

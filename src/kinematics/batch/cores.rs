@@ -72,7 +72,7 @@ impl PointsMut<'_> {
 }
 
 impl QuaternionsMut<'_> {
-    fn split_at(self, middle: usize) -> (Self, Self) {
+    pub(crate) fn split_at(self, middle: usize) -> (Self, Self) {
         let [(x, x2), (y, y2), (z, z2), (w, w2)] =
             [self.x, self.y, self.z, self.w].map(|of| of.split_at_mut(middle));
         (Self { x, y, z, w }, Self { x: x2, y: y2, z: z2, w: w2 })

@@ -1,5 +1,6 @@
 use glam::{Affine3A, DMat3, DQuat, DVec3};
 
+use super::closed_form::cofactors;
 use super::error::{JobError, JobField, similarity_scale};
 
 /// The three joints of a job in start joint space, in the unit of this space.
@@ -141,7 +142,7 @@ impl JointChain {
         if self.middle_scale == 0.0 || axis_ss == DVec3::ZERO {
             return axis_ss;
         }
-        let by_transpose = transpose_times(self.middle_ss, axis_ss) / self.middle_scale;
+        let by_transpose = self.middle_ss.transpose_mul_vec3(axis_ss) / self.middle_scale;
         let by_inverse = self.middle_inverse * axis_ss * self.middle_scale;
         let axis = by_transpose + by_inverse;
         axis * (axis_ss.length_squared() / axis.length_squared()).sqrt()
@@ -159,12 +160,6 @@ impl JointChain {
     }
 }
 
-/// Product of a transposed matrix and a vector.
-fn transpose_times(matrix: DMat3, vector: DVec3) -> DVec3 {
-    let DMat3 { x_axis, y_axis, z_axis } = matrix;
-    DVec3::new(x_axis.dot(vector), y_axis.dot(vector), z_axis.dot(vector))
-}
-
 /// Inverse of a matrix; `None` for a condition number above a million, where rounding an axis to
 /// f32 moves points by some percent.
 fn inverse(axes: DMat3) -> Option<DMat3> {
@@ -176,11 +171,9 @@ fn inverse(axes: DMat3) -> Option<DMat3> {
 
 /// Inverse by cross products; `None` without one.
 fn adjugate_inverse(axes: DMat3) -> Option<DMat3> {
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = axes;
-    let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
-    let determinant = x.dot(yz);
-    let scale = determinant.recip();
-    (determinant != 0.0).then(|| DMat3::from_cols(yz * scale, zx * scale, xy * scale).transpose())
+    let cofactors = cofactors(axes);
+    let determinant = axes.x_axis.dot(cofactors.x_axis);
+    (determinant != 0.0).then(|| (cofactors * determinant.recip()).transpose())
 }
 
 fn longest_axis_squared(axes: DMat3) -> f64 {

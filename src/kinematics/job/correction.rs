@@ -1,5 +1,6 @@
 use glam::{Quat, Vec3};
 
+use super::closed_form::Solved;
 use crate::kinematics::two_bone::Reach;
 
 /// Result of a [`TwoBoneJob`](super::TwoBoneJob): two rotations that multiply the joints' local
@@ -38,6 +39,17 @@ impl TwoBoneCorrection {
             start_correction: before(self.start_correction, start_scale),
             middle_correction: before(self.middle_correction, middle_scale),
             ..self
+        }
+    }
+}
+
+impl From<Solved> for TwoBoneCorrection {
+    fn from(solved: Solved) -> Self {
+        Self {
+            start_correction: Quat::from_array(solved.start_correction),
+            middle_correction: Quat::from_array(solved.middle_correction),
+            reach: solved.reach(),
+            hand_error: solved.hand_error,
         }
     }
 }

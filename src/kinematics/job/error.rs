@@ -108,13 +108,12 @@ pub(super) fn similarity_scale(field: JobField, axes: DMat3) -> Result<f64, JobE
     let squares = DVec3::new(x.length_squared(), y.length_squared(), z.length_squared());
     let cosines = DVec3::new(x.dot(y), y.dot(z), z.dot(x));
     let (longest, shortest) = (squares.max_element(), squares.min_element());
-    // Squares differ by twice as much; a smaller difference is certainly allowed.
-    if longest - shortest <= DIFFERENT * longest
-        && cosines.abs().max_element() <= 0.5 * DIFFERENT * longest
-    {
-        return Ok((squares.element_sum() / 3.0).sqrt());
+    // Squares differ by up to twice as much as lengths: within these bounds, no root is needed.
+    let is_similarity = longest - shortest <= DIFFERENT * longest
+        && cosines.abs().max_element() <= 0.5 * DIFFERENT * longest;
+    if !is_similarity {
+        check_similarity(field, axes)?;
     }
-    check_similarity(field, axes)?;
     Ok((squares.element_sum() / 3.0).sqrt())
 }
 

@@ -141,9 +141,12 @@
 //! is used as given, which is exact only if it is perpendicular to the bones); the closed form and
 //! its sources in [`two_bone`](super::two_bone), the curve in [`soft_reach`](super::soft_reach).
 
+pub mod batch;
 mod chain;
+mod closed_form;
 mod correction;
 mod error;
+mod half_angle;
 mod stages;
 mod two_bone_job;
 

@@ -1,8 +1,11 @@
-//! Stages of a job. Vectors are in start joint space, lengths in units of the chain's length.
+//! Stages of a job of any kind. Vectors are in start joint space, lengths in units of the chain's length.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::LimbBones;
+use super::closed_form;
+use super::closed_form::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, near_unit, side};
+use super::half_angle::HalfAngle;
 use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::TwoBone;
@@ -16,13 +19,6 @@ pub(super) struct BentLimb {
     /// k, the unit axis about which a positive turn opens the limb; `None` for a limb that cannot
     /// bend. The elbow is on the side of k × x̂.
     axis_ss: Option<DVec3>,
-}
-
-/// Half of an angle.
-#[derive(Clone, Copy)]
-struct HalfAngle {
-    sin: f64,
-    cos: f64,
 }
 
 /// D, the hand's distance from the start joint for a target at the distance `target`.
@@ -58,7 +54,7 @@ pub(super) fn middle_joint(
     let bend = Bend::new(limb, distance);
     let (axis_ss, turn_ss) = match normal(limb) {
         Some((normal_ss, sin)) => {
-            let side = side(normal_ss, hinge_ss);
+            let side = side(normal_ss, hinge_ss.unwrap_or_default());
             let now = HalfAngle::of(side * sin, -limb.upper_ss.dot(limb.lower_ss));
             let axis_ss = side * normal_ss;
             (axis_ss, bend.inner_angle.minus(now).about(axis_ss))
@@ -105,32 +101,6 @@ impl Bend {
     }
 }
 
-impl HalfAngle {
-    /// Half of the angle between −180° and 180° with this sine and cosine.
-    fn of(sin: f64, cos: f64) -> Self {
-        let larger = (0.5 + 0.5 * cos.abs()).sqrt();
-        let smaller = 0.5 * sin / larger;
-        let is_sharp = cos >= 0.0;
-        // Beyond 90°, the half is between 45° and 90°, on the side of the angle.
-        Self {
-            sin: if is_sharp { smaller } else { larger.copysign(sin) },
-            cos: if is_sharp { larger } else { smaller.abs() },
-        }
-    }
-
-    fn minus(self, other: Self) -> Self {
-        Self {
-            sin: self.sin * other.cos - self.cos * other.sin,
-            cos: self.cos * other.cos + self.sin * other.sin,
-        }
-    }
-
-    /// The rotation by the whole angle about a unit axis.
-    fn about(self, axis: DVec3) -> DQuat {
-        DQuat::from_vec4((axis * self.sin).extend(self.cos))
-    }
-}
-
 /// Rotation of the start joint that points the bent limb's hand at the target and its elbow in the
 /// direction of the pole, and then turns the limb by `twist` (radians) about the line to the
 /// target.
@@ -140,7 +110,6 @@ pub(super) fn start_joint(
     pole_ss: Option<DVec3>,
     twist: f64,
 ) -> DQuat {
-    const ON_LINE: f64 = 1e-6;
     let towards = target_ss.unwrap_or(bend.hand_ss);
     let (sin, cos) = if twist == 0.0 { (0.0, 1.0) } else { twist.sin_cos() };
     let aside = pole_ss.map(|pole| (pole, pole.reject_from_normalized(towards)));
@@ -175,21 +144,10 @@ pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
 /// Unit normal of the plane of the bones, about which a positive turn opens the limb, and the sine of
 /// the inner angle; `None` if the bones are in one line, to within rounding.
 fn normal(limb: &LimbBones) -> Option<(DVec3, f64)> {
-    const IN_LINE: f64 = 1e-3;
     let shorter = limb.upper.min(limb.lower);
     let normal_ss = limb.lower_ss.cross(limb.upper_ss);
     let sin = normal_ss.length();
     (sin * shorter > IN_LINE * shorter + 2.0 * limb.rounding).then(|| (normal_ss / sin, sin))
-}
-
-/// −1 if the hinge axis is on the other side of the normal, else 1.
-fn side(normal_ss: DVec3, hinge_ss: Option<DVec3>) -> f64 {
-    const IN_PLANE: f64 = 1e-3;
-    let is_opposite = hinge_ss.is_some_and(|hinge| {
-        let cos = hinge.dot(normal_ss);
-        cos < 0.0 && cos * cos > IN_PLANE * IN_PLANE * hinge.length_squared()
-    });
-    if is_opposite { -1.0 } else { 1.0 }
 }
 
 /// Unit axis, perpendicular to the bones, about which bones in one line bend: from the hinge axis,
@@ -206,33 +164,22 @@ fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>
 
 /// The rotation that maps the axes of one right-handed frame to those of another.
 fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> DQuat {
-    const NEAR_HALF_TURN: f64 = 1e-4;
-    let ([a, b, c], [x, y, z]) = (from, to);
-    // 1 + the trace of the rotation is 4 cos²(θ/2); the sum of the cross products is 2 sin θ along
-    // the axis.
-    let cos = 1.0 + a.dot(x) + b.dot(y) + c.dot(z);
-    if cos > NEAR_HALF_TURN {
-        let sin = a.cross(x) + b.cross(y) + c.cross(z);
-        return DQuat::from_vec4(sin.extend(cos)).normalize();
+    let (turn, nearness) = closed_form::rotation_between(from, to);
+    if nearness > NEAR_HALF_TURN {
+        return turn;
     }
-    let from = DMat3::from_cols(a, b, c);
-    DQuat::from_mat3(&(DMat3::from_cols(x, y, z) * from.transpose())).normalize()
-}
-
-/// Normalises a vector whose length is 1 to within 1e-8.
-fn near_unit(vector: DVec3) -> DVec3 {
-    vector * (1.5 - 0.5 * vector.length_squared())
+    let [from, to] = [from, to].map(|[x, y, z]| DMat3::from_cols(x, y, z));
+    DQuat::from_mat3(&(to * from.transpose())).normalize()
 }
 
 /// Rotation by the smallest angle from one unit vector to another; about any perpendicular axis if
 /// they are opposite.
 fn least_rotation(from: DVec3, to: DVec3) -> DQuat {
-    const OPPOSITE: f64 = 1e-6;
-    let nearness = 1.0 + from.dot(to);
-    if nearness <= OPPOSITE {
-        // Half a turn about an exactly perpendicular axis, then the small remainder.
-        let half = DQuat::from_vec4(from.any_orthonormal_vector().extend(0.0));
-        return least_rotation(-from, to) * half;
+    let (turn, nearness) = closed_form::least_rotation(from, to);
+    if nearness > OPPOSITE {
+        return turn;
     }
-    DQuat::from_vec4(from.cross(to).extend(nearness)).normalize()
+    // Half a turn about an exactly perpendicular axis, then the small remainder.
+    let half = DQuat::from_vec4(from.any_orthonormal_vector().extend(0.0));
+    least_rotation(-from, to) * half
 }

@@ -1,6 +1,7 @@
 use glam::{Affine3A, DQuat, Quat, Vec3};
 
 use super::chain::JointChain;
+use super::closed_form::{AT_LIMIT, NEAR, UsualJob};
 use super::correction::TwoBoneCorrection;
 use super::error::{JobError, JobField};
 use super::stages;
@@ -76,6 +77,35 @@ impl TwoBoneJob {
     /// perpendicular by more than one in a thousand (scale 0 of either joint is accepted), a
     /// softness outside [0, 1) and a weight outside [0, 1].
     pub fn run(&self) -> Result<TwoBoneCorrection, JobError> {
+        match self.solve_usual() {
+            Some(correction) => Ok(correction),
+            None => self.solve_any(),
+        }
+    }
+
+    /// The correction of a usual job, in a third of the time of [`Self::solve_any`].
+    fn solve_usual(&self) -> Option<TwoBoneCorrection> {
+        if self.softness != 0.0 || self.weight != 1.0 {
+            return None;
+        }
+        let twist = f64::from(self.twist);
+        let job = UsualJob {
+            axes: [self.start, self.middle].map(|joint| joint.matrix3.as_dmat3()),
+            joints: [self.start, self.middle, self.end].map(|joint| joint.translation.as_dvec3()),
+            target: self.target.as_dvec3(),
+            pole: self.pole.unwrap_or_default().as_dvec3(),
+            hinge: self.hinge.unwrap_or_default().as_dvec3(),
+            twist: if twist == 0.0 { [0.0, 1.0] } else { twist.sin_cos().into() },
+        };
+        let solved = match self.pole {
+            Some(_) => job.solve::<true>(),
+            None => job.solve::<false>(),
+        };
+        solved.is_usual.then(|| solved.into())
+    }
+
+    /// The correction of any job, in steps.
+    pub(super) fn solve_any(&self) -> Result<TwoBoneCorrection, JobError> {
         let soft_reach = self.checked()?;
         let chain = JointChain::new([self.start, self.middle, self.end])?;
         let full = self.solve(&chain, soft_reach).unwrap_or_default();
@@ -115,10 +145,6 @@ impl TwoBoneJob {
         middle: Quat,
         left: f64,
     ) -> TwoBoneCorrection {
-        // In chain lengths: rounding of the middle joint's axes and of the rotations to f32; and
-        // rounding of the limits alone.
-        const NEAR: f64 = 7e-7;
-        const AT_LIMIT: f64 = 2e-7;
         let target_ss = chain.point_ss(self.target.as_dvec3());
         let hand_ss = chain.hand_ss(start.as_dquat(), middle.as_dquat());
         let off_ss = hand_ss - target_ss;
