@@ -1,5 +1,5 @@
 //! Time of one solve, including the sine and cosine of the twist, and of the same for another program's
-//! joints.
+//! joints, one limb after the other and many at once.
 //!
 //! The baseline, measured in the same run, is the textbook solution by angles.
 
@@ -7,8 +7,10 @@ use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
+use ik_arm::kinematics::batch::{Points, QuaternionsMut};
 use ik_arm::kinematics::job::TwoBoneJob;
-use ik_arm::kinematics::two_bone::TwoBone;
+use ik_arm::kinematics::job::batch::{JobInputs, JobOutputs, Joints, LenError, solve};
+use ik_arm::kinematics::two_bone::{Reach, TwoBone};
 
 /// Different cursors, so that the branch predictor cannot learn them.
 fn cursors() -> Vec<(Vec3, f32)> {
@@ -66,6 +68,20 @@ fn two_bone(criterion: &mut Criterion) {
             }
         });
     });
+    let limbs = Limbs::new(&jobs(arm, &cursors));
+    group.bench_function("job batch", |bencher| limbs.bench(bencher, solve));
+    let limbs = Limbs { twist: None, ..limbs };
+    group.bench_function("job batch without twist", |bencher| limbs.bench(bencher, solve));
+    #[cfg(feature = "parallel")]
+    {
+        // Enough limbs for all cores.
+        let many = jobs(arm, &cursors).repeat(16);
+        let limbs = Limbs { twist: None, ..Limbs::new(&many) };
+        group.throughput(criterion::Throughput::Elements(many.len() as u64));
+        group.bench_function("job batch of 16 Ki on all cores", |bencher| {
+            limbs.bench(bencher, ik_arm::kinematics::job::batch::solve_on_all_cores);
+        });
+    }
     group.finish();
 }
 
@@ -85,6 +101,85 @@ fn jobs(arm: TwoBone, cursors: &[(Vec3, f32)]) -> Vec<TwoBoneJob> {
         TwoBoneJob { pole: Some(Vec3::Y), hinge: Some(Vec3::Z), twist: *twist, ..job }
     };
     cursors.iter().map(job).collect()
+}
+
+type Column = [Vec<f32>; 3];
+
+/// Jobs as a structure of arrays.
+struct Limbs {
+    start: [Column; 4],
+    middle: [Column; 4],
+    end: Column,
+    target: Column,
+    pole: Column,
+    hinge: Column,
+    twist: Option<Vec<f32>>,
+}
+
+impl Limbs {
+    fn new(jobs: &[TwoBoneJob]) -> Self {
+        let column = |point: &dyn Fn(&TwoBoneJob) -> Vec3| {
+            [0, 1, 2].map(|part| jobs.iter().map(|job| point(job)[part]).collect())
+        };
+        let joint = |joint: &dyn Fn(&TwoBoneJob) -> Affine3A| {
+            [
+                column(&|job| joint(job).matrix3.x_axis.into()),
+                column(&|job| joint(job).matrix3.y_axis.into()),
+                column(&|job| joint(job).matrix3.z_axis.into()),
+                column(&|job| joint(job).translation.into()),
+            ]
+        };
+        Self {
+            start: joint(&|job| job.start),
+            middle: joint(&|job| job.middle),
+            end: column(&|job| job.end.translation.into()),
+            target: column(&|job| job.target),
+            pole: column(&|job| job.pole.unwrap_or_default()),
+            hinge: column(&|job| job.hinge.unwrap_or_default()),
+            twist: Some(jobs.iter().map(|job| job.twist).collect()),
+        }
+    }
+
+    fn bench(
+        &self,
+        bencher: &mut criterion::Bencher<'_>,
+        solve: impl Fn(&JobInputs<'_>, JobOutputs<'_>) -> Result<(), LenError>,
+    ) {
+        fn points([x, y, z]: &Column) -> Points<'_> {
+            Points { x, y, z }
+        }
+        fn joints([x, y, z, translation]: &[Column; 4]) -> Joints<'_> {
+            Joints {
+                x_axis: points(x),
+                y_axis: points(y),
+                z_axis: points(z),
+                translation: points(translation),
+            }
+        }
+        let inputs = JobInputs {
+            start: joints(&self.start),
+            middle: joints(&self.middle),
+            end: points(&self.end),
+            target: points(&self.target),
+            pole: Some(points(&self.pole)),
+            hinge: Some(points(&self.hinge)),
+            twist: self.twist.as_deref(),
+            weight: None,
+            softness: 0.0,
+        };
+        let none = || vec![0.0; inputs.len()];
+        let [mut start, mut middle] = [(); 2].map(|()| [none(), none(), none(), none()]);
+        let (mut hand_error, mut reach) = (none(), vec![Ok(Reach::Reached); inputs.len()]);
+        bencher.iter(|| {
+            let outputs = JobOutputs {
+                start_correction: QuaternionsMut::of(&mut start),
+                middle_correction: QuaternionsMut::of(&mut middle),
+                hand_error: &mut hand_error,
+                reach: &mut reach,
+            };
+            solve(black_box(&inputs), outputs).expect("arrays of equal lengths");
+        });
+    }
 }
 
 criterion_group!(benches, two_bone);

@@ -8,6 +8,8 @@ target=${CARGO_TARGET_DIR:-target}
 program=${PROGRAM:-$target/release/ik-arm}
 program_pid=
 settings=
+# Settings of the program, in RON; none: the defaults.
+initial_settings=
 
 clean_up() {
     if [[ -n $program_pid ]]; then
@@ -28,6 +30,10 @@ open_window() {
     empty=$(screen)
     # Saved settings could move the arm or the panels.
     settings=$(mktemp -d)
+    mkdir "$settings/ik-arm"
+    if [[ -n $initial_settings ]]; then
+        printf '%s\n' "$initial_settings" >"$settings/ik-arm/settings.ron"
+    fi
     XDG_CONFIG_HOME=$settings XDG_DATA_HOME=$settings XDG_STATE_HOME=$settings \
         "$program" "$@" &
     program_pid=$!

@@ -1,14 +1,5 @@
-// Arms of a crowd, without meshes: vertices are computed from their indices. Near arms have round
-// limbs and joints, farther ones limbs with few sides, the farthest ones flat limbs that face the
-// eye.
-
-struct Lod {
-    sides: u32, // number of sides of a limb
-    first: u32, // index in `visible` at which the level's list starts
-}
-
-@group(1) @binding(3) var<storage, read> visible: array<u32>;
-@group(2) @binding(0) var<uniform> lod: Lod;
+// Near arms of a crowd, without meshes: vertices are computed from their indices. The nearest have
+// round limbs and joints, farther ones limbs with few sides or flat limbs that face the eye.
 
 struct Surface {
     @builtin(position) position: vec4f,
@@ -27,18 +18,13 @@ const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 
 const BALL = vec2u(10u, 5u); // number of cells around, and from pole to pole
 const MIN_RADIUS = 0.4; // of a limb on screen, in pixels
 
-fn unit(v: vec3f, fallback: vec3f) -> vec3f {
-    let square = dot(v, v);
-    return select(fallback, v * inverseSqrt(square), square > 0.0);
-}
-
 fn limb_vertex(base: vec3f, tip: vec3f, index: u32) -> Vertex {
     let axis = unit(tip - base, vec3f(0.0, 1.0, 0.0));
     let cell = QUAD[index % 6u];
     let place = mix(base, tip, f32(cell.y));
     let radius = max(mix(crowd.base_radius, crowd.tip_radius, f32(cell.y)), MIN_RADIUS * pixel_at(place));
     if lod.sides == 1u {
-        let towards = mix(crowd.eye - place, -crowd.forward, select(0.0, 1.0, crowd.pixel > 0.0));
+        let towards = to_eye(place);
         let aside = unit(cross(towards, axis), normalize(view.right));
         let normal = unit(cross(aside, axis), -crowd.forward);
         let facing = select(normal, -normal, dot(normal, towards) < 0.0);

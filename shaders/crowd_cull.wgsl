@@ -5,9 +5,9 @@
 // Four arguments of an indirect draw per level of detail.
 @group(1) @binding(4) var<storage, read_write> draws: array<atomic<u32>>;
 
-// Minimum radii of a limb in pixels at which it is drawn round with joints, and round without
-// joints.
-const LOD_RADII = vec2f(3.0, 0.7);
+// Minimum radii of a limb in pixels at which it is drawn round with joints, round without joints,
+// flat, and as a line. A line is one pixel wide.
+const LOD_RADII = vec4f(3.0, 1.2, 0.5, 0.1);
 
 @compute @workgroup_size(256)
 fn compute(@builtin(global_invocation_id) id: vec3u) {
@@ -27,7 +27,8 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     let pixels = crowd.base_radius / pixel_at(middle);
-    let lod = select(select(2u, 1u, pixels > LOD_RADII.y), 0u, pixels > LOD_RADII.x);
+    let is_smaller = select(vec4u(0), vec4u(1), vec4f(pixels) <= LOD_RADII);
+    let lod = dot(is_smaller, vec4u(1));
     let slot = atomicAdd(&draws[lod * 4u + 1u], 1u);
     visible[lod * crowd.stride + slot] = index;
 }

@@ -1,7 +1,7 @@
-// Glyphs of labels: rectangles of the glyph atlas, drawn at positions in pixels.
+// Glyphs of labels: rectangles of the glyph atlas, drawn at positions in clip space.
 
 struct Instance {
-    @location(0) target_rect: vec4f, // left, top, width, height in pixels
+    @location(0) target_rect: vec4f, // left, top, and from there to the right and bottom
     @location(1) source: vec4f, // left, top, width, height in the atlas, from 0 to 1
     @location(2) colour: vec4f,
 }
@@ -12,14 +12,13 @@ struct Glyph {
     @location(1) @interpolate(flat) colour: vec4f,
 }
 
-@group(1) @binding(0) var atlas: texture_2d<f32>;
-@group(1) @binding(1) var atlas_sampler: sampler;
+@group(0) @binding(0) var atlas: texture_2d<f32>;
+@group(0) @binding(1) var atlas_sampler: sampler;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Glyph {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    let pixel = i.target_rect.xy + corner * i.target_rect.zw;
-    let clip = vec2f(pixel.x, -pixel.y) * 2.0 / view.size + vec2f(-1.0, 1.0);
+    let clip = i.target_rect.xy + corner * i.target_rect.zw;
     return Glyph(vec4f(clip, 1.0, 1.0), i.source.xy + corner * i.source.zw, i.colour);
 }
 

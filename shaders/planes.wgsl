@@ -48,19 +48,26 @@ fn pixel_in_cells(at: vec2f) -> vec2f {
     return max(fwidth(at), vec2f(1e-6));
 }
 
-// The colour `behind` at distance `limit` along a ray, with all nearer planes blended over it.
+// The colour `behind` at distance `limit` along the ray of a pixel, with all nearer planes blended
+// over it.
 fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
+    let along = -ray.origin / ray.direction;
+    let yz = pixel_in_cells((ray.origin + ray.direction * along.x).zy / view.cell);
+    let xz = pixel_in_cells((ray.origin + ray.direction * along.y).xz / view.cell);
+    let xy = pixel_in_cells((ray.origin + ray.direction * along.z).xy / view.cell);
+    return behind_planes_of(behind, ray, limit, array(yz, xz, xy));
+}
+
+// The same with the size of a pixel on each plane, in cells.
+fn behind_planes_of(behind: vec3f, ray: Ray, limit: f32, pixels: array<vec2f, 3>) -> vec3f {
     let along = -ray.origin / ray.direction;
     let on_yz = ray.origin + ray.direction * along.x;
     let on_xz = ray.origin + ray.direction * along.y;
     let on_xy = ray.origin + ray.direction * along.z;
 
-    let at_yz = on_yz.zy / view.cell;
-    let at_xz = on_xz.xz / view.cell;
-    let at_xy = on_xy.xy / view.cell;
-    let yz = grid(at_yz, pixel_in_cells(at_yz), view.axes[2].rgb, view.axes[1].rgb);
-    let xz = grid(at_xz, pixel_in_cells(at_xz), view.axes[0].rgb, view.axes[2].rgb);
-    let xy = grid(at_xy, pixel_in_cells(at_xy), view.axes[0].rgb, view.axes[1].rgb);
+    let yz = grid(on_yz.zy / view.cell, pixels[0], view.axes[2].rgb, view.axes[1].rgb);
+    let xz = grid(on_xz.xz / view.cell, pixels[1], view.axes[0].rgb, view.axes[2].rgb);
+    let xy = grid(on_xy.xy / view.cell, pixels[2], view.axes[0].rgb, view.axes[1].rgb);
 
     let ground = vec4f(view.ground.rgb, 1.0) * (view.ground.a * view.shown.w);
     let floor = over(xz * view.shown.y, ground);

@@ -24,7 +24,7 @@ fn timed(
     let canvas = Canvas::new(gpu, SIZE.0, SIZE.1);
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("idle");
     let started = Instant::now();
-    renderer.upload(gpu, &scene, SIZE, 1.0);
+    renderer.upload(gpu, &scene, &canvas, 1.0);
     gpu_timer.start();
     let drawn = renderer.encode(gpu, &canvas, Some(gpu_timer.pass(TimedPass::Scene)));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -44,7 +44,7 @@ impl Bench {
     /// Number of allocations to upload a scene and to encode its draw commands.
     fn frame(&mut self, scene: &Scene) -> (u64, u64) {
         let Self { gpu, canvas, renderer } = self;
-        let uploading = measure(|| renderer.upload(gpu, scene, SIZE, 1.0));
+        let uploading = measure(|| renderer.upload(gpu, scene, canvas, 1.0));
         let mut commands = None;
         let encoding = measure(|| commands = Some(renderer.encode(gpu, canvas, None)));
         gpu.queue.submit(commands);

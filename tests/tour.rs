@@ -251,7 +251,10 @@ fn what_the_user_sets_in_the_tour_for_good_is_kept_and_its_pages_are_not() {
     assert!(session.preferences().explain, "the step shows its page");
     let light = ik_arm::document::Theme::Light;
     session.apply(ik_arm::session::ShellAction::SetTheme(light));
+    let budget = ik_arm::session::FrameBudget::Sixtieth;
+    session.apply(ik_arm::session::ShellAction::SetFrameBudget(budget));
     session.apply(TourAction::Leave);
     assert_eq!(session.preferences().theme, light);
+    assert_eq!(session.preferences().frame_budget, budget);
     assert!(!session.preferences().explain);
 }

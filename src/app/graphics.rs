@@ -115,28 +115,43 @@ impl Graphics {
         self.gpu_timer.as_mut()?.read(&self.gpu)
     }
 
+    /// Whether counts of drawn frames will arrive from the device.
+    pub fn awaits_counts(&self) -> bool {
+        self.renderer.awaits_counts()
+    }
+
+    /// The scene that was drawn most recently; `None` before the first.
+    pub fn drawn_scene(&self) -> Option<&Scene> {
+        self.picture.scene.as_ref()
+    }
+
     /// Draws the scene, unless the canvas shows it already. Returns the numbers of things in the
     /// scene and of bytes uploaded by this call. Keeps the drawn scene and leaves the previous
-    /// scene in `scene`, to be refilled. `scale` is in pixels per point.
+    /// scene in `scene`, to be refilled. `scale` is in pixels per point; `share` is the fraction of
+    /// the width and height at which the scene is drawn.
     pub fn draw_scene(
         &mut self,
         scene: &mut Scene,
         (width, height): (u32, u32),
         scale: f32,
+        share: f32,
     ) -> Counts {
         if let Some(gpu_timer) = &mut self.gpu_timer {
             gpu_timer.start();
         }
+        self.renderer.read_counts();
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.is_drawn = false;
             self.show_canvas();
         }
-        if self.picture.is_drawn && self.picture.scene.as_ref() == Some(scene) {
+        let has_share = self.picture.canvas.share() == share;
+        if self.picture.is_drawn && has_share && self.picture.scene.as_ref() == Some(scene) {
             return Counts { uploaded: 0, ..self.renderer.counts() };
         }
+        self.picture.canvas.set_share(&self.gpu, share);
         let canvas = &self.picture.canvas;
-        self.renderer.upload(&self.gpu, scene, canvas.size(), scale);
+        self.renderer.upload(&self.gpu, scene, canvas, scale);
         let crowd_error = self.renderer.crowd_times().err();
         if self.crowd_error != crowd_error {
             crowd_error.iter().for_each(|error| log::error!("{error}"));

@@ -10,6 +10,7 @@ mod event_loop;
 mod graphics;
 mod graphics_error;
 mod lap_timer;
+mod picture_share;
 mod present;
 mod recovery;
 mod settings;

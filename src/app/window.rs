@@ -17,6 +17,7 @@ use super::error::AppError;
 use super::graphics::{Graphics, guarded};
 use super::graphics_error::GraphicsError;
 use super::lap_timer::lap_timer;
+use super::picture_share::PictureShare;
 use super::present::Presented;
 use super::settings::Settings;
 use super::title::{TITLE, title};
@@ -24,6 +25,9 @@ use super::user_event::UserEvent;
 use crate::scene::{Scene, SceneBuilder};
 use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
 use crate::ui::{self, FrameTime, Machine, style};
+
+/// Time between frames while only counts of earlier frames are missing.
+const COUNTS_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Time of the next frame, or the reason why there is none.
 pub(super) enum Repaint {
@@ -61,6 +65,9 @@ pub(super) struct AppWindow {
     /// Whether the program ends at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
+    share: PictureShare,
+    /// Whether counts of earlier frames will arrive from the device.
+    awaits_counts: bool,
 }
 
 impl AppWindow {
@@ -114,6 +121,8 @@ impl AppWindow {
             viewport: Rect::ZERO,
             ends: false,
             exporting: None,
+            share: PictureShare::default(),
+            awaits_counts: false,
         })
     }
 
@@ -199,11 +208,19 @@ impl AppWindow {
             Ok(Presented::Shown) => {
                 self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
                 self.machine.times.push(frame);
+                if !self.machine.has_clock {
+                    let budget = session.preferences().frame_budget.time();
+                    self.share.measure(frame.share, frame.total(), budget);
+                }
                 self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
-                log::trace!("frame {} drawn", self.frames);
+                let (milliseconds, percent) =
+                    (1000.0 * frame.total().as_secs_f64(), 100.0 * frame.share);
+                let number = self.frames;
+                log::trace!("frame {number} in {milliseconds:.1} ms at {percent:.0} % drawn");
                 self.retries.reset();
-                delay
+                let counts = self.awaits_counts.then_some(COUNTS_INTERVAL);
+                delay.into_iter().chain(self.share.rests_in(started)).chain(counts).min()
             }
             // Motion that is not visible needs few frames.
             Ok(Presented::Later(again)) => {
@@ -375,18 +392,26 @@ impl AppWindow {
             Some(scene) => self.builder.refill(scene, document, &self.overlays, theme),
             None => self.scene = Some(self.builder.build(document, &self.overlays, theme)),
         }
+        let budget = session.preferences().frame_budget.time();
+        let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());
+        let is_driven = held || session.is_playing();
+        let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
+        frame.share = self.share.next(is_moving, budget, Instant::now());
         frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);
         frame.panels += lap();
-        let machine = &mut self.machine;
+        let (machine, share) = (&mut self.machine, &mut self.share);
         guarded(|| {
             // The times are those of earlier frames.
-            while let Some((frame, time)) = graphics.read_clock() {
-                machine.times.set_gpu(frame, time);
+            while let Some((earlier, time)) = graphics.read_clock() {
+                if let Some(earlier) = machine.times.set_gpu(earlier, time) {
+                    share.measure(earlier.share, earlier.work() + time, budget);
+                }
             }
             graphics.update_textures(changed);
             if let Some(scene) = &mut self.scene {
-                machine.counts = Some(graphics.draw_scene(scene, pixels, scale));
+                machine.counts = Some(graphics.draw_scene(scene, pixels, scale, frame.share));
+                self.awaits_counts = graphics.awaits_counts();
             }
             frame.encode += lap();
             let drawn = machine.times.drawn();
@@ -406,4 +431,13 @@ impl AppWindow {
         let side = |length: f32| (length * scale).round().max(1.0) as u32;
         (side(self.viewport.width()), side(self.viewport.height()))
     }
+}
+
+/// Whether a scene that differs from the one drawn before is a moment of a motion: the camera moves,
+/// or `is_driven` by a held mouse button or playback.
+fn moves(before: Option<&Scene>, now: Option<&Scene>, is_driven: bool) -> bool {
+    let (Some(before), Some(now)) = (before, now) else {
+        return false;
+    };
+    before.camera != now.camera || (is_driven && before != now)
 }

@@ -4,14 +4,35 @@ use thiserror::Error;
 use super::Gpu;
 
 /// Render target: an image, and multisampled colour and depth buffers.
+///
+/// While something moves, the scene may be drawn at a smaller size and enlarged, which takes less
+/// time: see [`Self::set_share`].
 #[derive(Debug)]
 pub struct Canvas {
     width: u32,
     height: u32,
     image: wgpu::Texture,
     pub(super) colour: wgpu::TextureView,
-    pub(super) samples: wgpu::TextureView,
-    pub(super) depth: wgpu::TextureView,
+    /// Buffers of the image's size.
+    full: SampleBuffers,
+    /// Buffers for smaller pictures, kept for the next time; `None` before the first.
+    smaller: Option<SmallerPicture>,
+    share: f32,
+}
+
+/// Multisampled buffers for one size of pictures.
+#[derive(Debug)]
+pub(super) struct SampleBuffers {
+    pub colour: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
+}
+
+/// A picture that is drawn smaller than the image and then enlarged.
+#[derive(Debug)]
+struct SmallerPicture {
+    size: (u32, u32),
+    colour: wgpu::TextureView,
+    samples: SampleBuffers,
 }
 
 /// Reasons why a buffer could not be read back from the device.
@@ -44,32 +65,47 @@ impl Canvas {
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let side = |length: u32| length.clamp(1, gpu.longest_side());
         let (width, height) = (side(width), side(height));
-        let texture = |label, format, sample_count, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let shown = drawn | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-        let image = texture("canvas image", Self::FORMAT, 1, shown);
-        let samples = texture("canvas samples", Self::FORMAT, Self::SAMPLES, drawn);
-        let depth = texture("canvas depth", Self::DEPTH, Self::SAMPLES, drawn);
-        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        Self {
-            width,
-            height,
-            colour: view(&image),
-            samples: view(&samples),
-            depth: view(&depth),
-            image,
+        let image = texture(gpu, "canvas image", Self::FORMAT, 1, (width, height));
+        let colour = image.create_view(&Default::default());
+        let full = SampleBuffers::new(gpu, (width, height));
+        Self { width, height, image, colour, full, smaller: None, share: 1.0 }
+    }
+
+    /// Sets the fraction of the image's width and height at which the scene is drawn, from 1 / 8 to
+    /// 1. A smaller picture is enlarged, and labels are drawn over it in full.
+    pub fn set_share(&mut self, gpu: &Gpu, share: f32) {
+        const LEAST: f32 = 0.125;
+        self.share = share.clamp(LEAST, 1.0);
+        let size = self.drawn_size();
+        let has_size = self.smaller.as_ref().is_some_and(|smaller| smaller.size == size);
+        if self.share < 1.0 && !has_size {
+            self.smaller = Some(SmallerPicture::new(gpu, size));
         }
+    }
+
+    /// Fraction of the image's width and height at which the scene is drawn.
+    pub fn share(&self) -> f32 {
+        self.share
+    }
+
+    /// Width and height in pixels at which the scene is drawn.
+    pub(super) fn drawn_size(&self) -> (u32, u32) {
+        let side = |length: u32| ((length as f32 * self.share).round() as u32).max(1);
+        (side(self.width), side(self.height))
+    }
+
+    /// The buffers in which the scene is drawn.
+    pub(super) fn samples(&self) -> &SampleBuffers {
+        self.smaller().map_or(&self.full, |smaller| &smaller.samples)
+    }
+
+    /// The picture to be enlarged, if it is smaller than the image.
+    pub(super) fn smaller_colour(&self) -> Option<&wgpu::TextureView> {
+        self.smaller().map(|smaller| &smaller.colour)
+    }
+
+    fn smaller(&self) -> Option<&SmallerPicture> {
+        self.smaller.as_ref().filter(|_| self.share < 1.0)
     }
 
     /// Width and height in pixels.
@@ -125,6 +161,48 @@ impl Canvas {
             .collect();
         RgbaImage::from_raw(self.width, self.height, pixels).ok_or(ReadError::Size)
     }
+}
+
+impl SampleBuffers {
+    fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
+        let buffer = |label, format| {
+            texture(gpu, label, format, Canvas::SAMPLES, size).create_view(&Default::default())
+        };
+        Self {
+            colour: buffer("canvas samples", Canvas::FORMAT),
+            depth: buffer("canvas depth", Canvas::DEPTH),
+        }
+    }
+}
+
+impl SmallerPicture {
+    fn new(gpu: &Gpu, size: (u32, u32)) -> Self {
+        let colour = texture(gpu, "smaller picture", Canvas::FORMAT, 1, size);
+        let samples = SampleBuffers::new(gpu, size);
+        Self { size, colour: colour.create_view(&Default::default()), samples }
+    }
+}
+
+fn texture(
+    gpu: &Gpu,
+    label: &str,
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+    (width, height): (u32, u32),
+) -> wgpu::Texture {
+    use wgpu::TextureUsages;
+    let read = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING;
+    let usage = if sample_count == 1 { read } else { TextureUsages::empty() };
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | usage,
+        view_formats: &[],
+    })
 }
 
 /// Waits until the device has executed all commands, then maps a buffer and returns its contents.

@@ -2,6 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
 use super::compute::{self, BindingKind};
+use super::readback::Readback;
 use super::{CrowdError, CrowdSolver, Gpu, pipeline};
 use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
@@ -15,17 +16,54 @@ pub(super) const ARMS: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
     include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
+    include_str!("../../shaders/crowd_lod.wgsl"),
     include_str!("../../shaders/crowd_arms.wgsl"),
 );
 
-/// Levels of detail from the nearest arms to the farthest: number of sides of a limb, and whether
-/// joints are drawn.
-const LODS: [(u32, bool); 3] = [(12, true), (5, false), (1, false)];
-/// Number of vertices of an arm's three balls; the shader has the same number.
-const JOINT_VERTICES: u32 = 3 * 10 * 5 * 6;
+pub(super) const FAR: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/planes.wgsl"),
+    include_str!("../../shaders/crowd.wgsl"),
+    include_str!("../../shaders/crowd_lod.wgsl"),
+    include_str!("../../shaders/crowd_far.wgsl"),
+);
+
+/// A level of detail. The shader draws the same vertices.
+#[derive(Clone, Copy)]
+struct CrowdLod {
+    shader: &'static str,
+    topology: wgpu::PrimitiveTopology,
+    /// Number of sides of a limb.
+    sides: u32,
+    first_vertex: u32,
+    vertices: u32,
+}
+
+/// Levels of detail from the nearest arms to the farthest: limbs with joints, with few sides, flat,
+/// lines, and points.
+const LODS: [CrowdLod; 5] = [
+    CrowdLod::with_sides(12, 3 * 10 * 5 * 6),
+    CrowdLod::with_sides(5, 0),
+    CrowdLod::with_sides(1, 0),
+    CrowdLod {
+        shader: FAR,
+        topology: wgpu::PrimitiveTopology::LineList,
+        sides: 0,
+        first_vertex: 0,
+        vertices: 4,
+    },
+    CrowdLod {
+        shader: FAR,
+        topology: wgpu::PrimitiveTopology::PointList,
+        sides: 0,
+        first_vertex: 4,
+        vertices: 2,
+    },
+];
 /// Number of arguments of an indirect draw: vertex count, instance count, first vertex and first
 /// instance.
 const ARGUMENTS: usize = 4;
+const ARGUMENT_BYTES: u64 = (LODS.len() * ARGUMENTS * size_of::<u32>()) as u64;
 
 /// Radii of a limb at its base and its tip, as fractions of the arm's length.
 const BASE_RADIUS: f32 = 0.05;
@@ -74,10 +112,13 @@ struct CrowdRenderer {
     solver: CrowdSolver,
     cull: wgpu::ComputePipeline,
     cull_layout: wgpu::BindGroupLayout,
-    draw: wgpu::RenderPipeline,
+    draw: [wgpu::RenderPipeline; LODS.len()],
     draw_layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
     arguments: wgpu::Buffer,
+    drawn: Readback,
+    /// Number of triangles of the arms in view, as last read back.
+    triangles: u32,
     lods: [wgpu::Buffer; LODS.len()],
     lod_groups: [wgpu::BindGroup; LODS.len()],
     buffers: CrowdBuffers,
@@ -105,7 +146,7 @@ impl Crowds {
     ) -> u64 {
         let Some(crowd) = scene.crowd.filter(|crowd| crowd.arms > 0) else {
             if let Some(Ok(renderer)) = &mut self.renderer {
-                renderer.uploaded = None;
+                renderer.release(gpu);
             }
             self.times = None;
             return 0;
@@ -119,7 +160,7 @@ impl Crowds {
         };
         let mut sent = 0;
         if renderer.uploaded != Some(crowd) {
-            sent += renderer.resize(gpu, &crowd);
+            sent += renderer.resize(gpu, &crowd) + CrowdSolver::bytes(&crowd);
             self.times = Some(renderer.solve(gpu, &crowd));
             renderer.uploaded = Some(crowd);
         }
@@ -129,6 +170,25 @@ impl Crowds {
     /// Number of arms and solver time of the last scene's crowd; `None` without a crowd.
     pub fn times(&self) -> Result<Option<CrowdTimes>, CrowdError> {
         self.times.clone().transpose()
+    }
+
+    /// Number of triangles of the arms in view in an earlier frame. Lines and points count none.
+    pub fn triangles(&self) -> u32 {
+        self.uploaded().map_or(0, |(renderer, _)| renderer.triangles)
+    }
+
+    /// Reads the number of triangles of an earlier frame back, if it has arrived.
+    pub fn read_triangles(&mut self) {
+        if let Some(Ok(renderer)) = &mut self.renderer {
+            renderer.drawn.fetch();
+            let triangles = renderer.drawn.read(|bytes| Some(triangles(bytes)));
+            renderer.triangles = triangles.unwrap_or(renderer.triangles);
+        }
+    }
+
+    /// Whether the number of triangles of an earlier frame has not arrived yet.
+    pub fn awaits_triangles(&self) -> bool {
+        self.uploaded().is_some_and(|(renderer, _)| !renderer.drawn.is_free())
     }
 
     fn uploaded(&self) -> Option<(&CrowdRenderer, Crowd)> {
@@ -141,6 +201,9 @@ impl Crowds {
         if let Some((renderer, crowd)) = self.uploaded() {
             let group = (1, &renderer.buffers.cull);
             compute::run_for_each(encoder, "crowd culling", &renderer.cull, group, crowd.arms);
+            if renderer.drawn.is_free() {
+                renderer.drawn.copy(encoder, &renderer.arguments);
+            }
         }
     }
 
@@ -148,9 +211,9 @@ impl Crowds {
         let Some((renderer, _)) = self.uploaded() else {
             return;
         };
-        pass.set_pipeline(&renderer.draw);
         pass.set_bind_group(1, &renderer.buffers.draw, &[]);
         for (lod, group) in renderer.lod_groups.iter().enumerate() {
+            pass.set_pipeline(&renderer.draw[lod]);
             pass.set_bind_group(2, group, &[]);
             let offset = lod * ARGUMENTS * size_of::<u32>();
             pass.draw_indirect(&renderer.arguments, offset as u64);
@@ -181,20 +244,22 @@ impl CrowdRenderer {
         let kinds = [BindingKind::Uniform, BindingKind::Read, BindingKind::Read, BindingKind::Read];
         let draw_layout = compute::layout(gpu, "crowd", stages, &kinds);
         let lod_layout = compute::layout(gpu, "crowd LOD", stages, &[BindingKind::Uniform]);
-        let draw = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: "crowd",
-                shader: ARMS,
-                fragment: "fragment",
-                layouts: &[view, &draw_layout, &lod_layout],
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: None,
-                depth: wgpu::CompareFunction::Greater,
-                output: pipeline::Output::Opaque,
-            },
-        );
+        let draw = LODS.map(|lod| {
+            pipeline::build(
+                gpu,
+                &pipeline::PipelineDescriptor {
+                    label: "crowd",
+                    shader: lod.shader,
+                    fragment: "fragment",
+                    layouts: &[view, &draw_layout, &lod_layout],
+                    buffers: &[],
+                    topology: lod.topology,
+                    cull: None,
+                    depth: wgpu::CompareFunction::Greater,
+                    output: pipeline::Output::Opaque,
+                },
+            )
+        });
         let uniform_of = |label, size: usize| {
             compute::buffer(gpu, label, size as u64, wgpu::BufferUsages::UNIFORM)
         };
@@ -202,8 +267,10 @@ impl CrowdRenderer {
         let arguments = compute::buffer(
             gpu,
             "crowd, indirect",
-            (LODS.len() * ARGUMENTS * size_of::<u32>()) as u64,
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
+            ARGUMENT_BYTES,
+            wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::INDIRECT
+                | wgpu::BufferUsages::COPY_SRC,
         );
         let lods = LODS.map(|_| uniform_of("crowd LOD", size_of::<CrowdLodData>()));
         let lod_groups =
@@ -220,6 +287,8 @@ impl CrowdRenderer {
             draw_layout,
             uniform,
             arguments,
+            drawn: Readback::new(gpu, "crowd, read back", ARGUMENT_BYTES),
+            triangles: 0,
             lods,
             lod_groups,
             buffers,
@@ -233,12 +302,10 @@ impl CrowdRenderer {
         let has_changed = self.arrays.resize(crowd);
         let is_larger = self.solver.reserve(gpu, crowd.arms);
         if is_larger {
-            let layouts = [&self.cull_layout, &self.draw_layout];
-            let buffers = [&self.uniform, &self.arguments];
-            self.buffers = CrowdBuffers::new(gpu, &self.solver, layouts, buffers);
+            self.replace_buffers(gpu);
             for (lod, buffer) in self.lods.iter().enumerate() {
-                let (sides, _) = LODS[lod];
-                let data = CrowdLodData { sides, first: lod as u32 * self.solver.stride() };
+                let first = lod as u32 * self.solver.stride();
+                let data = CrowdLodData { sides: LODS[lod].sides, first };
                 gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&data));
             }
         }
@@ -251,6 +318,22 @@ impl CrowdRenderer {
             gpu.queue.write_buffer(&self.buffers.shoulders, offset, bytemuck::cast_slice(array));
         }
         2 * size_of_val(&x[..]) as u64
+    }
+
+    fn replace_buffers(&mut self, gpu: &Gpu) {
+        let layouts = [&self.cull_layout, &self.draw_layout];
+        let buffers = [&self.uniform, &self.arguments];
+        self.buffers = CrowdBuffers::new(gpu, &self.solver, layouts, buffers);
+    }
+
+    /// Frees the memory of a crowd that is no longer shown.
+    fn release(&mut self, gpu: &Gpu) {
+        if self.uploaded.take().is_some() {
+            self.arrays = CrowdArrays::default();
+            self.solver.release(gpu);
+            self.replace_buffers(gpu);
+            self.triangles = 0;
+        }
     }
 
     fn solve(&mut self, gpu: &Gpu, crowd: &Crowd) -> Result<CrowdTimes, CrowdError> {
@@ -275,9 +358,7 @@ impl CrowdRenderer {
     fn set_view(&self, gpu: &Gpu, crowd: &Crowd, scene: &Scene, size: (u32, u32)) -> u64 {
         let data = CrowdData::new(crowd, self.solver.stride(), scene, size);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&data));
-        let arguments = LODS.map(|(sides, has_joints)| {
-            [2 * 6 * sides + if has_joints { JOINT_VERTICES } else { 0 }, 0, 0, 0]
-        });
+        let arguments = LODS.map(|lod| [lod.vertices, 0, lod.first_vertex, 0]);
         gpu.queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&arguments));
         (size_of::<CrowdData>() + size_of_val(&arguments)) as u64
     }
@@ -328,6 +409,33 @@ impl CrowdData {
             tip_radius: TIP_RADIUS * reach,
         }
     }
+}
+
+impl CrowdLod {
+    const fn with_sides(sides: u32, joint_vertices: u32) -> Self {
+        Self {
+            shader: ARMS,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            sides,
+            first_vertex: 0,
+            vertices: 2 * 6 * sides + joint_vertices,
+        }
+    }
+
+    fn triangles(self) -> u32 {
+        let is_triangles = self.topology == wgpu::PrimitiveTopology::TriangleList;
+        if is_triangles { self.vertices / 3 } else { 0 }
+    }
+}
+
+/// Number of triangles that indirect draws with these arguments draw.
+fn triangles(arguments: &[u8]) -> u32 {
+    let draws = arguments.chunks_exact(ARGUMENTS * size_of::<u32>());
+    let of_draw = |(lod, draw): (&CrowdLod, &[u8])| {
+        let arms = draw.get(4..8).and_then(|bytes| bytes.try_into().ok());
+        lod.triangles() * arms.map_or(0, u32::from_le_bytes)
+    };
+    LODS.iter().zip(draws).map(of_draw).sum()
 }
 
 /// Left, right, bottom, top and near planes of the view frustum, with unit normals pointing inwards

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::compute::{self, BindingKind};
 use super::{Gpu, ReadError};
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::CrowdArrays;
+use crate::rig::{Crowd, CrowdArrays, Processor};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/crowd_solver.wgsl");
 
@@ -67,6 +67,16 @@ impl CrowdSolver {
         Some(Self { pipeline, layout, uniform, buffers, arms: 0 })
     }
 
+    /// Number of bytes that a crowd sends to the device: targets if the device solves it, else
+    /// poses.
+    pub(super) fn bytes(crowd: &Crowd) -> u64 {
+        let arrays = match crowd.processor {
+            Processor::Gpu => TARGET_ARRAYS,
+            Processor::Cpu => POSE_ARRAYS,
+        };
+        arrays * u64::from(crowd.arms) * FLOAT
+    }
+
     /// Capacity of the buffers in arms; also the distance in floats between the starts of two
     /// arrays in a buffer.
     pub fn stride(&self) -> u32 {
@@ -78,13 +88,24 @@ impl CrowdSolver {
         &self.buffers.poses
     }
 
-    /// Makes room for at least `arms` arms. Returns whether this replaced the buffers.
+    /// Makes room for at least `arms` arms. Room grows in powers of two, so that a growing crowd
+    /// seldom replaces the buffers; returns whether this call did.
     pub fn reserve(&mut self, gpu: &Gpu, arms: u32) -> bool {
         let is_small = self.buffers.stride < arms;
         if is_small {
-            self.buffers = CrowdSolverBuffers::new(gpu, &self.layout, &self.uniform, arms);
+            self.resize(gpu, arms.next_power_of_two());
         }
         is_small
+    }
+
+    /// Frees the memory of the arms.
+    pub fn release(&mut self, gpu: &Gpu) {
+        self.resize(gpu, 1);
+    }
+
+    fn resize(&mut self, gpu: &Gpu, stride: u32) {
+        self.buffers = CrowdSolverBuffers::new(gpu, &self.layout, &self.uniform, stride);
+        self.arms = 0;
     }
 
     /// Uploads the targets, solves the arms on the device, and returns the time from submission to

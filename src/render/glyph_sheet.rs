@@ -1,4 +1,5 @@
 use super::font::Font;
+use super::texture_sampler::TextureSampler;
 use super::{Gpu, SystemFace};
 
 /// Height of a line in points.
@@ -15,14 +16,9 @@ pub(super) struct GlyphSheet {
 }
 
 impl GlyphSheet {
-    pub fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        sampler: &wgpu::Sampler,
-        scale: f32,
-    ) -> Self {
+    pub fn new(gpu: &Gpu, sampler: &TextureSampler, scale: f32) -> Self {
         let font = Font::new(LINE_HEIGHT * scale, gpu.longest_side(), SystemFace::find);
-        let (texture, group) = texture(gpu, layout, sampler, font.atlas.size());
+        let (texture, group) = texture(gpu, sampler, font.atlas.size());
         Self { scale, font, texture, group }
     }
 
@@ -32,19 +28,14 @@ impl GlyphSheet {
     }
 
     /// Sends the changed rows of the atlas to the device and returns the number of bytes sent.
-    pub fn upload(
-        &mut self,
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        sampler: &wgpu::Sampler,
-    ) -> u64 {
+    pub fn upload(&mut self, gpu: &Gpu, sampler: &TextureSampler) -> u64 {
         let (width, height) = self.font.atlas.size();
         let mut changed = self.font.atlas.take_changed();
         if changed.is_empty() {
             return 0;
         }
         if self.texture.height() != height {
-            (self.texture, self.group) = texture(gpu, layout, sampler, (width, height));
+            (self.texture, self.group) = texture(gpu, sampler, (width, height));
             changed = 0..height;
         }
         let pixels = self.font.atlas.rows(changed.clone());
@@ -67,8 +58,7 @@ impl GlyphSheet {
 
 fn texture(
     gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    sampler: &wgpu::Sampler,
+    sampler: &TextureSampler,
     (width, height): (u32, u32),
 ) -> (wgpu::Texture, wgpu::BindGroup) {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -81,41 +71,6 @@ fn texture(
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let view = texture.create_view(&Default::default());
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("glyphs"),
-        layout,
-        entries: &[
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(&view),
-            },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) },
-        ],
-    });
+    let group = sampler.group(gpu, &texture.create_view(&Default::default()));
     (texture, group)
-}
-
-/// Layout of the bind group of every sheet.
-pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("glyphs"),
-        entries: &[
-            entry(
-                0,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-            ),
-            entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ],
-    })
 }

@@ -1,8 +1,7 @@
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
 use super::Gpu;
+use super::readback::Readback;
 
 /// A render pass that is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,21 +34,13 @@ const STAMP: u64 = wgpu::QUERY_SIZE as u64;
 const STRIDE: u64 = wgpu::QUERY_RESOLVE_BUFFER_ALIGNMENT;
 const SIZE: u64 = STRIDE * PASSES as u64;
 
-/// Buffer for the timestamps of a frame, until they are read.
+/// The timestamps of a frame, until they are read.
 #[derive(Debug)]
 struct TimestampReadback {
-    buffer: wgpu::Buffer,
+    stamps: Readback,
     frame: u64,
     passes: [bool; PASSES],
-    state: Arc<AtomicU8>,
 }
-
-const FREE: u8 = 0;
-/// The commands that write the buffer are encoded, but may not be submitted yet.
-const WRITTEN: u8 = 1;
-const FETCHING: u8 = 2;
-const FETCHED: u8 = 3;
-const FAILED: u8 = 4;
 
 impl GpuTimer {
     /// Creates the timer; `None` if the adapter has no timestamp queries.
@@ -57,22 +48,10 @@ impl GpuTimer {
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
         }
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: SIZE,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
         let readback = |_| TimestampReadback {
-            buffer: buffer(
-                "timestamps, read back",
-                wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            ),
+            stamps: Readback::new(gpu, "timestamps, read back", SIZE),
             frame: 0,
             passes: [false; PASSES],
-            state: Arc::new(AtomicU8::new(FREE)),
         };
         Some(Self {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
@@ -80,10 +59,12 @@ impl GpuTimer {
                 ty: wgpu::QueryType::Timestamp,
                 count: STAMPS * PASSES as u32,
             }),
-            resolved: buffer(
-                "timestamps",
-                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-            ),
+            resolved: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timestamps"),
+                size: SIZE,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
             readbacks: std::array::from_fn(readback),
             passes: [false; PASSES],
             nanoseconds_per_tick: f64::from(gpu.queue.get_timestamp_period()),
@@ -108,9 +89,8 @@ impl GpuTimer {
 
     /// Ends the frame with this number. The encoder must be submitted after the frame's passes.
     pub fn stop(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
-        let is_free =
-            |readback: &&mut TimestampReadback| readback.state.load(Ordering::Acquire) == FREE;
-        let Some(readback) = self.readbacks.iter_mut().find(is_free) else {
+        let mut readbacks = self.readbacks.iter_mut();
+        let Some(readback) = readbacks.find(|readback| readback.stamps.is_free()) else {
             return;
         };
         for pass in (0..PASSES).filter(|pass| self.passes[*pass]) {
@@ -118,23 +98,14 @@ impl GpuTimer {
             let to = STRIDE * pass as u64;
             encoder.resolve_query_set(&self.queries, first..first + STAMPS, &self.resolved, to);
         }
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &readback.buffer, 0, SIZE);
+        readback.stamps.copy(encoder, &self.resolved);
         (readback.frame, readback.passes) = (frame, self.passes);
-        readback.state.store(WRITTEN, Ordering::Release);
     }
 
     /// Starts reading back the timestamps of ended frames, whose commands must have been submitted.
     pub fn fetch(&self) {
         for readback in &self.readbacks {
-            if readback.state.load(Ordering::Acquire) != WRITTEN {
-                continue;
-            }
-            readback.state.store(FETCHING, Ordering::Release);
-            let state = Arc::clone(&readback.state);
-            readback.buffer.slice(..).map_async(wgpu::MapMode::Read, move |fetched| {
-                let next = if fetched.is_ok() { FETCHED } else { FAILED };
-                state.store(next, Ordering::Release);
-            });
+            readback.stamps.fetch();
         }
     }
 
@@ -144,36 +115,24 @@ impl GpuTimer {
         // Callbacks report finished readbacks and a lost device, so the result can be ignored.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         let period = self.nanoseconds_per_tick;
-        self.readbacks.iter().find_map(|readback| match readback.state.load(Ordering::Acquire) {
-            FETCHED => {
-                let ticks = readback.ticks();
-                readback.buffer.unmap();
-                readback.state.store(FREE, Ordering::Release);
-                let seconds = ticks? as f64 * period * 1e-9;
-                Some((readback.frame, Duration::try_from_secs_f64(seconds).ok()?))
-            }
-            FAILED => {
-                readback.state.store(FREE, Ordering::Release);
-                None
-            }
-            _ => None,
+        self.readbacks.iter().find_map(|readback| {
+            let ticks = readback.stamps.read(|stamps| ticks(stamps, readback.passes))?;
+            let time = Duration::try_from_secs_f64(ticks as f64 * period * 1e-9).ok()?;
+            Some((readback.frame, time))
         })
     }
 }
 
-impl TimestampReadback {
-    /// Sum of the passes' durations in ticks; `None` if the timestamps cannot be read or the clock
-    /// went backwards.
-    fn ticks(&self) -> Option<u64> {
-        let mapped = self.buffer.get_mapped_range(..).ok()?;
-        let stamp = |at: u64| {
-            let at = at as usize;
-            let bytes = mapped.get(at..at + STAMP as usize)?;
-            Some(u64::from_le_bytes(bytes.try_into().ok()?))
-        };
-        (0..PASSES).filter(|pass| self.passes[*pass]).try_fold(0, |sum: u64, pass| {
-            let begin = STRIDE * pass as u64;
-            sum.checked_add(stamp(begin + STAMP)?.checked_sub(stamp(begin)?)?)
-        })
-    }
+/// Sum of the passes' durations in ticks; `None` if timestamps are missing or the clock went
+/// backwards.
+fn ticks(stamps: &[u8], passes: [bool; PASSES]) -> Option<u64> {
+    let stamp = |at: u64| {
+        let at = at as usize;
+        let bytes = stamps.get(at..at + STAMP as usize)?;
+        Some(u64::from_le_bytes(bytes.try_into().ok()?))
+    };
+    (0..PASSES).filter(|pass| passes[*pass]).try_fold(0, |sum: u64, pass| {
+        let begin = STRIDE * pass as u64;
+        sum.checked_add(stamp(begin + STAMP)?.checked_sub(stamp(begin)?)?)
+    })
 }

@@ -3,12 +3,13 @@ use glam::Vec2;
 
 use super::Gpu;
 use super::font::Rectangle;
-use super::glyph_sheet::{self, GlyphSheet, LINE_HEIGHT};
+use super::glyph_sheet::{GlyphSheet, LINE_HEIGHT};
+use super::pipeline::Output;
 use super::quads::{self, Quads};
+use super::texture_sampler::TextureSampler;
 use crate::scene::{Label, Scene};
 
-pub(super) const SHADER: &str =
-    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/label.wgsl"),);
+pub(super) const SHADER: &str = include_str!("../../shaders/label.wgsl");
 
 /// Gap between a label and the ball beside which it is written, in points.
 const GAP: f32 = 3.0;
@@ -44,45 +45,38 @@ const _: () = assert!(size_of::<GlyphInstance>() == 48);
 #[derive(Debug)]
 pub(super) struct Labels {
     glyphs: Quads<GlyphInstance>,
-    glyph_layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
+    sampler: TextureSampler,
     sheet: Option<GlyphSheet>,
 }
 
 impl Labels {
-    pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
-        let glyph_layout = glyph_sheet::layout(gpu);
+    pub fn new(gpu: &Gpu) -> Self {
+        let sampler = TextureSampler::new(gpu, "glyphs");
         let glyphs = Quads::new(
             gpu,
             &quads::QuadDescriptor {
                 label: "label",
                 shader: SHADER,
-                layouts: &[view, &glyph_layout],
+                layouts: &[&sampler.layout],
                 attributes: &wgpu::vertex_attr_array![
                     0 => Float32x4, 1 => Float32x4, 2 => Float32x4
                 ],
                 depth: wgpu::CompareFunction::Always,
+                output: Output::Overlay,
             },
         );
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("glyphs"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
-        Self { glyphs, glyph_layout, sampler, sheet: None }
+        Self { glyphs, sampler, sheet: None }
     }
 
     /// Sends the changes to the device and returns the number of bytes sent. `size` is the
     /// picture's in pixels, `scale` the number of pixels per point.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
-        let (layout, sampler) = (&self.glyph_layout, &self.sampler);
         let mut sheet = match self.sheet.take() {
             Some(sheet) if sheet.scale == scale => sheet,
-            _ => GlyphSheet::new(gpu, layout, sampler, scale),
+            _ => GlyphSheet::new(gpu, &self.sampler, scale),
         };
         sheet.font.prepare(scene.labels.iter().map(|label| scene.text(label)));
-        let sent = sheet.upload(gpu, layout, sampler);
+        let sent = sheet.upload(gpu, &self.sampler);
         let size = Vec2::new(size.0 as f32, size.1 as f32);
         let glyphs = scene.labels.iter().flat_map(|label| glyphs(&sheet, scene, label, size));
         let sent = sent + self.glyphs.upload(gpu, glyphs);
@@ -96,7 +90,7 @@ impl Labels {
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(sheet) = &self.sheet {
-            pass.set_bind_group(1, sheet.group(), &[]);
+            pass.set_bind_group(0, sheet.group(), &[]);
             self.glyphs.draw(pass);
         }
     }
@@ -118,7 +112,7 @@ fn glyphs<'a>(
     });
     laid.flat_map(move |(pen, (offset, colour))| {
         let letters = sheet.font.lay_out(text, pen);
-        letters.map(move |letter| glyph_instance(sheet, letter, offset, colour))
+        letters.map(move |letter| glyph_instance(sheet, size, letter, offset, colour))
     })
 }
 
@@ -142,17 +136,19 @@ fn pen(sheet: &GlyphSheet, scene: &Scene, label: &Label, size: Vec2) -> Option<V
 
 fn glyph_instance(
     sheet: &GlyphSheet,
+    size: Vec2,
     (target, source): (Rectangle, Rectangle),
     offset: Vec2,
     colour: [f32; 4],
 ) -> GlyphInstance {
-    let at = target.at + offset;
+    let corner = (target.at + offset) * Vec2::new(2.0, -2.0) / size + Vec2::new(-1.0, 1.0);
+    let extent = target.size * Vec2::new(2.0, -2.0) / size;
     let (width, height) = sheet.font.atlas.size();
     let atlas = Vec2::new(width as f32, height as f32);
-    let (from, size) = (source.at / atlas, source.size / atlas);
+    let (from, part) = (source.at / atlas, source.size / atlas);
     GlyphInstance {
-        target: [at.x, at.y, target.size.x, target.size.y],
-        source: [from.x, from.y, size.x, size.y],
+        target: [corner.x, corner.y, extent.x, extent.y],
+        source: [from.x, from.y, part.x, part.y],
         colour,
     }
 }

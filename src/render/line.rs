@@ -2,6 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
+use super::pipeline::Output;
 use super::quads::{self, Quads};
 use crate::scene::{Line, Scene};
 
@@ -33,6 +34,7 @@ impl Lines {
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32],
                 depth: wgpu::CompareFunction::Greater,
+                output: Output::Blended,
             },
         ))
     }

@@ -23,6 +23,8 @@ pub(super) enum Output {
     Blended,
     /// Depth without colours.
     Depth,
+    /// Blends with the finished picture, which has no depth and one sample per pixel.
+    Overlay,
 }
 
 pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::RenderPipeline {
@@ -37,6 +39,9 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         bind_group_layouts: &layouts,
         immediate_size: 0,
     });
+    let is_overlay = descriptor.output == Output::Overlay;
+    let is_blended = is_overlay || descriptor.output == Output::Blended;
+    let samples = if is_overlay { 1 } else { Canvas::SAMPLES };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(descriptor.label),
         layout: Some(&layout),
@@ -51,7 +56,7 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
             cull_mode: descriptor.cull,
             ..Default::default()
         },
-        depth_stencil: Some(wgpu::DepthStencilState {
+        depth_stencil: (!is_overlay).then(|| wgpu::DepthStencilState {
             format: Canvas::DEPTH,
             depth_write_enabled: Some(
                 descriptor.output != Output::Blended
@@ -61,18 +66,17 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        multisample: wgpu::MultisampleState { count: Canvas::SAMPLES, ..Default::default() },
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
             entry_point: Some(descriptor.fragment),
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: Canvas::FORMAT,
-                blend: (descriptor.output == Output::Blended)
-                    .then_some(wgpu::BlendState::ALPHA_BLENDING),
+                blend: is_blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: match descriptor.output {
                     Output::Depth => wgpu::ColorWrites::empty(),
-                    Output::Opaque | Output::Blended => wgpu::ColorWrites::ALL,
+                    _ => wgpu::ColorWrites::ALL,
                 },
             })],
         }),

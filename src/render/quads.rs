@@ -3,6 +3,7 @@ use core::ops::Range;
 use bytemuck::Pod;
 
 use super::instance_buffer::InstanceBuffer;
+use super::pipeline::Output;
 use super::{Gpu, pipeline};
 
 /// Pipeline settings of one kind of quad.
@@ -12,6 +13,7 @@ pub(super) struct QuadDescriptor<'a> {
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
     pub attributes: &'a [wgpu::VertexAttribute],
     pub depth: wgpu::CompareFunction,
+    pub output: Output,
 }
 
 /// Draws one quad per instance, blended over the picture; the shader computes the corners.
@@ -38,7 +40,7 @@ impl<T: Pod + PartialEq> Quads<T> {
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 cull: None,
                 depth: descriptor.depth,
-                output: pipeline::Output::Blended,
+                output: descriptor.output,
             },
         );
         Self { pipeline, instances: InstanceBuffer::new(descriptor.label) }

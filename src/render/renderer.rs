@@ -1,5 +1,6 @@
 use super::backdrop::Backdrop;
 use super::crowd::Crowds;
+use super::enlarger::Enlarger;
 use super::label::Labels;
 use super::line::Lines;
 use super::shadow::Shadows;
@@ -21,6 +22,7 @@ pub struct Renderer {
     spheres: Spheres,
     lines: Lines,
     labels: Labels,
+    enlarger: Enlarger,
     crowds: Crowds,
     skins: Skins,
     counts: Counts,
@@ -35,7 +37,7 @@ pub struct Counts {
     pub lines: u32,
     /// Number of labels.
     pub labels: u32,
-    /// Number of triangles, without those of a crowd.
+    /// Number of triangles. Those of a crowd are known some frames later.
     pub triangles: u32,
     /// Number of bytes sent to the device. Only changes are sent.
     pub uploaded: u64,
@@ -54,7 +56,8 @@ impl Renderer {
             shadows: Shadows::new(gpu, view.layout()),
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
-            labels: Labels::new(gpu, view.layout()),
+            labels: Labels::new(gpu),
+            enlarger: Enlarger::new(gpu),
             crowds: Crowds::default(),
             skins: Skins::default(),
             view,
@@ -80,21 +83,21 @@ impl Renderer {
     /// Draws a scene and submits the commands to the device. `scale` is the number of pixels per
     /// point, the unit for the sizes of lines and letters.
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
-        self.upload(gpu, scene, canvas.size(), scale);
+        self.upload(gpu, scene, canvas, scale);
         gpu.queue.submit([self.encode(gpu, canvas, None)]);
     }
 
-    /// Sends the changes since the last scene, for a picture of `size` in pixels with `scale`
-    /// pixels per point. Once all lists are large enough, the renderer allocates nothing itself;
+    /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all lists are large enough, the renderer allocates nothing itself;
     /// `wgpu` allocates a constant amount for each list that has changed, of which there are at
     /// most [`Renderer::LISTS`].
-    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) {
-        let uploaded = self.view.upload(gpu, scene, size, scale)
+    pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
+        let size = canvas.drawn_size();
+        let uploaded = self.view.upload(gpu, scene, size, scale * canvas.share())
             + self.solids.upload(gpu, scene, size)
             + self.shadows.upload(gpu, scene)
             + self.spheres.upload(gpu, scene, size)
             + self.lines.upload(gpu, scene)
-            + self.labels.upload(gpu, scene, size, scale)
+            + self.labels.upload(gpu, scene, canvas.size(), scale)
             + self.crowds.upload(gpu, self.view.layout(), scene, size)
             + self.skins.upload(gpu, self.view.layout(), scene);
         let count = |lengths: &[usize]| lengths.iter().sum::<usize>() as u32;
@@ -116,6 +119,19 @@ impl Renderer {
             + self.lines.triangles()
             + self.skins.triangles()
             + self.labels.triangles()
+            + self.crowds.triangles()
+    }
+
+    /// Reads counts of earlier frames back from the device, if they have arrived. The device must
+    /// be polled for this.
+    pub fn read_counts(&mut self) {
+        self.crowds.read_triangles();
+        self.counts.triangles = self.triangles();
+    }
+
+    /// Whether counts of earlier frames have not arrived yet.
+    pub fn awaits_counts(&self) -> bool {
+        self.crowds.awaits_triangles()
     }
 
     /// Encodes the commands that draw the last uploaded scene. `wgpu` allocates memory for them;
@@ -130,19 +146,33 @@ impl Renderer {
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("scene") });
         self.crowds.cull(&mut encoder);
+        let (start, end) = timestamps.map(start_and_end).unzip();
+        self.encode_scene(&mut encoder, canvas, start);
+        self.encode_labels(gpu, &mut encoder, canvas, end);
+        encoder.finish()
+    }
+
+    /// Draws everything but the labels, at the size that the canvas has for this.
+    fn encode_scene(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        canvas: &Canvas,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let samples = canvas.samples();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &canvas.samples,
+                view: &samples.colour,
                 depth_slice: None,
-                resolve_target: Some(&canvas.colour),
+                resolve_target: Some(canvas.smaller_colour().unwrap_or(&canvas.colour)),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
                     store: wgpu::StoreOp::Discard,
                 },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &canvas.depth,
+                view: &samples.depth,
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(0.0),
                     store: wgpu::StoreOp::Discard,
@@ -162,8 +192,43 @@ impl Renderer {
         self.spheres.draw(&mut pass);
         self.lines.draw(&mut pass);
         self.skins.draw_see_through(&mut pass);
-        self.labels.draw(&mut pass);
-        drop(pass);
-        encoder.finish()
     }
+
+    /// Enlarges a smaller picture, and draws the labels in full.
+    fn encode_labels(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        canvas: &Canvas,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let smaller = canvas.smaller_colour();
+        let load = match smaller {
+            Some(_) => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            None => wgpu::LoadOp::Load,
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("labels"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &canvas.colour,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            timestamp_writes: timestamps,
+            ..Default::default()
+        });
+        if let Some(smaller) = smaller {
+            self.enlarger.draw(gpu, &mut pass, smaller);
+        }
+        self.labels.draw(&mut pass);
+    }
+}
+
+/// Divides timestamps between the first and the last of several passes.
+fn start_and_end(
+    of: wgpu::RenderPassTimestampWrites<'_>,
+) -> (wgpu::RenderPassTimestampWrites<'_>, wgpu::RenderPassTimestampWrites<'_>) {
+    let start = wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..of.clone() };
+    (start, wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..of })
 }

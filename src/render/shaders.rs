@@ -1,14 +1,17 @@
 use super::{
-    backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, skin, skin_deformer, solid,
+    backdrop, crowd, crowd_solver, enlarger, globe, label, line, shadow, shell, skin,
+    skin_deformer, solid,
 };
 
 /// Names and WGSL sources of all complete shaders.
-pub fn shaders() -> [(&'static str, &'static str); 12] {
+pub fn shaders() -> [(&'static str, &'static str); 14] {
     [
         ("backdrop", backdrop::SHADER),
         ("crowd_arms", crowd::ARMS),
         ("crowd_cull", crowd::CULL),
+        ("crowd_far", crowd::FAR),
         ("crowd_solver", crowd_solver::SHADER),
+        ("enlarge", enlarger::SHADER),
         ("globe", globe::SHADER),
         ("label", label::SHADER),
         ("line", line::SHADER),

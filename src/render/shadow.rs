@@ -2,6 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
 use super::Gpu;
+use super::pipeline::Output;
 use super::quads::{self, Quads};
 use crate::scene::{Scene, Shadow};
 
@@ -31,6 +32,7 @@ impl Shadows {
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
                 depth: wgpu::CompareFunction::Greater,
+                output: Output::Blended,
             },
         ))
     }

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
+use super::pipeline::Output;
 use super::quads::{self, Quads};
 use super::sphere_order::SphereSide;
 use crate::scene::SphereShell;
@@ -39,6 +40,7 @@ impl Shells {
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32],
                 depth: wgpu::CompareFunction::Greater,
+                output: Output::Blended,
             },
         ))
     }

@@ -129,6 +129,7 @@ impl Session {
             }
             ShellAction::SetTheme(theme) => self.preferences.theme = theme,
             ShellAction::SetNavigation(navigation) => self.preferences.navigation = navigation,
+            ShellAction::SetFrameBudget(budget) => self.preferences.frame_budget = budget,
         }
         None
     }

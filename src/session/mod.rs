@@ -106,7 +106,7 @@ pub use point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 pub use pop_fix::PopFix;
 pub use pops::{PopSample, PopSampleKind, Pops, Spike};
 pub use pose_mode::PoseMode;
-pub use preferences::{Navigation, Preferences};
+pub use preferences::{FrameBudget, Navigation, Preferences};
 pub use select_action::SelectAction;
 pub use session::Session;
 pub use shell_action::ShellAction;

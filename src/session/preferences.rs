@@ -1,3 +1,5 @@
+use core::time::Duration;
+
 use serde::{Deserialize, Serialize};
 
 use super::panel_tab::PanelTab;
@@ -11,6 +13,8 @@ pub struct Preferences {
     pub theme: Theme,
     /// Mouse buttons that move the camera.
     pub navigation: Navigation,
+    /// Time for a frame while something moves.
+    pub frame_budget: FrameBudget,
     /// Whether the panel on the right is open.
     pub explain: bool,
     /// The page of that panel for the arm.
@@ -25,6 +29,20 @@ pub struct Preferences {
     pub has_dragged_hand: bool,
     /// Whether the tour is offered at the start.
     pub offers_tour: bool,
+}
+
+/// Time for a frame while something moves. A machine that needs longer draws the scene at a smaller
+/// size until it rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrameBudget {
+    /// No limit: the scene is always drawn in full.
+    Unlimited,
+    /// 1/60 s.
+    Sixtieth,
+    /// 1/30 s.
+    #[default]
+    Thirtieth,
 }
 
 /// Mouse buttons that move the camera, as in other programs.
@@ -47,6 +65,7 @@ impl Default for Preferences {
         Self {
             theme: Theme::default(),
             navigation: Navigation::default(),
+            frame_budget: FrameBudget::default(),
             explain: true,
             arm_tab: PanelTab::Triangle,
             skeleton_tab: PanelTab::Solver,
@@ -55,6 +74,39 @@ impl Default for Preferences {
             has_dragged_hand: false,
             offers_tour: true,
         }
+    }
+}
+
+impl FrameBudget {
+    /// All budgets, in the order of the menu.
+    pub const ALL: [Self; 3] = [Self::Unlimited, Self::Thirtieth, Self::Sixtieth];
+
+    /// Name in the menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unlimited => "Draw in full",
+            Self::Thirtieth => "33 ms a frame",
+            Self::Sixtieth => "16 ms a frame",
+        }
+    }
+
+    /// What it does, for the menu.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Unlimited => "Keep every frame sharp, even if the picture moves in steps",
+            Self::Thirtieth => "Draw smaller if a frame would take longer than 1/30 s",
+            Self::Sixtieth => "Draw smaller if a frame would take longer than 1/60 s",
+        }
+    }
+
+    /// Time for a frame; `None` without a limit.
+    pub fn time(self) -> Option<Duration> {
+        let per_second = match self {
+            Self::Unlimited => return None,
+            Self::Thirtieth => 30.0,
+            Self::Sixtieth => 60.0,
+        };
+        Some(Duration::from_secs_f64(1.0 / per_second))
     }
 }
 

@@ -1,5 +1,5 @@
 use super::dialog::Dialog;
-use super::preferences::Navigation;
+use super::preferences::{FrameBudget, Navigation};
 use crate::document::Theme;
 
 /// Changes dialogs, messages or preferences.
@@ -21,4 +21,6 @@ pub enum ShellAction {
     SetTheme(Theme),
     /// Sets the mouse buttons that move the camera.
     SetNavigation(Navigation),
+    /// Sets the time for a frame while something moves.
+    SetFrameBudget(FrameBudget),
 }

@@ -21,6 +21,8 @@ pub struct FrameTime {
     /// Time from the start of the previous frame to the start of this one; `None` unless the
     /// previous frame requested this one without a delay.
     pub interval: Option<Duration>,
+    /// Fraction of the viewport's width and height at which the scene is drawn, from 0 to 1.
+    pub share: f32,
 }
 
 impl FrameTime {
@@ -74,13 +76,14 @@ impl FrameTimes {
         self.drawn
     }
 
-    /// Sets the GPU time of the frame with the index `frame`, if that frame is in the buffer.
-    pub fn set_gpu(&mut self, frame: u64, time: Duration) {
+    /// Sets the GPU time of the frame with the index `frame` and returns that frame, if it is in
+    /// the buffer.
+    pub fn set_gpu(&mut self, frame: u64, time: Duration) -> Option<&FrameTime> {
         let is_kept = frame < self.drawn && self.drawn - frame <= Self::MOST as u64;
-        if is_kept {
-            let place = self.place(frame);
-            self.frames[place].gpu = Some(time);
-        }
+        let place = self.place(frame);
+        let kept = self.frames.get_mut(place).filter(|_| is_kept)?;
+        kept.gpu = Some(time);
+        Some(kept)
     }
 
     /// The frames in the buffer, oldest first.

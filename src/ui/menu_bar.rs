@@ -7,8 +7,8 @@ use super::{commands, labels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group, OpenOptions};
 use crate::session::{
-    Action, Actions, Dialog, EditAction, FileAction, Navigation, Session, ShellAction, TourAction,
-    TransactionAction, ViewAction,
+    Action, Actions, Dialog, EditAction, FileAction, FrameBudget, Navigation, Session, ShellAction,
+    TourAction, TransactionAction, ViewAction,
 };
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -240,6 +240,14 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             actions.push(ShellAction::SetTheme(theme));
         }
     }
+    ui.menu_button("While moving", |ui| {
+        for budget in FrameBudget::ALL {
+            let chosen = session.preferences().frame_budget == budget;
+            if ui.radio(chosen, budget.name()).on_hover_text(budget.help()).clicked() {
+                actions.push(ShellAction::SetFrameBudget(budget));
+            }
+        }
+    });
     ui.separator();
     let mut overlays = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
     if session.rig() == RigKind::Arm {

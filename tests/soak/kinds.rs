@@ -6,9 +6,9 @@ use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmFigure, ArmJoint, BakeAction, EditAction, FileAction, InsideLayer, Navigation,
-    PanelTab, PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction, TourAction,
-    TransactionAction, ViewAction,
+    Action, ArmFigure, ArmJoint, BakeAction, EditAction, FileAction, FrameBudget, InsideLayer,
+    Navigation, PanelTab, PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction,
+    TourAction, TransactionAction, ViewAction,
 };
 
 use crate::values::Values;
@@ -257,6 +257,7 @@ kinds! {
     Shell(ShellAction) {
         SetTheme: Look 1, |v| ShellAction::SetTheme(v.one_of(&[Theme::Dark, Theme::Light]));
         SetNavigation: Look 1, |v| ShellAction::SetNavigation(v.one_of(&Navigation::ALL));
+        SetFrameBudget: Look 1, |v| ShellAction::SetFrameBudget(v.one_of(&FrameBudget::ALL));
         OpenDialog: Look 2, |v| ShellAction::OpenDialog(v.dialog());
         CloseDialog: Look 1, |_| ShellAction::CloseDialog;
         Report: Look 1, |v| ShellAction::Report(v.name());

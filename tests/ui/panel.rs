@@ -6,7 +6,7 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Display, Overlay, Theme};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, Navigation, PanelTab, ShellAction, ViewAction,
+    Action, Dialog, EditAction, Effect, FrameBudget, Navigation, PanelTab, ShellAction, ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -56,6 +56,7 @@ pub const MENUS: [(&str, &[&str]); 4] = [
             "Frame all",
             "Light theme",
             "Dark theme",
+            "While moving",
             "Explain panel",
             "Timeline",
             "Graph editor",
@@ -176,6 +177,12 @@ fn the_menus_do_what_they_say() {
     for navigation in Navigation::ALL {
         bench.choose(&["Edit", "Navigation", navigation.name()]);
         assert_eq!(bench.session().preferences().navigation, navigation);
+        bench.key(Key::Escape);
+        bench.settle();
+    }
+    for budget in FrameBudget::ALL {
+        bench.choose(&["View", "While moving", budget.name()]);
+        assert_eq!(bench.session().preferences().frame_budget, budget);
         bench.key(Key::Escape);
         bench.settle();
     }

@@ -25,6 +25,7 @@ fn frame(index: u64) -> FrameTime {
         wait: part(400),
         gpu: Some(part(250)),
         interval: Some(Duration::from_micros(16_667)),
+        share: 0.7,
     }
 }
 
@@ -86,7 +87,7 @@ fn every_part_shows_its_median_and_its_slowest_time() {
             assert!((number.center().y - row.center().y).abs() < 3.0, "{part}: {number:?}");
         }
     }
-    for number in ["60", "57", "12", "3", "10,871", "1,234,567"] {
+    for number in ["60", "70 %", "57", "12", "3", "10,871", "1,234,567"] {
         assert!(bench.shows(Role::Label, number), "{number}");
     }
     assert!(bench.shows(Role::Label, "Test adapter (of tests)"));

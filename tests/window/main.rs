@@ -7,6 +7,7 @@
 mod drag;
 mod keyboard;
 mod loss;
+mod pictures;
 mod places;
 mod recovery;
 mod screen;

@@ -187,3 +187,69 @@ impl TwoBoneJob {
 fn out_of_range(field: JobField, value: f32, range: &'static str) -> JobError {
     JobError::OutOfRange { field, value, range }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::EulerRot;
+
+    use super::*;
+
+    /// A limb that is bent, with bones of similar lengths, under a scaled and mirrored joint. `turn`
+    /// is any number.
+    fn usual_job(turn: f32) -> TwoBoneJob {
+        let local = |turn: f32, along: f32, scale: Vec3| {
+            let rotation = Quat::from_euler(EulerRot::XYZ, turn, 0.3 * turn, 0.9);
+            Affine3A::from_scale_rotation_translation(scale, rotation, along * Vec3::X)
+        };
+        let mirrored = if turn.sin() > 0.0 { Vec3::splat(2.0) } else { Vec3::new(-0.5, 1.0, 3.0) };
+        let rotation = Quat::from_rotation_z(0.8 + 0.4 * turn.cos());
+        let start = local(turn, 5.0, mirrored);
+        let middle = start * Affine3A::from_rotation_translation(rotation, 0.7 * Vec3::X);
+        let end = middle * Affine3A::from_translation(Vec3::new(0.4, 0.1, 0.0));
+        let target =
+            start.transform_point3(0.8 * Vec3::new(turn.sin(), turn.cos(), 0.4 * turn.sin()));
+        let pole = Some(Vec3::new(0.2, -1.0, 3.0)).filter(|_| turn.cos() > 0.0);
+        let hinge = Some(Vec3::Z).filter(|_| turn.cos() < 0.5);
+        TwoBoneJob { pole, hinge, twist: turn, ..TwoBoneJob::new(start, middle, end, target) }
+    }
+
+    #[test]
+    fn usual_jobs_take_the_fast_path() {
+        for number in 0..1_000 {
+            let job = usual_job(number as f32);
+            assert!(job.solve_usual().is_some(), "{job:?}");
+        }
+    }
+
+    #[test]
+    fn jobs_near_a_special_case_do_not() {
+        let job = usual_job(1.0);
+        let straight = job.middle.translation - job.start.translation + job.middle.translation;
+        let far = |of: Affine3A| Affine3A { translation: of.translation + 1e8, ..of };
+        for (why, job) in [
+            ("softness", TwoBoneJob { softness: 0.1, ..job }),
+            ("weight", TwoBoneJob { weight: 0.5, ..job }),
+            ("straight", TwoBoneJob { end: Affine3A::from_translation(straight.into()), ..job }),
+            ("target at the start", TwoBoneJob { target: job.start.translation.into(), ..job }),
+            ("no scale", TwoBoneJob { start: Affine3A::from_scale(Vec3::ZERO), ..job }),
+            ("not a similarity", TwoBoneJob { middle: Affine3A::IDENTITY, ..job }),
+            (
+                "coarse coordinates",
+                TwoBoneJob {
+                    start: far(job.start),
+                    middle: far(job.middle),
+                    end: far(job.end),
+                    ..job
+                },
+            ),
+            (
+                "pole towards the target",
+                TwoBoneJob { pole: Some(job.target - Vec3::from(job.start.translation)), ..job },
+            ),
+            ("twist", TwoBoneJob { twist: f32::INFINITY, ..job }),
+            ("hinge", TwoBoneJob { hinge: Some(Vec3::NAN), ..job }),
+        ] {
+            assert!(job.solve_usual().is_none(), "{why}");
+        }
+    }
+}

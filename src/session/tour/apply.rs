@@ -92,9 +92,16 @@ impl Session {
     pub(in crate::session) fn leave_tour(&mut self) {
         let Some(own) = self.own.take() else { return };
         self.cancel_bake();
-        let Preferences { theme, navigation, offers_tour, has_dragged_hand, .. } = self.preferences;
-        let preferences =
-            Preferences { theme, navigation, offers_tour, has_dragged_hand, ..own.preferences };
+        let Preferences { explain, arm_tab, skeleton_tab, timeline_open, curves, .. } =
+            own.preferences;
+        let preferences = Preferences {
+            explain,
+            arm_tab,
+            skeleton_tab,
+            timeline_open,
+            curves,
+            ..self.preferences
+        };
         let files = std::mem::take(&mut self.files);
         *self = Self { files, preferences, ..*own };
     }

@@ -1,0 +1,174 @@
+use std::time::{Duration, Instant};
+
+/// Fractions of the viewport's width and height at which the scene is drawn while it moves.
+const SHARES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
+
+/// Time without motion after which the scene is drawn in full.
+const REST: Duration = Duration::from_millis(100);
+
+/// Number of frames in a row that must be too slow before the picture becomes smaller, and so fast
+/// that it may become larger.
+const SLOW_FRAMES: u32 = 2;
+const FAST_FRAMES: u32 = 20;
+
+/// Part of the budget that a frame may be expected to take after the picture becomes larger.
+const SAFE: f32 = 0.75;
+
+/// Chooses the fraction of the viewport's width and height at which the scene is drawn. While it
+/// moves, the scene is drawn so small that a frame takes no longer than a budget; at rest, it is
+/// drawn in full.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PictureShare {
+    /// Index into [`SHARES`].
+    step: usize,
+    /// Time of the last motion; `None` at rest.
+    moved: Option<Instant>,
+    slow: u32,
+    fast: u32,
+}
+
+impl PictureShare {
+    /// The share of a frame at the time `now`, in which the scene moves or not. Without a budget it
+    /// is 1.
+    pub fn next(&mut self, is_moving: bool, budget: Option<Duration>, now: Instant) -> f32 {
+        if is_moving {
+            self.moved = Some(now);
+        } else if self.moved.is_some_and(|moved| now.duration_since(moved) >= REST) {
+            self.moved = None;
+        }
+        if budget.is_none() {
+            *self = Self::default();
+        }
+        self.moved.map_or(1.0, |_| SHARES[self.step])
+    }
+
+    /// Time from `now` until the scene must be drawn in full, unless it moves again; `None` at rest.
+    pub fn rests_in(&self, now: Instant) -> Option<Duration> {
+        Some((self.moved? + REST).saturating_duration_since(now))
+    }
+
+    /// Adapts to a frame of a share and the time that it took.
+    pub fn measure(&mut self, share: f32, time: Duration, budget: Option<Duration>) {
+        let Some(budget) = budget.filter(|_| share == SHARES[self.step]) else {
+            return;
+        };
+        let used = time.as_secs_f32() / budget.as_secs_f32();
+        // As if all time were spent on pixels.
+        let larger = self.step.saturating_sub(1);
+        let used_larger = used * (SHARES[larger] / share).powi(2);
+        self.slow = if used > 1.0 { self.slow + 1 } else { 0 };
+        self.fast = if used_larger < SAFE { self.fast + 1 } else { 0 };
+        if self.slow >= SLOW_FRAMES {
+            let fits = |share: &f32| *share <= SHARES[self.step] / used.sqrt();
+            let smaller = SHARES.iter().position(fits).unwrap_or(SHARES.len() - 1);
+            self.set_step(smaller);
+        } else if self.fast >= FAST_FRAMES {
+            self.set_step(larger);
+        }
+    }
+
+    fn set_step(&mut self, step: usize) {
+        (self.step, self.slow, self.fast) = (step, 0, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BUDGET: Option<Duration> = Some(Duration::from_millis(33));
+
+    /// Numbers from 0 to 1, the same on every run.
+    fn numbers() -> impl Iterator<Item = f32> {
+        let mut state = 7_u64;
+        std::iter::from_fn(move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            Some((state >> 40) as f32 / (1_u64 << 24) as f32)
+        })
+    }
+
+    /// Shares of frames in motion, on a machine whose frames take `fixed` milliseconds and
+    /// `in_full` more for a picture in full, with up to a tenth of noise.
+    fn shares(fixed: f32, in_full: f32, frames: usize) -> Vec<f32> {
+        let mut share = PictureShare::default();
+        let now = Instant::now();
+        let mut shares = Vec::new();
+        for noise in numbers().take(frames) {
+            let of = share.next(true, BUDGET, now);
+            let time = (fixed + in_full * of * of) * (0.9 + 0.2 * noise);
+            share.measure(of, Duration::from_secs_f32(time / 1000.0), BUDGET);
+            shares.push(of);
+        }
+        shares
+    }
+
+    #[test]
+    fn frames_fit_the_budget_after_eight_or_are_as_small_as_possible() {
+        for fixed in [2.0, 10.0, 20.0] {
+            for in_full in [1.0, 20.0, 40.0, 65.0, 200.0] {
+                for share in &shares(fixed, in_full, 500)[8..] {
+                    let time = fixed + in_full * share * share;
+                    let fits = time * 0.9 <= 33.0 || *share == 0.5;
+                    assert!(fits, "{time} ms at {share} ({fixed} and {in_full} ms)");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_size_does_not_swing() {
+        for fixed in [2.0, 10.0, 20.0] {
+            for in_full in [1.0, 20.0, 28.0, 40.0, 65.0, 200.0] {
+                let shares = shares(fixed, in_full, 2_000);
+                let changes = shares.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                assert!(changes <= 4, "{changes} changes ({fixed} and {in_full} ms)");
+            }
+        }
+    }
+
+    #[test]
+    fn a_fast_machine_draws_in_full() {
+        assert!(shares(2.0, 20.0, 500).iter().all(|share| *share == 1.0));
+    }
+
+    #[test]
+    fn the_picture_grows_again_when_frames_become_fast() {
+        let mut share = PictureShare::default();
+        let now = Instant::now();
+        let mut draw = |milliseconds| {
+            let of = share.next(true, BUDGET, now);
+            share.measure(of, Duration::from_millis(milliseconds), BUDGET);
+            of
+        };
+        (0..5).for_each(|_| drop(draw(200)));
+        assert_eq!(draw(200), 0.5);
+        (0..100).for_each(|_| drop(draw(5)));
+        assert_eq!(draw(5), 1.0);
+    }
+
+    #[test]
+    fn the_scene_is_drawn_in_full_a_tenth_of_a_second_after_it_rests() {
+        let mut share = PictureShare { step: 4, ..PictureShare::default() };
+        let start = Instant::now();
+        let at = |milliseconds| start + Duration::from_millis(milliseconds);
+        assert_eq!(share.rests_in(at(0)), None);
+        assert_eq!(share.next(false, BUDGET, at(0)), 1.0);
+        assert_eq!(share.next(true, BUDGET, at(10)), 0.5);
+        assert_eq!(share.next(false, BUDGET, at(60)), 0.5);
+        assert_eq!(share.rests_in(at(60)), Some(Duration::from_millis(50)));
+        assert_eq!(share.next(true, BUDGET, at(100)), 0.5);
+        assert_eq!(share.rests_in(at(250)), Some(Duration::ZERO));
+        assert_eq!(share.next(false, BUDGET, at(200)), 1.0);
+        assert_eq!(share.rests_in(at(200)), None);
+    }
+
+    #[test]
+    fn without_a_budget_the_scene_is_always_drawn_in_full() {
+        let mut share = PictureShare { step: 4, ..PictureShare::default() };
+        let now = Instant::now();
+        assert_eq!(share.next(true, None, now), 1.0);
+        share.measure(1.0, Duration::from_secs(1), None);
+        assert_eq!(share.next(true, None, now), 1.0);
+        assert_eq!(share.rests_in(now), None);
+    }
+}

@@ -1,0 +1,81 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::Gpu;
+
+const FREE: u8 = 0;
+/// The commands that write the buffer are encoded, but may not be submitted yet.
+const WRITTEN: u8 = 1;
+const FETCHING: u8 = 2;
+const FETCHED: u8 = 3;
+const FAILED: u8 = 4;
+
+/// Reads a buffer of the device back without waiting: commands copy it to a second buffer, which is
+/// read some frames later.
+#[derive(Debug)]
+pub(super) struct Readback {
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+}
+
+impl Readback {
+    /// Makes room for `size` bytes.
+    pub fn new(gpu: &Gpu, label: &str, size: u64) -> Self {
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { buffer, state: Arc::new(AtomicU8::new(FREE)) }
+    }
+
+    /// Whether no copy is under way.
+    pub fn is_free(&self) -> bool {
+        self.state() == FREE
+    }
+
+    /// Encodes a copy of the first bytes of `from`. Must be free.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, from: &wgpu::Buffer) {
+        encoder.copy_buffer_to_buffer(from, 0, &self.buffer, 0, self.buffer.size());
+        self.set(WRITTEN);
+    }
+
+    /// Starts reading an encoded copy, whose commands must have been submitted.
+    pub fn fetch(&self) {
+        if self.state() != WRITTEN {
+            return;
+        }
+        self.set(FETCHING);
+        let state = Arc::clone(&self.state);
+        self.buffer.slice(..).map_async(wgpu::MapMode::Read, move |fetched| {
+            let next = if fetched.is_ok() { FETCHED } else { FAILED };
+            state.store(next, Ordering::Release);
+        });
+    }
+
+    /// What `read` returns for the bytes; `None` if they have not arrived yet, cannot be read, or
+    /// were read before. The device must be polled for them to arrive.
+    pub fn read<T>(&self, read: impl FnOnce(&[u8]) -> Option<T>) -> Option<T> {
+        let state = self.state();
+        let value = if state == FETCHED {
+            let value = self.buffer.get_mapped_range(..).ok().and_then(|mapped| read(&mapped));
+            self.buffer.unmap();
+            value
+        } else {
+            None
+        };
+        if matches!(state, FETCHED | FAILED) {
+            self.set(FREE);
+        }
+        value
+    }
+
+    fn state(&self) -> u8 {
+        self.state.load(Ordering::Acquire)
+    }
+
+    fn set(&self, state: u8) {
+        self.state.store(state, Ordering::Release);
+    }
+}
