@@ -2,12 +2,12 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::epaint::{ImageDelta, TextureAtlas};
-use egui::{Context, TextureId};
+use egui::Context;
 use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
 use winit::window::Window;
 
 use super::graphics_error::GraphicsError;
+use super::panel_painter::PanelPainter;
 use super::user_event::UserEvent;
 use crate::render::{Canvas, Counts, CrowdError, Gpu, GpuTimer, Renderer, TimedPass};
 use crate::rig::CrowdTimes;
@@ -15,9 +15,9 @@ use crate::scene::Scene;
 
 /// Everything that lives on the graphics device, and is lost and created again with it.
 pub(super) struct Graphics {
-    pub(super) egui_renderer: egui_wgpu::Renderer,
+    pub(super) panels: PanelPainter,
     renderer: Renderer,
-    picture: SceneTexture,
+    pub(super) picture: ScenePicture,
     pub(super) gpu_timer: Option<GpuTimer>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
@@ -28,13 +28,14 @@ pub(super) struct Graphics {
     crowd_error: Option<CrowdError>,
 }
 
-/// The scene that was drawn most recently, as a texture for the panels.
-struct SceneTexture {
-    canvas: Canvas,
-    texture: TextureId,
+/// The scene that was drawn most recently.
+pub(super) struct ScenePicture {
+    pub(super) canvas: Canvas,
     scene: Option<Scene>,
     /// Whether the canvas shows the scene.
     is_drawn: bool,
+    /// Whether the window does not show the canvas yet.
+    pub(super) is_new: bool,
 }
 
 impl Graphics {
@@ -58,19 +59,11 @@ impl Graphics {
         // Sending fails only after the window is closed.
         gpu.on_failure(move || drop(proxy.send_event(UserEvent::GraphicsFailed)));
         let config = configuration(&gpu, &surface, window)?;
-        let mut egui_renderer =
-            egui_wgpu::Renderer::new(&gpu.device, config.format, Default::default());
-        upload_font_atlas(&mut egui_renderer, &gpu, panels);
         let canvas = Canvas::new(&gpu, 1, 1);
-        let texture = egui_renderer.register_native_texture(
-            &gpu.device,
-            canvas.view(),
-            wgpu::FilterMode::Nearest,
-        );
         let graphics = Self {
-            egui_renderer,
+            panels: PanelPainter::new(&gpu, config.format, panels),
             renderer: Renderer::new(&gpu),
-            picture: SceneTexture { canvas, texture, scene: None, is_drawn: false },
+            picture: ScenePicture { canvas, scene: None, is_drawn: false, is_new: true },
             gpu_timer: GpuTimer::new(&gpu),
             surface,
             config,
@@ -94,11 +87,6 @@ impl Graphics {
     /// Time taken to solve the crowd; `None` if no crowd is shown or the crowd has failed.
     pub fn crowd_times(&self) -> Option<CrowdTimes> {
         self.renderer.crowd_times().ok().flatten()
-    }
-
-    /// Identifier in egui of the texture that shows the scene.
-    pub fn picture(&self) -> TextureId {
-        self.picture.texture
     }
 
     /// Whether the device can measure the time that it takes for a frame.
@@ -143,7 +131,6 @@ impl Graphics {
         if self.picture.canvas.size() != (width, height) {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.is_drawn = false;
-            self.show_canvas();
         }
         let has_share = self.picture.canvas.share() == share;
         if self.picture.is_drawn && has_share && self.picture.scene.as_ref() == Some(scene) {
@@ -159,22 +146,12 @@ impl Graphics {
         }
         let timestamps = self.gpu_timer.as_mut().map(|gpu_timer| gpu_timer.pass(TimedPass::Scene));
         self.gpu.queue.submit([self.renderer.encode(&self.gpu, canvas, timestamps)]);
-        self.picture.is_drawn = true;
+        (self.picture.is_drawn, self.picture.is_new) = (true, true);
         match &mut self.picture.scene {
             Some(shown) => std::mem::swap(shown, scene),
             None => self.picture.scene = Some(scene.clone()),
         }
         self.renderer.counts()
-    }
-
-    /// Points egui's texture for the scene to a new canvas.
-    fn show_canvas(&mut self) {
-        self.egui_renderer.update_egui_texture_from_wgpu_texture(
-            &self.gpu.device,
-            self.picture.canvas.view(),
-            wgpu::FilterMode::Nearest,
-            self.picture.texture,
-        );
     }
 }
 
@@ -188,17 +165,6 @@ pub(super) fn guarded<T>(
         let message = message.or_else(|| panic.downcast_ref().copied());
         Err(GraphicsError::Panic(message.unwrap_or("no message").to_owned()))
     })
-}
-
-/// Uploads egui's whole font atlas: egui itself sends only changes, which a new renderer cannot apply.
-fn upload_font_atlas(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Context) {
-    // egui has no fonts before its first frame.
-    if panels.cumulative_pass_nr() == 0 {
-        return;
-    }
-    let all =
-        panels.fonts(|fonts| ImageDelta::full(fonts.image(), TextureAtlas::texture_options()));
-    renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
 }
 
 /// Configuration of the surface. Its format does not convert to sRGB, since egui blends in sRGB.
@@ -219,6 +185,8 @@ fn configuration(
     // Waits for vsync without tearing; every surface supports this mode.
     config.present_mode = wgpu::PresentMode::Fifo;
     config.desired_maximum_frame_latency = 1;
+    // The picture that is kept is copied, if the surface allows that.
+    config.usage |= surface.get_capabilities(&gpu.adapter).usages & wgpu::TextureUsages::COPY_DST;
     surface.configure(&gpu.device, &config);
     Ok(config)
 }

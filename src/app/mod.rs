@@ -10,6 +10,8 @@ mod event_loop;
 mod graphics;
 mod graphics_error;
 mod lap_timer;
+mod panel_changes;
+mod panel_painter;
 mod picture_share;
 mod present;
 mod recovery;

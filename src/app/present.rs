@@ -1,14 +1,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::TextureId;
-use egui::epaint::{ClippedPrimitive, ImageDelta};
+use egui::Rect;
+use egui::epaint::ClippedPrimitive;
 use egui_wgpu::ScreenDescriptor;
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
 use super::graphics::Graphics;
 use super::graphics_error::GraphicsError;
+use super::panel_painter::PlacedScene;
 use crate::render::TimedPass;
 
 /// Outcome of a frame.
@@ -30,23 +31,6 @@ impl Graphics {
     /// Time between frames while the window is hidden.
     pub const HIDDEN_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
-    pub fn update_textures(
-        &mut self,
-        changed: impl IntoIterator<Item = (TextureId, impl IntoIterator<Item = ImageDelta>)>,
-    ) {
-        for (id, deltas) in changed {
-            for delta in deltas {
-                self.egui_renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
-            }
-        }
-    }
-
-    pub fn free_textures(&mut self, freed: impl IntoIterator<Item = TextureId>) {
-        for id in freed {
-            self.egui_renderer.free_texture(&id);
-        }
-    }
-
     /// Resizes the surface. A minimised window has no size and keeps its surface.
     pub fn resize(&mut self, size: PhysicalSize<u32>) {
         if size.width > 0 && size.height > 0 {
@@ -57,9 +41,9 @@ impl Graphics {
         }
     }
 
-    /// Draws the panels on the surface and presents it. Returns the outcome and the time spent
-    /// waiting for the surface. `scale` is in pixels per point; `drawn` is the number of earlier
-    /// frames.
+    /// Draws the panels with the scene in the viewport (in points), and presents the window. Returns
+    /// the outcome and the time spent waiting for the surface. `scale` is in pixels per point;
+    /// `drawn` is the number of earlier frames.
     ///
     /// # Errors
     ///
@@ -67,7 +51,8 @@ impl Graphics {
     /// [`Self::finish`].
     pub fn present(
         &mut self,
-        panels: &[ClippedPrimitive],
+        panels: &mut [ClippedPrimitive],
+        viewport: Rect,
         scale: f32,
         window: &Arc<Window>,
         drawn: u64,
@@ -78,7 +63,10 @@ impl Graphics {
         let start = Instant::now();
         let frame = match self.acquire(window)? {
             Acquired::Frame(frame) => frame,
-            Acquired::Later(again) => return Ok((Presented::Later(again), start.elapsed())),
+            Acquired::Later(again) => {
+                self.panels.draw_all_next();
+                return Ok((Presented::Later(again), start.elapsed()));
+            }
         };
         let mut waited = start.elapsed();
         self.check()?;
@@ -90,32 +78,15 @@ impl Graphics {
             .gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("panels") });
-        let mut commands = self.egui_renderer.update_buffers(
-            &self.gpu.device,
-            &self.gpu.queue,
-            &mut encoder,
-            panels,
-            &screen,
-        );
-        let view = frame.texture.create_view(&Default::default());
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("panels"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            timestamp_writes: self
-                .gpu_timer
-                .as_mut()
-                .map(|gpu_timer| gpu_timer.pass(TimedPass::Panels)),
-            ..Default::default()
-        });
-        self.egui_renderer.render(&mut pass.forget_lifetime(), panels, &screen);
+        let scene = PlacedScene {
+            picture: self.picture.canvas.view(),
+            viewport,
+            has_changed: std::mem::take(&mut self.picture.is_new),
+        };
+        let timestamps = self.gpu_timer.as_mut().map(|timer| timer.pass(TimedPass::Panels));
+        let panels = (panels, &screen);
+        let mut commands = self.panels.draw(&self.gpu, &mut encoder, panels, &scene, timestamps);
+        self.panels.copy_to(&self.gpu, &mut encoder, &frame.texture);
         if let Some(gpu_timer) = &mut self.gpu_timer {
             gpu_timer.stop(&mut encoder, drawn);
         }

@@ -331,12 +331,11 @@ impl AppWindow {
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut lap = lap_timer();
         let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
-        let picture = self.graphics.as_ref().map(Graphics::picture);
         let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
         let mut viewport = Rect::ZERO;
         let mut actions = Actions::new();
         let mut output = ctx.run_ui(input, |ui| {
-            viewport = ui::show(ui, session, machine, picture, &mut actions);
+            viewport = ui::show(ui, session, machine, &mut actions);
         });
         frame.panels += lap();
         if actions.is_empty() {
@@ -346,7 +345,7 @@ impl AppWindow {
         frame.solve += lap();
         style::apply(ctx, session.preferences().theme);
         output.append(ctx.run_ui(again, |ui| {
-            viewport = ui::show(ui, session, machine, picture, &mut actions);
+            viewport = ui::show(ui, session, machine, &mut actions);
         }));
         frame.panels += lap();
         (output, viewport, effects)
@@ -379,8 +378,8 @@ impl AppWindow {
         let size = self.window.inner_size();
         if size.width == 0 || size.height == 0 {
             return guarded(|| {
-                graphics.update_textures(changed);
-                graphics.free_textures(freed);
+                graphics.panels.update_textures(&graphics.gpu, changed);
+                graphics.panels.free_textures(freed);
                 Ok(Presented::Later(None))
             });
         }
@@ -398,7 +397,8 @@ impl AppWindow {
         let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
         frame.share = self.share.next(is_moving, budget, Instant::now());
         frame.scene += lap();
-        let panels = self.egui.egui_ctx().tessellate(shapes, scale);
+        graphics.panels.note_changes(&shapes);
+        let mut panels = self.egui.egui_ctx().tessellate(shapes, scale);
         frame.panels += lap();
         let (machine, share) = (&mut self.machine, &mut self.share);
         guarded(|| {
@@ -408,17 +408,18 @@ impl AppWindow {
                     share.measure(earlier.share, earlier.work() + time, budget);
                 }
             }
-            graphics.update_textures(changed);
+            graphics.panels.update_textures(&graphics.gpu, changed);
             if let Some(scene) = &mut self.scene {
                 machine.counts = Some(graphics.draw_scene(scene, pixels, scale, frame.share));
                 self.awaits_counts = graphics.awaits_counts();
             }
             frame.encode += lap();
             let drawn = machine.times.drawn();
-            let (presented, waited) = graphics.present(&panels, scale, &self.window, drawn)?;
+            let (presented, waited) =
+                graphics.present(&mut panels, self.viewport, scale, &self.window, drawn)?;
             frame.wait += waited;
             frame.encode += lap().saturating_sub(waited);
-            graphics.free_textures(freed);
+            graphics.panels.free_textures(freed);
             if self.retries.is_retrying() && matches!(presented, Presented::Shown) {
                 graphics.finish()?;
             }

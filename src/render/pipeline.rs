@@ -23,8 +23,8 @@ pub(super) enum Output {
     Blended,
     /// Depth without colours.
     Depth,
-    /// Blends with the finished picture, which has no depth and one sample per pixel.
-    Overlay,
+    /// Blends with a finished picture of this format, which has no depth and one sample per pixel.
+    Overlay(wgpu::TextureFormat),
 }
 
 pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::RenderPipeline {
@@ -39,7 +39,10 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         bind_group_layouts: &layouts,
         immediate_size: 0,
     });
-    let is_overlay = descriptor.output == Output::Overlay;
+    let (is_overlay, format) = match descriptor.output {
+        Output::Overlay(format) => (true, format),
+        _ => (false, Canvas::FORMAT),
+    };
     let is_blended = is_overlay || descriptor.output == Output::Blended;
     let samples = if is_overlay { 1 } else { Canvas::SAMPLES };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -72,7 +75,7 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
             entry_point: Some(descriptor.fragment),
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
-                format: Canvas::FORMAT,
+                format,
                 blend: is_blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: match descriptor.output {
                     Output::Depth => wgpu::ColorWrites::empty(),

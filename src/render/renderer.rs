@@ -1,12 +1,12 @@
 use super::backdrop::Backdrop;
 use super::crowd::Crowds;
-use super::enlarger::Enlarger;
 use super::label::Labels;
 use super::line::Lines;
 use super::shadow::Shadows;
 use super::skin::Skins;
 use super::solid::Solids;
 use super::spheres::Spheres;
+use super::texture_painter::TexturePainter;
 use super::view::ViewUniforms;
 use super::{Canvas, CrowdError, Gpu};
 use crate::rig::CrowdTimes;
@@ -22,7 +22,7 @@ pub struct Renderer {
     spheres: Spheres,
     lines: Lines,
     labels: Labels,
-    enlarger: Enlarger,
+    enlarger: TexturePainter,
     crowds: Crowds,
     skins: Skins,
     counts: Counts,
@@ -57,7 +57,7 @@ impl Renderer {
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
             labels: Labels::new(gpu),
-            enlarger: Enlarger::new(gpu),
+            enlarger: TexturePainter::new(gpu, Canvas::FORMAT),
             crowds: Crowds::default(),
             skins: Skins::default(),
             view,

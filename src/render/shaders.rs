@@ -1,6 +1,6 @@
 use super::{
-    backdrop, crowd, crowd_solver, enlarger, globe, label, line, shadow, shell, skin,
-    skin_deformer, solid,
+    backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, skin, skin_deformer, solid,
+    texture_painter,
 };
 
 /// Names and WGSL sources of all complete shaders.
@@ -11,7 +11,6 @@ pub fn shaders() -> [(&'static str, &'static str); 14] {
         ("crowd_cull", crowd::CULL),
         ("crowd_far", crowd::FAR),
         ("crowd_solver", crowd_solver::SHADER),
-        ("enlarge", enlarger::SHADER),
         ("globe", globe::SHADER),
         ("label", label::SHADER),
         ("line", line::SHADER),
@@ -20,5 +19,6 @@ pub fn shaders() -> [(&'static str, &'static str); 14] {
         ("skin", skin::SHADER),
         ("skin_deform", skin_deformer::SHADER),
         ("solid", solid::SHADER),
+        ("texture", texture_painter::SHADER),
     ]
 }

@@ -1,6 +1,6 @@
 //! The layout of the window.
 
-use egui::{CentralPanel, Panel, Rect, TextureId, Ui, UiBuilder};
+use egui::{CentralPanel, Panel, Rect, Ui, UiBuilder};
 
 use super::panels::{crowd, left, right};
 use super::{Machine, dialogs, keyboard, menu_bar, status_bar, timeline, tour, viewport};
@@ -9,15 +9,9 @@ use crate::session::{Actions, SelectAction, Session};
 /// Least height of the view beside an open timeline, in points.
 const VIEW_HEIGHT: f32 = 360.0;
 
-/// Shows all panels and returns the rectangle of the viewport in points. `picture` is the texture
-/// into which the scene is rendered; `None` while there is no graphics device.
-pub fn show(
-    ui: &mut Ui,
-    session: &Session,
-    machine: &Machine,
-    picture: Option<TextureId>,
-    actions: &mut Actions,
-) -> Rect {
+/// Shows all panels and returns the rectangle of the viewport in points. The viewport is left empty:
+/// the scene is drawn there before the panels.
+pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) -> Rect {
     keyboard::focus::begin(ui);
     keyboard::global(ui, session, actions);
     tour::open_section(ui, session);
@@ -45,8 +39,7 @@ pub fn show(
             tour::card(ui, session, step, actions);
         });
     }
-    let viewport =
-        CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, picture, actions)).inner;
+    let viewport = CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, actions)).inner;
     let figure = explain.and_then(|explain| right::ui(&mut explain.ui(ui), session, actions));
     if figure != session.figure() {
         actions.push(SelectAction::Figure(figure));

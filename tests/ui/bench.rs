@@ -84,7 +84,7 @@ impl Bench {
             .build_ui_state(
                 |ui, app: &mut App| {
                     let App { session, machine, viewport, actions, .. } = app;
-                    *viewport = ui::show(ui, session, machine, None, actions);
+                    *viewport = ui::show(ui, session, machine, actions);
                 },
                 app,
             );

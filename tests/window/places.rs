@@ -37,7 +37,7 @@ impl Places {
             .with_size(egui::vec2(SIZE.0 as f32, SIZE.1 as f32) + 2.0 * HARNESS_MARGIN)
             .with_context_setup(ui::style::install)
             .build_ui(|ui| {
-                ui::show(ui, &Session::default(), &Machine::default(), None, &mut Actions::new());
+                ui::show(ui, &Session::default(), &Machine::default(), &mut Actions::new());
             });
         let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Hand x").rect();
         let rail = rail.translate(-HARNESS_MARGIN);

@@ -23,7 +23,7 @@ fn places(example: Example) -> [Pos2; 2] {
         .with_size(size)
         .with_context_setup(ui::style::install)
         .build_ui(move |ui| {
-            ui::show(ui, &shown, &Machine::default(), None, &mut Actions::new());
+            ui::show(ui, &shown, &Machine::default(), &mut Actions::new());
         });
     harness.run_steps(4);
     let button = harness.get_by_role_and_label(Role::Button, REMEDY).rect().center();

@@ -8,8 +8,8 @@ mod why_note;
 use projection::ScreenProjection;
 
 use egui::{
-    Event, EventFilter, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense,
-    TextureId, Ui, WidgetInfo, pos2, vec2,
+    Event, EventFilter, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use crate::document::{Camera, Overlay, RigKind};
@@ -26,12 +26,7 @@ use navigation::{motion, show_cursor, wheel};
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside it.
 const PANEL_EDGE: f32 = 4.0;
 
-pub(in crate::ui) fn ui(
-    ui: &mut Ui,
-    session: &Session,
-    picture: Option<TextureId>,
-    actions: &mut Actions,
-) -> Rect {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Rect {
     // What follows, and the status bar, say what is found here.
     why::found(ui, session);
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
@@ -42,10 +37,6 @@ pub(in crate::ui) fn ui(
         let text = format!("Viewport. {}", pose_summary::summary(session));
         WidgetInfo::labeled(Role::Image, true, text)
     });
-    if let Some(texture) = picture {
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
-    }
     advance(ui, &response, session, actions);
 
     let screen = ScreenProjection::new(rect, session.camera());

@@ -1,12 +1,12 @@
-// A smaller picture, stretched over the whole of this one.
+// A texture, stretched over the whole picture.
 
 struct Corner {
     @builtin(position) position: vec4f,
     @location(0) at: vec2f,
 }
 
-@group(0) @binding(0) var smaller: texture_2d<f32>;
-@group(0) @binding(1) var smaller_sampler: sampler;
+@group(0) @binding(0) var image: texture_2d<f32>;
+@group(0) @binding(1) var image_sampler: sampler;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Corner {
@@ -17,5 +17,5 @@ fn vertex(@builtin(vertex_index) index: u32) -> Corner {
 
 @fragment
 fn fragment(c: Corner) -> @location(0) vec4f {
-    return textureSampleLevel(smaller, smaller_sampler, c.at, 0.0);
+    return textureSampleLevel(image, image_sampler, c.at, 0.0);
 }

@@ -1,22 +1,24 @@
 use super::texture_sampler::TextureSampler;
 use super::{Gpu, pipeline};
 
-pub(super) const SHADER: &str = include_str!("../../shaders/enlarge.wgsl");
+pub(super) const SHADER: &str = include_str!("../../shaders/texture.wgsl");
 
-/// Stretches a smaller picture over a whole one.
+/// Draws a texture over the whole viewport of a pass, stretched to its size. The pass has no depth
+/// and one sample per pixel.
 #[derive(Debug)]
-pub(super) struct Enlarger {
+pub(crate) struct TexturePainter {
     pipeline: wgpu::RenderPipeline,
     sampler: TextureSampler,
 }
 
-impl Enlarger {
-    pub fn new(gpu: &Gpu) -> Self {
-        let sampler = TextureSampler::new(gpu, "enlarge");
+impl TexturePainter {
+    /// A painter for passes with this format.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+        let sampler = TextureSampler::new(gpu, "texture");
         let pipeline = pipeline::build(
             gpu,
             &pipeline::PipelineDescriptor {
-                label: "enlarge",
+                label: "texture",
                 shader: SHADER,
                 fragment: "fragment",
                 layouts: &[&sampler.layout],
@@ -24,15 +26,15 @@ impl Enlarger {
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 cull: None,
                 depth: wgpu::CompareFunction::Always,
-                output: pipeline::Output::Overlay,
+                output: pipeline::Output::Overlay(format),
             },
         );
         Self { pipeline, sampler }
     }
 
-    pub fn draw(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, smaller: &wgpu::TextureView) {
+    pub fn draw(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, texture: &wgpu::TextureView) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.sampler.group(gpu, smaller), &[]);
+        pass.set_bind_group(0, &self.sampler.group(gpu, texture), &[]);
         pass.draw(0..3, 0..1);
     }
 }
