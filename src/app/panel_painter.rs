@@ -266,3 +266,166 @@ fn upload_font_atlas(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Con
         panels.fonts(|fonts| ImageDelta::full(fonts.image(), TextureAtlas::texture_options()));
     renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::{Event, PointerButton, RawInput, pos2, vec2};
+
+    use super::*;
+    use crate::document::Theme;
+    use crate::session::{Actions, Preferences, Session, ShellAction};
+    use crate::ui::{self, Machine, style};
+
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+    const SIZE: [u32; 2] = [1000, 640];
+
+    /// The panels without a window, and a red scene.
+    struct Panels {
+        gpu: Gpu,
+        context: Context,
+        session: Session,
+        scene: wgpu::TextureView,
+    }
+
+    impl Panels {
+        fn new() -> Self {
+            let gpu = Gpu::headless().expect("a graphics adapter");
+            let context = Context::default();
+            style::install(&context);
+            let usage =
+                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+            let scene = texture(&gpu, "scene", FORMAT, [1, 1], usage);
+            let scene = scene.create_view(&Default::default());
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &scene,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::RED),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            }));
+            gpu.queue.submit([encoder.finish()]);
+            let preferences = Preferences { offers_tour: false, ..Preferences::default() };
+            Self { gpu, context, session: Session::new(preferences), scene }
+        }
+
+        /// Runs a frame, and draws it with each painter.
+        fn frame(&mut self, events: Vec<Event>, painters: &mut [&mut PanelPainter]) {
+            let [width, height] = SIZE.map(|side| side as f32);
+            let screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height)));
+            let input = RawInput { screen_rect, events, ..RawInput::default() };
+            style::apply(&self.context, self.session.preferences().theme);
+            let (mut actions, mut viewport) = (Actions::new(), Rect::NOTHING);
+            let mut output = self.context.run_ui(input, |ui| {
+                viewport = ui::show(ui, &self.session, &Machine::default(), &mut actions);
+            });
+            let screen = ScreenDescriptor { size_in_pixels: SIZE, pixels_per_point: 1.0 };
+            let set = std::mem::take(&mut output.textures_delta.set);
+            output.textures_delta.free.clear();
+            for painter in painters {
+                painter.update_textures(&self.gpu, set.clone());
+                painter.note_changes(&output.shapes);
+                let mut panels = self.context.tessellate(output.shapes.clone(), 1.0);
+                let scene = PlacedScene { picture: &self.scene, viewport, has_changed: false };
+                let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+                let panels = (&mut panels[..], &screen);
+                let mut commands = painter.draw(&self.gpu, &mut encoder, panels, &scene, None);
+                commands.push(encoder.finish());
+                self.gpu.queue.submit(commands);
+            }
+            for action in actions.drain() {
+                self.session.apply(action);
+            }
+        }
+    }
+
+    fn pixels(gpu: &Gpu, painter: &PanelPainter) -> Vec<u8> {
+        let [width, height] = SIZE;
+        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row * height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row),
+            rows_per_image: None,
+        };
+        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        let size = painter.kept.texture.size();
+        encoder.copy_texture_to_buffer(painter.kept.texture.as_image_copy(), to, size);
+        gpu.queue.submit([encoder.finish()]);
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |read| read.expect("mapped"));
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("drawn");
+        buffer.get_mapped_range(..).expect("mapped").to_vec()
+    }
+
+    #[test]
+    fn frames_that_draw_only_what_has_changed_are_those_that_draw_all() {
+        let mut panels = Panels::new();
+        let new = |panels: &Panels| PanelPainter::new(&panels.gpu, FORMAT, &panels.context);
+        let (mut some, mut all) = (new(&panels), new(&panels));
+        let moved = |x: f32, y: f32| Event::PointerMoved(pos2(x, y));
+        let pressed = |x: f32, y: f32, pressed: bool| Event::PointerButton {
+            pos: pos2(x, y),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Default::default(),
+        };
+        let key = |key: egui::Key| Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Default::default(),
+        };
+        let mut frames = vec![vec![], vec![]];
+        // Over the sliders and the picture, and along the menus.
+        frames.extend((0..12).map(|step| vec![moved(60.0 + 60.0 * step as f32, 105.0)]));
+        frames.extend((0..6).map(|step| vec![moved(20.0 + 50.0 * step as f32, 12.0)]));
+        // Drags a slider, opens a menu and closes it, and drags in the picture.
+        frames.push(vec![moved(150.0, 105.0), pressed(150.0, 105.0, true)]);
+        frames.extend((0..5).map(|step| vec![moved(150.0 - 8.0 * step as f32, 106.0)]));
+        frames.push(vec![pressed(118.0, 106.0, false)]);
+        frames.push(vec![moved(95.0, 12.0), pressed(95.0, 12.0, true)]);
+        frames.push(vec![pressed(95.0, 12.0, false)]);
+        frames.extend([vec![], vec![moved(110.0, 60.0)], vec![key(egui::Key::Escape)], vec![]]);
+        frames.push(vec![moved(330.0, 420.0), pressed(330.0, 420.0, true)]);
+        frames.extend((0..5).map(|step| vec![moved(330.0 + 9.0 * step as f32, 410.0)]));
+        frames.push(vec![pressed(375.0, 410.0, false), key(egui::Key::F1)]);
+        for (number, events) in frames.into_iter().enumerate() {
+            if number == 20 {
+                panels.session.apply(ShellAction::SetTheme(Theme::Light));
+            }
+            all.draw_all_next();
+            panels.frame(events, &mut [&mut some, &mut all]);
+            let [some, all] = [&some, &all].map(|painter| pixels(&panels.gpu, painter));
+            let off = some.iter().zip(&all).filter(|(a, b)| a != b).count();
+            assert_eq!(off, 0, "frame {number}");
+        }
+    }
+
+    #[test]
+    fn areas_are_in_the_window_and_cover_what_they_are_made_of() {
+        let screen = ScreenDescriptor { size_in_pixels: [100, 50], pixels_per_point: 1.5 };
+        let area = |x: f32, y: f32, width: f32, height: f32| {
+            PixelArea::touched(Rect::from_min_size(pos2(x, y), vec2(width, height)), &screen)
+        };
+        assert_eq!(area(1.0, 1.0, 2.0, 2.0), Some(PixelArea { at: [1, 1], size: [4, 4] }));
+        assert_eq!(area(-9.0, -9.0, 10.0, 10.0), Some(PixelArea { at: [0, 0], size: [2, 2] }));
+        assert_eq!(area(70.0, 0.0, 9.0, 9.0), None);
+        let all = PixelArea::touched(Rect::EVERYTHING, &screen);
+        assert_eq!(all, Some(PixelArea { at: [0, 0], size: [100, 50] }));
+        let viewport = Rect::from_min_max(pos2(2.0, 4.0), pos2(20.0, 30.0000002));
+        let nearest = PixelArea::nearest(viewport, &screen);
+        assert_eq!(nearest, Some(PixelArea { at: [3, 6], size: [27, 39] }));
+    }
+}

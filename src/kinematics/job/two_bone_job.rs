@@ -225,6 +225,7 @@ mod tests {
     fn jobs_near_a_special_case_do_not() {
         let job = usual_job(1.0);
         let straight = job.middle.translation - job.start.translation + job.middle.translation;
+        let uneven = Affine3A::from_scale(Vec3::new(1.0, 2.0, 1.0));
         let far = |of: Affine3A| Affine3A { translation: of.translation + 1e8, ..of };
         for (why, job) in [
             ("softness", TwoBoneJob { softness: 0.1, ..job }),
@@ -232,7 +233,7 @@ mod tests {
             ("straight", TwoBoneJob { end: Affine3A::from_translation(straight.into()), ..job }),
             ("target at the start", TwoBoneJob { target: job.start.translation.into(), ..job }),
             ("no scale", TwoBoneJob { start: Affine3A::from_scale(Vec3::ZERO), ..job }),
-            ("not a similarity", TwoBoneJob { middle: Affine3A::IDENTITY, ..job }),
+            ("not a similarity", TwoBoneJob { middle: uneven, ..job }),
             (
                 "coarse coordinates",
                 TwoBoneJob {
