@@ -22,7 +22,7 @@
 //!
 //! | module | contents | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons; skeletons; chain solvers, seen from inside; why a target is not reached; path following; splines; skins | |
+//! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons, one or a batch; skeletons; chain solvers, seen from inside; why a target is not reached; path following; splines; skins | |
 //! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets and its skin; crowds of arms | |
 //! | `document` | saved state: both rigs, keys, timeline, camera, display; bakes | `document` |
 //! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | `document` |

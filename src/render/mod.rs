@@ -53,4 +53,4 @@ pub use renderer::{Counts, Renderer};
 pub use shaders::shaders;
 pub use skin_deformer::SkinDeformer;
 pub use system_fonts::SystemFace;
-pub(crate) use texture_painter::TexturePainter;
+pub use texture_painter::TexturePainter;

@@ -6,13 +6,13 @@ pub(super) const SHADER: &str = include_str!("../../shaders/texture.wgsl");
 /// Draws a texture over the whole viewport of a pass, stretched to its size. The pass has no depth
 /// and one sample per pixel.
 #[derive(Debug)]
-pub(crate) struct TexturePainter {
+pub struct TexturePainter {
     pipeline: wgpu::RenderPipeline,
     sampler: TextureSampler,
 }
 
 impl TexturePainter {
-    /// A painter for passes with this format.
+    /// Creates the pipeline for passes with a colour attachment of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let sampler = TextureSampler::new(gpu, "texture");
         let pipeline = pipeline::build(
@@ -32,6 +32,8 @@ impl TexturePainter {
         Self { pipeline, sampler }
     }
 
+    /// Draws `texture`, which must be filterable and of two dimensions. Leaves its own pipeline and
+    /// bind group 0 set.
     pub fn draw(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, texture: &wgpu::TextureView) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.sampler.group(gpu, texture), &[]);
