@@ -39,9 +39,12 @@ impl PanelPainter {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, panels: &Context) -> Self {
         let mut renderer = egui_wgpu::Renderer::new(&gpu.device, format, Default::default());
         upload_font_atlas(&mut renderer, gpu, panels);
-        // A new texture is black.
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        // Opaque, since it is blended over what is there; the order of the colours does not matter.
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let black = texture(gpu, "black", format, [1, 1], usage);
+        let row =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
+        gpu.queue.write_texture(black.as_image_copy(), &[0, 0, 0, 255], row, black.size());
         Self {
             renderer,
             texture_painter: TexturePainter::new(gpu, format),

@@ -83,7 +83,7 @@ impl TwoBoneJob {
         }
     }
 
-    /// The correction of a usual job, in a third of the time of [`Self::solve_any`].
+    /// The correction of a usual job, with the bits that a batch gives; `None` for another job.
     fn solve_usual(&self) -> Option<TwoBoneCorrection> {
         if self.softness != 0.0 || self.weight != 1.0 {
             return None;

@@ -53,7 +53,7 @@
 //! Usual jobs take the fast path: bent limbs with bones of similar lengths (to 1 : 1000 or so),
 //! hard limits, a weight of 1, a start joint that is not squeezed flat, a middle joint that is a
 //! rotation with an even scale to 1e-5, and numbers from about 1e-9 to 1e9. Other limbs are solved
-//! alone. Twists take as long as the rest, because each needs a sine and a cosine.
+//! alone. A twist adds about a third of the time, for its sine and cosine.
 //! `docs/performance.md` has the times.
 
 #[cfg(feature = "parallel")]
