@@ -67,6 +67,7 @@ struct StartAxes {
     /// M_s⁻¹ times det M_s.
     adjugate: DMat3,
     determinant: f64,
+    per_determinant: f64,
     /// Sum of the squared elements of the adjugate.
     square: f64,
     is_usual: bool,
@@ -122,13 +123,12 @@ impl UsualJob {
         let limb = Limb::new(self, &start);
         let bent = limb.bend(middle.axis(self.hinge));
 
-        let towards_ds = limb.target_ds * (1.0 / limb.target);
         let [sin, cos] = self.twist;
         let twist = [sin * sign(start.determinant), cos];
         let (start_turn, is_aimed) = if POLE {
-            bent.aim_by_pole(towards_ds, start.adjugate * self.pole, twist)
+            bent.aim_by_pole(&limb, start.adjugate * self.pole, twist)
         } else {
-            bent.aim(towards_ds, twist)
+            bent.aim(&limb, twist)
         };
         let middle_turn = bent.half_turn.about(middle.to_middle_space(bent.axis));
         let corrections = [rounded(start_turn), rounded(middle_turn)];
@@ -157,7 +157,7 @@ impl UsualJob {
         let is_near = off_ds.length_squared() <= near * near;
         let left = (limb.target - limb.distance).abs();
         let [start_axes, _] = self.axes;
-        let hand_error = (start_axes * off_ds).length() / start.determinant.abs();
+        let hand_error = (start_axes * off_ds).length() * start.per_determinant.abs();
         Solved {
             start_correction,
             middle_correction,
@@ -185,39 +185,41 @@ impl Solved {
 impl StartAxes {
     #[inline(always)]
     fn new(axes: DMat3) -> Self {
-        // Squares of the condition number and of the size, both estimated from above. Sizes
-        // between the limits leave room for products of six.
-        const WORST_CONDITION: f64 = 1e12;
-        const LEAST: f64 = 1e-20;
-        const MOST: f64 = 1e20;
+        const WORST_CONDITION: f64 = 1e6;
+        const LEAST: f64 = 1e-40;
+        const MOST: f64 = 1e40;
         let cofactors = cofactors(axes);
         let determinant = axes.x_axis.dot(cofactors.x_axis);
-        let (size, square) = (square(axes), square(cofactors));
-        let is_usual = (size * square <= WORST_CONDITION * (determinant * determinant))
-            & (size > LEAST)
-            & (size < MOST);
-        Self { adjugate: cofactors.transpose(), determinant, square, is_usual }
+        let square = square(cofactors);
+        // With the singular values a ≥ b ≥ c, the condition number a/c is at most (ab)³/(abc)².
+        let worst = WORST_CONDITION * (determinant * determinant);
+        let is_usual =
+            (square * square * square <= worst * worst) & (square > LEAST) & (square < MOST);
+        let per_determinant = 1.0 / determinant;
+        Self { adjugate: cofactors.transpose(), determinant, per_determinant, square, is_usual }
     }
 }
 
 impl MiddleAxes {
     #[inline(always)]
     fn new(axes_ds: DMat3) -> Self {
-        // Deviation from a similarity, and the square of the scale.
-        const DIFFERENT: f64 = 1e-5;
-        const LEAST: f64 = 1e-80;
-        const MOST: f64 = 1e80;
+        // Deviation of the singular values from their mean (root of the sum of squares, relative),
+        // and the square of the scale.
+        const DIFFERENT: f64 = 5e-6;
+        const LEAST: f64 = 1e-60;
+        const MOST: f64 = 1e60;
         let cofactors = cofactors(axes_ds);
         let determinant = axes_ds.x_axis.dot(cofactors.x_axis);
         let scale_squared = square(axes_ds) * (1.0 / 3.0);
         let per_product = 1.0 / (scale_squared * determinant);
         let per_scale_squared = per_product * determinant;
         let scale = determinant * per_scale_squared;
-        // The cofactors of a similarity are the similarity times its scale.
-        let deviation = square(axes_ds * scale - cofactors);
-        let allowed = DIFFERENT * scale_squared;
-        let is_usual =
-            (deviation <= allowed * allowed) & (scale_squared > LEAST) & (scale_squared < MOST);
+        // det²/s⁶ is the product of the squared singular values by the cube of their mean: 1 for a
+        // similarity, and less by twice the sum of the squared deviations for any other matrix.
+        let evenness = scale * scale * per_scale_squared;
+        let is_usual = (evenness >= 1.0 - 2.0 * DIFFERENT * DIFFERENT)
+            & (scale_squared > LEAST)
+            & (scale_squared < MOST);
         let per_determinant = per_product * scale_squared;
         Self {
             axes_ds,
@@ -266,38 +268,36 @@ impl Limb {
     fn bend(&self, hinge: DVec3) -> BentLimb {
         let &Self { upper_ds, lower_ds, upper, lower, distance, .. } = self;
         let (length, difference, product) = (upper + lower, upper - lower, upper * lower);
+        // Axes whose lengths are computed beside those of the bones, not after them.
+        let normal = lower_ds.cross(upper_ds);
+        let aside = normal.cross(upper_ds);
+        let square = normal.length_squared();
+        // The length of the normal, d₁d₂ times the sine of the inner angle.
+        let sine = square.sqrt();
+        let side = side(normal, square, hinge);
+        let per_both = 1.0 / (sine * product);
+        let (per_sine, per_product) = (per_both * product * side, per_both * sine);
+        let per_upper = lower * per_product;
+
         // Sine and cosine of half the inner angle, now (times √(2 d₁d₂)) and then (times
         // √(4 d₁d₂)).
         let along = upper_ds.dot(lower_ds);
-        let now = HalfAngle { sin: (product + along).sqrt(), cos: (product - along).sqrt() };
-        let then = HalfAngle {
-            sin: ((distance - difference) * (distance + difference)).sqrt(),
-            cos: ((length - distance) * (length + distance)).sqrt(),
-        };
-
-        // The length of the normal, d₁d₂ times the sine of the inner angle.
-        let sine = now.sin * now.cos;
-        let per_both = 1.0 / (sine * product);
-        let per_product = per_both * sine;
-        let normal = lower_ds.cross(upper_ds) * (per_both * product);
-        let side = side(normal, hinge);
-        let axis = normal * side;
-        let now = HalfAngle { sin: now.sin * side, ..now };
+        let now = HalfAngle { sin: (product + along).sqrt() * side, cos: (product - along).sqrt() };
+        let open = (distance - difference) * (distance + difference);
+        let closed = (length - distance) * (length + distance);
+        let then = HalfAngle { sin: open.sqrt(), cos: closed.sqrt() };
         let half_turn = then.minus(now).times(per_product * (0.25 * core::f64::consts::SQRT_2));
 
         // The hand is d₁ − d₂ cos φ along the upper bone, and d₂ sin φ beside it.
-        let upper_dir = upper_ds * (lower * per_product);
-        let aside = axis.cross(upper_dir);
         let quarter = 0.25 * lower * per_product;
-        let ahead = upper - (then.cos * then.cos - then.sin * then.sin) * quarter;
-        let beside = 2.0 * then.sin * then.cos * quarter;
-        let per_distance = 1.0 / distance;
-        let (cos, sin) = (ahead * per_distance, beside * per_distance);
+        let per_distance = per_upper * (1.0 / distance);
+        let cos = (upper - (closed - open) * quarter) * per_distance;
+        let sin = then.sin * then.cos * (2.0 * quarter * per_distance);
         BentLimb {
-            axis,
+            axis: normal * per_sine,
             half_turn,
-            hand_ds: upper_dir * cos - aside * sin,
-            elbow_ds: aside * cos + upper_dir * sin,
+            hand_ds: upper_ds * cos - aside * (sin * per_sine),
+            elbow_ds: upper_ds * sin + aside * (cos * per_sine),
             is_usual: self.is_usual(sine) & (hinge.dot(normal).abs() < f64::MAX),
         }
     }
@@ -306,8 +306,8 @@ impl Limb {
     /// by far. `sine` is d₁d₂ times the sine of the inner angle.
     #[inline(always)]
     fn is_usual(&self, sine: f64) -> bool {
-        const LEAST: f64 = 1e-60;
-        const MOST: f64 = 1e60;
+        const LEAST: f64 = 1e-30;
+        const MOST: f64 = 1e30;
         const LEAST_PRODUCT: f64 = 1e-6;
         const LEAST_DISTANCE: f64 = 1e-3;
         let &Self { upper, lower, target, distance, rounding_squared, .. } = self;
@@ -328,29 +328,28 @@ impl BentLimb {
     /// The rotation that points the hand at the target and the elbow at the pole, and turns the
     /// limb by the twist; and whether the job is usual.
     #[inline(always)]
-    fn aim_by_pole(
-        &self,
-        towards_ds: DVec3,
-        pole_ds: DVec3,
-        [sin, cos]: [f64; 2],
-    ) -> (DQuat, bool) {
-        let aside_ds = pole_ds - towards_ds * pole_ds.dot(towards_ds);
-        let square = aside_ds.length_squared();
-        let is_aside =
-            (square > ON_LINE * ON_LINE * pole_ds.length_squared()) & (square < f64::MAX);
-        let aside_ds = aside_ds * (1.0 / square.sqrt());
-        let across = towards_ds.cross(aside_ds);
-        let outward = aside_ds * cos + across * sin;
-        let third = across * cos - aside_ds * sin;
+    fn aim_by_pole(&self, limb: &Limb, pole_ds: DVec3, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
+        let &Limb { target_ds, target, .. } = limb;
+        let across = target_ds.cross(pole_ds);
+        let aside = across.cross(target_ds);
+        let square = across.length_squared();
+        let longest = target * target * pole_ds.length_squared();
+        let is_aside = (square > ON_LINE * ON_LINE * longest) & (square < f64::MAX);
+        let across_length = square.sqrt();
+        let per_both = 1.0 / (across_length * target);
+        let (per_across, per_target) = (per_both * target, per_both * across_length);
+        let outward = aside * (cos * per_both) + across * (sin * per_across);
+        let third = across * (cos * per_across) - aside * (sin * per_both);
         let from = [self.hand_ds, self.elbow_ds, self.axis];
-        let (turn, nearness) = rotation_between(from, [towards_ds, outward, third]);
+        let (turn, nearness) = rotation_between(from, [target_ds * per_target, outward, third]);
         (turn, is_aside & (nearness > NEAR_HALF_TURN))
     }
 
     /// The smallest rotation that points the hand at the target, with the twist after it; and
     /// whether the job is usual.
     #[inline(always)]
-    fn aim(&self, towards_ds: DVec3, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
+    fn aim(&self, limb: &Limb, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
+        let towards_ds = limb.target_ds * (1.0 / limb.target);
         let (turn, nearness) = least_rotation(self.hand_ds, towards_ds);
         (HalfAngle::of(sin, cos).about(towards_ds) * turn, nearness > OPPOSITE)
     }
@@ -362,25 +361,29 @@ impl BentLimb {
 pub(super) fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> (DQuat, f64) {
     let ([a, b, c], [x, y, z]) = (from, to);
     // 1 + the trace is 4 cos²(θ/2); the sum of the cross products is 2 sin θ along the axis.
-    let cos = 1.0 + a.dot(x) + b.dot(y) + c.dot(z);
+    let nearness = 1.0 + a.dot(x) + b.dot(y) + c.dot(z);
     let sin = a.cross(x) + b.cross(y) + c.cross(z);
-    (unit(sin, cos), cos)
+    let doubled = nearness.sqrt();
+    (DQuat::from_vec4((sin * (0.5 / doubled)).extend(0.5 * doubled)), nearness)
 }
 
 /// Rotation by the smallest angle from one unit vector to another, and 1 + the cosine between them,
 /// with which its precision decreases.
 #[inline(always)]
 pub(super) fn least_rotation(from: DVec3, to: DVec3) -> (DQuat, f64) {
+    // 2 cos²(θ/2); the cross product is sin θ along the axis.
     let nearness = 1.0 + from.dot(to);
-    (unit(from.cross(to), nearness), nearness)
+    let cos = (0.5 * nearness).sqrt();
+    (DQuat::from_vec4((from.cross(to) * (0.5 / cos)).extend(cos)), nearness)
 }
 
-/// −1 if the hinge axis is on the other side of the normal of the bones, else 1.
+/// −1 if the hinge axis is on the other side of the normal of the bones, whose squared length is
+/// `square`, else 1.
 #[inline(always)]
-pub(super) fn side(normal: DVec3, hinge: DVec3) -> f64 {
+pub(super) fn side(normal: DVec3, square: f64, hinge: DVec3) -> f64 {
     const IN_PLANE: f64 = 1e-3;
     let cos = hinge.dot(normal);
-    let is_aside = cos * cos > IN_PLANE * IN_PLANE * hinge.length_squared();
+    let is_aside = cos * cos > IN_PLANE * IN_PLANE * hinge.length_squared() * square;
     if (cos < 0.0) & is_aside { -1.0 } else { 1.0 }
 }
 
@@ -400,13 +403,6 @@ pub(super) fn cofactors(DMat3 { x_axis: x, y_axis: y, z_axis: z }: DMat3) -> DMa
 #[inline(always)]
 fn square(DMat3 { x_axis: x, y_axis: y, z_axis: z }: DMat3) -> f64 {
     x.length_squared() + y.length_squared() + z.length_squared()
-}
-
-/// The unit quaternion in the direction of (x, y, z, w).
-#[inline(always)]
-fn unit(xyz: DVec3, w: f64) -> DQuat {
-    let per_length = 1.0 / (xyz.length_squared() + w * w).sqrt();
-    DQuat::from_vec4((xyz * per_length).extend(w * per_length))
 }
 
 /// The quaternion (x, y, z, w) with w ≥ 0 of a rotation.

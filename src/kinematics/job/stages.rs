@@ -54,7 +54,7 @@ pub(super) fn middle_joint(
     let bend = Bend::new(limb, distance);
     let (axis_ss, turn_ss) = match normal(limb) {
         Some((normal_ss, sin)) => {
-            let side = side(normal_ss, hinge_ss.unwrap_or_default());
+            let side = side(normal_ss, 1.0, hinge_ss.unwrap_or_default());
             let now = HalfAngle::of(side * sin, -limb.upper_ss.dot(limb.lower_ss));
             let axis_ss = side * normal_ss;
             (axis_ss, bend.inner_angle.minus(now).about(axis_ss))

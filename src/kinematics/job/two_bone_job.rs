@@ -1,7 +1,8 @@
 use glam::{Affine3A, DQuat, Quat, Vec3};
+use multiversion::multiversion;
 
 use super::chain::JointChain;
-use super::closed_form::{AT_LIMIT, NEAR, UsualJob};
+use super::closed_form::{AT_LIMIT, NEAR, Solved, UsualJob};
 use super::correction::TwoBoneCorrection;
 use super::error::{JobError, JobField};
 use super::stages;
@@ -89,17 +90,10 @@ impl TwoBoneJob {
             return None;
         }
         let twist = f64::from(self.twist);
-        let job = UsualJob {
-            axes: [self.start, self.middle].map(|joint| joint.matrix3.as_dmat3()),
-            joints: [self.start, self.middle, self.end].map(|joint| joint.translation.as_dvec3()),
-            target: self.target.as_dvec3(),
-            pole: self.pole.unwrap_or_default().as_dvec3(),
-            hinge: self.hinge.unwrap_or_default().as_dvec3(),
-            twist: if twist == 0.0 { [0.0, 1.0] } else { twist.sin_cos().into() },
-        };
+        let twist = if twist == 0.0 { [0.0, 1.0] } else { twist.sin_cos().into() };
         let solved = match self.pole {
-            Some(_) => job.solve::<true>(),
-            None => job.solve::<false>(),
+            Some(_) => solve_hard::<true>(self, twist),
+            None => solve_hard::<false>(self, twist),
         };
         solved.is_usual.then(|| solved.into())
     }
@@ -182,6 +176,21 @@ impl TwoBoneJob {
         SoftReach::new(self.softness, 1.0, 0.0)
             .map_err(|error| out_of_range(JobField::Softness, error.value, error.range))
     }
+}
+
+/// Solves a job with hard limits and a weight of 1. `twist` is its sine and cosine.
+#[multiversion(targets("x86_64+avx2"))]
+fn solve_hard<const POLE: bool>(job: &TwoBoneJob, twist: [f64; 2]) -> Solved {
+    let TwoBoneJob { start, middle, end, target, pole, hinge, .. } = job;
+    let job = UsualJob {
+        axes: [start, middle].map(|joint| joint.matrix3.as_dmat3()),
+        joints: [start, middle, end].map(|joint| joint.translation.as_dvec3()),
+        target: target.as_dvec3(),
+        pole: pole.unwrap_or_default().as_dvec3(),
+        hinge: hinge.unwrap_or_default().as_dvec3(),
+        twist,
+    };
+    job.solve::<POLE>()
 }
 
 fn out_of_range(field: JobField, value: f32, range: &'static str) -> JobError {
