@@ -1,85 +1,169 @@
+use core::ops::Range;
+
 use egui::Rect;
-use egui::epaint::ClippedShape;
+use egui::epaint::util::hash;
+use egui::epaint::{ClippedPrimitive, Mesh, Primitive, Vertex};
+use egui_wgpu::ScreenDescriptor;
 
-/// Maximum number of rectangles of changes. Each costs a pass over the panels.
-const MOST: usize = 6;
+use super::pixel_area::PixelArea;
 
-/// Number of rectangles from which on they are not merged one by one, but at once.
-const MANY: usize = 100;
+/// Side of a tile in pixels.
+const TILE: u32 = 32;
 
-/// Distance in points by which a shape's soft edges extend beyond its rectangle.
-const SOFT_EDGE: f32 = 2.0;
+/// Maximum number of changed areas. Each costs a pass over the panels.
+const MOST: usize = 12;
+
+/// Number of unchanged tiles that cost as much as another area.
+const PASS: u32 = 4;
 
 /// Finds the parts of the window where the panels differ from the frame before.
 #[derive(Default)]
 pub(super) struct PanelChanges {
-    shapes: Vec<ClippedShape>,
+    tiles: Tiles,
+}
+
+/// Square parts of the window, row by row. Each has a hash of the triangles that touch it, in their
+/// order, so that tiles with the same hash look the same.
+#[derive(Default)]
+struct Tiles {
+    columns: u32,
+    hashes: Vec<u64>,
 }
 
 impl PanelChanges {
-    /// Rectangles in points that contain all differences from the previous shapes, which are then
-    /// replaced.
-    pub fn replace(&mut self, shapes: &[ClippedShape]) -> Vec<Rect> {
-        let before = &self.shapes[..];
-        let start = before.iter().zip(shapes).take_while(|(a, b)| a == b).count();
-        let (before, now) = (&before[start..], &shapes[start..]);
-        let end = before.iter().rev().zip(now.iter().rev()).take_while(|(a, b)| a == b).count();
-        let (before, now) = (&before[..before.len() - end], &now[..now.len() - end]);
-        let mut rects = Vec::new();
-        for index in 0..before.len().max(now.len()) {
-            let (before, now) = (before.get(index), now.get(index));
-            if before != now {
-                rects.extend(before.into_iter().chain(now).map(bounds).filter(Rect::is_positive));
+    /// Areas that contain all pixels in which the panels differ from the previous ones, which are
+    /// then replaced. The area `drawn`, which is drawn anyway, need not be covered.
+    pub fn replace(
+        &mut self,
+        panels: &[ClippedPrimitive],
+        screen: &ScreenDescriptor,
+        drawn: Option<PixelArea>,
+    ) -> Vec<PixelArea> {
+        let before = std::mem::replace(&mut self.tiles, Tiles::new(panels, screen));
+        let mut areas = Vec::new();
+        for row in self.tiles.rows() {
+            let has_changed = |column: u32| {
+                let index = self.tiles.index(column, row);
+                let is_same = before.hashes.get(index) == self.tiles.hashes.get(index);
+                let tile = area(&[column..column + 1, row..row + 1]);
+                !is_same && drawn.is_none_or(|drawn| tile.intersection(drawn) != Some(tile))
+            };
+            for columns in runs(self.tiles.columns, has_changed) {
+                add(&mut areas, [columns, row..row + 1]);
             }
         }
-        shapes.clone_into(&mut self.shapes);
-        merged(rects)
+        let window = PixelArea { at: [0, 0], size: screen.size_in_pixels };
+        areas.iter().filter_map(|tiles| area(tiles).intersection(window)).collect()
     }
 }
 
-fn bounds(shape: &ClippedShape) -> Rect {
-    let rect = shape.transform_after_tessellation * shape.shape.visual_bounding_rect();
-    rect.expand(SOFT_EDGE).intersect(shape.clip_rect)
+impl Tiles {
+    fn new(panels: &[ClippedPrimitive], screen: &ScreenDescriptor) -> Self {
+        let [columns, rows] = screen.size_in_pixels.map(|side| side.div_ceil(TILE));
+        let mut tiles = Self { columns, hashes: vec![0; (columns * rows) as usize] };
+        for ClippedPrimitive { clip_rect, primitive } in panels {
+            if let Primitive::Mesh(mesh) = primitive {
+                tiles.add(mesh, *clip_rect, screen);
+            }
+        }
+        tiles
+    }
+
+    fn add(&mut self, mesh: &Mesh, clip_rect: Rect, screen: &ScreenDescriptor) {
+        let Rect { min, max } = clip_rect;
+        let clip = hash(([min.x, min.y, max.x, max.y].map(f32::to_bits), mesh.texture_id));
+        let vertices: Vec<_> = mesh.vertices.iter().map(hash_of_vertex).collect();
+        for triangle in mesh.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|corner| triangle[corner] as usize);
+            let bounds = Rect::from_points(&corners.map(|corner| mesh.vertices[corner].pos));
+            // Clip rectangles are rounded to whole pixels.
+            let Some(touched) = PixelArea::touched(bounds.intersect(clip_rect).expand(1.0), screen)
+            else {
+                continue;
+            };
+            let triangle = hash((clip, corners.map(|corner| vertices[corner])));
+            let [columns, rows] = [0, 1].map(|axis| {
+                let end = touched.at[axis] + touched.size[axis];
+                touched.at[axis] / TILE..end.div_ceil(TILE)
+            });
+            for row in rows {
+                for column in columns.clone() {
+                    let index = self.index(column, row);
+                    self.hashes[index] = hash((self.hashes[index], triangle));
+                }
+            }
+        }
+    }
+
+    fn rows(&self) -> Range<u32> {
+        0..(self.hashes.len() as u32).checked_div(self.columns).unwrap_or(0)
+    }
+
+    fn index(&self, column: u32, row: u32) -> usize {
+        (row * self.columns + column) as usize
+    }
 }
 
-/// At most [`MOST`] rectangles that contain all of `rects` and do not intersect.
-fn merged(rects: Vec<Rect>) -> Vec<Rect> {
-    if rects.len() > MANY {
-        return vec![rects.into_iter().fold(Rect::NOTHING, Rect::union)];
-    }
-    let mut disjoint: Vec<Rect> = Vec::new();
-    for rect in rects {
-        add(&mut disjoint, rect);
-    }
-    while disjoint.len() > MOST {
-        let pairs = (0..disjoint.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let waste = |(a, b): &(usize, usize)| {
-            let (a, b) = (disjoint[*a], disjoint[*b]);
-            a.union(b).area() - a.area() - b.area()
-        };
-        let nearest = pairs.min_by(|a, b| waste(a).total_cmp(&waste(b)));
-        let Some((a, b)) = nearest else { break };
-        let (a, b) = (disjoint.swap_remove(a), disjoint.swap_remove(b));
-        add(&mut disjoint, a.union(b));
-    }
-    disjoint
+fn hash_of_vertex(Vertex { pos, uv, color }: &Vertex) -> u64 {
+    hash(([pos.x, pos.y, uv.x, uv.y].map(f32::to_bits), color))
 }
 
-/// Adds a rectangle, united with those that it intersects.
-fn add(disjoint: &mut Vec<Rect>, mut rect: Rect) {
-    while let Some(index) = disjoint.iter().position(|other| other.intersects(rect)) {
-        rect = rect.union(disjoint.swap_remove(index));
+/// Longest ranges of columns that fulfil a condition.
+fn runs(columns: u32, condition: impl Fn(u32) -> bool) -> Vec<Range<u32>> {
+    let mut runs: Vec<Range<u32>> = Vec::new();
+    for column in (0..columns).filter(|column| condition(*column)) {
+        match runs.last_mut() {
+            Some(run) if run.end == column => run.end += 1,
+            _ => runs.push(column..column + 1),
+        }
     }
-    disjoint.push(rect);
+    runs
+}
+
+/// Ranges of columns and rows of tiles.
+type TileRect = [Range<u32>; 2];
+
+/// Adds tiles, united with other tiles if that costs less than another area.
+fn add(rects: &mut Vec<TileRect>, rect: TileRect) {
+    let waste = |other: &TileRect| {
+        let (sum, union) = (count(other) + count(&rect), count(&union(other, &rect)));
+        union.saturating_sub(sum)
+    };
+    let nearest = rects.iter().enumerate().map(|(index, other)| (waste(other), index)).min();
+    match nearest {
+        Some((waste, index)) if waste <= PASS || rects.len() == MOST => {
+            let other = rects.swap_remove(index);
+            add(rects, union(&other, &rect));
+        }
+        _ => rects.push(rect),
+    }
+}
+
+fn count([columns, rows]: &TileRect) -> u32 {
+    (columns.end - columns.start) * (rows.end - rows.start)
+}
+
+fn union(a: &TileRect, b: &TileRect) -> TileRect {
+    [0, 1].map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
+}
+
+fn area(tiles: &TileRect) -> PixelArea {
+    PixelArea {
+        at: tiles.each_ref().map(|range| range.start * TILE),
+        size: tiles.each_ref().map(|range| (range.end - range.start) * TILE),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use egui::{Color32, Pos2, Shape, Vec2};
+    use egui::epaint::Mesh;
+    use egui::{Color32, Pos2, Rect, Vec2};
 
     use super::*;
 
-    const SIDE: usize = 40;
+    const SIDE: u32 = 130;
+    const SCREEN: ScreenDescriptor =
+        ScreenDescriptor { size_in_pixels: [SIDE, SIDE], pixels_per_point: 1.0 };
 
     /// Numbers below a bound, the same on every run.
     struct Random(u64);
@@ -92,100 +176,111 @@ mod tests {
 
         fn rect(&mut self) -> Rect {
             let mut number = |bound: usize| self.below(bound) as f32;
-            let at = Pos2::new(number(SIDE), number(SIDE));
-            Rect::from_min_size(at, Vec2::new(number(9), number(9)))
+            let at = Pos2::new(number(SIDE as usize), number(SIDE as usize));
+            Rect::from_min_size(at, Vec2::new(number(30), number(30)))
         }
 
-        fn shape(&mut self) -> ClippedShape {
-            let (rect, clip) = (self.rect(), self.rect().expand(self.below(30) as f32));
-            let colour = Color32::from_gray(1 + self.below(254) as u8);
-            clipped(clip, Shape::rect_filled(rect, 0.0, colour))
+        fn panel(&mut self) -> ClippedPrimitive {
+            let (rect, clip) = (self.rect(), self.rect().expand(self.below(90) as f32));
+            panel(clip, rect, Color32::from_gray(1 + self.below(254) as u8))
         }
     }
 
-    fn clipped(clip_rect: Rect, shape: Shape) -> ClippedShape {
-        ClippedShape::new(clip_rect, shape)
+    fn panel(clip_rect: Rect, rect: Rect, colour: Color32) -> ClippedPrimitive {
+        let mut mesh = Mesh::default();
+        mesh.add_colored_rect(rect, colour);
+        ClippedPrimitive { clip_rect, primitive: Primitive::Mesh(mesh) }
     }
 
-    /// Paints each shape over the ones before, in a part of a picture.
-    fn paint(picture: &mut [Color32], shapes: &[ClippedShape], part: Rect) {
+    /// Paints each rectangle over the ones before, in a part of a picture.
+    fn paint(picture: &mut [Color32], panels: &[ClippedPrimitive], part: PixelArea) {
         for (at, pixel) in picture.iter_mut().enumerate() {
-            let point = Pos2::new((at % SIDE) as f32 + 0.5, (at / SIDE) as f32 + 0.5);
-            if !part.contains(point) {
+            let at = [at as u32 % SIDE, at as u32 / SIDE];
+            if part.intersection(PixelArea { at, size: [1, 1] }).is_none() {
                 continue;
             }
+            let point = Pos2::new(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
             *pixel = Color32::BLACK;
-            for ClippedShape { clip_rect, shape, .. } in shapes {
-                if let Shape::Rect(rect) = shape
+            for ClippedPrimitive { clip_rect, primitive } in panels {
+                if let Primitive::Mesh(mesh) = primitive
                     && clip_rect.contains(point)
-                    && rect.rect.contains(point)
+                    && mesh.calc_bounds().contains(point)
                 {
-                    *pixel = rect.fill;
+                    *pixel = mesh.vertices[0].color;
                 }
             }
         }
     }
 
-    fn change(random: &mut Random, shapes: &mut Vec<ClippedShape>) {
-        let at = random.below(shapes.len() + 1);
+    fn change(random: &mut Random, panels: &mut Vec<ClippedPrimitive>) {
+        let at = random.below(panels.len() + 1);
         match random.below(4) {
-            0 => shapes.insert(at, random.shape()),
-            1 if at < shapes.len() => drop(shapes.remove(at)),
-            2 if at < shapes.len() => shapes[at] = random.shape(),
-            3 if at + 1 < shapes.len() => shapes.swap(at, at + 1),
+            0 => panels.insert(at, random.panel()),
+            1 if at < panels.len() => drop(panels.remove(at)),
+            2 if at < panels.len() => panels[at] = random.panel(),
+            3 if at + 1 < panels.len() => panels.swap(at, at + 1),
             _ => {}
         }
     }
 
     #[test]
-    fn redrawing_the_changed_rectangles_gives_the_whole_picture() {
+    fn redrawing_the_changed_areas_gives_the_whole_picture() {
+        let all = PixelArea { at: [0, 0], size: [SIDE, SIDE] };
         let mut random = Random(5);
-        for _ in 0..60 {
-            let mut shapes: Vec<_> = (0..random.below(60)).map(|_| random.shape()).collect();
+        for _ in 0..30 {
+            let mut panels: Vec<_> = (0..random.below(60)).map(|_| random.panel()).collect();
             let mut changes = PanelChanges::default();
-            let mut kept = vec![Color32::BLACK; SIDE * SIDE];
+            let mut kept = vec![Color32::BLACK; (SIDE * SIDE) as usize];
             for _ in 0..12 {
-                for rect in changes.replace(&shapes) {
-                    paint(&mut kept, &shapes, rect);
+                let drawn = (random.below(2) == 0)
+                    .then(|| PixelArea::touched(random.rect().expand(20.0), &SCREEN))
+                    .flatten();
+                for area in changes.replace(&panels, &SCREEN, drawn).into_iter().chain(drawn) {
+                    paint(&mut kept, &panels, area);
                 }
-                let mut whole = vec![Color32::BLACK; SIDE * SIDE];
-                paint(&mut whole, &shapes, Rect::EVERYTHING);
+                let mut whole = vec![Color32::BLACK; (SIDE * SIDE) as usize];
+                paint(&mut whole, &panels, all);
                 assert!(kept == whole);
-                (0..random.below(5)).for_each(|_| change(&mut random, &mut shapes));
+                (0..random.below(5)).for_each(|_| change(&mut random, &mut panels));
             }
         }
     }
 
     #[test]
-    fn rectangles_are_few_and_disjoint_and_contain_all_changes() {
+    fn areas_are_few_and_cover_all_tiles() {
         let mut random = Random(6);
         for count in [0, 1, 5, 20, 99, 150] {
-            let rects: Vec<_> = (0..count).map(|_| random.rect()).collect();
-            let merged = merged(rects.clone());
-            assert!(merged.len() <= MOST && (count == 0) == merged.is_empty());
-            for rect in &rects {
-                assert!(merged.iter().any(|other| other.contains_rect(*rect)), "{rect}");
-            }
-            for (at, a) in merged.iter().enumerate() {
-                assert!(merged[..at].iter().all(|b| !a.intersects(*b)));
+            let tiles = (0..count).map(|_| [0, 1].map(|_| random.below(30) as u32));
+            let tiles: Vec<_> = tiles.map(|at| at.map(|at| at..at + 1)).collect();
+            let mut rects = Vec::new();
+            tiles.iter().for_each(|tile| add(&mut rects, tile.clone()));
+            assert!(rects.len() <= MOST && (count == 0) == rects.is_empty());
+            for tile in &tiles {
+                assert!(rects.iter().any(|rect| union(rect, tile) == *rect), "{tile:?}");
             }
         }
     }
 
     #[test]
-    fn a_small_change_has_a_small_rectangle() {
-        let mut shapes: Vec<_> = {
-            let mut random = Random(7);
-            (0..500).map(|_| random.shape()).collect()
+    fn changes_far_from_each_other_have_areas_of_their_own() {
+        let background = panel(Rect::EVERYTHING, Rect::EVERYTHING, Color32::GRAY);
+        let dot = |x: f32, y: f32, colour: Color32| {
+            let rect = Rect::from_min_size(Pos2::new(x, y), Vec2::splat(4.0));
+            panel(Rect::EVERYTHING, rect, colour)
+        };
+        let dots = |colour: Color32| {
+            [background.clone(), dot(12.0, 14.0, colour), dot(129.0, 110.0, colour)]
         };
         let mut changes = PanelChanges::default();
-        changes.replace(&shapes);
-        assert_eq!(changes.replace(&shapes), []);
-        let rect = Rect::from_min_size(Pos2::new(3.0, 4.0), Vec2::splat(5.0));
-        let shape = Shape::rect_filled(rect, 0.0, Color32::RED);
-        shapes[250] = clipped(Rect::EVERYTHING, Shape::Noop);
-        changes.replace(&shapes);
-        shapes[250] = clipped(Rect::EVERYTHING, shape);
-        assert_eq!(changes.replace(&shapes), [rect.expand(SOFT_EDGE)]);
+        changes.replace(&dots(Color32::RED), &SCREEN, None);
+        assert_eq!(changes.replace(&dots(Color32::RED), &SCREEN, None), []);
+        let mut areas = changes.replace(&dots(Color32::BLUE), &SCREEN, None);
+        areas.sort_by_key(|area| area.at);
+        let first = PixelArea { at: [0, 0], size: [32, 32] };
+        // At the edge of the window.
+        let second = PixelArea { at: [128, 96], size: [2, 32] };
+        assert_eq!(areas, [first, second]);
+        let areas = changes.replace(&dots(Color32::RED), &SCREEN, Some(first));
+        assert_eq!(areas, [second]);
     }
 }

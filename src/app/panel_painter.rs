@@ -1,18 +1,18 @@
-use egui::epaint::{ClippedPrimitive, ClippedShape, ImageDelta, TextureAtlas};
+use egui::epaint::{ClippedPrimitive, ImageDelta};
 use egui::{Context, Rect, TextureId};
 use egui_wgpu::ScreenDescriptor;
 
 use super::panel_changes::PanelChanges;
+use super::panel_triangles::PanelTriangles;
+use super::pixel_area::PixelArea;
 use crate::render::{Gpu, TexturePainter};
 
 /// Draws the panels, and the scene under them, into a texture that keeps them. A frame draws only
-/// the rectangles that have changed, which a machine without a graphics card does much faster.
+/// the areas that have changed, which a machine without a graphics card does much faster.
 pub(super) struct PanelPainter {
-    renderer: egui_wgpu::Renderer,
+    triangles: PanelTriangles,
     texture_painter: TexturePainter,
     changes: PanelChanges,
-    /// Rectangles of the next frame in points.
-    changed: Vec<Rect>,
     kept: KeptPicture,
     black: wgpu::TextureView,
     format: wgpu::TextureFormat,
@@ -22,6 +22,8 @@ pub(super) struct PanelPainter {
 struct KeptPicture {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
+    /// Where the scene is.
+    viewport: Option<PixelArea>,
     /// Whether all of it must be drawn.
     is_stale: bool,
 }
@@ -37,8 +39,6 @@ pub(super) struct PlacedScene<'a> {
 impl PanelPainter {
     /// Creates a painter for windows with this format, and uploads egui's whole font atlas.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, panels: &Context) -> Self {
-        let mut renderer = egui_wgpu::Renderer::new(&gpu.device, format, Default::default());
-        upload_font_atlas(&mut renderer, gpu, panels);
         // Opaque, since it is blended over what is there; the order of the colours does not matter.
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let black = texture(gpu, "black", format, [1, 1], usage);
@@ -46,10 +46,9 @@ impl PanelPainter {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
         gpu.queue.write_texture(black.as_image_copy(), &[0, 0, 0, 255], row, black.size());
         Self {
-            renderer,
+            triangles: PanelTriangles::new(gpu, format, panels),
             texture_painter: TexturePainter::new(gpu, format),
             changes: PanelChanges::default(),
-            changed: Vec::new(),
             kept: KeptPicture::new(gpu, format, [1, 1]),
             black: black.create_view(&Default::default()),
             format,
@@ -65,77 +64,90 @@ impl PanelPainter {
             for delta in deltas {
                 // Parts are added to the font atlas; only a whole one changes what is drawn.
                 self.kept.is_stale |= delta.pos.is_none();
-                self.renderer.update_texture(&gpu.device, &gpu.queue, id, &delta);
+                self.triangles.update_texture(gpu, id, &delta);
             }
         }
     }
 
     pub fn free_textures(&mut self, freed: impl IntoIterator<Item = TextureId>) {
         for id in freed {
-            self.renderer.free_texture(&id);
+            self.triangles.free_texture(id);
         }
     }
 
-    /// Notes what the shapes of a frame change.
-    pub fn note_changes(&mut self, shapes: &[ClippedShape]) {
-        self.changed.extend(self.changes.replace(shapes));
-    }
-
-    /// Draws what has changed since the last call, of panels on a screen. Returns commands to be submitted before those of
-    /// `encoder`.
+    /// Draws what has changed since the last call, of panels on a screen.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        (panels, screen): (&mut [ClippedPrimitive], &ScreenDescriptor),
+        (panels, screen): (&[ClippedPrimitive], &ScreenDescriptor),
         scene: &PlacedScene<'_>,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) -> Vec<wgpu::CommandBuffer> {
-        let [width, height] = screen.size_in_pixels;
-        if (self.kept.texture.width(), self.kept.texture.height()) != (width, height) {
-            self.kept = KeptPicture::new(gpu, self.format, [width, height]);
-        }
-        if scene.has_changed {
-            self.changed.push(scene.viewport);
-        }
-        let mut changed = std::mem::take(&mut self.changed);
-        if std::mem::take(&mut self.kept.is_stale) {
-            changed = vec![Rect::EVERYTHING];
-        }
-        let commands =
-            self.renderer.update_buffers(&gpu.device, &gpu.queue, encoder, panels, screen);
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("panels"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &self.kept.view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-                })],
-                timestamp_writes: timestamps,
-                ..Default::default()
-            })
-            .forget_lifetime();
-        let clips: Vec<_> = panels.iter().map(|panel| panel.clip_rect).collect();
-        for area in changed.into_iter().filter_map(|rect| PixelArea::touched(rect, screen)) {
-            area.draw(gpu, &self.texture_painter, &mut pass, &self.black, None);
-            if let Some(viewport) = PixelArea::nearest(scene.viewport, screen) {
-                area.draw(gpu, &self.texture_painter, &mut pass, scene.picture, Some(viewport));
+    ) {
+        let viewport = PixelArea::nearest(scene.viewport, screen);
+        let changed = self.changed_areas(gpu, (panels, screen), viewport, scene.has_changed);
+        let batches = self.triangles.upload(gpu, panels, screen, &changed);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("panels"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.kept.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            timestamp_writes: timestamps,
+            ..Default::default()
+        });
+        let window = PixelArea { at: [0, 0], size: screen.size_in_pixels };
+        for (area, batches) in changed.into_iter().zip(batches) {
+            if viewport != Some(area) {
+                self.draw_texture(gpu, &mut pass, &self.black, area, area);
             }
-            let points = area.in_points(screen);
-            for (panel, clip) in panels.iter_mut().zip(&clips) {
-                let inside = clip.intersect(points);
-                panel.clip_rect = if inside.is_positive() { inside } else { Rect::ZERO };
+            if let Some(viewport) = viewport {
+                self.draw_texture(gpu, &mut pass, scene.picture, viewport, area);
             }
-            self.renderer.render(&mut pass, panels, screen);
+            set_viewport(&mut pass, window);
+            self.triangles.draw(&mut pass, &batches);
         }
-        commands
     }
 
-    /// Discards what is kept: a frame was not shown.
-    pub fn draw_all_next(&mut self) {
-        self.kept.is_stale = true;
+    /// Areas that must be drawn, in a kept picture of the screen's size.
+    fn changed_areas(
+        &mut self,
+        gpu: &Gpu,
+        (panels, screen): (&[ClippedPrimitive], &ScreenDescriptor),
+        viewport: Option<PixelArea>,
+        has_scene_changed: bool,
+    ) -> Vec<PixelArea> {
+        let size = screen.size_in_pixels;
+        if [self.kept.texture.width(), self.kept.texture.height()] != size {
+            self.kept = KeptPicture::new(gpu, self.format, size);
+        }
+        let was_there = std::mem::replace(&mut self.kept.viewport, viewport) == viewport;
+        let drawn = match std::mem::take(&mut self.kept.is_stale) || !was_there {
+            true => Some(PixelArea { at: [0, 0], size }),
+            false => viewport.filter(|_| has_scene_changed),
+        };
+        let mut changed = self.changes.replace(panels, screen, drawn);
+        changed.extend(drawn);
+        changed
+    }
+
+    /// Draws the part of a texture that is in `area`. The whole texture fills `place`.
+    fn draw_texture(
+        &self,
+        gpu: &Gpu,
+        pass: &mut wgpu::RenderPass<'_>,
+        texture: &wgpu::TextureView,
+        place: PixelArea,
+        area: PixelArea,
+    ) {
+        if let Some(inside) = area.intersection(place) {
+            let ([x, y], [width, height]) = (inside.at, inside.size);
+            pass.set_scissor_rect(x, y, width, height);
+            set_viewport(pass, place);
+            self.texture_painter.draw(gpu, pass, texture);
+        }
     }
 
     /// Encodes the copy to a frame of the window.
@@ -171,72 +183,7 @@ impl KeptPicture {
             | wgpu::TextureUsages::TEXTURE_BINDING;
         let texture = texture(gpu, "panels", format, size, usage);
         let view = texture.create_view(&Default::default());
-        Self { texture, view, is_stale: true }
-    }
-}
-
-/// A rectangle of whole pixels in the window: left, top, width and height, not empty.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct PixelArea {
-    at: [u32; 2],
-    size: [u32; 2],
-}
-
-impl PixelArea {
-    /// All pixels that a rectangle in points touches; `None` without any in the window.
-    fn touched(rect: Rect, screen: &ScreenDescriptor) -> Option<Self> {
-        Self::of(rect, screen, [f32::floor, f32::ceil])
-    }
-
-    /// The pixels of a rectangle that is made of whole pixels, but for rounding.
-    fn nearest(rect: Rect, screen: &ScreenDescriptor) -> Option<Self> {
-        Self::of(rect, screen, [f32::round, f32::round])
-    }
-
-    fn of(rect: Rect, screen: &ScreenDescriptor, round: [fn(f32) -> f32; 2]) -> Option<Self> {
-        let [from, to] = round;
-        let [width, height] = screen.size_in_pixels;
-        let pixel = |at: f32, most: u32| (at.max(0.0) as u32).min(most);
-        let points = rect * screen.pixels_per_point;
-        let at = [pixel(from(points.left()), width), pixel(from(points.top()), height)];
-        let end = [pixel(to(points.right()), width), pixel(to(points.bottom()), height)];
-        let size = [end[0].saturating_sub(at[0]), end[1].saturating_sub(at[1])];
-        (size[0] > 0 && size[1] > 0).then_some(Self { at, size })
-    }
-
-    fn in_points(self, screen: &ScreenDescriptor) -> Rect {
-        let point = |x: u32, y: u32| egui::pos2(x as f32, y as f32) / screen.pixels_per_point;
-        let ([x, y], [width, height]) = (self.at, self.size);
-        Rect::from_min_max(point(x, y), point(x + width, y + height))
-    }
-
-    fn intersection(self, other: Self) -> Option<Self> {
-        let range = |axis: usize| {
-            let from = self.at[axis].max(other.at[axis]);
-            let to = (self.at[axis] + self.size[axis]).min(other.at[axis] + other.size[axis]);
-            (from < to).then(|| (from, to - from))
-        };
-        let ((x, width), (y, height)) = (range(0)?, range(1)?);
-        Some(Self { at: [x, y], size: [width, height] })
-    }
-
-    /// Draws the part of a texture that is in this area. The texture fills `place`, else the area.
-    fn draw(
-        self,
-        gpu: &Gpu,
-        painter: &TexturePainter,
-        pass: &mut wgpu::RenderPass<'_>,
-        texture: &wgpu::TextureView,
-        place: Option<Self>,
-    ) {
-        let place = place.unwrap_or(self);
-        if let Some(inside) = self.intersection(place) {
-            let ([x, y], [width, height]) = (inside.at, inside.size);
-            pass.set_scissor_rect(x, y, width, height);
-            let ([x, y], [width, height]) = (place.at, place.size);
-            pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
-            painter.draw(gpu, pass, texture);
-        }
+        Self { texture, view, viewport: None, is_stale: true }
     }
 }
 
@@ -259,15 +206,9 @@ fn texture(
     })
 }
 
-/// Uploads egui's whole font atlas: egui itself sends only changes, which a new renderer cannot apply.
-fn upload_font_atlas(renderer: &mut egui_wgpu::Renderer, gpu: &Gpu, panels: &Context) {
-    // egui has no fonts before its first frame.
-    if panels.cumulative_pass_nr() == 0 {
-        return;
-    }
-    let all =
-        panels.fonts(|fonts| ImageDelta::full(fonts.image(), TextureAtlas::texture_options()));
-    renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &all);
+fn set_viewport(pass: &mut wgpu::RenderPass<'_>, area: PixelArea) {
+    let ([x, y], [width, height]) = (area.at, area.size);
+    pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
 }
 
 #[cfg(test)]
@@ -317,8 +258,12 @@ mod tests {
             Self { gpu, context, session: Session::new(preferences), scene }
         }
 
-        /// Runs a frame, and draws it with each painter.
-        fn frame(&mut self, events: Vec<Event>, painters: &mut [&mut PanelPainter]) {
+        /// Runs a frame, and draws it with each painter. Returns the panels.
+        fn frame(
+            &mut self,
+            events: Vec<Event>,
+            painters: &mut [&mut PanelPainter],
+        ) -> Vec<ClippedPrimitive> {
             let [width, height] = SIZE.map(|side| side as f32);
             let screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height)));
             let input = RawInput { screen_rect, events, ..RawInput::default() };
@@ -330,24 +275,22 @@ mod tests {
             let screen = ScreenDescriptor { size_in_pixels: SIZE, pixels_per_point: 1.0 };
             let set = std::mem::take(&mut output.textures_delta.set);
             output.textures_delta.free.clear();
+            let panels = self.context.tessellate(output.shapes, 1.0);
             for painter in painters {
                 painter.update_textures(&self.gpu, set.clone());
-                painter.note_changes(&output.shapes);
-                let mut panels = self.context.tessellate(output.shapes.clone(), 1.0);
                 let scene = PlacedScene { picture: &self.scene, viewport, has_changed: false };
                 let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-                let panels = (&mut panels[..], &screen);
-                let mut commands = painter.draw(&self.gpu, &mut encoder, panels, &scene, None);
-                commands.push(encoder.finish());
-                self.gpu.queue.submit(commands);
+                painter.draw(&self.gpu, &mut encoder, (&panels, &screen), &scene, None);
+                self.gpu.queue.submit([encoder.finish()]);
             }
             for action in actions.drain() {
                 self.session.apply(action);
             }
+            panels
         }
     }
 
-    fn pixels(gpu: &Gpu, painter: &PanelPainter) -> Vec<u8> {
+    fn pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<u8> {
         let [width, height] = SIZE;
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -363,8 +306,7 @@ mod tests {
             rows_per_image: None,
         };
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        let size = painter.kept.texture.size();
-        encoder.copy_texture_to_buffer(painter.kept.texture.as_image_copy(), to, size);
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
         gpu.queue.submit([encoder.finish()]);
         buffer.slice(..).map_async(wgpu::MapMode::Read, |read| read.expect("mapped"));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("drawn");
@@ -408,27 +350,65 @@ mod tests {
             if number == 20 {
                 panels.session.apply(ShellAction::SetTheme(Theme::Light));
             }
-            all.draw_all_next();
+            all.kept.is_stale = true;
             panels.frame(events, &mut [&mut some, &mut all]);
-            let [some, all] = [&some, &all].map(|painter| pixels(&panels.gpu, painter));
+            let [some, all] =
+                [&some, &all].map(|painter| pixels(&panels.gpu, &painter.kept.texture));
             let off = some.iter().zip(&all).filter(|(a, b)| a != b).count();
             assert_eq!(off, 0, "frame {number}");
         }
     }
 
+    /// Draws panels over red with the renderer of `egui_wgpu`.
+    fn by_egui(panels: &Panels, shown: &[ClippedPrimitive]) -> Vec<u8> {
+        let gpu = &panels.gpu;
+        let options = egui_wgpu::RendererOptions { dithering: false, ..Default::default() };
+        let mut renderer = egui_wgpu::Renderer::new(&gpu.device, FORMAT, options);
+        let atlas = panels.context.fonts(|fonts| {
+            ImageDelta::full(fonts.image(), egui::epaint::TextureAtlas::texture_options())
+        });
+        renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &atlas);
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let picture = texture(gpu, "egui", FORMAT, SIZE, usage);
+        let view = picture.create_view(&Default::default());
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let screen = ScreenDescriptor { size_in_pixels: SIZE, pixels_per_point: 1.0 };
+        renderer.update_buffers(&gpu.device, &gpu.queue, &mut encoder, shown, &screen);
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::RED),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            })
+            .forget_lifetime();
+        renderer.render(&mut pass, shown, &screen);
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+        pixels(gpu, &picture)
+    }
+
     #[test]
-    fn areas_are_in_the_window_and_cover_what_they_are_made_of() {
-        let screen = ScreenDescriptor { size_in_pixels: [100, 50], pixels_per_point: 1.5 };
-        let area = |x: f32, y: f32, width: f32, height: f32| {
-            PixelArea::touched(Rect::from_min_size(pos2(x, y), vec2(width, height)), &screen)
-        };
-        assert_eq!(area(1.0, 1.0, 2.0, 2.0), Some(PixelArea { at: [1, 1], size: [4, 4] }));
-        assert_eq!(area(-9.0, -9.0, 10.0, 10.0), Some(PixelArea { at: [0, 0], size: [2, 2] }));
-        assert_eq!(area(70.0, 0.0, 9.0, 9.0), None);
-        let all = PixelArea::touched(Rect::EVERYTHING, &screen);
-        assert_eq!(all, Some(PixelArea { at: [0, 0], size: [100, 50] }));
-        let viewport = Rect::from_min_max(pos2(2.0, 4.0), pos2(20.0, 30.0000002));
-        let nearest = PixelArea::nearest(viewport, &screen);
-        assert_eq!(nearest, Some(PixelArea { at: [3, 6], size: [27, 39] }));
+    fn panels_look_as_eguis_own_renderer_draws_them() {
+        let mut panels = Panels::new();
+        let mut painter = PanelPainter::new(&panels.gpu, FORMAT, &panels.context);
+        for theme in [Theme::Dark, Theme::Light] {
+            panels.session.apply(ShellAction::SetTheme(theme));
+            // The first frames measure texts.
+            (0..3).for_each(|_| drop(panels.frame(vec![], &mut [&mut painter])));
+            let shown = panels.frame(vec![], &mut [&mut painter]);
+            let ours = pixels(&panels.gpu, &painter.kept.texture);
+            let theirs = by_egui(&panels, &shown);
+            let drawn = theirs.chunks(4).filter(|pixel| *pixel != [255, 0, 0, 255]).count();
+            assert!(drawn > 100_000, "{drawn}");
+            let off = ours.iter().zip(&theirs).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(off <= Some(1), "{off:?}");
+        }
     }
 }

@@ -51,7 +51,7 @@ impl Graphics {
     /// [`Self::finish`].
     pub fn present(
         &mut self,
-        panels: &mut [ClippedPrimitive],
+        panels: &[ClippedPrimitive],
         viewport: Rect,
         scale: f32,
         window: &Arc<Window>,
@@ -63,10 +63,7 @@ impl Graphics {
         let start = Instant::now();
         let frame = match self.acquire(window)? {
             Acquired::Frame(frame) => frame,
-            Acquired::Later(again) => {
-                self.panels.draw_all_next();
-                return Ok((Presented::Later(again), start.elapsed()));
-            }
+            Acquired::Later(again) => return Ok((Presented::Later(again), start.elapsed())),
         };
         let mut waited = start.elapsed();
         self.check()?;
@@ -85,13 +82,12 @@ impl Graphics {
         };
         let timestamps = self.gpu_timer.as_mut().map(|timer| timer.pass(TimedPass::Panels));
         let panels = (panels, &screen);
-        let mut commands = self.panels.draw(&self.gpu, &mut encoder, panels, &scene, timestamps);
+        self.panels.draw(&self.gpu, &mut encoder, panels, &scene, timestamps);
         self.panels.copy_to(&self.gpu, &mut encoder, &frame.texture);
         if let Some(gpu_timer) = &mut self.gpu_timer {
             gpu_timer.stop(&mut encoder, drawn);
         }
-        commands.push(encoder.finish());
-        self.gpu.queue.submit(commands);
+        self.gpu.queue.submit([encoder.finish()]);
         if let Some(gpu_timer) = &self.gpu_timer {
             gpu_timer.fetch();
         }

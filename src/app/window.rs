@@ -397,8 +397,7 @@ impl AppWindow {
         let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
         frame.share = self.share.next(is_moving, budget, Instant::now());
         frame.scene += lap();
-        graphics.panels.note_changes(&shapes);
-        let mut panels = self.egui.egui_ctx().tessellate(shapes, scale);
+        let panels = self.egui.egui_ctx().tessellate(shapes, scale);
         frame.panels += lap();
         let (machine, share) = (&mut self.machine, &mut self.share);
         guarded(|| {
@@ -416,7 +415,7 @@ impl AppWindow {
             frame.encode += lap();
             let drawn = machine.times.drawn();
             let (presented, waited) =
-                graphics.present(&mut panels, self.viewport, scale, &self.window, drawn)?;
+                graphics.present(&panels, self.viewport, scale, &self.window, drawn)?;
             frame.wait += waited;
             frame.encode += lap().saturating_sub(waited);
             graphics.panels.free_textures(freed);

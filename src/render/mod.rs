@@ -40,6 +40,7 @@ mod spheres;
 mod system_fonts;
 mod texture_painter;
 mod texture_sampler;
+mod triangle_painter;
 mod uniforms;
 mod view;
 
@@ -54,3 +55,4 @@ pub use shaders::shaders;
 pub use skin_deformer::SkinDeformer;
 pub use system_fonts::SystemFace;
 pub use texture_painter::TexturePainter;
+pub use triangle_painter::{Corner, TrianglePainter};

@@ -25,6 +25,8 @@ pub(super) enum Output {
     Depth,
     /// Blends with a finished picture of this format, which has no depth and one sample per pixel.
     Overlay(wgpu::TextureFormat),
+    /// The same with colours that are multiplied by their opacity.
+    Premultiplied(wgpu::TextureFormat),
 }
 
 pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::RenderPipeline {
@@ -40,10 +42,14 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         immediate_size: 0,
     });
     let (is_overlay, format) = match descriptor.output {
-        Output::Overlay(format) => (true, format),
+        Output::Overlay(format) | Output::Premultiplied(format) => (true, format),
         _ => (false, Canvas::FORMAT),
     };
-    let is_blended = is_overlay || descriptor.output == Output::Blended;
+    let blend = match descriptor.output {
+        Output::Opaque | Output::Depth => None,
+        Output::Blended | Output::Overlay(_) => Some(wgpu::BlendState::ALPHA_BLENDING),
+        Output::Premultiplied(_) => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+    };
     let samples = if is_overlay { 1 } else { Canvas::SAMPLES };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(descriptor.label),
@@ -76,7 +82,7 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format,
-                blend: is_blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                blend,
                 write_mask: match descriptor.output {
                     Output::Depth => wgpu::ColorWrites::empty(),
                     _ => wgpu::ColorWrites::ALL,

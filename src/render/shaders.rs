@@ -1,10 +1,10 @@
 use super::{
     backdrop, crowd, crowd_solver, globe, label, line, shadow, shell, skin, skin_deformer, solid,
-    texture_painter,
+    texture_painter, triangle_painter,
 };
 
 /// Names and WGSL sources of all complete shaders.
-pub fn shaders() -> [(&'static str, &'static str); 14] {
+pub fn shaders() -> [(&'static str, &'static str); 15] {
     [
         ("backdrop", backdrop::SHADER),
         ("crowd_arms", crowd::ARMS),
@@ -20,5 +20,6 @@ pub fn shaders() -> [(&'static str, &'static str); 14] {
         ("skin_deform", skin_deformer::SHADER),
         ("solid", solid::SHADER),
         ("texture", texture_painter::SHADER),
+        ("triangle", triangle_painter::SHADER),
     ]
 }
