@@ -16,7 +16,7 @@ use crate::scene::Scene;
 /// Everything that lives on the graphics device, and is lost and created again with it.
 pub(super) struct Graphics {
     pub(super) panels: PanelPainter,
-    renderer: Renderer,
+    pub(super) renderer: Renderer,
     pub(super) picture: ScenePicture,
     pub(super) gpu_timer: Option<GpuTimer>,
     pub(super) surface: wgpu::Surface<'static>,
@@ -62,7 +62,7 @@ impl Graphics {
         let canvas = Canvas::new(&gpu, 1, 1);
         let graphics = Self {
             panels: PanelPainter::new(&gpu, config.format, panels),
-            renderer: Renderer::new(&gpu),
+            renderer: Renderer::with_labels(&gpu, config.format),
             picture: ScenePicture { canvas, scene: None, is_drawn: false, is_new: true },
             gpu_timer: GpuTimer::new(&gpu),
             surface,

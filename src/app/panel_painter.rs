@@ -5,7 +5,7 @@ use egui_wgpu::ScreenDescriptor;
 use super::panel_changes::PanelChanges;
 use super::panel_triangles::PanelTriangles;
 use super::pixel_area::PixelArea;
-use crate::render::{Gpu, TexturePainter};
+use crate::render::{Gpu, Renderer, TexturePainter};
 
 /// Draws the panels, and the scene under them, into a texture that keeps them. A frame draws only
 /// the areas that have changed, which a machine without a graphics card does much faster.
@@ -30,7 +30,10 @@ struct KeptPicture {
 
 /// The picture of the scene and its place in points.
 pub(super) struct PlacedScene<'a> {
+    /// The scene without its labels, of any size.
     pub picture: &'a wgpu::TextureView,
+    /// Draws the labels.
+    pub renderer: &'a Renderer,
     pub viewport: Rect,
     /// Whether it differs from that of the frame before.
     pub has_changed: bool,
@@ -103,8 +106,9 @@ impl PanelPainter {
             if viewport != Some(area) {
                 self.draw_texture(gpu, &mut pass, &self.black, area, area);
             }
-            if let Some(viewport) = viewport {
+            if let Some(viewport) = viewport.filter(|it| it.intersection(area).is_some()) {
                 self.draw_texture(gpu, &mut pass, scene.picture, viewport, area);
+                scene.renderer.draw_labels(&mut pass);
             }
             set_viewport(&mut pass, window);
             self.triangles.draw(&mut pass, &batches);
@@ -229,6 +233,7 @@ mod tests {
         context: Context,
         session: Session,
         scene: wgpu::TextureView,
+        renderer: Renderer,
     }
 
     impl Panels {
@@ -255,7 +260,8 @@ mod tests {
             }));
             gpu.queue.submit([encoder.finish()]);
             let preferences = Preferences { offers_tour: false, ..Preferences::default() };
-            Self { gpu, context, session: Session::new(preferences), scene }
+            let renderer = Renderer::with_labels(&gpu, FORMAT);
+            Self { gpu, context, session: Session::new(preferences), scene, renderer }
         }
 
         /// Runs a frame, and draws it with each painter. Returns the panels.
@@ -278,7 +284,8 @@ mod tests {
             let panels = self.context.tessellate(output.shapes, 1.0);
             for painter in painters {
                 painter.update_textures(&self.gpu, set.clone());
-                let scene = PlacedScene { picture: &self.scene, viewport, has_changed: false };
+                let (picture, renderer) = (&self.scene, &self.renderer);
+                let scene = PlacedScene { picture, renderer, viewport, has_changed: false };
                 let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
                 painter.draw(&self.gpu, &mut encoder, (&panels, &screen), &scene, None);
                 self.gpu.queue.submit([encoder.finish()]);

@@ -76,7 +76,8 @@ impl Graphics {
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("panels") });
         let scene = PlacedScene {
-            picture: self.picture.canvas.view(),
+            picture: self.picture.canvas.drawn(),
+            renderer: &self.renderer,
             viewport,
             has_changed: std::mem::take(&mut self.picture.is_new),
         };

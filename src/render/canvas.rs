@@ -99,9 +99,9 @@ impl Canvas {
         self.smaller().map_or(&self.full, |smaller| &smaller.samples)
     }
 
-    /// The picture to be enlarged, if it is smaller than the image.
-    pub(super) fn smaller_colour(&self) -> Option<&wgpu::TextureView> {
-        self.smaller().map(|smaller| &smaller.colour)
+    /// View of the picture in the size in which the scene is drawn, for shaders that sample it.
+    pub fn drawn(&self) -> &wgpu::TextureView {
+        self.smaller().map_or(&self.colour, |smaller| &smaller.colour)
     }
 
     fn smaller(&self) -> Option<&SmallerPicture> {
@@ -116,11 +116,6 @@ impl Canvas {
     /// Ratio of width to height.
     pub fn aspect(&self) -> f32 {
         self.width as f32 / self.height as f32
-    }
-
-    /// View of the image, for shaders that sample it.
-    pub fn view(&self) -> &wgpu::TextureView {
-        &self.colour
     }
 
     /// Waits for the device and reads the picture back.

@@ -1,12 +1,12 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
+use super::Gpu;
 use super::font::Rectangle;
 use super::glyph_sheet::{GlyphSheet, LINE_HEIGHT};
 use super::pipeline::Output;
 use super::quads::{self, Quads};
 use super::texture_sampler::TextureSampler;
-use super::{Canvas, Gpu};
 use crate::scene::{Label, Scene};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/label.wgsl");
@@ -50,7 +50,8 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    pub fn new(gpu: &Gpu) -> Self {
+    /// Creates the pipeline for passes of this format.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let sampler = TextureSampler::new(gpu, "glyphs");
         let glyphs = Quads::new(
             gpu,
@@ -62,7 +63,7 @@ impl Labels {
                     0 => Float32x4, 1 => Float32x4, 2 => Float32x4
                 ],
                 depth: wgpu::CompareFunction::Always,
-                output: Output::Overlay(Canvas::FORMAT),
+                output: Output::Overlay(format),
             },
         );
         Self { glyphs, sampler, sheet: None }

@@ -47,8 +47,14 @@ impl Renderer {
     /// Number of lists, uniform blocks and textures on the device, without those of a crowd.
     pub const LISTS: usize = 7 + Solids::LISTS;
 
-    /// Creates the pipelines.
+    /// Creates the pipelines for pictures.
     pub fn new(gpu: &Gpu) -> Self {
+        Self::with_labels(gpu, Canvas::FORMAT)
+    }
+
+    /// Creates the pipelines, with those of the labels for passes of this format; see
+    /// [`Self::draw_labels`].
+    pub fn with_labels(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let view = ViewUniforms::new(gpu);
         Self {
             solids: Solids::new(gpu, view.layout()),
@@ -56,7 +62,7 @@ impl Renderer {
             shadows: Shadows::new(gpu, view.layout()),
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
-            labels: Labels::new(gpu),
+            labels: Labels::new(gpu, format),
             enlarger: TexturePainter::new(gpu, Canvas::FORMAT),
             crowds: Crowds::default(),
             skins: Skins::default(),
@@ -80,11 +86,13 @@ impl Renderer {
         self.crowds.times()
     }
 
-    /// Draws a scene and submits the commands to the device. `scale` is the number of pixels per
-    /// point, the unit for the sizes of lines and letters.
+    /// Draws a scene with its labels, and submits the commands to the device. `scale` is the number
+    /// of pixels per point, the unit for the sizes of lines and letters. The renderer must be made
+    /// by [`Self::new`].
     pub fn draw(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         self.upload(gpu, scene, canvas, scale);
-        gpu.queue.submit([self.encode(gpu, canvas, None)]);
+        let scene = self.encode(gpu, canvas, None);
+        gpu.queue.submit([scene, self.encode_labels(gpu, canvas)]);
     }
 
     /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all lists are large enough, the renderer allocates nothing itself;
@@ -134,8 +142,9 @@ impl Renderer {
         self.crowds.awaits_triangles()
     }
 
-    /// Encodes the commands that draw the last uploaded scene. `wgpu` allocates memory for them;
-    /// its amount does not depend on the scene.
+    /// Encodes the commands that draw the last uploaded scene, but for its labels, at the size that
+    /// the canvas has for this. `wgpu` allocates memory for them; its amount does not depend on the
+    /// scene.
     pub fn encode(
         &self,
         gpu: &Gpu,
@@ -146,26 +155,13 @@ impl Renderer {
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("scene") });
         self.crowds.cull(&mut encoder);
-        let (start, end) = timestamps.map(start_and_end).unzip();
-        self.encode_scene(&mut encoder, canvas, start);
-        self.encode_labels(gpu, &mut encoder, canvas, end);
-        encoder.finish()
-    }
-
-    /// Draws everything but the labels, at the size that the canvas has for this.
-    fn encode_scene(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        canvas: &Canvas,
-        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) {
         let samples = canvas.samples();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &samples.colour,
                 depth_slice: None,
-                resolve_target: Some(canvas.smaller_colour().unwrap_or(&canvas.colour)),
+                resolve_target: Some(canvas.drawn()),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
                     store: wgpu::StoreOp::Discard,
@@ -192,21 +188,26 @@ impl Renderer {
         self.spheres.draw(&mut pass);
         self.lines.draw(&mut pass);
         self.skins.draw_see_through(&mut pass);
+        drop(pass);
+        encoder.finish()
+    }
+
+    /// Draws the labels of the last uploaded scene over a finished picture of it, which fills the
+    /// viewport of the pass. The pass has no depth and one sample per pixel.
+    pub fn draw_labels(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.labels.draw(pass);
     }
 
     /// Enlarges a smaller picture, and draws the labels in full.
-    fn encode_labels(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        canvas: &Canvas,
-        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) {
-        let smaller = canvas.smaller_colour();
-        let load = match smaller {
-            Some(_) => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-            None => wgpu::LoadOp::Load,
+    fn encode_labels(&self, gpu: &Gpu, canvas: &Canvas) -> wgpu::CommandBuffer {
+        let is_smaller = canvas.share() < 1.0;
+        let load = match is_smaller {
+            true => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            false => wgpu::LoadOp::Load,
         };
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("labels") });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("labels"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -215,20 +216,13 @@ impl Renderer {
                 resolve_target: None,
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })],
-            timestamp_writes: timestamps,
             ..Default::default()
         });
-        if let Some(smaller) = smaller {
-            self.enlarger.draw(gpu, &mut pass, smaller);
+        if is_smaller {
+            self.enlarger.draw(gpu, &mut pass, canvas.drawn());
         }
-        self.labels.draw(&mut pass);
+        self.draw_labels(&mut pass);
+        drop(pass);
+        encoder.finish()
     }
-}
-
-/// Divides timestamps between the first and the last of several passes.
-fn start_and_end(
-    of: wgpu::RenderPassTimestampWrites<'_>,
-) -> (wgpu::RenderPassTimestampWrites<'_>, wgpu::RenderPassTimestampWrites<'_>) {
-    let start = wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..of.clone() };
-    (start, wgpu::RenderPassTimestampWrites { beginning_of_pass_write_index: None, ..of })
 }
