@@ -60,9 +60,10 @@ impl Graphics {
         gpu.on_failure(move || drop(proxy.send_event(UserEvent::GraphicsFailed)));
         let config = configuration(&gpu, &surface, window)?;
         let canvas = Canvas::new(&gpu, 1, 1);
+        let format = composed_format(&config);
         let graphics = Self {
-            panels: PanelPainter::new(&gpu, config.format, panels),
-            renderer: Renderer::with_labels(&gpu, config.format),
+            panels: PanelPainter::new(&gpu, format, panels),
+            renderer: Renderer::with_labels(&gpu, format),
             picture: ScenePicture { canvas, scene: None, is_drawn: false, is_new: true },
             gpu_timer: GpuTimer::new(&gpu),
             surface,
@@ -155,8 +156,17 @@ impl Graphics {
     }
 }
 
-/// Runs graphics code and turns panics into errors: `wgpu` and `egui_wgpu` panic in many places if
-/// the device is lost while they run.
+/// Format of the picture that is copied to the surface. A surface with an sRGB format shows a copy
+/// as it is, but would encode drawn colours, which are encoded already.
+fn composed_format(config: &wgpu::SurfaceConfiguration) -> wgpu::TextureFormat {
+    match config.usage.contains(wgpu::TextureUsages::COPY_DST) {
+        true => config.format.remove_srgb_suffix(),
+        false => config.format,
+    }
+}
+
+/// Runs graphics code and turns panics into errors: `wgpu` panics in many places if the device is
+/// lost while they run.
 pub(super) fn guarded<T>(
     draw: impl FnOnce() -> Result<T, GraphicsError>,
 ) -> Result<T, GraphicsError> {

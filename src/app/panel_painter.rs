@@ -156,10 +156,9 @@ impl PanelPainter {
 
     /// Encodes the copy to a frame of the window.
     pub fn copy_to(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, frame: &wgpu::Texture) {
-        let size = self.kept.texture.size();
-        if frame.usage().contains(wgpu::TextureUsages::COPY_DST) && frame.size() == size {
+        if frame.usage().contains(wgpu::TextureUsages::COPY_DST) {
             let (from, to) = (self.kept.texture.as_image_copy(), frame.as_image_copy());
-            encoder.copy_texture_to_texture(from, to, size);
+            encoder.copy_texture_to_texture(from, to, frame.size());
             return;
         }
         let view = frame.create_view(&Default::default());

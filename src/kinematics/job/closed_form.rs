@@ -268,7 +268,8 @@ impl Limb {
     fn bend(&self, hinge: DVec3) -> BentLimb {
         let &Self { upper_ds, lower_ds, upper, lower, distance, .. } = self;
         let (length, difference, product) = (upper + lower, upper - lower, upper * lower);
-        // Axes whose lengths are computed beside those of the bones, not after them.
+        // Not of unit length: a processor computes these and their lengths while it computes those
+        // of the bones.
         let normal = lower_ds.cross(upper_ds);
         let aside = normal.cross(upper_ds);
         let square = normal.length_squared();
