@@ -5,6 +5,7 @@ struct Crowd {
     upper: vec4f, // colours of the limbs and joints
     lower: vec4f,
     joint: vec4f,
+    lods: array<Lod, 5>, // from the nearest arms to the farthest
     eye: vec3f,
     pixel_per_depth: f32, // size of a pixel in the world per unit of depth; 0 if orthographic
     forward: vec3f,
@@ -15,12 +16,25 @@ struct Crowd {
     tip_radius: f32,
 }
 
+// A level of detail.
+struct Lod {
+    sides: u32, // number of sides of a limb; 0 for a line or a point
+    vertices: u32, // number of vertices of an entry in the list
+    first: u32, // index in `visible` at which the list starts
+    padding: u32,
+}
+
 const JOINT_RADIUS = 1.12; // as a multiple of the base radius of a limb
 
 struct Arm {
     shoulder: vec3f, // all points are in the world
     elbow: vec3f,
     hand: vec3f,
+}
+
+struct Limb {
+    base: vec3f,
+    tip: vec3f,
 }
 
 @group(1) @binding(0) var<uniform> crowd: Crowd;
@@ -37,7 +51,22 @@ fn arm_at(index: u32) -> Arm {
     return Arm(shoulder, shoulder + elbow, shoulder + hand);
 }
 
+// The lower limb if `is_lower`, else the upper one.
+fn limb_of(arm: Arm, is_lower: bool) -> Limb {
+    return Limb(select(arm.shoulder, arm.elbow, is_lower), select(arm.elbow, arm.hand, is_lower));
+}
+
 // Size of a pixel at a point, in world units.
 fn pixel_at(point: vec3f) -> f32 {
     return crowd.pixel + crowd.pixel_per_depth * max(dot(point - crowd.eye, crowd.forward), 0.0);
+}
+
+// Vector from a point to the eye, of any length.
+fn to_eye(point: vec3f) -> vec3f {
+    return mix(crowd.eye - point, -crowd.forward, select(0.0, 1.0, crowd.pixel > 0.0));
+}
+
+fn unit(v: vec3f, fallback: vec3f) -> vec3f {
+    let square = dot(v, v);
+    return select(fallback, v * inverseSqrt(square), square > 0.0);
 }

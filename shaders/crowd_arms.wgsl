@@ -18,12 +18,12 @@ const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 
 const BALL = vec2u(10u, 5u); // number of cells around, and from pole to pole
 const MIN_RADIUS = 0.4; // of a limb on screen, in pixels
 
-fn limb_vertex(base: vec3f, tip: vec3f, index: u32) -> Vertex {
-    let axis = unit(tip - base, vec3f(0.0, 1.0, 0.0));
+fn limb_vertex(limb: Limb, sides: u32, index: u32) -> Vertex {
+    let axis = unit(limb.tip - limb.base, vec3f(0.0, 1.0, 0.0));
     let cell = QUAD[index % 6u];
-    let place = mix(base, tip, f32(cell.y));
+    let place = mix(limb.base, limb.tip, f32(cell.y));
     let radius = max(mix(crowd.base_radius, crowd.tip_radius, f32(cell.y)), MIN_RADIUS * pixel_at(place));
-    if lod.sides == 1u {
+    if sides == 1u {
         let towards = to_eye(place);
         let aside = unit(cross(towards, axis), normalize(view.right));
         let normal = unit(cross(aside, axis), -crowd.forward);
@@ -33,7 +33,7 @@ fn limb_vertex(base: vec3f, tip: vec3f, index: u32) -> Vertex {
     let up = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(axis.y) > 0.9);
     let y = normalize(cross(up, axis));
     let z = cross(axis, y);
-    let turn = TAU * f32(index / 6u + cell.x) / f32(lod.sides);
+    let turn = TAU * f32(index / 6u + cell.x) / f32(sides);
     let normal = y * cos(turn) + z * sin(turn);
     return Vertex(place + normal * radius, normal);
 }
@@ -48,16 +48,18 @@ fn ball_vertex(centre: vec3f, index: u32) -> Vertex {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Surface {
-    let arm = arm_at(visible[lod.first + instance]);
+fn vertex(@builtin(vertex_index) number: u32) -> Surface {
+    let lod = crowd.lods[LOD];
+    let arm = arm_at(visible[lod.first + number / lod.vertices]);
+    let index = number % lod.vertices;
     let limb = lod.sides * 6u; // number of vertices of a limb
     var corner: Vertex;
     var colour = crowd.joint.rgb;
     if index < limb {
-        corner = limb_vertex(arm.shoulder, arm.elbow, index);
+        corner = limb_vertex(limb_of(arm, false), lod.sides, index);
         colour = crowd.upper.rgb;
     } else if index < 2u * limb {
-        corner = limb_vertex(arm.elbow, arm.hand, index - limb);
+        corner = limb_vertex(limb_of(arm, true), lod.sides, index - limb);
         colour = crowd.lower.rgb;
     } else {
         let ball = BALL.x * BALL.y * 6u;

@@ -1,9 +1,14 @@
-// Culls the arms of a crowd and sorts the visible ones into one list per level of detail.
+// Culls the arms of a crowd, sorts the visible ones into one list for each level of detail, and computes
+// the colours of far limbs.
 
-// One list of arm indices per level of detail.
+// One list for each level of detail. Entries of the first three are arms. Entries of lines and points
+// are limbs (2 × arm, and 1 more for the lower one), each followed by its colour.
 @group(1) @binding(3) var<storage, read_write> visible: array<u32>;
-// Four arguments of an indirect draw per level of detail.
+// Four arguments of a draw for each level of detail. The first is the number of vertices.
 @group(1) @binding(4) var<storage, read_write> draws: array<atomic<u32>>;
+
+const LINES = 3u;
+const POINTS = 4u;
 
 // Minimum radii of a limb in pixels at which it is drawn round with joints, round without joints,
 // flat, and as a line. A line is one pixel wide.
@@ -29,6 +34,68 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
     let pixels = crowd.base_radius / pixel_at(middle);
     let is_smaller = select(vec4u(0), vec4u(1), vec4f(pixels) <= LOD_RADII);
     let lod = dot(is_smaller, vec4u(1));
-    let slot = atomicAdd(&draws[lod * 4u + 1u], 1u);
-    visible[lod * crowd.stride + slot] = index;
+    if lod < LINES {
+        visible[crowd.lods[lod].first + next_slot(lod)] = index;
+    } else {
+        add_limb(lod, 2u * index, limb_of(arm, false), crowd.upper.rgb);
+        add_limb(lod, 2u * index + 1u, limb_of(arm, true), crowd.lower.rgb);
+    }
+}
+
+// Number of the next entry in a list.
+fn next_slot(lod: u32) -> u32 {
+    let vertices = crowd.lods[lod].vertices;
+    return atomicAdd(&draws[lod * 4u], vertices) / vertices;
+}
+
+// Adds a limb as a line or a point. A point covers a pixel, also for a limb that is shorter. So of the
+// shorter ones a part is drawn that is as large as their length in pixels (after R. Cook and others,
+// "Stochastic Simplification of Aggregate Detail", 2007).
+fn add_limb(lod: u32, number: u32, limb: Limb, colour: vec3f) {
+    let middle = (limb.base + limb.tip) * 0.5;
+    let towards = to_eye(middle);
+    let axis = limb.tip - limb.base;
+    let across = towards * inverseSqrt(dot(towards, towards));
+    let pixels = length(cross(axis, across)) / pixel_at(middle);
+    if lod == POINTS && pixels < random(number) {
+        return;
+    }
+    let direction = unit(axis, vec3f(0.0, 1.0, 0.0));
+    let normal = unit(towards - direction * dot(direction, towards), -crowd.forward);
+    let entry = crowd.lods[lod].first + 2u * next_slot(lod);
+    visible[entry] = number;
+    visible[entry + 1u] = pack4x8unorm(vec4f(in_scene_at(middle, lit(colour, normal)), 1.0));
+}
+
+// A number from 0 to 1, always the same for a limb (M. O'Neill, "PCG", 2014).
+fn random(limb: u32) -> f32 {
+    let state = limb * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
+}
+
+// What `in_scene` is for the pixel of a point in a fragment shader.
+fn in_scene_at(point: vec3f, colour: vec3f) -> vec3f {
+    let clip = view.clip_from_world * vec4f(point, 1.0);
+    let position = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * view.size;
+    let ray = pixel_ray(position);
+    let along = dot(point - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    let pixels = array(
+        pixel_on(ray, vec3f(1.0, 0.0, 0.0)).zy,
+        pixel_on(ray, vec3f(0.0, 1.0, 0.0)).xz,
+        pixel_on(ray, vec3f(0.0, 0.0, 1.0)).xy,
+    );
+    return behind_planes_of(fogged(colour, position, along), ray, along, pixels);
+}
+
+// Size of a pixel on the plane through the origin with this normal, along each axis of the world,
+// in cells: what `pixel_in_cells` is in a fragment shader.
+fn pixel_on(ray: Ray, normal: vec3f) -> vec3f {
+    let per_depth = ray.direction / dot(ray.direction, normal);
+    let hit = ray.origin - per_depth * dot(ray.origin, normal);
+    let right = normalize(view.right);
+    let up = normalize(view.up);
+    let across = abs(right - per_depth * dot(right, normal));
+    let along = abs(up - per_depth * dot(up, normal));
+    return max((across + along) * pixel_at(hit) / view.cell, vec3f(1e-6));
 }

@@ -5,7 +5,7 @@ mod common;
 
 use common::Random;
 use glam::{DVec3, Vec3};
-use ik_arm::document::{Camera, Document, Theme};
+use ik_arm::document::{AxisView, Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{CrowdSolver, Gpu, PictureRenderer};
 use ik_arm::rig::{Crowd, CrowdArrays, Processor};
@@ -176,18 +176,37 @@ fn arms_near_and_far_have_the_colours_of_their_limbs() {
     }
 }
 
+/// From above, with limbs of this radius in pixels.
+fn above(radius: f32) -> Camera {
+    let camera = Camera::default().along(AxisView::Top);
+    let pixel = 2.0 * camera.projection(1.6).up.length() / 200.0;
+    let base_radius = 0.05 * crowd(1).bones.outer_limit();
+    Camera { distance: camera.distance * base_radius / (radius * pixel), ..camera }
+}
+
+/// Mean difference between the colours of two pictures.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.len() as f64
+}
+
+#[test]
+fn a_crowd_covers_as_much_of_the_picture_with_points_as_with_lines() {
+    let gpu = Gpu::headless().expect("a device");
+    let mut picture = picture(&gpu);
+    let mut covered = |radius: f32| {
+        let crowd = draw(&mut picture, &crowd(20_000), above(radius));
+        difference(&crowd, &draw_without(&mut picture, above(radius)))
+    };
+    let (lines, points) = (covered(0.1001), covered(0.0999));
+    assert!((points / lines - 1.0).abs() < 0.05, "{lines} with lines, {points} with points");
+}
+
 #[test]
 fn arms_behind_the_camera_are_not_drawn() {
     let gpu = Gpu::headless().expect("a device");
     let with = draw(&mut picture(&gpu), &crowd(1), behind());
-    let mut scene = Scene::new(
-        &Document { camera: behind(), ..Document::default() },
-        &Overlays { crowd: Some(crowd(1)), ..Overlays::default() },
-        Theme::Dark,
-    );
-    scene.crowd = None;
-    let without = picture(&gpu).draw(&scene).expect("a picture");
-    assert!(with == without);
+    assert!(with == draw_without(&mut picture(&gpu), behind()));
 }
 
 #[test]
@@ -236,9 +255,20 @@ fn behind() -> Camera {
 }
 
 fn draw(picture: &mut PictureRenderer<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
+    picture.draw(&scene(crowd, camera)).expect("a picture")
+}
+
+/// Draws what is around a crowd.
+fn draw_without(picture: &mut PictureRenderer<'_>, camera: Camera) -> RgbaImage {
+    let mut scene = scene(&crowd(1), camera);
+    scene.crowd = None;
+    picture.draw(&scene).expect("a picture")
+}
+
+fn scene(crowd: &Crowd, camera: Camera) -> Scene {
     let document = Document { camera, ..Document::default() };
     let overlays = Overlays { crowd: Some(*crowd), ..Overlays::default() };
-    picture.draw(&Scene::new(&document, &overlays, Theme::Dark)).expect("a picture")
+    Scene::new(&document, &overlays, Theme::Dark)
 }
 
 #[test]

@@ -23,6 +23,7 @@ impl Backdrop {
                 label: "backdrop",
                 shader: SHADER,
                 fragment: "fragment",
+                constants: &[],
                 layouts: &[view],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,

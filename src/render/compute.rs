@@ -88,7 +88,7 @@ pub(super) fn run_for_each(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
     pipeline: &wgpu::ComputePipeline,
-    (index, group): (u32, &wgpu::BindGroup),
+    groups: &[&wgpu::BindGroup],
     items: u32,
 ) {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -96,7 +96,9 @@ pub(super) fn run_for_each(
         timestamp_writes: None,
     });
     pass.set_pipeline(pipeline);
-    pass.set_bind_group(index, group, &[]);
+    for (index, group) in (0..).zip(groups) {
+        pass.set_bind_group(index, *group, &[]);
+    }
     pass.dispatch_workgroups(items.div_ceil(GROUP), 1, 1);
 }
 

@@ -2,12 +2,15 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
 use super::compute::{self, BindingKind};
+use super::crowd_lod::{CrowdLod, CrowdLodData, DrawArguments};
 use super::readback::Readback;
 use super::{CrowdError, CrowdSolver, Gpu, pipeline};
 use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
 
 pub(super) const CULL: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
     include_str!("../../shaders/crowd_cull.wgsl")
 );
@@ -16,54 +19,18 @@ pub(super) const ARMS: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
     include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
-    include_str!("../../shaders/crowd_lod.wgsl"),
+    include_str!("../../shaders/crowd_draw.wgsl"),
     include_str!("../../shaders/crowd_arms.wgsl"),
 );
 
 pub(super) const FAR: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
-    include_str!("../../shaders/crowd_lod.wgsl"),
+    include_str!("../../shaders/crowd_draw.wgsl"),
     include_str!("../../shaders/crowd_far.wgsl"),
 );
 
-/// A level of detail. The shader draws the same vertices.
-#[derive(Clone, Copy)]
-struct CrowdLod {
-    shader: &'static str,
-    topology: wgpu::PrimitiveTopology,
-    /// Number of sides of a limb.
-    sides: u32,
-    first_vertex: u32,
-    vertices: u32,
-}
-
-/// Levels of detail from the nearest arms to the farthest: limbs with joints, with few sides, flat,
-/// lines, and points.
-const LODS: [CrowdLod; 5] = [
-    CrowdLod::with_sides(12, 3 * 10 * 5 * 6),
-    CrowdLod::with_sides(5, 0),
-    CrowdLod::with_sides(1, 0),
-    CrowdLod {
-        shader: FAR,
-        topology: wgpu::PrimitiveTopology::LineList,
-        sides: 0,
-        first_vertex: 0,
-        vertices: 4,
-    },
-    CrowdLod {
-        shader: FAR,
-        topology: wgpu::PrimitiveTopology::PointList,
-        sides: 0,
-        first_vertex: 4,
-        vertices: 2,
-    },
-];
-/// Number of arguments of an indirect draw: vertex count, instance count, first vertex and first
-/// instance.
-const ARGUMENTS: usize = 4;
-const ARGUMENT_BYTES: u64 = (LODS.len() * ARGUMENTS * size_of::<u32>()) as u64;
+const ARGUMENT_BYTES: u64 = size_of_val(&CrowdLod::NO_DRAWS) as u64;
 
 /// Radii of a limb at its base and its tip, as fractions of the arm's length.
 const BASE_RADIUS: f32 = 0.05;
@@ -76,6 +43,7 @@ struct CrowdData {
     upper: Vec4,
     lower: Vec4,
     joint: Vec4,
+    lods: [CrowdLodData; CrowdLod::COUNT],
     eye: Vec3,
     pixel_per_depth: f32,
     forward: Vec3,
@@ -86,16 +54,7 @@ struct CrowdData {
     tip_radius: f32,
 }
 
-const _: () = assert!(size_of::<CrowdData>() == 8 * 16 + 3 * 16);
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct CrowdLodData {
-    sides: u32,
-    first: u32,
-}
-
-const _: () = assert!(size_of::<CrowdLodData>() == 8);
+const _: () = assert!(size_of::<CrowdData>() == 8 * 16 + 5 * 16 + 3 * 16);
 
 /// Draws a crowd: solves it on the CPU or the device, culls it on the device, and draws each arm
 /// with a level of detail that depends on its size on screen.
@@ -112,15 +71,13 @@ struct CrowdRenderer {
     solver: CrowdSolver,
     cull: wgpu::ComputePipeline,
     cull_layout: wgpu::BindGroupLayout,
-    draw: [wgpu::RenderPipeline; LODS.len()],
+    draw: [wgpu::RenderPipeline; CrowdLod::COUNT],
     draw_layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
     arguments: wgpu::Buffer,
     drawn: Readback,
     /// Number of triangles of the arms in view, as last read back.
     triangles: u32,
-    lods: [wgpu::Buffer; LODS.len()],
-    lod_groups: [wgpu::BindGroup; LODS.len()],
     buffers: CrowdBuffers,
     /// Crowd whose poses are on the device; `None` if there is none.
     uploaded: Option<Crowd>,
@@ -181,7 +138,7 @@ impl Crowds {
     pub fn read_triangles(&mut self) {
         if let Some(Ok(renderer)) = &mut self.renderer {
             renderer.drawn.fetch();
-            let triangles = renderer.drawn.read(|bytes| Some(triangles(bytes)));
+            let triangles = renderer.drawn.read(|bytes| Some(CrowdLod::triangles(bytes)));
             renderer.triangles = triangles.unwrap_or(renderer.triangles);
         }
     }
@@ -197,10 +154,10 @@ impl Crowds {
     }
 
     /// Encodes the culling, which writes the arguments of the indirect draws.
-    pub fn cull(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn cull(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup) {
         if let Some((renderer, crowd)) = self.uploaded() {
-            let group = (1, &renderer.buffers.cull);
-            compute::run_for_each(encoder, "crowd culling", &renderer.cull, group, crowd.arms);
+            let groups = [view, &renderer.buffers.cull];
+            compute::run_for_each(encoder, "crowd culling", &renderer.cull, &groups, crowd.arms);
             if renderer.drawn.is_free() {
                 renderer.drawn.copy(encoder, &renderer.arguments);
             }
@@ -212,10 +169,9 @@ impl Crowds {
             return;
         };
         pass.set_bind_group(1, &renderer.buffers.draw, &[]);
-        for (lod, group) in renderer.lod_groups.iter().enumerate() {
-            pass.set_pipeline(&renderer.draw[lod]);
-            pass.set_bind_group(2, group, &[]);
-            let offset = lod * ARGUMENTS * size_of::<u32>();
+        for (lod, pipeline) in renderer.draw.iter().enumerate() {
+            pass.set_pipeline(pipeline);
+            let offset = lod * size_of::<DrawArguments>();
             pass.draw_indirect(&renderer.arguments, offset as u64);
         }
     }
@@ -243,15 +199,16 @@ impl CrowdRenderer {
         let stages = wgpu::ShaderStages::VERTEX;
         let kinds = [BindingKind::Uniform, BindingKind::Read, BindingKind::Read, BindingKind::Read];
         let draw_layout = compute::layout(gpu, "crowd", stages, &kinds);
-        let lod_layout = compute::layout(gpu, "crowd LOD", stages, &[BindingKind::Uniform]);
-        let draw = LODS.map(|lod| {
+        let draw = std::array::from_fn(|index| {
+            let lod = CrowdLod::ALL[index];
             pipeline::build(
                 gpu,
                 &pipeline::PipelineDescriptor {
                     label: "crowd",
                     shader: lod.shader,
                     fragment: "fragment",
-                    layouts: &[view, &draw_layout, &lod_layout],
+                    constants: &[("LOD", index as f64)],
+                    layouts: &[view, &draw_layout],
                     buffers: &[],
                     topology: lod.topology,
                     cull: None,
@@ -260,10 +217,8 @@ impl CrowdRenderer {
                 },
             )
         });
-        let uniform_of = |label, size: usize| {
-            compute::buffer(gpu, label, size as u64, wgpu::BufferUsages::UNIFORM)
-        };
-        let uniform = uniform_of("crowd", size_of::<CrowdData>());
+        let size = size_of::<CrowdData>() as u64;
+        let uniform = compute::buffer(gpu, "crowd", size, wgpu::BufferUsages::UNIFORM);
         let arguments = compute::buffer(
             gpu,
             "crowd, indirect",
@@ -272,10 +227,7 @@ impl CrowdRenderer {
                 | wgpu::BufferUsages::INDIRECT
                 | wgpu::BufferUsages::COPY_SRC,
         );
-        let lods = LODS.map(|_| uniform_of("crowd LOD", size_of::<CrowdLodData>()));
-        let lod_groups =
-            lods.each_ref().map(|lod| compute::group(gpu, "crowd LOD", &lod_layout, &[lod]));
-        let cull = compute::pipeline(gpu, "crowd culling", CULL, &[None, Some(&cull_layout)]);
+        let cull = compute::pipeline(gpu, "crowd culling", CULL, &[Some(view), Some(&cull_layout)]);
         let layouts = [&cull_layout, &draw_layout];
         let buffers = CrowdBuffers::new(gpu, &solver, layouts, [&uniform, &arguments]);
         Ok(Self {
@@ -289,8 +241,6 @@ impl CrowdRenderer {
             arguments,
             drawn: Readback::new(gpu, "crowd, read back", ARGUMENT_BYTES),
             triangles: 0,
-            lods,
-            lod_groups,
             buffers,
             uploaded: None,
         })
@@ -303,11 +253,6 @@ impl CrowdRenderer {
         let is_larger = self.solver.reserve(gpu, crowd.arms);
         if is_larger {
             self.replace_buffers(gpu);
-            for (lod, buffer) in self.lods.iter().enumerate() {
-                let first = lod as u32 * self.solver.stride();
-                let data = CrowdLodData { sides: LODS[lod].sides, first };
-                gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&data));
-            }
         }
         if !(has_changed || is_larger) {
             return 0;
@@ -358,9 +303,8 @@ impl CrowdRenderer {
     fn set_view(&self, gpu: &Gpu, crowd: &Crowd, scene: &Scene, size: (u32, u32)) -> u64 {
         let data = CrowdData::new(crowd, self.solver.stride(), scene, size);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&data));
-        let arguments = LODS.map(|lod| [lod.vertices, 0, lod.first_vertex, 0]);
-        gpu.queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&arguments));
-        (size_of::<CrowdData>() + size_of_val(&arguments)) as u64
+        gpu.queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&CrowdLod::NO_DRAWS));
+        size_of::<CrowdData>() as u64 + ARGUMENT_BYTES
     }
 }
 
@@ -376,7 +320,7 @@ impl CrowdBuffers {
             compute::buffer(gpu, label, size, wgpu::BufferUsages::STORAGE)
         };
         let shoulders = buffer("crowd shoulders", 2);
-        let visible = buffer("crowd, visible arms", LODS.len() as u64);
+        let visible = buffer("crowd, visible arms", CrowdLod::numbers().into());
         let poses = solver.poses();
         let to_cull = [uniform, &shoulders, poses, &visible, arguments];
         let cull = compute::group(gpu, "crowd culling", cull, &to_cull);
@@ -399,6 +343,7 @@ impl CrowdData {
             upper: screen(scene.palette.upper),
             lower: screen(scene.palette.lower),
             joint: screen(scene.palette.joint),
+            lods: CrowdLod::data(stride),
             eye: projection.eye,
             pixel_per_depth,
             forward: projection.forward,
@@ -409,33 +354,6 @@ impl CrowdData {
             tip_radius: TIP_RADIUS * reach,
         }
     }
-}
-
-impl CrowdLod {
-    const fn with_sides(sides: u32, joint_vertices: u32) -> Self {
-        Self {
-            shader: ARMS,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            sides,
-            first_vertex: 0,
-            vertices: 2 * 6 * sides + joint_vertices,
-        }
-    }
-
-    fn triangles(self) -> u32 {
-        let is_triangles = self.topology == wgpu::PrimitiveTopology::TriangleList;
-        if is_triangles { self.vertices / 3 } else { 0 }
-    }
-}
-
-/// Number of triangles that indirect draws with these arguments draw.
-fn triangles(arguments: &[u8]) -> u32 {
-    let draws = arguments.chunks_exact(ARGUMENTS * size_of::<u32>());
-    let of_draw = |(lod, draw): (&CrowdLod, &[u8])| {
-        let arms = draw.get(4..8).and_then(|bytes| bytes.try_into().ok());
-        lod.triangles() * arms.map_or(0, u32::from_le_bytes)
-    };
-    LODS.iter().zip(draws).map(of_draw).sum()
 }
 
 /// Left, right, bottom, top and near planes of the view frustum, with unit normals pointing inwards

@@ -142,8 +142,8 @@ impl CrowdSolver {
 
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("crowd solver") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        let group = (0, &self.buffers.group);
-        compute::run_for_each(&mut encoder, "crowd solver", &self.pipeline, group, self.arms);
+        let groups = [&self.buffers.group];
+        compute::run_for_each(&mut encoder, "crowd solver", &self.pipeline, &groups, self.arms);
         let commands = encoder.finish();
         let start = Instant::now();
         gpu.queue.submit([commands]);

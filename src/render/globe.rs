@@ -47,6 +47,7 @@ impl Globes {
                 label: "globe",
                 shader: SHADER,
                 fragment: "fragment",
+                constants: &[],
                 layouts: &[view, &uniforms.layout],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleStrip,

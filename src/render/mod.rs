@@ -10,6 +10,7 @@ mod canvas;
 mod compute;
 mod crowd;
 mod crowd_error;
+mod crowd_lod;
 mod crowd_solver;
 mod font;
 mod font_face;

@@ -5,6 +5,8 @@ pub(super) struct PipelineDescriptor<'a> {
     pub label: &'static str,
     pub shader: &'static str,
     pub fragment: &'static str,
+    /// Values of the shader's overridable constants.
+    pub constants: &'a [(&'static str, f64)],
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
     pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
     pub topology: wgpu::PrimitiveTopology,
@@ -50,6 +52,8 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         Output::Blended | Output::Overlay(_) => Some(wgpu::BlendState::ALPHA_BLENDING),
         Output::Premultiplied(_) => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
     };
+    let compilation_options =
+        wgpu::PipelineCompilationOptions { constants: descriptor.constants, ..Default::default() };
     let samples = if is_overlay { 1 } else { Canvas::SAMPLES };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(descriptor.label),
@@ -57,7 +61,7 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some("vertex"),
-            compilation_options: Default::default(),
+            compilation_options: compilation_options.clone(),
             buffers: &buffers,
         },
         primitive: wgpu::PrimitiveState {
@@ -79,7 +83,7 @@ pub(super) fn build(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> wgpu::Ren
         fragment: Some(wgpu::FragmentState {
             module: &module,
             entry_point: Some(descriptor.fragment),
-            compilation_options: Default::default(),
+            compilation_options,
             targets: &[Some(wgpu::ColorTargetState {
                 format,
                 blend,

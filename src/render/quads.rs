@@ -31,6 +31,7 @@ impl<T: Pod + PartialEq> Quads<T> {
                 label: descriptor.label,
                 shader: descriptor.shader,
                 fragment: "fragment",
+                constants: &[],
                 layouts: descriptor.layouts,
                 buffers: &[wgpu::VertexBufferLayout {
                     array_stride: size_of::<T>() as u64,

@@ -154,7 +154,7 @@ impl Renderer {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("scene") });
-        self.crowds.cull(&mut encoder);
+        self.crowds.cull(&mut encoder, self.view.group());
         let samples = canvas.samples();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),

@@ -196,6 +196,7 @@ impl SkinPipelines {
             label: "skin",
             shader: SHADER,
             fragment: "fragment",
+            constants: &[],
             layouts: &layouts,
             buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,

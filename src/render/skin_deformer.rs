@@ -181,8 +181,8 @@ impl SkinDeformer {
                 gpu.queue.write_buffer(&deformed.uniform, 0, bytemuck::bytes_of(&data));
                 gpu.queue.write_buffer(&deformed.joints, 0, bytes);
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                let group = (0, &deformed.group);
-                compute::run_for_each(&mut encoder, "skin", pipeline, group, vertices.count);
+                let groups = [&deformed.group];
+                compute::run_for_each(&mut encoder, "skin", pipeline, &groups, vertices.count);
                 gpu.queue.submit([encoder.finish()]);
                 (bytes.len() + size_of::<SkinData>()) as u64
             }

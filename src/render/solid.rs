@@ -99,6 +99,7 @@ impl Solids {
                     label,
                     shader: SHADER,
                     fragment,
+                    constants: &[],
                     layouts: &[view],
                     buffers: &buffers,
                     topology: wgpu::PrimitiveTopology::TriangleList,

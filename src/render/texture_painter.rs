@@ -21,6 +21,7 @@ impl TexturePainter {
                 label: "texture",
                 shader: SHADER,
                 fragment: "fragment",
+                constants: &[],
                 layouts: &[&sampler.layout],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,

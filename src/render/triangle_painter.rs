@@ -45,6 +45,7 @@ impl TrianglePainter {
                 label: "triangles",
                 shader: SHADER,
                 fragment: "fragment",
+                constants: &[],
                 layouts: &[&size.layout, &sampler.layout],
                 buffers: &[wgpu::VertexBufferLayout {
                     array_stride: size_of::<Corner>() as u64,
