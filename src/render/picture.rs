@@ -139,7 +139,8 @@ impl<'a> PictureRenderer<'a> {
         for number in 0..frames {
             let start = Instant::now();
             let scene = scene(number);
-            self.renderer.draw(self.gpu, &scene, &self.canvas, self.scale);
+            let (gpu, renderer, canvas) = (self.gpu, &mut self.renderer, &self.canvas);
+            gpu.watched(|| renderer.draw(gpu, &scene, canvas, self.scale))?;
             cpu.push(start.elapsed());
             self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
             frame.push(start.elapsed());
