@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Times of frames while the mouse drags in the real window: scripts/drag-times.sh
-# Drags the hand of an arm with all guides, then orbits, once with every frame in full and once
-# within 33 ms a frame. Prints histograms. Builds a release first, unless PROGRAM names a binary.
+# Drags the hand of an arm with all guides and orbits, then the same with a figure in its skin, once
+# with every frame in full and once within 33 ms a frame. Prints histograms. Builds a release first, unless PROGRAM names a binary.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -10,12 +10,15 @@ source scripts/setup.sh
 source scripts/window.sh
 
 # Positions in the newly opened window, in pixels.
-hand="720 318"
+arm_hand="720 318"
 beside_the_arm="420 560"
+figure_hand="524 223"
+beside_the_figure="420 300"
 moves=250
 
 log=$target/drag-times.log
-document=$target/drag-times.json
+arm=$target/drag-times-arm.json
+figure=$target/drag-times-figure.json
 
 main() {
     set_up virtual-display
@@ -23,14 +26,16 @@ main() {
         cargo build --release --locked
     fi
     trap clean_up EXIT
-    write_document
+    write_arm
+    "$program" examples human >"$figure"
     for budget in unlimited thirtieth; do
-        measure "$budget"
+        measure "$budget" arm "$arm" "$arm_hand" "$beside_the_arm"
+        measure "$budget" figure "$figure" "$figure_hand" "$beside_the_figure"
     done
 }
 
-write_document() {
-    cat >"$document" <<'JSON'
+write_arm() {
+    cat >"$arm" <<'JSON'
 {
   "format": "ik-arm",
   "version": 2,
@@ -42,14 +47,17 @@ write_document() {
 JSON
 }
 
+# measure BUDGET RIG FILE "X Y" "X Y": with the positions of the hand and of the background.
 measure() {
-    local budget=$1
+    local budget=$1 rig=$2 file=$3 hand=$4 beside=$5
     initial_settings="(preferences:(frame_budget:$budget,offers_tour:false,has_dragged_hand:true))"
     export RUST_LOG=warn,ik_arm=trace
-    open_window "$document" 2>"$log"
-    printf '\nbudget: %s\n' "$budget"
+    open_window "$file" 2>"$log"
+    printf '\n%s, budget: %s\n' "$rig" "$budget"
+    # shellcheck disable=SC2086 # two coordinates
     histogram "dragging the hand" $hand
-    histogram "orbiting" $beside_the_arm
+    # shellcheck disable=SC2086
+    histogram "orbiting" $beside
     close_window
     stop_virtual_display
 }
@@ -72,7 +80,7 @@ histogram() {
 
 # Reads a log and prints the milliseconds of each frame and the percentage of the size.
 times() {
-    sed -n 's/.* in \([0-9.]*\) ms at \([0-9]*\) % drawn$/\1 \2/p'
+    sed -n 's/.*frame [0-9]*: \([0-9.]*\) ms at \([0-9]*\) %.*/\1 \2/p'
 }
 
 summary() {

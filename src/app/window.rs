@@ -214,10 +214,7 @@ impl AppWindow {
                 }
                 self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
-                let (milliseconds, percent) =
-                    (1000.0 * frame.total().as_secs_f64(), 100.0 * frame.share);
-                let number = self.frames;
-                log::trace!("frame {number} in {milliseconds:.1} ms at {percent:.0} % drawn");
+                log::trace!("frame {}: {frame}", self.frames);
                 self.retries.reset();
                 let counts = self.awaits_counts.then_some(COUNTS_INTERVAL);
                 delay.into_iter().chain(self.share.rests_in(started)).chain(counts).min()

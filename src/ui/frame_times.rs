@@ -1,5 +1,6 @@
 //! Durations of the most recent frames.
 
+use core::fmt;
 use core::time::Duration;
 
 /// Durations of the stages of one frame.
@@ -34,6 +35,17 @@ impl FrameTime {
     /// Time from input to presentation: CPU time and wait.
     pub fn total(&self) -> Duration {
         self.work() + self.wait
+    }
+}
+
+impl fmt::Display for FrameTime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ms = |time: Duration| 1000.0 * time.as_secs_f64();
+        let (total, percent) = (ms(self.total()), 100.0 * self.share);
+        let [solve, panels] = [self.solve, self.panels].map(ms);
+        let [scene, encode, wait] = [self.scene, self.encode, self.wait].map(ms);
+        write!(f, "{total:.1} ms at {percent:.0} % (solve {solve:.1}, panels {panels:.1}, ")?;
+        write!(f, "scene {scene:.1}, encode {encode:.1}, wait {wait:.1})")
     }
 }
 
