@@ -10,9 +10,12 @@ struct Look {
 
 @group(1) @binding(0) var<uniform> look: Look;
 
+// A constant, because processors sample the texture even where a variable says not to.
+override IS_TEXTURED = false;
+
 // Material of a part. Colours multiply as sRGB: nearly a power of linear light, it gives nearly the same
 // products.
-@group(2) @binding(0) var<uniform> part_colour: vec4f; // w is 1 with a texture, else 0
+@group(2) @binding(0) var<uniform> part_colour: vec3f;
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;
 
@@ -39,8 +42,8 @@ fn vertex(v: Vertex) -> Surface {
 
 @fragment
 fn fragment(s: Surface) -> @location(0) vec4f {
-    var own = look.colour.rgb * part_colour.rgb;
-    if part_colour.w > 0.0 {
+    var own = look.colour.rgb * part_colour;
+    if IS_TEXTURED {
         own *= textureSample(part_texture, part_sampler, s.coordinates).rgb;
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;

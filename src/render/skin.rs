@@ -41,13 +41,17 @@ pub(super) struct Skins {
 struct SkinPipelines {
     deformer: SkinDeformer,
     materials: SkinMaterials,
-    /// For skins that are not mirrored, and for mirrored ones.
-    opaque: [wgpu::RenderPipeline; 2],
+    opaque: SurfacePipelines,
     /// Depth of the nearest surface of see-through skins.
-    depth: [wgpu::RenderPipeline; 2],
-    see_through: [wgpu::RenderPipeline; 2],
+    depth: SurfacePipelines,
+    see_through: SurfacePipelines,
     wire: wgpu::RenderPipeline,
 }
+
+/// Pipelines for parts of skins without a texture and with one, each for skins that are not mirrored and
+/// for mirrored ones.
+#[derive(Debug)]
+struct SurfacePipelines([[wgpu::RenderPipeline; 2]; 2]);
 
 /// A mesh on the device.
 #[derive(Debug)]
@@ -121,7 +125,7 @@ impl Skins {
     pub fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
-            self.draw(pass, skin, &pipelines.opaque[usize::from(skin.is_mirrored)]);
+            self.draw(pass, skin, &pipelines.opaque);
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
@@ -130,8 +134,8 @@ impl Skins {
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
-            self.draw(pass, skin, &pipelines.depth[usize::from(skin.is_mirrored)]);
-            self.draw(pass, skin, &pipelines.see_through[usize::from(skin.is_mirrored)]);
+            self.draw(pass, skin, &pipelines.depth);
+            self.draw(pass, skin, &pipelines.see_through);
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
@@ -140,13 +144,14 @@ impl Skins {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         skin: &DrawnSkin,
-        pipeline: &wgpu::RenderPipeline,
+        SurfacePipelines(pipelines): &SurfacePipelines,
     ) {
         let Some(mesh) = self.mesh(skin) else { return };
-        pass.set_pipeline(pipeline);
         skin.bind(pass, mesh);
         pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for material in &mesh.materials {
+            let pipelines = &pipelines[usize::from(material.is_textured)];
+            pass.set_pipeline(&pipelines[usize::from(skin.is_mirrored)]);
             pass.set_bind_group(2, &material.group, &[]);
             pass.draw_indexed(material.corners.clone(), 0, 0..1);
         }
@@ -204,28 +209,26 @@ impl SkinPipelines {
             depth: wgpu::CompareFunction::Greater,
             output: pipeline::Output::Opaque,
         };
-        let both = |descriptor: &pipeline::PipelineDescriptor<'_>| {
-            [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
-                pipeline::build(
-                    gpu,
-                    &pipeline::PipelineDescriptor { cull: Some(cull), ..*descriptor },
-                )
-            })
-        };
         Self {
             deformer: SkinDeformer::new(gpu),
-            opaque: both(&plain),
-            depth: both(&pipeline::PipelineDescriptor {
-                label: "skin depth",
-                output: pipeline::Output::Depth,
-                ..plain
-            }),
-            see_through: both(&pipeline::PipelineDescriptor {
-                label: "skin, see-through",
-                depth: wgpu::CompareFunction::Equal,
-                output: pipeline::Output::Blended,
-                ..plain
-            }),
+            opaque: SurfacePipelines::new(gpu, &plain),
+            depth: SurfacePipelines::new(
+                gpu,
+                &pipeline::PipelineDescriptor {
+                    label: "skin depth",
+                    output: pipeline::Output::Depth,
+                    ..plain
+                },
+            ),
+            see_through: SurfacePipelines::new(
+                gpu,
+                &pipeline::PipelineDescriptor {
+                    label: "skin, see-through",
+                    depth: wgpu::CompareFunction::Equal,
+                    output: pipeline::Output::Blended,
+                    ..plain
+                },
+            ),
             wire: pipeline::build(
                 gpu,
                 &pipeline::PipelineDescriptor {
@@ -240,6 +243,20 @@ impl SkinPipelines {
             ),
             materials,
         }
+    }
+}
+
+impl SurfacePipelines {
+    fn new(gpu: &Gpu, descriptor: &pipeline::PipelineDescriptor<'_>) -> Self {
+        let pipelines = [0.0, 1.0].map(|is_textured| {
+            [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
+                let constants = &[("IS_TEXTURED", is_textured)];
+                let cull = Some(cull);
+                let descriptor = pipeline::PipelineDescriptor { constants, cull, ..*descriptor };
+                pipeline::build(gpu, &descriptor)
+            })
+        });
+        Self(pipelines)
     }
 }
 

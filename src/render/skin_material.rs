@@ -1,6 +1,6 @@
 use core::ops::Range;
 
-use glam::Vec4;
+use glam::Vec3;
 use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
@@ -22,6 +22,7 @@ pub(super) struct SkinMaterial {
     /// Indices of the corners.
     pub corners: Range<u32>,
     pub group: wgpu::BindGroup,
+    pub is_textured: bool,
 }
 
 impl SkinMaterials {
@@ -79,17 +80,16 @@ impl SkinMaterials {
             });
             let view = view.map_or(&self.white, |view| &views[view].1);
             let corners = 3 * start as u32..3 * end as u32;
-            materials.push(SkinMaterial { corners, group: self.group(gpu, part, view) });
+            let (group, is_textured) = (self.group(gpu, part, view), part.texture.is_some());
+            materials.push(SkinMaterial { corners, group, is_textured });
         }
         materials
     }
 
     fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
-        let [red, green, blue] = part.colour;
-        let has_texture = if part.texture.is_some() { 1.0 } else { 0.0 };
         let colour = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("skin colour"),
-            contents: bytemuck::bytes_of(&Vec4::new(red, green, blue, has_texture)),
+            contents: bytemuck::bytes_of(&Vec3::from(part.colour).extend(0.0)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
