@@ -8,7 +8,7 @@ use ik_arm::session::Overlays;
 use image::RgbaImage;
 
 const SIZE: (u32, u32) = (724, 712);
-const SHARES: [f32; 4] = [0.85, 0.7, 0.6, 0.5];
+const SCALES: [f32; 4] = [0.85, 0.7, 0.6, 0.5];
 
 struct Bench {
     gpu: Gpu,
@@ -24,8 +24,8 @@ impl Bench {
         Self { gpu, renderer, canvas }
     }
 
-    fn draw(&mut self, scene: &Scene, share: f32) -> RgbaImage {
-        self.canvas.set_share(&self.gpu, share);
+    fn draw(&mut self, scene: &Scene, scale: f32) -> RgbaImage {
+        self.canvas.set_resolution_scale(&self.gpu, scale);
         self.renderer.draw(&self.gpu, scene, &self.canvas, 1.0);
         self.canvas.read(&self.gpu).expect("a picture")
     }
@@ -65,9 +65,9 @@ fn a_picture_in_full_after_smaller_ones_is_the_same_bit_for_bit() {
     let scene = scene(Theme::Dark, GUIDES.into_iter().chain([Overlay::Labels]));
     let expected = Bench::new().draw(&scene, 1.0);
     let mut bench = Bench::new();
-    for share in SHARES {
-        assert!(bench.draw(&scene, share) != expected, "it is smaller at {share}");
-        assert!(bench.draw(&scene, 1.0) == expected, "after {share}");
+    for scale in SCALES {
+        assert!(bench.draw(&scene, scale) != expected, "it is smaller at {scale}");
+        assert!(bench.draw(&scene, 1.0) == expected, "after {scale}");
     }
 }
 
@@ -78,19 +78,19 @@ fn colours_do_not_jump_when_the_picture_sharpens() {
         let mut bench = Bench::new();
         let scene = scene(theme, GUIDES);
         let full = bench.draw(&scene, 1.0);
-        for share in SHARES {
-            let smaller = bench.draw(&scene, share);
+        for scale in SCALES {
+            let smaller = bench.draw(&scene, scale);
             let all = SIDE * (SIZE.0.min(SIZE.1) / SIDE);
             let [before, after] = [&smaller, &full].map(|image| mean(image, [0, 0], all));
             for (before, after) in before.into_iter().zip(after) {
                 let off = (before - after).abs();
-                assert!(off < 0.7, "the whole at {share} in {theme:?} is off by {off}");
+                assert!(off < 0.7, "the whole at {scale} in {theme:?} is off by {off}");
             }
             for at in (0..(all / SIDE).pow(2)).map(|at| [at % 11 * SIDE, at / 11 * SIDE]) {
                 let [before, after] = [&smaller, &full].map(|image| mean(image, at, SIDE));
                 for (before, after) in before.into_iter().zip(after) {
                     let off = (before - after).abs();
-                    assert!(off < 6.0, "{at:?} at {share} in {theme:?} is off by {off}");
+                    assert!(off < 6.0, "{at:?} at {scale} in {theme:?} is off by {off}");
                 }
             }
         }
@@ -102,8 +102,8 @@ fn labels_are_as_sharp_as_in_full() {
     let mut bench = Bench::new();
     let [plain, labelled] = [scene(Theme::Dark, []), scene(Theme::Dark, [Overlay::Labels])];
     // Brightness that the labels add.
-    let mut letters = |share| {
-        let (without, with) = (bench.draw(&plain, share), bench.draw(&labelled, share));
+    let mut letters = |scale| {
+        let (without, with) = (bench.draw(&plain, scale), bench.draw(&labelled, scale));
         let pixels = without.pixels().zip(with.pixels());
         pixels.map(|(without, with)| i32::from(with[1]) - i32::from(without[1])).collect::<Vec<_>>()
     };
@@ -115,11 +115,11 @@ fn labels_are_as_sharp_as_in_full() {
 }
 
 #[test]
-fn a_share_is_limited() {
+fn a_resolution_scale_is_limited() {
     let mut bench = Bench::new();
-    for (wanted, share) in [(2.0, 1.0), (0.0, 0.125), (-1.0, 0.125), (0.6, 0.6)] {
-        bench.canvas.set_share(&bench.gpu, wanted);
-        assert_eq!(bench.canvas.share(), share);
+    for (wanted, scale) in [(2.0, 1.0), (0.0, 0.125), (-1.0, 0.125), (0.6, 0.6)] {
+        bench.canvas.set_resolution_scale(&bench.gpu, wanted);
+        assert_eq!(bench.canvas.resolution_scale(), scale);
         assert_eq!(bench.canvas.size(), SIZE);
     }
 }

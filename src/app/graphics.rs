@@ -116,14 +116,14 @@ impl Graphics {
 
     /// Draws the scene, unless the canvas shows it already. Returns the numbers of things in the
     /// scene and of bytes uploaded by this call. Keeps the drawn scene and leaves the previous
-    /// scene in `scene`, to be refilled. `scale` is in pixels per point; `share` is the fraction of
-    /// the width and height at which the scene is drawn.
+    /// scene in `scene`, to be refilled. `scale` is in pixels per point; `resolution_scale` is the
+    /// fraction of the width and height at which the scene is drawn.
     pub fn draw_scene(
         &mut self,
         scene: &mut Scene,
         (width, height): (u32, u32),
         scale: f32,
-        share: f32,
+        resolution_scale: f32,
     ) -> Counts {
         if let Some(gpu_timer) = &mut self.gpu_timer {
             gpu_timer.start();
@@ -133,11 +133,11 @@ impl Graphics {
             self.picture.canvas = Canvas::new(&self.gpu, width, height);
             self.picture.is_drawn = false;
         }
-        let has_share = self.picture.canvas.share() == share;
-        if self.picture.is_drawn && has_share && self.picture.scene.as_ref() == Some(scene) {
+        let has_same_scale = self.picture.canvas.resolution_scale() == resolution_scale;
+        if self.picture.is_drawn && has_same_scale && self.picture.scene.as_ref() == Some(scene) {
             return Counts { uploaded: 0, ..self.renderer.counts() };
         }
-        self.picture.canvas.set_share(&self.gpu, share);
+        self.picture.canvas.set_resolution_scale(&self.gpu, resolution_scale);
         let canvas = &self.picture.canvas;
         self.renderer.upload(&self.gpu, scene, canvas, scale);
         let crowd_error = self.renderer.crowd_times().err();

@@ -13,11 +13,11 @@ use winit::window::Window;
 use super::attributes::attributes;
 use super::debug_options::DebugOptions;
 use super::device_retries::DeviceRetries;
+use super::dynamic_resolution::DynamicResolution;
 use super::error::AppError;
 use super::graphics::{Graphics, guarded};
 use super::graphics_error::GraphicsError;
 use super::lap_timer::lap_timer;
-use super::picture_share::PictureShare;
 use super::present::Presented;
 use super::settings::Settings;
 use super::title::{TITLE, title};
@@ -65,7 +65,7 @@ pub(super) struct AppWindow {
     /// Whether the program ends at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
-    share: PictureShare,
+    dynamic_resolution: DynamicResolution,
     /// Whether counts of earlier frames will arrive from the device.
     awaits_counts: bool,
 }
@@ -121,7 +121,7 @@ impl AppWindow {
             viewport: Rect::ZERO,
             ends: false,
             exporting: None,
-            share: PictureShare::default(),
+            dynamic_resolution: DynamicResolution::default(),
             awaits_counts: false,
         })
     }
@@ -210,14 +210,18 @@ impl AppWindow {
                 self.machine.times.push(frame);
                 if !self.machine.has_clock {
                     let budget = session.preferences().frame_budget.time();
-                    self.share.measure(frame.share, frame.total(), budget);
+                    self.dynamic_resolution.measure(frame.resolution_scale, frame.total(), budget);
                 }
                 self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
                 log::trace!("frame {}: {frame}", self.frames);
                 self.retries.reset();
                 let counts = self.awaits_counts.then_some(COUNTS_INTERVAL);
-                delay.into_iter().chain(self.share.rests_in(started)).chain(counts).min()
+                delay
+                    .into_iter()
+                    .chain(self.dynamic_resolution.rests_in(started))
+                    .chain(counts)
+                    .min()
             }
             // Motion that is not visible needs few frames.
             Ok(Presented::Later(again)) => {
@@ -392,21 +396,26 @@ impl AppWindow {
         let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());
         let is_driven = held || session.is_playing();
         let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
-        frame.share = self.share.next(is_moving, budget, Instant::now());
+        frame.resolution_scale = self.dynamic_resolution.next(is_moving, budget, Instant::now());
         frame.scene += lap();
         let panels = self.egui.egui_ctx().tessellate(shapes, scale);
         frame.panels += lap();
-        let (machine, share) = (&mut self.machine, &mut self.share);
+        let (machine, dynamic_resolution) = (&mut self.machine, &mut self.dynamic_resolution);
         guarded(|| {
             // The times are those of earlier frames.
             while let Some((earlier, time)) = graphics.read_clock() {
                 if let Some(earlier) = machine.times.set_gpu(earlier, time) {
-                    share.measure(earlier.share, earlier.work() + time, budget);
+                    dynamic_resolution.measure(
+                        earlier.resolution_scale,
+                        earlier.work() + time,
+                        budget,
+                    );
                 }
             }
             graphics.panels.update_textures(&graphics.gpu, changed);
             if let Some(scene) = &mut self.scene {
-                machine.counts = Some(graphics.draw_scene(scene, pixels, scale, frame.share));
+                machine.counts =
+                    Some(graphics.draw_scene(scene, pixels, scale, frame.resolution_scale));
                 self.awaits_counts = graphics.awaits_counts();
             }
             frame.encode += lap();

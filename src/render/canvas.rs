@@ -6,7 +6,7 @@ use super::Gpu;
 /// Render target: an image, and multisampled colour and depth buffers.
 ///
 /// While something moves, the scene may be drawn at a smaller size and enlarged, which takes less
-/// time: see [`Self::set_share`].
+/// time: see [`Self::set_resolution_scale`].
 #[derive(Debug)]
 pub struct Canvas {
     width: u32,
@@ -17,7 +17,7 @@ pub struct Canvas {
     full: SampleBuffers,
     /// Buffers for smaller pictures, kept for the next time; `None` before the first.
     smaller: Option<SmallerPicture>,
-    share: f32,
+    resolution_scale: f32,
 }
 
 /// Multisampled buffers for one size of pictures.
@@ -68,29 +68,29 @@ impl Canvas {
         let image = texture(gpu, "canvas image", Self::FORMAT, 1, (width, height));
         let colour = image.create_view(&Default::default());
         let full = SampleBuffers::new(gpu, (width, height));
-        Self { width, height, image, colour, full, smaller: None, share: 1.0 }
+        Self { width, height, image, colour, full, smaller: None, resolution_scale: 1.0 }
     }
 
     /// Sets the fraction of the image's width and height at which the scene is drawn, from 1 / 8 to
     /// 1. A smaller picture is enlarged, and labels are drawn over it in full.
-    pub fn set_share(&mut self, gpu: &Gpu, share: f32) {
+    pub fn set_resolution_scale(&mut self, gpu: &Gpu, resolution_scale: f32) {
         const LEAST: f32 = 0.125;
-        self.share = share.clamp(LEAST, 1.0);
+        self.resolution_scale = resolution_scale.clamp(LEAST, 1.0);
         let size = self.drawn_size();
         let has_size = self.smaller.as_ref().is_some_and(|smaller| smaller.size == size);
-        if self.share < 1.0 && !has_size {
+        if self.resolution_scale < 1.0 && !has_size {
             self.smaller = Some(SmallerPicture::new(gpu, size));
         }
     }
 
     /// Fraction of the image's width and height at which the scene is drawn.
-    pub fn share(&self) -> f32 {
-        self.share
+    pub fn resolution_scale(&self) -> f32 {
+        self.resolution_scale
     }
 
     /// Width and height in pixels at which the scene is drawn.
     pub(super) fn drawn_size(&self) -> (u32, u32) {
-        let side = |length: u32| ((length as f32 * self.share).round() as u32).max(1);
+        let side = |length: u32| ((length as f32 * self.resolution_scale).round() as u32).max(1);
         (side(self.width), side(self.height))
     }
 
@@ -105,7 +105,7 @@ impl Canvas {
     }
 
     fn smaller(&self) -> Option<&SmallerPicture> {
-        self.smaller.as_ref().filter(|_| self.share < 1.0)
+        self.smaller.as_ref().filter(|_| self.resolution_scale < 1.0)
     }
 
     /// Width and height in pixels.

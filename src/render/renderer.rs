@@ -95,12 +95,12 @@ impl Renderer {
         gpu.queue.submit([scene, self.encode_labels(gpu, canvas)]);
     }
 
-    /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all lists are large enough, the renderer allocates nothing itself;
-    /// `wgpu` allocates a constant amount for each list that has changed, of which there are at
-    /// most [`Renderer::LISTS`].
+    /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all
+    /// lists are large enough, the renderer allocates nothing itself; `wgpu` allocates a constant
+    /// amount for each list that has changed, of which there are at most [`Renderer::LISTS`].
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         let size = canvas.drawn_size();
-        let uploaded = self.view.upload(gpu, scene, size, scale * canvas.share())
+        let uploaded = self.view.upload(gpu, scene, size, scale * canvas.resolution_scale())
             + self.solids.upload(gpu, scene, size)
             + self.shadows.upload(gpu, scene)
             + self.spheres.upload(gpu, scene, size)
@@ -200,7 +200,7 @@ impl Renderer {
 
     /// Enlarges a smaller picture, and draws the labels in full.
     fn encode_labels(&self, gpu: &Gpu, canvas: &Canvas) -> wgpu::CommandBuffer {
-        let is_smaller = canvas.share() < 1.0;
+        let is_smaller = canvas.resolution_scale() < 1.0;
         let load = match is_smaller {
             true => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
             false => wgpu::LoadOp::Load,

@@ -23,7 +23,7 @@ pub struct FrameTime {
     /// previous frame requested this one without a delay.
     pub interval: Option<Duration>,
     /// Fraction of the viewport's width and height at which the scene is drawn, from 0 to 1.
-    pub share: f32,
+    pub resolution_scale: f32,
 }
 
 impl FrameTime {
@@ -41,7 +41,7 @@ impl FrameTime {
 impl fmt::Display for FrameTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ms = |time: Duration| 1000.0 * time.as_secs_f64();
-        let (total, percent) = (ms(self.total()), 100.0 * self.share);
+        let (total, percent) = (ms(self.total()), 100.0 * self.resolution_scale);
         let [solve, panels] = [self.solve, self.panels].map(ms);
         let [scene, encode, wait] = [self.scene, self.encode, self.wait].map(ms);
         write!(f, "{total:.1} ms at {percent:.0} % (solve {solve:.1}, panels {panels:.1}, ")?;

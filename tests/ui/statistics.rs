@@ -25,7 +25,7 @@ fn frame(index: u64) -> FrameTime {
         wait: part(400),
         gpu: Some(part(250)),
         interval: Some(Duration::from_micros(16_667)),
-        share: 0.7,
+        resolution_scale: 0.7,
     }
 }
 

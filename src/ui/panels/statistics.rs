@@ -76,9 +76,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, machine: &Machine) {
         let count = |count: Option<u64>| count.map_or("–".to_owned(), grouped);
         let per_second = times.per_second().map(|it| it.round() as u64);
         row(ui, "Frames per second", "Median while something moves", &count(per_second));
-        let share = times.last().map_or(1.0, |last| last.share);
+        let resolution_scale = times.last().map_or(1.0, |last| last.resolution_scale);
         let tooltip = "Width and height of the drawn scene, which is enlarged to fill the view";
-        row(ui, "Picture", tooltip, &format!("{:.0} %", 100.0 * share));
+        row(ui, "Resolution", tooltip, &format!("{:.0} %", 100.0 * resolution_scale));
         let counts = machine.counts;
         let of = |part: fn(crate::render::Counts) -> u64| count(counts.map(part));
         row(ui, "Cones and spheres", "In the scene", &of(|it| it.solids.into()));

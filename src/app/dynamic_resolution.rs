@@ -1,7 +1,7 @@
 use std::time::{Duration, Instant};
 
 /// Fractions of the viewport's width and height at which the scene is drawn while it moves.
-const SHARES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
+const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
 
 /// Time without motion after which the scene is drawn in full.
 const REST: Duration = Duration::from_millis(100);
@@ -18,8 +18,8 @@ const SAFE: f32 = 0.75;
 /// moves, the scene is drawn so small that a frame takes no longer than a budget; at rest, it is
 /// drawn in full.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PictureShare {
-    /// Index into [`SHARES`].
+pub(super) struct DynamicResolution {
+    /// Index into [`SCALES`].
     step: usize,
     /// Time of the last motion; `None` at rest.
     moved: Option<Instant>,
@@ -27,9 +27,8 @@ pub(super) struct PictureShare {
     fast: u32,
 }
 
-impl PictureShare {
-    /// The share of a frame at the time `now`, in which the scene moves or not. Without a budget it
-    /// is 1.
+impl DynamicResolution {
+    /// The scale of a frame at the time `now`. Without a budget, and while nothing moves, it is 1.
     pub fn next(&mut self, is_moving: bool, budget: Option<Duration>, now: Instant) -> f32 {
         if is_moving {
             self.moved = Some(now);
@@ -39,7 +38,7 @@ impl PictureShare {
         if budget.is_none() {
             *self = Self::default();
         }
-        self.moved.map_or(1.0, |_| SHARES[self.step])
+        self.moved.map_or(1.0, |_| SCALES[self.step])
     }
 
     /// Time from `now` until the scene must be drawn in full, unless it moves again; `None` at rest.
@@ -47,20 +46,20 @@ impl PictureShare {
         Some((self.moved? + REST).saturating_duration_since(now))
     }
 
-    /// Adapts to a frame of a share and the time that it took.
-    pub fn measure(&mut self, share: f32, time: Duration, budget: Option<Duration>) {
-        let Some(budget) = budget.filter(|_| share == SHARES[self.step]) else {
+    /// Adapts to a frame of a scale and the time that it took.
+    pub fn measure(&mut self, scale: f32, time: Duration, budget: Option<Duration>) {
+        let Some(budget) = budget.filter(|_| scale == SCALES[self.step]) else {
             return;
         };
         let used = time.as_secs_f32() / budget.as_secs_f32();
         // As if all time were spent on pixels.
         let larger = self.step.saturating_sub(1);
-        let used_larger = used * (SHARES[larger] / share).powi(2);
+        let used_larger = used * (SCALES[larger] / scale).powi(2);
         self.slow = if used > 1.0 { self.slow + 1 } else { 0 };
         self.fast = if used_larger < SAFE { self.fast + 1 } else { 0 };
         if self.slow >= SLOW_FRAMES {
-            let fits = |share: &f32| *share <= SHARES[self.step] / used.sqrt();
-            let smaller = SHARES.iter().position(fits).unwrap_or(SHARES.len() - 1);
+            let fits = |scale: &f32| *scale <= SCALES[self.step] / used.sqrt();
+            let smaller = SCALES.iter().position(fits).unwrap_or(SCALES.len() - 1);
             self.set_step(smaller);
         } else if self.fast >= FAST_FRAMES {
             self.set_step(larger);
@@ -89,27 +88,27 @@ mod tests {
 
     /// Shares of frames in motion, on a machine whose frames take `fixed` milliseconds and
     /// `in_full` more for a picture in full, with up to a tenth of noise.
-    fn shares(fixed: f32, in_full: f32, frames: usize) -> Vec<f32> {
-        let mut share = PictureShare::default();
+    fn scales(fixed: f32, in_full: f32, frames: usize) -> Vec<f32> {
+        let mut resolution = DynamicResolution::default();
         let now = Instant::now();
-        let mut shares = Vec::new();
+        let mut scales = Vec::new();
         for noise in numbers().take(frames) {
-            let of = share.next(true, BUDGET, now);
-            let time = (fixed + in_full * of * of) * (0.9 + 0.2 * noise);
-            share.measure(of, Duration::from_secs_f32(time / 1000.0), BUDGET);
-            shares.push(of);
+            let scale = resolution.next(true, BUDGET, now);
+            let time = (fixed + in_full * scale * scale) * (0.9 + 0.2 * noise);
+            resolution.measure(scale, Duration::from_secs_f32(time / 1000.0), BUDGET);
+            scales.push(scale);
         }
-        shares
+        scales
     }
 
     #[test]
     fn frames_fit_the_budget_after_eight_or_are_as_small_as_possible() {
         for fixed in [2.0, 10.0, 20.0] {
             for in_full in [1.0, 20.0, 40.0, 65.0, 200.0] {
-                for share in &shares(fixed, in_full, 500)[8..] {
-                    let time = fixed + in_full * share * share;
-                    let fits = time * 0.9 <= 33.0 || *share == 0.5;
-                    assert!(fits, "{time} ms at {share} ({fixed} and {in_full} ms)");
+                for scale in &scales(fixed, in_full, 500)[8..] {
+                    let time = fixed + in_full * scale * scale;
+                    let fits = time * 0.9 <= 33.0 || *scale == 0.5;
+                    assert!(fits, "{time} ms at {scale} ({fixed} and {in_full} ms)");
                 }
             }
         }
@@ -119,8 +118,8 @@ mod tests {
     fn the_size_does_not_swing() {
         for fixed in [2.0, 10.0, 20.0] {
             for in_full in [1.0, 20.0, 28.0, 40.0, 65.0, 200.0] {
-                let shares = shares(fixed, in_full, 2_000);
-                let changes = shares.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                let scales = scales(fixed, in_full, 2_000);
+                let changes = scales.windows(2).filter(|pair| pair[0] != pair[1]).count();
                 assert!(changes <= 4, "{changes} changes ({fixed} and {in_full} ms)");
             }
         }
@@ -128,17 +127,17 @@ mod tests {
 
     #[test]
     fn a_fast_machine_draws_in_full() {
-        assert!(shares(2.0, 20.0, 500).iter().all(|share| *share == 1.0));
+        assert!(scales(2.0, 20.0, 500).iter().all(|scale| *scale == 1.0));
     }
 
     #[test]
     fn the_picture_grows_again_when_frames_become_fast() {
-        let mut share = PictureShare::default();
+        let mut resolution = DynamicResolution::default();
         let now = Instant::now();
         let mut draw = |milliseconds| {
-            let of = share.next(true, BUDGET, now);
-            share.measure(of, Duration::from_millis(milliseconds), BUDGET);
-            of
+            let scale = resolution.next(true, BUDGET, now);
+            resolution.measure(scale, Duration::from_millis(milliseconds), BUDGET);
+            scale
         };
         let slow: Vec<f32> = (0..6).map(|_| draw(200)).collect();
         assert_eq!(slow.last(), Some(&0.5));
@@ -148,27 +147,27 @@ mod tests {
 
     #[test]
     fn the_scene_is_drawn_in_full_a_tenth_of_a_second_after_it_rests() {
-        let mut share = PictureShare { step: 4, ..PictureShare::default() };
+        let mut resolution = DynamicResolution { step: 4, ..DynamicResolution::default() };
         let start = Instant::now();
         let at = |milliseconds| start + Duration::from_millis(milliseconds);
-        assert_eq!(share.rests_in(at(0)), None);
-        assert_eq!(share.next(false, BUDGET, at(0)), 1.0);
-        assert_eq!(share.next(true, BUDGET, at(10)), 0.5);
-        assert_eq!(share.next(false, BUDGET, at(60)), 0.5);
-        assert_eq!(share.rests_in(at(60)), Some(Duration::from_millis(50)));
-        assert_eq!(share.next(true, BUDGET, at(100)), 0.5);
-        assert_eq!(share.rests_in(at(250)), Some(Duration::ZERO));
-        assert_eq!(share.next(false, BUDGET, at(200)), 1.0);
-        assert_eq!(share.rests_in(at(200)), None);
+        assert_eq!(resolution.rests_in(at(0)), None);
+        assert_eq!(resolution.next(false, BUDGET, at(0)), 1.0);
+        assert_eq!(resolution.next(true, BUDGET, at(10)), 0.5);
+        assert_eq!(resolution.next(false, BUDGET, at(60)), 0.5);
+        assert_eq!(resolution.rests_in(at(60)), Some(Duration::from_millis(50)));
+        assert_eq!(resolution.next(true, BUDGET, at(100)), 0.5);
+        assert_eq!(resolution.rests_in(at(250)), Some(Duration::ZERO));
+        assert_eq!(resolution.next(false, BUDGET, at(200)), 1.0);
+        assert_eq!(resolution.rests_in(at(200)), None);
     }
 
     #[test]
     fn without_a_budget_the_scene_is_always_drawn_in_full() {
-        let mut share = PictureShare { step: 4, ..PictureShare::default() };
+        let mut resolution = DynamicResolution { step: 4, ..DynamicResolution::default() };
         let now = Instant::now();
-        assert_eq!(share.next(true, None, now), 1.0);
-        share.measure(1.0, Duration::from_secs(1), None);
-        assert_eq!(share.next(true, None, now), 1.0);
-        assert_eq!(share.rests_in(now), None);
+        assert_eq!(resolution.next(true, None, now), 1.0);
+        resolution.measure(1.0, Duration::from_secs(1), None);
+        assert_eq!(resolution.next(true, None, now), 1.0);
+        assert_eq!(resolution.rests_in(now), None);
     }
 }
