@@ -15,21 +15,6 @@ pub(super) const CULL: &str = concat!(
     include_str!("../../shaders/crowd_cull.wgsl")
 );
 
-pub(super) const ARMS: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/crowd.wgsl"),
-    include_str!("../../shaders/crowd_draw.wgsl"),
-    include_str!("../../shaders/crowd_arms.wgsl"),
-);
-
-pub(super) const FAR: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/crowd.wgsl"),
-    include_str!("../../shaders/crowd_draw.wgsl"),
-    include_str!("../../shaders/crowd_far.wgsl"),
-);
-
 const ARGUMENT_BYTES: u64 = size_of_val(&CrowdLod::NO_DRAWS) as u64;
 
 /// Radii of a limb at its base and its tip, as fractions of the arm's length.

@@ -1,6 +1,19 @@
 use bytemuck::{Pod, Zeroable};
 
-use super::crowd::{ARMS, FAR};
+pub(super) const ARMS: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/planes.wgsl"),
+    include_str!("../../shaders/crowd.wgsl"),
+    include_str!("../../shaders/crowd_draw.wgsl"),
+    include_str!("../../shaders/crowd_arms.wgsl"),
+);
+
+pub(super) const FAR: &str = concat!(
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/crowd.wgsl"),
+    include_str!("../../shaders/crowd_draw.wgsl"),
+    include_str!("../../shaders/crowd_far.wgsl"),
+);
 
 /// A level of detail of the arms of a crowd: how each arm, or each limb, is drawn.
 #[derive(Clone, Copy)]
