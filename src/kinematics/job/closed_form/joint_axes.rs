@@ -1,0 +1,110 @@
+use glam::{DMat3, DVec3};
+
+use super::rotation::near_unit;
+
+/// The start joint's axes M_s.
+pub struct StartAxes {
+    /// M_s⁻¹ times det M_s.
+    pub adjugate: DMat3,
+    pub determinant: f64,
+    pub per_determinant: f64,
+    /// Sum of the squared elements of the adjugate.
+    pub square: f64,
+    pub is_usual: bool,
+}
+
+/// The middle joint's axes in start joint space, M = M_s⁻¹·M_m.
+pub struct MiddleAxes {
+    pub axes_ds: DMat3,
+    /// M⁻ᵀ times det M.
+    pub cofactors: DMat3,
+    pub determinant: f64,
+    pub per_determinant: f64,
+    /// Scale, negative for a joint that mirrors.
+    pub scale: f64,
+    pub per_scale_squared: f64,
+    pub is_usual: bool,
+}
+
+impl StartAxes {
+    #[inline(always)]
+    pub fn new(axes: DMat3) -> Self {
+        const WORST_CONDITION: f64 = 1e6;
+        const LEAST: f64 = 1e-40;
+        const MOST: f64 = 1e40;
+        let cofactors = cofactors(axes);
+        let determinant = axes.x_axis.dot(cofactors.x_axis);
+        let square = square(cofactors);
+        // With the singular values a ≥ b ≥ c, the condition number a/c is at most (ab)³/(abc)².
+        let worst = WORST_CONDITION * (determinant * determinant);
+        let is_usual =
+            (square * square * square <= worst * worst) & (square > LEAST) & (square < MOST);
+        let per_determinant = 1.0 / determinant;
+        Self { adjugate: cofactors.transpose(), determinant, per_determinant, square, is_usual }
+    }
+}
+
+impl MiddleAxes {
+    #[inline(always)]
+    pub fn new(axes_ds: DMat3) -> Self {
+        // Deviation of the singular values from their mean (root of the sum of squares, relative),
+        // and the square of the scale.
+        const DIFFERENT: f64 = 5e-6;
+        const LEAST: f64 = 1e-60;
+        const MOST: f64 = 1e60;
+        let cofactors = cofactors(axes_ds);
+        let determinant = axes_ds.x_axis.dot(cofactors.x_axis);
+        let scale_squared = square(axes_ds) * (1.0 / 3.0);
+        let per_product = 1.0 / (scale_squared * determinant);
+        let per_scale_squared = per_product * determinant;
+        let scale = determinant * per_scale_squared;
+        // det²/s⁶ is the product of the squared singular values by the cube of their mean: 1 for a
+        // similarity, and less by twice the sum of the squared deviations for any other matrix.
+        let evenness = scale * scale * per_scale_squared;
+        let is_usual = (evenness >= 1.0 - 2.0 * DIFFERENT * DIFFERENT)
+            & (scale_squared > LEAST)
+            & (scale_squared < MOST);
+        let per_determinant = per_product * scale_squared;
+        Self {
+            axes_ds,
+            cofactors,
+            determinant,
+            per_determinant,
+            scale,
+            per_scale_squared,
+            is_usual,
+        }
+    }
+
+    /// Converts an axis of turns from middle joint space, but for its length: see
+    /// [`JointChain::axis_ss`](super::chain::JointChain::axis_ss).
+    #[inline(always)]
+    pub fn axis(&self, axis: DVec3) -> DVec3 {
+        self.axes_ds * axis * sign(self.determinant)
+    }
+
+    /// Converts a unit axis of turns to middle joint space: see
+    /// [`JointChain::axis_in_middle`](super::chain::JointChain::axis_in_middle).
+    #[inline(always)]
+    pub fn to_middle_space(&self, axis: DVec3) -> DVec3 {
+        let doubled = self.axes_ds * self.scale + self.cofactors;
+        near_unit(doubled.transpose_mul_vec3(axis) * (0.5 * self.per_scale_squared))
+    }
+}
+
+/// Cofactors of a matrix: its inverse's transpose times its determinant.
+#[inline(always)]
+pub fn cofactors(DMat3 { x_axis: x, y_axis: y, z_axis: z }: DMat3) -> DMat3 {
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
+}
+
+/// Sum of the squared elements.
+#[inline(always)]
+fn square(DMat3 { x_axis: x, y_axis: y, z_axis: z }: DMat3) -> f64 {
+    x.length_squared() + y.length_squared() + z.length_squared()
+}
+
+#[inline(always)]
+pub fn sign(of: f64) -> f64 {
+    1.0_f64.copysign(of)
+}

@@ -1,0 +1,89 @@
+use glam::{DMat3, DQuat, DVec3};
+
+use super::joint_axes::{MiddleAxes, StartAxes, sign};
+use super::limb::Limb;
+use super::solved::{AT_LIMIT, NEAR, Solved};
+
+/// A job with hard limits and a weight of 1.
+#[derive(Clone, Copy)]
+pub struct UsualJob {
+    /// M_s and M_m, as columns.
+    pub axes: [DMat3; 2],
+    /// Positions of the start, middle and end joint.
+    pub joints: [DVec3; 3],
+    pub target: DVec3,
+    /// Not used without `POLE`.
+    pub pole: DVec3,
+    /// 0 for none.
+    pub hinge: DVec3,
+    /// Sine and cosine of the twist.
+    pub twist: [f64; 2],
+}
+
+impl UsualJob {
+    #[inline(always)]
+    pub fn solve<const POLE: bool>(&self) -> Solved {
+        let [start_axes, middle_axes] = self.axes;
+        let start = StartAxes::new(start_axes);
+        let middle = MiddleAxes::new(start.adjugate * middle_axes);
+        let limb = Limb::new(self.joints, self.target, &start);
+        let bent = limb.bend(middle.axis(self.hinge));
+
+        let [sin, cos] = self.twist;
+        let twist = [sin * sign(start.determinant), cos];
+        let (start_turn, is_aimed) = if POLE {
+            bent.aim_by_pole(&limb, start.adjugate * self.pole, twist)
+        } else {
+            bent.aim(&limb, twist)
+        };
+        let middle_turn = bent.half_turn.about(middle.to_middle_space(bent.axis));
+        let corrections = [rounded(start_turn), rounded(middle_turn)];
+        let solved = self.measure(corrections, &start, &middle, &limb);
+        let is_usual = start.is_usual & middle.is_usual & bent.is_usual & is_aimed;
+        Solved { is_usual: is_usual & solved.is_usual, ..solved }
+    }
+
+    /// The corrections with the reach that these rounded rotations give.
+    #[inline(always)]
+    fn measure(
+        &self,
+        corrections: [[f32; 4]; 2],
+        start: &StartAxes,
+        middle: &MiddleAxes,
+        limb: &Limb,
+    ) -> Solved {
+        let [start_correction, middle_correction] = corrections;
+        let (start_turn, middle_turn) = (widened(start_correction), widened(middle_correction));
+        let lower_ms = middle.cofactors.transpose_mul_vec3(limb.lower_ds) * middle.per_determinant;
+        let lower_ds = middle.axes_ds * (middle_turn * lower_ms);
+        let hand_ds = start_turn * (limb.upper_ds + lower_ds);
+        let off_ds = hand_ds - limb.target_ds;
+        let length = limb.upper + limb.lower;
+        let near = NEAR * length;
+        let is_near = off_ds.length_squared() <= near * near;
+        let left = (limb.target - limb.distance).abs();
+        let [start_axes, _] = self.axes;
+        let hand_error = (start_axes * off_ds).length() * start.per_determinant.abs();
+        Solved {
+            start_correction,
+            middle_correction,
+            is_reached: is_near & (left <= AT_LIMIT * length),
+            is_too_close: hand_ds.length_squared() > limb.target * limb.target,
+            hand_error: hand_error as f32,
+            is_usual: hand_error < f64::from(f32::MAX),
+        }
+    }
+}
+
+/// The quaternion (x, y, z, w) with w ≥ 0 of a rotation.
+#[inline(always)]
+fn rounded(turn: DQuat) -> [f32; 4] {
+    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+    let DQuat { x, y, z, w } = turn;
+    [(x * sign) as f32, (y * sign) as f32, (z * sign) as f32, (w * sign) as f32]
+}
+
+#[inline(always)]
+fn widened([x, y, z, w]: [f32; 4]) -> DQuat {
+    DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into())
+}
