@@ -1,6 +1,6 @@
 //! Accuracy of the hand.
 
-use glam::Vec3;
+use glam::{DAffine3, DVec3, Vec3};
 use ik_arm::kinematics::job::TwoBoneJob;
 use ik_arm::kinematics::two_bone::Reach;
 
@@ -48,4 +48,20 @@ fn a_hand_reported_reached_close_to_a_limit_is_at_its_target() {
     }
     println!("reached: {reached}, worst hand error: {worst:e} of the chain's length");
     assert!(reached > 10_000 && worst <= EXACT, "{reached}, {worst:e}");
+}
+
+/// A limit keeps the hand of all but the first target, at distances that a hand within its bones'
+/// reach may have by rounding alone.
+#[test]
+fn a_target_beyond_the_limit_is_reached_only_within_the_rounding_of_the_limit() {
+    for exponent in [-20, -3, 0, 3, 20] {
+        let parent = DAffine3::from_scale(DVec3::splat(2_f64.powi(exponent)));
+        let skeleton = Skeleton { parent, ..Skeleton::square() };
+        for (ulps, reach) in [(1, Reach::Reached), (2, Reach::TooFar), (4, Reach::TooFar)] {
+            let distance = 2.0 * (1.0 + f64::from(ulps) * f64::from(f32::EPSILON));
+            let target = parent.transform_point3(distance * DVec3::X);
+            let correction = run(skeleton.job(target));
+            assert_eq!(correction.reach, reach, "{ulps} ulps, 2^{exponent}");
+        }
+    }
 }

@@ -108,3 +108,46 @@ fn square(DMat3 { x_axis: x, y_axis: y, z_axis: z }: DMat3) -> f64 {
 pub fn sign(of: f64) -> f64 {
     1.0_f64.copysign(of)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Axes in a turned space, with these lengths.
+    fn axes(lengths: [f64; 3]) -> DMat3 {
+        let turn = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
+        turn * DMat3::from_diagonal(lengths.into()) * DMat3::from_rotation_x(0.4)
+    }
+
+    #[test]
+    fn start_axes_are_usual_up_to_a_condition_number_and_within_a_range_of_lengths() {
+        let is_usual = |lengths| StartAxes::new(axes(lengths)).is_usual;
+        for scale in [1e-6, 1.0, -1.0, 1e6] {
+            for flat in [1e-3, -1e-3] {
+                assert!(is_usual([scale, scale, 1.01 * flat * scale]), "{scale}, {flat}");
+                assert!(!is_usual([scale, scale, 0.99 * flat * scale]), "{scale}, {flat}");
+            }
+        }
+        // The squares of three products of two lengths are added.
+        let least = 1e-10 / 3_f64.sqrt().sqrt();
+        let most = 1e10 / 3_f64.sqrt().sqrt();
+        assert!(is_usual([1.01 * least; 3]) && !is_usual([0.99 * least; 3]));
+        assert!(is_usual([0.99 * most; 3]) && !is_usual([1.01 * most; 3]));
+        assert!(!is_usual([0.0; 3]) && !is_usual([f64::NAN; 3]));
+    }
+
+    #[test]
+    fn middle_axes_are_usual_if_they_are_a_similarity_within_a_range_of_lengths() {
+        let is_usual = |lengths| MiddleAxes::new(axes(lengths)).is_usual;
+        // One length longer by d: deviations of 2d/3, −d/3 and −d/3 from the mean.
+        let different = 5e-6 / (6_f64.sqrt() / 3.0);
+        for scale in [1e-25, 1e-3, 1.0, -1.0, 1e3, 1e25] {
+            assert!(is_usual([scale * (1.0 + 0.98 * different), scale, scale]), "{scale}");
+            assert!(!is_usual([scale * (1.0 + 1.02 * different), scale, scale]), "{scale}");
+        }
+        for [usual, unusual] in [[1.01e-30, 0.99e-30], [0.99e30, 1.01e30]] {
+            assert!(is_usual([usual; 3]) && !is_usual([unusual; 3]), "{usual}");
+        }
+        assert!(!is_usual([0.0; 3]) && !is_usual([f64::NAN; 3]));
+    }
+}

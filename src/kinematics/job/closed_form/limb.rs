@@ -162,3 +162,95 @@ fn between(value: f64, least: f64, most: f64) -> f64 {
     let value = if value > least { value } else { least };
     if value < most { value } else { most }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use glam::DMat3;
+
+    use super::*;
+
+    /// A limb with its start joint far from the origin.
+    #[derive(Clone, Copy)]
+    struct Case {
+        bones: [f64; 2],
+        inner_angle: f64,
+        target: f64,
+        far: f64,
+    }
+
+    const USUAL: Case = Case { bones: [2.0, 3.0], inner_angle: FRAC_PI_2, target: 4.0, far: 0.0 };
+
+    impl Case {
+        fn limb(self, scale: f64) -> Limb {
+            let [upper, lower] = self.bones;
+            let (sin, cos) = self.inner_angle.sin_cos();
+            let start = DVec3::X * self.far;
+            let middle = start + DVec3::Y * upper;
+            let end = middle + DVec3::new(sin, -cos, 0.0) * lower;
+            let target = start + DVec3::Z * self.target;
+            let joints = [start, middle, end].map(|joint| joint * scale);
+            Limb::new(joints, target * scale, &StartAxes::new(DMat3::IDENTITY))
+        }
+
+        fn is_usual(self, scale: f64) -> bool {
+            self.limb(scale).bend(DVec3::ZERO).is_usual
+        }
+    }
+
+    /// Checks that a case is usual by 1 % more than a limit, and not by 1 % less.
+    fn check(what: &str, scales: &[f64], limit: f64, case: impl Fn(f64) -> Case) {
+        for scale in scales {
+            assert!(case(1.01 * limit).is_usual(*scale), "{what}, scaled by {scale}");
+            assert!(!case(0.99 * limit).is_usual(*scale), "{what} missed, scaled by {scale}");
+        }
+    }
+
+    #[test]
+    fn a_limb_is_usual_up_to_each_limit_whatever_its_size() {
+        let scales = [1e-20, 1e-3, 1.0, 1e3, 1e20];
+        let bent = |sine: f64| Case { inner_angle: sine.asin(), ..USUAL };
+        check("folded", &scales, IN_LINE, bent);
+        let bent = |sine: f64| Case { inner_angle: PI - sine.asin(), ..USUAL };
+        check("straight", &scales, IN_LINE, bent);
+        for bones in [[1.0, 10.0], [10.0, 1.0]] {
+            // The rounding of three far joints, along three axes, against the shorter bone.
+            let near = (1.0 - IN_LINE) / (2.0 * 3.0 * f64::from(f32::EPSILON));
+            let case = |limit: f64| Case { bones, target: 9.5, far: near / limit, ..USUAL };
+            check("coordinates", &scales, 1.0, case);
+        }
+        for swaps in [false, true] {
+            let bones = |ratio: f64| if swaps { [1.0, ratio] } else { [ratio, 1.0] };
+            let case = |ratio: f64| Case { bones: bones(ratio), target: 1.0, ..USUAL };
+            check("ratio of the bones", &scales, 1e-6, case);
+        }
+        let equal = Case { bones: [1.0, 1.0], ..USUAL };
+        check("hand at the start joint", &scales, 2e-3, |target| Case { target, ..equal });
+    }
+
+    #[test]
+    fn a_limb_is_usual_for_numbers_whose_squares_and_cubes_are_finite() {
+        let half = |length: f64| Case { bones: [0.5 * length; 2], target: 0.5, ..USUAL };
+        check("least length", &[1.0], 1e-30, half);
+        let most = |per_length: f64| Case { target: 0.5 / per_length, ..half(1.0 / per_length) };
+        check("greatest length", &[1.0], 1e-30, most);
+        check("least distance", &[1.0], 1e-30, |target| Case { target, ..USUAL });
+        let case = |per_target: f64| Case { target: 1.0 / per_target, ..USUAL };
+        check("greatest distance", &[1.0], 1e-30, case);
+    }
+
+    #[test]
+    fn a_pole_is_used_unless_it_is_on_the_line_to_the_target() {
+        for scale in [1e-10, 1.0, 1e10] {
+            for pole in [1e-10, 1.0, 1e10] {
+                let aims = |sine: f64| {
+                    let limb = USUAL.limb(scale);
+                    let pole_ds = DVec3::new(sine, 0.0, 1.0) * pole;
+                    limb.bend(DVec3::ZERO).aim_by_pole(&limb, pole_ds, [0.0, 1.0]).1
+                };
+                assert!(aims(1.01 * ON_LINE) && !aims(0.99 * ON_LINE), "{scale}, {pole}");
+            }
+        }
+    }
+}
