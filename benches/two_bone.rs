@@ -4,8 +4,9 @@
 //! The baseline, measured in the same run, is the textbook solution by angles.
 
 use core::hint::black_box;
+use std::time::Instant;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, criterion_group};
 use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
 use ik_arm::kinematics::batch::{Points, QuaternionsMut};
 use ik_arm::kinematics::job::TwoBoneJob;
@@ -40,49 +41,124 @@ fn by_angles(upper: f32, lower: f32, cursor: Vec3, twist: f32) -> Vec3 {
         * Vec3::new(upper * shoulder.cos(), upper * shoulder.sin(), 0.0)
 }
 
-fn two_bone(criterion: &mut Criterion) {
-    let cursors = cursors();
-    let arm = TwoBone::new(200.0, 300.0).expect("lengths");
-    let mut group = criterion.benchmark_group("two_bone");
-    group.throughput(criterion::Throughput::Elements(cursors.len() as u64));
-    group.bench_function("solve", |bencher| {
-        bencher.iter(|| {
-            for (cursor, twist) in &cursors {
-                black_box(black_box(arm).solve(black_box(*cursor), black_box(*twist)));
-            }
-        });
-    });
-    group.bench_function("by angles", |bencher| {
-        bencher.iter(|| {
-            for (cursor, twist) in &cursors {
-                let (cursor, twist) = black_box((*cursor, *twist));
-                black_box(by_angles(black_box(200.0), black_box(300.0), cursor, twist));
-            }
-        });
-    });
-    group.bench_function("job", |bencher| {
-        let jobs = jobs(arm, &cursors);
-        bencher.iter(|| {
-            for job in &jobs {
-                let _ = black_box(black_box(job).run());
-            }
-        });
-    });
-    let limbs = Limbs::new(&jobs(arm, &cursors));
-    group.bench_function("job batch", |bencher| limbs.bench(bencher, solve));
-    let limbs = Limbs { twist: None, ..limbs };
-    group.bench_function("job batch without twist", |bencher| limbs.bench(bencher, solve));
+/// A function under test, called for all limbs in a pass.
+struct Case<'a> {
+    name: &'static str,
+    limbs: usize,
+    pass: Box<dyn FnMut() + 'a>,
+}
+
+impl<'a> Case<'a> {
+    fn of_each<T>(name: &'static str, items: &'a [T], mut run: impl FnMut(&T) + 'a) -> Self {
+        let pass = Box::new(move || items.iter().for_each(|item| run(black_box(item))));
+        Self { name, limbs: items.len(), pass }
+    }
+}
+
+/// Inputs of all cases.
+struct Inputs {
+    arm: TwoBone,
+    cursors: Vec<(Vec3, f32)>,
+    jobs: Vec<TwoBoneJob>,
+    jobs_without_twist: Vec<TwoBoneJob>,
+    /// With and without twists.
+    limbs: [Limbs; 2],
+    /// Enough limbs for all cores.
     #[cfg(feature = "parallel")]
-    {
-        // Enough limbs for all cores.
-        let many = jobs(arm, &cursors).repeat(16);
-        let limbs = Limbs { twist: None, ..Limbs::new(&many) };
-        group.throughput(criterion::Throughput::Elements(many.len() as u64));
-        group.bench_function("job batch of 16 Ki on all cores", |bencher| {
-            limbs.bench(bencher, ik_arm::kinematics::job::batch::solve_on_all_cores);
-        });
+    many_limbs: [Limbs; 2],
+}
+
+impl Inputs {
+    fn new() -> Self {
+        let arm = TwoBone::new(200.0, 300.0).expect("lengths");
+        let cursors = cursors();
+        let jobs = jobs(arm, &cursors);
+        let without_twist = |job: &TwoBoneJob| TwoBoneJob { twist: 0.0, ..*job };
+        let limbs =
+            |jobs: &[TwoBoneJob]| [Limbs::new(jobs), Limbs { twist: None, ..Limbs::new(jobs) }];
+        Self {
+            arm,
+            cursors,
+            jobs_without_twist: jobs.iter().map(without_twist).collect(),
+            limbs: limbs(&jobs),
+            #[cfg(feature = "parallel")]
+            many_limbs: limbs(&jobs.repeat(16)),
+            jobs,
+        }
+    }
+
+    /// All cases, the solve first.
+    fn cases(&self) -> Vec<Case<'_>> {
+        self.cases_on_one_thread().into_iter().chain(self.cases_on_all_cores()).collect()
+    }
+
+    fn cases_on_one_thread(&self) -> [Case<'_>; 6] {
+        let solve_arm = |(cursor, twist): &(Vec3, f32)| {
+            black_box(black_box(self.arm).solve(*cursor, *twist));
+        };
+        let solve_by_angles = |(cursor, twist): &(Vec3, f32)| {
+            black_box(by_angles(black_box(200.0), black_box(300.0), *cursor, *twist));
+        };
+        let run = |job: &TwoBoneJob| {
+            let _ = black_box(job.run());
+        };
+        let [limbs, limbs_without_twist] = &self.limbs;
+        [
+            Case::of_each("solve", &self.cursors, solve_arm),
+            Case::of_each("by angles", &self.cursors, solve_by_angles),
+            Case::of_each("job", &self.jobs, run),
+            Case::of_each("job without twist", &self.jobs_without_twist, run),
+            limbs.case("job batch", solve),
+            limbs_without_twist.case("job batch without twist", solve),
+        ]
+    }
+
+    #[cfg(feature = "parallel")]
+    fn cases_on_all_cores(&self) -> [Case<'_>; 2] {
+        use ik_arm::kinematics::job::batch::solve_on_all_cores;
+        let [limbs, limbs_without_twist] = &self.many_limbs;
+        let name = "job batch without twist on all cores";
+        [
+            limbs.case("job batch on all cores", solve_on_all_cores),
+            limbs_without_twist.case(name, solve_on_all_cores),
+        ]
+    }
+
+    #[cfg(not(feature = "parallel"))]
+    fn cases_on_all_cores(&self) -> [Case<'_>; 0] {
+        []
+    }
+}
+
+fn two_bone(criterion: &mut Criterion) {
+    let inputs = Inputs::new();
+    let mut group = criterion.benchmark_group("two_bone");
+    for Case { name, limbs, mut pass } in inputs.cases() {
+        group.throughput(criterion::Throughput::Elements(limbs as u64));
+        group.bench_function(name, |bencher| bencher.iter(&mut pass));
     }
     group.finish();
+}
+
+/// Prints the fastest of many passes of each case, and its ratio to the solve. The cases take turns,
+/// so that all of them meet the same changes of the machine's clock.
+fn print_ratios() {
+    const PASSES: usize = 2_000;
+    let inputs = Inputs::new();
+    let mut cases = inputs.cases();
+    let mut fastest = vec![f64::INFINITY; cases.len()];
+    for _ in 0..PASSES {
+        for (Case { limbs, pass, .. }, fastest) in cases.iter_mut().zip(&mut fastest) {
+            let start = Instant::now();
+            pass();
+            *fastest = fastest.min(1e9 * start.elapsed().as_secs_f64() / *limbs as f64);
+        }
+    }
+    println!("\nFastest of {PASSES} passes, in turn:\n");
+    println!("| case | ns per limb | relative to `solve` |\n| --- | --- | --- |");
+    for (Case { name, .. }, time) in cases.iter().zip(&fastest) {
+        println!("| {name} | {time:.1} | {:.2} |", time / fastest[0]);
+    }
 }
 
 /// Jobs of a limb of a skeleton that stands somewhere, bent, with a pole, a hinge and a twist.
@@ -140,11 +216,28 @@ impl Limbs {
         }
     }
 
-    fn bench(
-        &self,
-        bencher: &mut criterion::Bencher<'_>,
-        solve: impl Fn(&JobInputs<'_>, JobOutputs<'_>) -> Result<(), LenError>,
-    ) {
+    fn case<'a>(
+        &'a self,
+        name: &'static str,
+        solve: impl Fn(&JobInputs<'_>, JobOutputs<'_>) -> Result<(), LenError> + 'a,
+    ) -> Case<'a> {
+        let inputs = self.inputs();
+        let none = || vec![0.0; inputs.len()];
+        let [mut start, mut middle] = [(); 2].map(|()| [none(), none(), none(), none()]);
+        let (mut hand_error, mut reach) = (none(), vec![Ok(Reach::Reached); inputs.len()]);
+        let pass = move || {
+            let outputs = JobOutputs {
+                start_correction: QuaternionsMut::of(&mut start),
+                middle_correction: QuaternionsMut::of(&mut middle),
+                hand_error: &mut hand_error,
+                reach: &mut reach,
+            };
+            solve(black_box(&inputs), outputs).expect("arrays of equal lengths");
+        };
+        Case { name, limbs: inputs.len(), pass: Box::new(pass) }
+    }
+
+    fn inputs(&self) -> JobInputs<'_> {
         fn points([x, y, z]: &Column) -> Points<'_> {
             Points { x, y, z }
         }
@@ -156,7 +249,7 @@ impl Limbs {
                 translation: points(translation),
             }
         }
-        let inputs = JobInputs {
+        JobInputs {
             start: joints(&self.start),
             middle: joints(&self.middle),
             end: points(&self.end),
@@ -166,21 +259,15 @@ impl Limbs {
             twist: self.twist.as_deref(),
             weight: None,
             softness: 0.0,
-        };
-        let none = || vec![0.0; inputs.len()];
-        let [mut start, mut middle] = [(); 2].map(|()| [none(), none(), none(), none()]);
-        let (mut hand_error, mut reach) = (none(), vec![Ok(Reach::Reached); inputs.len()]);
-        bencher.iter(|| {
-            let outputs = JobOutputs {
-                start_correction: QuaternionsMut::of(&mut start),
-                middle_correction: QuaternionsMut::of(&mut middle),
-                hand_error: &mut hand_error,
-                reach: &mut reach,
-            };
-            solve(black_box(&inputs), outputs).expect("arrays of equal lengths");
-        });
+        }
     }
 }
 
 criterion_group!(benches, two_bone);
-criterion_main!(benches);
+
+fn main() {
+    benches();
+    if std::env::args().any(|argument| argument == "--bench") {
+        print_ratios();
+    }
+}

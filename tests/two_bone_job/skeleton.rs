@@ -157,7 +157,12 @@ pub fn model_transform(random: &mut Random, far: f32) -> DAffine3 {
 }
 
 pub fn run(job: TwoBoneJob) -> TwoBoneCorrection {
-    job.run().expect("a job that can be done")
+    let correction = job.run().expect("a job that can be done");
+    for turn in [correction.start_correction, correction.middle_correction] {
+        let off = turn.as_dquat().length() - 1.0;
+        assert!(turn.w >= 0.0 && off.abs() < 2e-7, "{turn} from {job:?}");
+    }
+    correction
 }
 
 /// The angle between two rotations; exact for little ones.

@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::LimbBones;
 use super::closed_form;
-use super::closed_form::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, near_unit, side};
+use super::closed_form::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, side};
 use super::half_angle::HalfAngle;
 use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
@@ -71,7 +71,7 @@ pub(super) fn middle_joint(
         }
     };
     let hand_ss = bend.along * limb.upper_ss - bend.out * axis_ss.cross(limb.upper_ss);
-    BentLimb { turn_ss, hand_ss: near_unit(hand_ss), axis_ss: Some(axis_ss) }
+    BentLimb { turn_ss, hand_ss, axis_ss: Some(axis_ss) }
 }
 
 /// The closed form of the bent limb.

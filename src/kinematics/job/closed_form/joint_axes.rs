@@ -1,7 +1,5 @@
 use glam::{DMat3, DVec3};
 
-use super::rotation::near_unit;
-
 /// The start joint's axes M_s.
 pub struct StartAxes {
     /// M_s⁻¹ times det M_s.
@@ -77,18 +75,19 @@ impl MiddleAxes {
     }
 
     /// Converts an axis of turns from middle joint space, but for its length: see
-    /// [`JointChain::axis_ss`](super::chain::JointChain::axis_ss).
+    /// [`JointChain::axis_ss`](crate::kinematics::job::chain::JointChain::axis_ss).
     #[inline(always)]
     pub fn axis(&self, axis: DVec3) -> DVec3 {
         self.axes_ds * axis * sign(self.determinant)
     }
 
     /// Converts a unit axis of turns to middle joint space: see
-    /// [`JointChain::axis_in_middle`](super::chain::JointChain::axis_in_middle).
+    /// [`JointChain::axis_in_middle`](crate::kinematics::job::chain::JointChain::axis_in_middle). Its length stays 1 to
+    /// about the square of the deviation of usual axes.
     #[inline(always)]
     pub fn to_middle_space(&self, axis: DVec3) -> DVec3 {
         let doubled = self.axes_ds * self.scale + self.cofactors;
-        near_unit(doubled.transpose_mul_vec3(axis) * (0.5 * self.per_scale_squared))
+        doubled.transpose_mul_vec3(axis) * (0.5 * self.per_scale_squared)
     }
 }
 

@@ -17,6 +17,6 @@ mod usual_job;
 
 pub(super) use joint_axes::cofactors;
 pub(super) use limb::{IN_LINE, ON_LINE, side};
-pub(super) use rotation::{NEAR_HALF_TURN, OPPOSITE, least_rotation, near_unit, rotation_between};
+pub(super) use rotation::{NEAR_HALF_TURN, OPPOSITE, least_rotation, rotation_between};
 pub(super) use solved::{AT_LIMIT, NEAR, Solved};
 pub(super) use usual_job::UsualJob;

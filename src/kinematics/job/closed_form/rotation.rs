@@ -27,9 +27,3 @@ pub fn least_rotation(from: DVec3, to: DVec3) -> (DQuat, f64) {
     let cos = (0.5 * nearness).sqrt();
     (DQuat::from_vec4((from.cross(to) * (0.5 / cos)).extend(cos)), nearness)
 }
-
-/// Normalises a vector whose length is 1 to within 1e-5.
-#[inline(always)]
-pub fn near_unit(vector: DVec3) -> DVec3 {
-    vector * (1.5 - 0.5 * vector.length_squared())
-}
