@@ -82,8 +82,8 @@ impl MiddleAxes {
     }
 
     /// Converts a unit axis of turns to middle joint space: see
-    /// [`JointChain::axis_in_middle`](crate::kinematics::job::chain::JointChain::axis_in_middle). Its length stays 1 to
-    /// about the square of the deviation of usual axes.
+    /// [`JointChain::axis_in_middle`](crate::kinematics::job::chain::JointChain::axis_in_middle).
+    /// Its length stays 1 to about the square of the deviation of usual axes from a similarity.
     #[inline(always)]
     pub fn to_middle_space(&self, axis: DVec3) -> DVec3 {
         let doubled = self.axes_ds * self.scale + self.cofactors;
