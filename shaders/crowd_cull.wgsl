@@ -42,15 +42,15 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
-// Number of the next entry in a list.
+// Reserves an entry in a list and returns its index.
 fn next_slot(lod: u32) -> u32 {
     let vertices = crowd.lods[lod].vertices;
     return atomicAdd(&draws[lod * 4u], vertices) / vertices;
 }
 
-// Adds a limb as a line or a point. A point covers a pixel, also for a limb that is shorter. So of the
-// shorter ones a part is drawn that is as large as their length in pixels (after R. Cook and others,
-// "Stochastic Simplification of Aggregate Detail", 2007).
+// Adds a limb as a line or a point. A point always covers a whole pixel; so a limb that is p < 1 pixels
+// long on screen is drawn with the probability p, which keeps the covered area continuous from lines to
+// points (after R. Cook and others, "Stochastic Simplification of Aggregate Detail", 2007).
 fn add_limb(lod: u32, number: u32, limb: Limb, colour: vec3f) {
     let middle = (limb.base + limb.tip) * 0.5;
     let towards = to_eye(middle);
@@ -67,14 +67,15 @@ fn add_limb(lod: u32, number: u32, limb: Limb, colour: vec3f) {
     visible[entry + 1u] = pack4x8unorm(vec4f(in_scene_at(middle, lit(colour, normal)), 1.0));
 }
 
-// A number from 0 to 1, always the same for a limb (M. O'Neill, "PCG", 2014).
+// A number from 0 to 1 that is always the same for a limb (M. O'Neill, "PCG", 2014).
 fn random(limb: u32) -> f32 {
     let state = limb * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
 }
 
-// What `in_scene` is for the pixel of a point in a fragment shader.
+// Like `in_scene`, but without derivatives, which compute shaders do not have: the size of a pixel on each
+// plane is computed instead.
 fn in_scene_at(point: vec3f, colour: vec3f) -> vec3f {
     let clip = view.clip_from_world * vec4f(point, 1.0);
     let position = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * view.size;
@@ -88,8 +89,8 @@ fn in_scene_at(point: vec3f, colour: vec3f) -> vec3f {
     return behind_planes_of(fogged(colour, position, along), ray, along, pixels);
 }
 
-// Size of a pixel on the plane through the origin with this normal, along each axis of the world,
-// in cells: what `pixel_in_cells` is in a fragment shader.
+// Size of a pixel on the plane through the origin with this normal, along each axis of the world, in
+// cells, like `pixel_in_cells`.
 fn pixel_on(ray: Ray, normal: vec3f) -> vec3f {
     let per_depth = ray.direction / dot(ray.direction, normal);
     let hit = ray.origin - per_depth * dot(ray.origin, normal);

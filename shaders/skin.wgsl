@@ -10,11 +10,11 @@ struct Look {
 
 @group(1) @binding(0) var<uniform> look: Look;
 
-// A constant, because processors sample the texture even where a variable says not to.
+// A constant, because a software adapter samples the texture even if a uniform selects the other branch.
 override IS_TEXTURED = false;
 
-// Material of a part. Colours multiply as sRGB: nearly a power of linear light, it gives nearly the same
-// products.
+// Material of a part. Colours are multiplied in sRGB instead of linear light. sRGB is nearly a power of
+// linear light, and the power of a product is the product of the powers, so the error is small.
 @group(2) @binding(0) var<uniform> part_colour: vec3f;
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;

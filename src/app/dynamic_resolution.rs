@@ -3,20 +3,21 @@ use std::time::{Duration, Instant};
 /// Fractions of the viewport's width and height at which the scene is drawn while it moves.
 const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
 
-/// Time without motion after which the scene is drawn in full.
+/// Time without motion after which the scene is drawn at full resolution.
 const REST: Duration = Duration::from_millis(100);
 
-/// Number of frames in a row that must be too slow before the picture becomes smaller, and so fast
-/// that it may become larger.
+/// Number of slow frames in a row before the resolution is lowered.
 const SLOW_FRAMES: u32 = 2;
+
+/// Number of fast frames in a row before the resolution is raised.
 const FAST_FRAMES: u32 = 20;
 
-/// Part of the budget that a frame may be expected to take after the picture becomes larger.
+/// The resolution is raised only if the predicted frame time is below this fraction of the budget.
 const SAFE: f32 = 0.75;
 
-/// Chooses the fraction of the viewport's width and height at which the scene is drawn. While it
-/// moves, the scene is drawn so small that a frame takes no longer than a budget; at rest, it is
-/// drawn in full.
+/// Chooses the fraction of the viewport's width and height at which the scene is drawn. While the
+/// scene moves, it is as large as a budget for the frame time allows, but not below [`SCALES`]; at
+/// rest, it is 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DynamicResolution {
     /// Index into [`SCALES`].
@@ -41,18 +42,18 @@ impl DynamicResolution {
         self.moved.map_or(1.0, |_| SCALES[self.step])
     }
 
-    /// Time from `now` until the scene must be drawn in full, unless it moves again; `None` at rest.
+    /// Time from `now` until the scene must be drawn at full resolution, unless it moves again; `None` at rest.
     pub fn rests_in(&self, now: Instant) -> Option<Duration> {
         Some((self.moved? + REST).saturating_duration_since(now))
     }
 
-    /// Adapts to a frame of a scale and the time that it took.
+    /// Adapts the resolution to the time that a frame of this scale took.
     pub fn measure(&mut self, scale: f32, time: Duration, budget: Option<Duration>) {
         let Some(budget) = budget.filter(|_| scale == SCALES[self.step]) else {
             return;
         };
         let used = time.as_secs_f32() / budget.as_secs_f32();
-        // As if all time were spent on pixels.
+        // Assumes that the frame time is proportional to the number of pixels.
         let larger = self.step.saturating_sub(1);
         let used_larger = used * (SCALES[larger] / scale).powi(2);
         self.slow = if used > 1.0 { self.slow + 1 } else { 0 };

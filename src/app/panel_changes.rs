@@ -10,11 +10,11 @@ use super::pixel_area::PixelArea;
 /// Side of a tile in pixels.
 const TILE: u32 = 32;
 
-/// Maximum number of changed areas. Each costs a pass over the panels.
-const MOST: usize = 12;
+/// Maximum number of changed areas. Each costs a loop over the triangles of the panels.
+const MAX_AREAS: usize = 12;
 
-/// Number of unchanged tiles that cost as much as another area.
-const PASS: u32 = 4;
+/// Cost of one more area, as a number of unchanged tiles to redraw.
+const AREA_COST: u32 = 4;
 
 /// Finds the parts of the window where the panels differ from the frame before.
 #[derive(Default)]
@@ -131,7 +131,7 @@ fn add(rects: &mut Vec<TileRect>, rect: TileRect) {
     };
     let nearest = rects.iter().enumerate().map(|(index, other)| (waste(other), index)).min();
     match nearest {
-        Some((waste, index)) if waste <= PASS || rects.len() == MOST => {
+        Some((waste, index)) if waste <= AREA_COST || rects.len() == MAX_AREAS => {
             let other = rects.swap_remove(index);
             add(rects, union(&other, &rect));
         }
@@ -254,7 +254,7 @@ mod tests {
             let tiles: Vec<_> = tiles.map(|at| at.map(|at| at..at + 1)).collect();
             let mut rects = Vec::new();
             tiles.iter().for_each(|tile| add(&mut rects, tile.clone()));
-            assert!(rects.len() <= MOST && (count == 0) == rects.is_empty());
+            assert!(rects.len() <= MAX_AREAS && (count == 0) == rects.is_empty());
             for tile in &tiles {
                 assert!(rects.iter().any(|rect| union(rect, tile) == *rect), "{tile:?}");
             }

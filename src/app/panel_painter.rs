@@ -7,8 +7,8 @@ use super::panel_triangles::PanelTriangles;
 use super::pixel_area::PixelArea;
 use crate::render::{Gpu, Renderer, TexturePainter};
 
-/// Draws the panels, and the scene under them, into a texture that keeps them. A frame draws only
-/// the areas that have changed, which a machine without a graphics card does much faster.
+/// Draws the panels, and the scene under them, into a texture that keeps them. A frame redraws only
+/// the areas that have changed, which is much faster on a software adapter (docs/performance.md).
 pub(super) struct PanelPainter {
     triangles: PanelTriangles,
     texture_painter: TexturePainter,
@@ -42,7 +42,7 @@ pub(super) struct PlacedScene<'a> {
 impl PanelPainter {
     /// Creates a painter for windows with this format, and uploads egui's whole font atlas.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, panels: &Context) -> Self {
-        // Opaque, since it is blended over what is there; the order of the colours does not matter.
+        // Opaque black, the same bytes in RGBA and BGRA. It is blended over the kept pixels.
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let black = texture(gpu, "black", format, [1, 1], usage);
         let row =
@@ -65,7 +65,7 @@ impl PanelPainter {
     ) {
         for (id, deltas) in changed {
             for delta in deltas {
-                // Parts are added to the font atlas; only a whole one changes what is drawn.
+                // A part adds glyphs to the font atlas; a whole atlas may change glyphs on screen.
                 self.kept.is_stale |= delta.pos.is_none();
                 self.triangles.update_texture(gpu, id, &delta);
             }
@@ -78,7 +78,7 @@ impl PanelPainter {
         }
     }
 
-    /// Draws what has changed since the last call, of panels on a screen.
+    /// Redraws the areas of the panels and the scene that have changed since the last call.
     pub fn draw(
         &mut self,
         gpu: &Gpu,

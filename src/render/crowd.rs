@@ -305,7 +305,7 @@ impl CrowdBuffers {
             compute::buffer(gpu, label, size, wgpu::BufferUsages::STORAGE)
         };
         let shoulders = buffer("crowd shoulders", 2);
-        let visible = buffer("crowd, visible arms", CrowdLod::numbers().into());
+        let visible = buffer("crowd, visible arms", CrowdLod::words().into());
         let poses = solver.poses();
         let to_cull = [uniform, &shoulders, poses, &visible, arguments];
         let cull = compute::group(gpu, "crowd culling", cull, &to_cull);
@@ -342,8 +342,8 @@ impl CrowdData {
 }
 
 /// Left, right, bottom, top and near planes of the view frustum, with unit normals pointing inwards
-/// (G. Gribb, K. Hartmann, *Fast Extraction of Viewing Frustum Planes*, 2001), for a depth of 1 at
-/// the near plane.
+/// (G. Gribb, K. Hartmann, *Fast Extraction of Viewing Frustum Planes*, 2001), for reversed depth,
+/// which is 1 at the near plane.
 fn frustum_planes(clip_from_world: Mat4) -> [Vec4; 5] {
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
     [w + x, w - x, w + y, w - y, w - z].map(|plane| {

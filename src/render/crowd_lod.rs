@@ -24,8 +24,8 @@ pub(super) struct CrowdLod {
     sides: u32,
     /// Number of vertices of an entry in the level's list: an arm, or a limb with its colour.
     vertices: u32,
-    /// How many numbers an arm takes in the list.
-    numbers: u32,
+    /// Number of u32s of an arm in the list.
+    words: u32,
 }
 
 /// `Lod` in `crowd.wgsl`.
@@ -46,8 +46,8 @@ pub(super) type DrawArguments = [u32; 4];
 impl CrowdLod {
     pub const COUNT: usize = 5;
 
-    /// Levels from the nearest arms to the farthest: limbs with joints, with few sides, flat, lines,
-    /// and points.
+    /// Levels from the nearest arms to the farthest: round limbs with joints, five-sided limbs, flat
+    /// limbs, lines, points.
     pub const ALL: [Self; Self::COUNT] = [
         Self::with_sides(12, 3 * 10 * 5 * 6),
         Self::with_sides(5, 0),
@@ -57,33 +57,33 @@ impl CrowdLod {
     ];
 
     /// Arguments that draw nothing until the culling shader has counted the vertices. One instance
-    /// holds all arms: a software device draws few vertices per instance slowly.
+    /// holds all arms, because many instances of few vertices are slow on a software adapter.
     pub const NO_DRAWS: [DrawArguments; Self::COUNT] = [[0, 1, 0, 0]; Self::COUNT];
 
     const fn with_sides(sides: u32, joint_vertices: u32) -> Self {
         let vertices = 2 * 6 * sides + joint_vertices;
         let topology = wgpu::PrimitiveTopology::TriangleList;
-        Self { shader: ARMS, topology, sides, vertices, numbers: 1 }
+        Self { shader: ARMS, topology, sides, vertices, words: 1 }
     }
 
     const fn of_limbs(topology: wgpu::PrimitiveTopology, vertices: u32) -> Self {
-        Self { shader: FAR, topology, sides: 0, vertices, numbers: 4 }
+        Self { shader: FAR, topology, sides: 0, vertices, words: 4 }
     }
 
     /// Uniforms of all levels, whose lists have room for `stride` arms.
     pub fn data(stride: u32) -> [CrowdLodData; Self::COUNT] {
         let mut first = 0;
         Self::ALL.map(|lod| {
-            let Self { sides, vertices, numbers, .. } = lod;
+            let Self { sides, vertices, words, .. } = lod;
             let data = CrowdLodData { sides, vertices, first, padding: 0 };
-            first += numbers * stride;
+            first += words * stride;
             data
         })
     }
 
-    /// How many numbers an arm takes in the lists of all levels together.
-    pub fn numbers() -> u32 {
-        Self::ALL.iter().map(|lod| lod.numbers).sum()
+    /// Number of u32s of an arm in the lists of all levels together.
+    pub fn words() -> u32 {
+        Self::ALL.iter().map(|lod| lod.words).sum()
     }
 
     /// Number of triangles that draws with these arguments draw. Lines and points count none.
@@ -106,7 +106,7 @@ mod tests {
     fn lists_of_levels_do_not_overlap() {
         let lists = CrowdLod::data(1000).map(|lod| lod.first);
         assert_eq!(lists, [0, 1000, 2000, 3000, 7000]);
-        assert_eq!(CrowdLod::numbers(), 11);
+        assert_eq!(CrowdLod::words(), 11);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 use glam::{Quat, Vec3};
 
-use super::closed_form::Solved;
+use super::fast_path::Solved;
 use crate::kinematics::two_bone::Reach;
 
 /// Result of a [`TwoBoneJob`](super::TwoBoneJob): two rotations that multiply the joints' local

@@ -143,9 +143,9 @@
 
 pub mod batch;
 mod chain;
-mod closed_form;
 mod correction;
 mod error;
+mod fast_path;
 mod half_angle;
 mod stages;
 mod two_bone_job;

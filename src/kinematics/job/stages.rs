@@ -3,8 +3,8 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::LimbBones;
-use super::closed_form;
-use super::closed_form::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, side};
+use super::fast_path;
+use super::fast_path::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, side};
 use super::half_angle::HalfAngle;
 use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
@@ -164,8 +164,8 @@ fn bending_axis(upper_ss: DVec3, hinge_ss: Option<DVec3>, pole_ss: Option<DVec3>
 
 /// The rotation that maps the axes of one right-handed frame to those of another.
 fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> DQuat {
-    let (turn, nearness) = closed_form::rotation_between(from, to);
-    if nearness > NEAR_HALF_TURN {
+    let (turn, trace_plus_one) = fast_path::rotation_between(from, to);
+    if trace_plus_one > NEAR_HALF_TURN {
         return turn;
     }
     let [from, to] = [from, to].map(|[x, y, z]| DMat3::from_cols(x, y, z));
@@ -175,8 +175,8 @@ fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> DQuat {
 /// Rotation by the smallest angle from one unit vector to another; about any perpendicular axis if
 /// they are opposite.
 fn least_rotation(from: DVec3, to: DVec3) -> DQuat {
-    let (turn, nearness) = closed_form::least_rotation(from, to);
-    if nearness > OPPOSITE {
+    let (turn, cos_plus_one) = fast_path::least_rotation(from, to);
+    if cos_plus_one > OPPOSITE {
         return turn;
     }
     // Half a turn about an exactly perpendicular axis, then the small remainder.

@@ -2,9 +2,9 @@ use glam::{Affine3A, DQuat, Quat, Vec3};
 use multiversion::multiversion;
 
 use super::chain::JointChain;
-use super::closed_form::{AT_LIMIT, NEAR, Solved, UsualJob};
 use super::correction::TwoBoneCorrection;
 use super::error::{JobError, JobField};
+use super::fast_path::{AT_LIMIT, FastPathJob, NEAR, Solved};
 use super::stages;
 use crate::kinematics::saturate::saturate;
 use crate::kinematics::soft_reach::SoftReach;
@@ -54,7 +54,7 @@ struct FullCorrection {
 }
 
 impl TwoBoneJob {
-    /// A job of weight 1 with hard limits, without pole, hinge and twist.
+    /// A job of weight 1 without softness, pole, hinge and twist.
     pub fn new(start: Affine3A, middle: Affine3A, end: Affine3A, target: Vec3) -> Self {
         Self {
             start,
@@ -78,14 +78,15 @@ impl TwoBoneJob {
     /// perpendicular by more than one in a thousand (scale 0 of either joint is accepted), a
     /// softness outside [0, 1) and a weight outside [0, 1].
     pub fn run(&self) -> Result<TwoBoneCorrection, JobError> {
-        match self.solve_usual() {
+        match self.solve_on_fast_path() {
             Some(correction) => Ok(correction),
             None => self.solve_any(),
         }
     }
 
-    /// The correction of a usual job, with the bits that a batch gives; `None` for another job.
-    fn solve_usual(&self) -> Option<TwoBoneCorrection> {
+    /// The correction by the fast path, with the bits that a batch gives; `None` for a job that does
+    /// not fit it.
+    fn solve_on_fast_path(&self) -> Option<TwoBoneCorrection> {
         if self.softness != 0.0 || self.weight != 1.0 {
             return None;
         }
@@ -95,7 +96,7 @@ impl TwoBoneJob {
             Some(_) => solve_hard::<true>(self, twist),
             None => solve_hard::<false>(self, twist),
         };
-        solved.is_usual.then(|| solved.into())
+        solved.is_regular.then(|| solved.into())
     }
 
     /// The correction of any job, in steps.
@@ -110,7 +111,7 @@ impl TwoBoneJob {
     /// The correction of weight 1; `None` if there is nothing to turn.
     fn solve(&self, chain: &JointChain, soft_reach: SoftReach) -> Option<FullCorrection> {
         let limb = chain.limb()?;
-        let target_ss = chain.point_ss(self.target.as_dvec3()) * limb.per_unit;
+        let target_ss = chain.point_ss(self.target.as_dvec3()) * limb.inv_unit;
         let target = target_ss.length();
         let pole_ss = self.pole.map(|pole| chain.vector_ss(pole.as_dvec3()));
         let hinge_ss = self.hinge.map(|axis| chain.axis_ss(axis.as_dvec3()));
@@ -178,11 +179,11 @@ impl TwoBoneJob {
     }
 }
 
-/// Solves a job with hard limits and a weight of 1. `twist` is its sine and cosine.
+/// Solves a job without softness, with a weight of 1. `twist` is its sine and cosine.
 #[multiversion(targets("x86_64+avx2"))]
 fn solve_hard<const POLE: bool>(job: &TwoBoneJob, twist: [f64; 2]) -> Solved {
     let TwoBoneJob { start, middle, end, target, pole, hinge, .. } = job;
-    let job = UsualJob {
+    let job = FastPathJob {
         axes: [start, middle].map(|joint| joint.matrix3.as_dmat3()),
         joints: [start, middle, end].map(|joint| joint.translation.as_dvec3()),
         target: target.as_dvec3(),
@@ -205,7 +206,7 @@ mod tests {
 
     /// A limb that is bent, with bones of similar lengths, under a scaled and mirrored joint. `turn`
     /// is any number.
-    fn usual_job(turn: f32) -> TwoBoneJob {
+    fn regular_job(turn: f32) -> TwoBoneJob {
         let local = |turn: f32, along: f32, scale: Vec3| {
             let rotation = Quat::from_euler(EulerRot::XYZ, turn, 0.3 * turn, 0.9);
             Affine3A::from_scale_rotation_translation(scale, rotation, along * Vec3::X)
@@ -223,16 +224,16 @@ mod tests {
     }
 
     #[test]
-    fn usual_jobs_take_the_fast_path() {
+    fn regular_jobs_take_the_fast_path() {
         for number in 0..1_000 {
-            let job = usual_job(number as f32);
-            assert!(job.solve_usual().is_some(), "{job:?}");
+            let job = regular_job(number as f32);
+            assert!(job.solve_on_fast_path().is_some(), "{job:?}");
         }
     }
 
     #[test]
     fn jobs_near_a_special_case_do_not() {
-        let job = usual_job(1.0);
+        let job = regular_job(1.0);
         let straight = job.middle.translation - job.start.translation + job.middle.translation;
         let uneven = Affine3A::from_scale(Vec3::new(1.0, 2.0, 1.0));
         let far = |of: Affine3A| Affine3A { translation: of.translation + 1e8, ..of };
@@ -259,7 +260,7 @@ mod tests {
             ("twist", TwoBoneJob { twist: f32::INFINITY, ..job }),
             ("hinge", TwoBoneJob { hinge: Some(Vec3::NAN), ..job }),
         ] {
-            assert!(job.solve_usual().is_none(), "{why}");
+            assert!(job.solve_on_fast_path().is_none(), "{why}");
         }
     }
 }

@@ -3,7 +3,7 @@ use core::ops::Range;
 use glam::{Affine3A, Vec3};
 
 use super::error::LenError;
-use super::kernel::{BLOCK, UsualJobs};
+use super::kernel::{BLOCK, FastPathJobs};
 use crate::kinematics::batch::Points;
 use crate::kinematics::job::TwoBoneJob;
 
@@ -105,7 +105,7 @@ impl JobInputs<'_> {
     }
 
     /// Copies the jobs of at most a block of limbs, without their weights and softness.
-    pub(super) fn copy_to(&self, jobs: &mut UsualJobs) {
+    pub(super) fn copy_to(&self, jobs: &mut FastPathJobs) {
         for (joints, to) in [(self.start, &mut jobs.start), (self.middle, &mut jobs.middle)] {
             for (column, to) in joints.columns().into_iter().zip(to) {
                 copy(column, to);

@@ -1,5 +1,5 @@
-//! Usual jobs, one after the other: plain code over arrays that the compiler vectorises for common
-//! instruction sets. The widest set that the machine has is chosen at run time.
+//! Jobs of the fast path, one after the other: plain code over arrays that the compiler vectorises
+//! for common instruction sets. The widest set that the machine has is chosen at run time.
 //!
 //! No result depends on the vector width: there is no fused multiply-add, no reordered sum and no
 //! approximate reciprocal.
@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 use multiversion::multiversion;
 
-use crate::kinematics::job::closed_form::UsualJob;
+use crate::kinematics::job::fast_path::FastPathJob;
 
 /// Number of limbs that are solved together. Their inputs and results stay in the innermost cache.
 pub(super) const BLOCK: usize = 128;
@@ -16,7 +16,7 @@ pub(super) const BLOCK: usize = 128;
 type Numbers = [f32; BLOCK];
 
 /// Jobs of a block. Each point and axis is x, y and z.
-pub(super) struct UsualJobs {
+pub(super) struct FastPathJobs {
     /// Columns of the start joints' matrices, the last the position.
     pub start: [[Numbers; 3]; 4],
     /// Columns of the middle joints' matrices, the last the position.
@@ -44,11 +44,11 @@ pub(super) mod outcome {
     pub const REACHED: f32 = 0.0;
     pub const TOO_FAR: f32 = 1.0;
     pub const TOO_CLOSE: f32 = 2.0;
-    /// The job is not usual, and the limb's results are meaningless.
-    pub const UNUSUAL: f32 = 3.0;
+    /// The job is not regular, and the limb's results are meaningless.
+    pub const IRREGULAR: f32 = 3.0;
 }
 
-impl UsualJobs {
+impl FastPathJobs {
     pub const ZERO: Self = Self {
         start: [[[0.0; BLOCK]; 3]; 4],
         middle: [[[0.0; BLOCK]; 3]; 4],
@@ -74,9 +74,9 @@ impl Results {
     "x86_64+avx2",
     "aarch64+neon",
 ))]
-pub(super) fn solve<const POLE: bool>(jobs: &UsualJobs, results: &mut Results) {
+pub(super) fn solve<const POLE: bool>(jobs: &FastPathJobs, results: &mut Results) {
     for limb in 0..BLOCK {
-        let job = UsualJob {
+        let job = FastPathJob {
             axes: [axes(&jobs.start, limb), axes(&jobs.middle, limb)],
             joints: [at(&jobs.start[3], limb), at(&jobs.middle[3], limb), at(&jobs.end, limb)],
             target: at(&jobs.target, limb),
@@ -92,7 +92,7 @@ pub(super) fn solve<const POLE: bool>(jobs: &UsualJobs, results: &mut Results) {
         results.hand_error[limb] = solved.hand_error;
         let missed = if solved.is_too_close { outcome::TOO_CLOSE } else { outcome::TOO_FAR };
         let outcome = if solved.is_reached { outcome::REACHED } else { missed };
-        results.outcome[limb] = if solved.is_usual { outcome } else { outcome::UNUSUAL };
+        results.outcome[limb] = if solved.is_regular { outcome } else { outcome::IRREGULAR };
     }
 }
 

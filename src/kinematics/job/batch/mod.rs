@@ -50,10 +50,10 @@
 //!
 //! # Speed
 //!
-//! Usual jobs take the fast path: bent limbs with bones of similar lengths (to 1 : 1000 or so),
-//! hard limits, a weight of 1, a start joint that is not squeezed flat, a middle joint that is a
-//! rotation with an even scale to 1e-5, and numbers from about 1e-9 to 1e9. Other limbs are solved
-//! alone. A twist adds about a third of the time, for its sine and cosine.
+//! Most jobs take the fast path: bent limbs without softness, with a weight of 1, bone lengths that
+//! differ by less than 1 : 1,000,000, a start joint whose scales differ by less than 1 : 1000, a
+//! middle joint that is a rotation with an even scale to 5e-6, and numbers from about 1e-9 to 1e9.
+//! Other limbs are solved alone. A twist adds about a third of the time, for its sine and cosine.
 //! `docs/performance.md` has the times.
 
 #[cfg(feature = "parallel")]

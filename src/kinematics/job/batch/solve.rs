@@ -1,6 +1,6 @@
 use super::error::LenError;
 use super::inputs::JobInputs;
-use super::kernel::{self, BLOCK, Results, UsualJobs, outcome};
+use super::kernel::{self, BLOCK, FastPathJobs, Results, outcome};
 use super::outputs::JobOutputs;
 
 /// Solves all limbs on this thread without allocating.
@@ -18,7 +18,7 @@ pub fn solve(inputs: &JobInputs<'_>, mut outputs: JobOutputs<'_>) -> Result<(), 
 
 /// Solves limbs whose arrays have equal lengths.
 pub(super) fn solve_checked(inputs: &JobInputs<'_>, outputs: &mut JobOutputs<'_>) {
-    let (mut jobs, mut results) = (UsualJobs::ZERO, Results::ZERO);
+    let (mut jobs, mut results) = (FastPathJobs::ZERO, Results::ZERO);
     for first in (0..inputs.len()).step_by(BLOCK) {
         let limbs = inputs.len().min(first + BLOCK) - first;
         let part = inputs.part(first..first + limbs);
@@ -34,8 +34,8 @@ pub(super) fn solve_checked(inputs: &JobInputs<'_>, outputs: &mut JobOutputs<'_>
     }
 }
 
-/// Whether the results are those of the limb's job, because it is usual.
+/// Whether the results are those of the limb's job, because it fits the fast path.
 fn is_done(inputs: &JobInputs<'_>, results: &Results, limb: usize) -> bool {
     let weight = inputs.weight.map_or(1.0, |weight| weight[limb]);
-    results.outcome[limb] != outcome::UNUSUAL && weight == 1.0 && inputs.softness == 0.0
+    results.outcome[limb] != outcome::IRREGULAR && weight == 1.0 && inputs.softness == 0.0
 }

@@ -4,9 +4,10 @@ use super::joint_axes::{MiddleAxes, StartAxes, sign};
 use super::limb::Limb;
 use super::solved::{AT_LIMIT, NEAR, Solved};
 
-/// A job with hard limits and a weight of 1.
+/// A job without softness, with a weight of 1. Whether it is regular, too, is a result:
+/// [`Solved::is_regular`].
 #[derive(Clone, Copy)]
-pub struct UsualJob {
+pub struct FastPathJob {
     /// M_s and M_m, as columns.
     pub axes: [DMat3; 2],
     /// Positions of the start, middle and end joint.
@@ -20,7 +21,7 @@ pub struct UsualJob {
     pub twist: [f64; 2],
 }
 
-impl UsualJob {
+impl FastPathJob {
     #[inline(always)]
     pub fn solve<const POLE: bool>(&self) -> Solved {
         let [start_axes, middle_axes] = self.axes;
@@ -39,8 +40,8 @@ impl UsualJob {
         let middle_turn = bent.half_turn.about(middle.to_middle_space(bent.axis));
         let corrections = [rounded(start_turn), rounded(middle_turn)];
         let solved = self.measure(corrections, &start, &middle, &limb);
-        let is_usual = start.is_usual & middle.is_usual & bent.is_usual & is_aimed;
-        Solved { is_usual: is_usual & solved.is_usual, ..solved }
+        let is_regular = start.is_regular & middle.is_regular & bent.is_regular & is_aimed;
+        Solved { is_regular: is_regular & solved.is_regular, ..solved }
     }
 
     /// The corrections with the reach that these rounded rotations give.
@@ -54,7 +55,7 @@ impl UsualJob {
     ) -> Solved {
         let [start_correction, middle_correction] = corrections;
         let (start_turn, middle_turn) = (widened(start_correction), widened(middle_correction));
-        let lower_ms = middle.cofactors.transpose_mul_vec3(limb.lower_ds) * middle.per_determinant;
+        let lower_ms = middle.cofactors.transpose_mul_vec3(limb.lower_ds) * middle.inv_determinant;
         let lower_ds = middle.axes_ds * (middle_turn * lower_ms);
         let hand_ds = start_turn * (limb.upper_ds + lower_ds);
         let off_ds = hand_ds - limb.target_ds;
@@ -63,14 +64,14 @@ impl UsualJob {
         let is_near = off_ds.length_squared() <= near * near;
         let left = (limb.target - limb.distance).abs();
         let [start_axes, _] = self.axes;
-        let hand_error = (start_axes * off_ds).length() * start.per_determinant.abs();
+        let hand_error = (start_axes * off_ds).length() * start.inv_determinant.abs();
         Solved {
             start_correction,
             middle_correction,
             is_reached: is_near & (left <= AT_LIMIT * length),
             is_too_close: hand_ds.length_squared() > limb.target * limb.target,
             hand_error: hand_error as f32,
-            is_usual: hand_error < f64::from(f32::MAX),
+            is_regular: hand_error < f64::from(f32::MAX),
         }
     }
 }

@@ -5,10 +5,10 @@ pub struct StartAxes {
     /// M_s⁻¹ times det M_s.
     pub adjugate: DMat3,
     pub determinant: f64,
-    pub per_determinant: f64,
+    pub inv_determinant: f64,
     /// Sum of the squared elements of the adjugate.
     pub square: f64,
-    pub is_usual: bool,
+    pub is_regular: bool,
 }
 
 /// The middle joint's axes in start joint space, M = M_s⁻¹·M_m.
@@ -17,60 +17,61 @@ pub struct MiddleAxes {
     /// M⁻ᵀ times det M.
     pub cofactors: DMat3,
     pub determinant: f64,
-    pub per_determinant: f64,
+    pub inv_determinant: f64,
     /// Scale, negative for a joint that mirrors.
     pub scale: f64,
-    pub per_scale_squared: f64,
-    pub is_usual: bool,
+    pub inv_scale_squared: f64,
+    pub is_regular: bool,
 }
 
 impl StartAxes {
     #[inline(always)]
     pub fn new(axes: DMat3) -> Self {
-        const WORST_CONDITION: f64 = 1e6;
-        const LEAST: f64 = 1e-40;
-        const MOST: f64 = 1e40;
+        // Limit of the bound ab/c² on the condition number a/c, which is then 1000 for a = b.
+        const MAX_BOUND: f64 = 1e6;
+        const MIN_SQUARE: f64 = 1e-40;
+        const MAX_SQUARE: f64 = 1e40;
         let cofactors = cofactors(axes);
         let determinant = axes.x_axis.dot(cofactors.x_axis);
         let square = square(cofactors);
-        // With the singular values a ≥ b ≥ c, the condition number a/c is at most (ab)³/(abc)².
-        let worst = WORST_CONDITION * (determinant * determinant);
-        let is_usual =
-            (square * square * square <= worst * worst) & (square > LEAST) & (square < MOST);
-        let per_determinant = 1.0 / determinant;
-        Self { adjugate: cofactors.transpose(), determinant, per_determinant, square, is_usual }
+        // With the singular values a ≥ b ≥ c, a/c is at most ab/c² = (ab)³/(abc)².
+        let worst = MAX_BOUND * (determinant * determinant);
+        let is_regular = (square * square * square <= worst * worst)
+            & (square > MIN_SQUARE)
+            & (square < MAX_SQUARE);
+        let inv_determinant = 1.0 / determinant;
+        Self { adjugate: cofactors.transpose(), determinant, inv_determinant, square, is_regular }
     }
 }
 
 impl MiddleAxes {
     #[inline(always)]
     pub fn new(axes_ds: DMat3) -> Self {
-        // Deviation of the singular values from their mean (root of the sum of squares, relative),
-        // and the square of the scale.
-        const DIFFERENT: f64 = 5e-6;
-        const LEAST: f64 = 1e-60;
-        const MOST: f64 = 1e60;
+        // Root of the sum of the squared relative deviations of the singular values from their mean.
+        const MAX_DEVIATION: f64 = 5e-6;
+        const MIN_SQUARE: f64 = 1e-60;
+        const MAX_SQUARE: f64 = 1e60;
         let cofactors = cofactors(axes_ds);
         let determinant = axes_ds.x_axis.dot(cofactors.x_axis);
         let scale_squared = square(axes_ds) * (1.0 / 3.0);
-        let per_product = 1.0 / (scale_squared * determinant);
-        let per_scale_squared = per_product * determinant;
-        let scale = determinant * per_scale_squared;
-        // det²/s⁶ is the product of the squared singular values by the cube of their mean: 1 for a
-        // similarity, and less by twice the sum of the squared deviations for any other matrix.
-        let evenness = scale * scale * per_scale_squared;
-        let is_usual = (evenness >= 1.0 - 2.0 * DIFFERENT * DIFFERENT)
-            & (scale_squared > LEAST)
-            & (scale_squared < MOST);
-        let per_determinant = per_product * scale_squared;
+        let inv_product = 1.0 / (scale_squared * determinant);
+        let inv_scale_squared = inv_product * determinant;
+        let scale = determinant * inv_scale_squared;
+        // det²/s⁶, the product of the squared singular values divided by the cube of their mean: 1
+        // for a similarity, else 1 − 2 Σ deviation², to second order.
+        let similarity = scale * scale * inv_scale_squared;
+        let is_regular = (similarity >= 1.0 - 2.0 * MAX_DEVIATION * MAX_DEVIATION)
+            & (scale_squared > MIN_SQUARE)
+            & (scale_squared < MAX_SQUARE);
+        let inv_determinant = inv_product * scale_squared;
         Self {
             axes_ds,
             cofactors,
             determinant,
-            per_determinant,
+            inv_determinant,
             scale,
-            per_scale_squared,
-            is_usual,
+            inv_scale_squared,
+            is_regular,
         }
     }
 
@@ -83,11 +84,11 @@ impl MiddleAxes {
 
     /// Converts a unit axis of turns to middle joint space: see
     /// [`JointChain::axis_in_middle`](crate::kinematics::job::chain::JointChain::axis_in_middle).
-    /// Its length stays 1 to about the square of the deviation of usual axes from a similarity.
+    /// For regular axes, its length stays 1 to about the square of their deviation from a similarity.
     #[inline(always)]
     pub fn to_middle_space(&self, axis: DVec3) -> DVec3 {
         let doubled = self.axes_ds * self.scale + self.cofactors;
-        doubled.transpose_mul_vec3(axis) * (0.5 * self.per_scale_squared)
+        doubled.transpose_mul_vec3(axis) * (0.5 * self.inv_scale_squared)
     }
 }
 
@@ -119,34 +120,34 @@ mod tests {
     }
 
     #[test]
-    fn start_axes_are_usual_up_to_a_condition_number_and_within_a_range_of_lengths() {
-        let is_usual = |lengths| StartAxes::new(axes(lengths)).is_usual;
+    fn start_axes_are_regular_up_to_a_condition_number_and_within_a_range_of_lengths() {
+        let is_regular = |lengths| StartAxes::new(axes(lengths)).is_regular;
         for scale in [1e-6, 1.0, -1.0, 1e6] {
             for flat in [1e-3, -1e-3] {
-                assert!(is_usual([scale, scale, 1.01 * flat * scale]), "{scale}, {flat}");
-                assert!(!is_usual([scale, scale, 0.99 * flat * scale]), "{scale}, {flat}");
+                assert!(is_regular([scale, scale, 1.01 * flat * scale]), "{scale}, {flat}");
+                assert!(!is_regular([scale, scale, 0.99 * flat * scale]), "{scale}, {flat}");
             }
         }
         // The squares of three products of two lengths are added.
         let least = 1e-10 / 3_f64.sqrt().sqrt();
         let most = 1e10 / 3_f64.sqrt().sqrt();
-        assert!(is_usual([1.01 * least; 3]) && !is_usual([0.99 * least; 3]));
-        assert!(is_usual([0.99 * most; 3]) && !is_usual([1.01 * most; 3]));
-        assert!(!is_usual([0.0; 3]) && !is_usual([f64::NAN; 3]));
+        assert!(is_regular([1.01 * least; 3]) && !is_regular([0.99 * least; 3]));
+        assert!(is_regular([0.99 * most; 3]) && !is_regular([1.01 * most; 3]));
+        assert!(!is_regular([0.0; 3]) && !is_regular([f64::NAN; 3]));
     }
 
     #[test]
-    fn middle_axes_are_usual_if_they_are_a_similarity_within_a_range_of_lengths() {
-        let is_usual = |lengths| MiddleAxes::new(axes(lengths)).is_usual;
+    fn middle_axes_are_regular_if_they_are_a_similarity_within_a_range_of_lengths() {
+        let is_regular = |lengths| MiddleAxes::new(axes(lengths)).is_regular;
         // One length longer by d: deviations of 2d/3, −d/3 and −d/3 from the mean.
         let different = 5e-6 / (6_f64.sqrt() / 3.0);
         for scale in [1e-25, 1e-3, 1.0, -1.0, 1e3, 1e25] {
-            assert!(is_usual([scale * (1.0 + 0.98 * different), scale, scale]), "{scale}");
-            assert!(!is_usual([scale * (1.0 + 1.02 * different), scale, scale]), "{scale}");
+            assert!(is_regular([scale * (1.0 + 0.98 * different), scale, scale]), "{scale}");
+            assert!(!is_regular([scale * (1.0 + 1.02 * different), scale, scale]), "{scale}");
         }
-        for [usual, unusual] in [[1.01e-30, 0.99e-30], [0.99e30, 1.01e30]] {
-            assert!(is_usual([usual; 3]) && !is_usual([unusual; 3]), "{usual}");
+        for [regular, irregular] in [[1.01e-30, 0.99e-30], [0.99e30, 1.01e30]] {
+            assert!(is_regular([regular; 3]) && !is_regular([irregular; 3]), "{regular}");
         }
-        assert!(!is_usual([0.0; 3]) && !is_usual([f64::NAN; 3]));
+        assert!(!is_regular([0.0; 3]) && !is_regular([f64::NAN; 3]));
     }
 }

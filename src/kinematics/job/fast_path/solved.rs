@@ -1,14 +1,15 @@
 use crate::kinematics::two_bone::Reach;
 
-/// A distance, in chain lengths, up to which a hand is at its target: the rounding of the middle
-/// joint's axes and of the rotations to f32.
+/// Maximum distance, in chain lengths, of a hand that counts as being at its target: the rounding of
+/// the middle joint's axes and of the rotations to f32.
 pub const NEAR: f64 = 7e-7;
 
-/// A distance, in chain lengths, at which a limit may keep a hand that is at its target: the
-/// rounding of the limits alone.
+/// Maximum distance, in chain lengths, from a target to the reach [|d₁ − d₂|, d₁ + d₂], if the target
+/// still counts as reached: the rounding of these two bounds.
 pub const AT_LIMIT: f64 = 2e-7;
 
-/// Two rotations (x, y, z, w) and where they bring the hand. Meaningless if not `is_usual`.
+/// The two corrections (x, y, z, w), and whether the hand reaches the target with them. Meaningless
+/// if not `is_regular`.
 #[derive(Clone, Copy)]
 pub struct Solved {
     pub start_correction: [f32; 4],
@@ -16,8 +17,9 @@ pub struct Solved {
     pub is_reached: bool,
     /// Whether the hand is farther from the start joint than the target is.
     pub is_too_close: bool,
+    /// Distance from the hand to the target in model space.
     pub hand_error: f32,
-    pub is_usual: bool,
+    pub is_regular: bool,
 }
 
 impl Solved {
