@@ -12,8 +12,10 @@ const SLOW_FRAMES: u32 = 2;
 /// Number of fast frames in a row before the resolution is raised.
 const FAST_FRAMES: u32 = 20;
 
-/// The resolution is raised only if the predicted frame time is below this fraction of the budget.
-const SAFE: f32 = 0.75;
+/// Fractions of the budget: frames above the first are slow. The resolution is raised only if the
+/// predicted frame time is below the second.
+const SLOW: f32 = 0.85;
+const SAFE: f32 = 0.65;
 
 /// Chooses the fraction of the viewport's width and height at which the scene is drawn. While the
 /// scene moves, it is as large as a budget for the frame time allows, but not below [`SCALES`]; at
@@ -56,10 +58,10 @@ impl DynamicResolution {
         // Assumes that the frame time is proportional to the number of pixels.
         let larger = self.step.saturating_sub(1);
         let used_larger = used * (SCALES[larger] / scale).powi(2);
-        self.slow = if used > 1.0 { self.slow + 1 } else { 0 };
+        self.slow = if used > SLOW { self.slow + 1 } else { 0 };
         self.fast = if used_larger < SAFE { self.fast + 1 } else { 0 };
         if self.slow >= SLOW_FRAMES {
-            let fits = |scale: &f32| *scale <= SCALES[self.step] / used.sqrt();
+            let fits = |scale: &f32| *scale <= SCALES[self.step] * (SLOW / used).sqrt();
             let smaller = SCALES.iter().position(fits).unwrap_or(SCALES.len() - 1);
             self.set_step(smaller);
         } else if self.fast >= FAST_FRAMES {

@@ -95,6 +95,12 @@ impl Graphics {
         self.gpu_timer.is_some()
     }
 
+    /// Whether the device works beside the CPU, for a known time. The time of a software adapter is
+    /// part of the CPU's.
+    pub fn has_own_time(&self) -> bool {
+        self.has_clock() && !self.gpu.is_software()
+    }
+
     /// Number of an earlier frame and the device's time for it; `None` if no further time is known
     /// yet.
     pub fn read_clock(&mut self) -> Option<(u64, Duration)> {
