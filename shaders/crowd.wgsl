@@ -13,7 +13,7 @@ struct Crowd {
     arms: u32,
     stride: u32, // distance between arrays, in floats
     base_radius: f32, // of a limb, in world units
-    tip_radius: f32,
+    resolution_scale: f32, // fraction of the full width and height at which the picture is drawn
 }
 
 // A level of detail.
@@ -24,7 +24,9 @@ struct Lod {
     padding: u32,
 }
 
-const JOINT_RADIUS = 1.12; // as a multiple of the base radius of a limb
+// As multiples of the radius of a limb at its base.
+const TIP_RADIUS = 0.68;
+const JOINT_RADIUS = 1.12;
 
 struct Arm {
     shoulder: vec3f, // all points are in the world

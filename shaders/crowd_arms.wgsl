@@ -16,13 +16,14 @@ struct Vertex {
 const TAU = 6.2831853;
 const QUAD = array(vec2u(0, 0), vec2u(1, 0), vec2u(1, 1), vec2u(0, 0), vec2u(1, 1), vec2u(0, 1));
 const BALL = vec2u(10u, 5u); // number of cells around, and from pole to pole
-const MIN_RADIUS = 0.4; // of a limb on screen, in pixels
+const MIN_RADIUS = 0.4; // of a limb on screen, in pixels of the full resolution
 
 fn limb_vertex(limb: Limb, sides: u32, index: u32) -> Vertex {
     let axis = unit(limb.tip - limb.base, vec3f(0.0, 1.0, 0.0));
     let cell = QUAD[index % 6u];
     let place = mix(limb.base, limb.tip, f32(cell.y));
-    let radius = max(mix(crowd.base_radius, crowd.tip_radius, f32(cell.y)), MIN_RADIUS * pixel_at(place));
+    let min_radius = MIN_RADIUS * crowd.resolution_scale * pixel_at(place);
+    let radius = max(crowd.base_radius * mix(1.0, TIP_RADIUS, f32(cell.y)), min_radius);
     if sides == 1u {
         let towards = to_eye(place);
         let aside = unit(cross(towards, axis), normalize(view.right));

@@ -11,7 +11,7 @@ const LINES = 3u;
 const POINTS = 4u;
 
 // Minimum radii of a limb in pixels at which it is drawn round with joints, round without joints,
-// flat, and as a line. A line is one pixel wide.
+// flat, and as a line.
 const LOD_RADII = vec4f(3.0, 1.2, 0.5, 0.1);
 
 @compute @workgroup_size(256)
@@ -48,16 +48,19 @@ fn next_slot(lod: u32) -> u32 {
     return atomicAdd(&draws[lod * 4u], vertices) / vertices;
 }
 
-// Adds a limb as a line or a point. A point always covers a whole pixel; so a limb that is p < 1 pixels
-// long on screen is drawn with the probability p, which keeps the covered area continuous from lines to
-// points (after R. Cook and others, "Stochastic Simplification of Aggregate Detail", 2007).
+// Adds a limb as a line or a point. A line is a pixel wide, and a point covers a whole pixel, which may be
+// more than the limb covers if it is a pixel wide at full resolution. So the limb is drawn with the ratio
+// of the two areas as its probability (after R. Cook and others, "Stochastic Simplification of Aggregate
+// Detail", 2007): far arms are as dense as lines, as points, and in a smaller picture.
 fn add_limb(lod: u32, number: u32, limb: Limb, colour: vec3f) {
     let middle = (limb.base + limb.tip) * 0.5;
     let towards = to_eye(middle);
     let axis = limb.tip - limb.base;
     let across = towards * inverseSqrt(dot(towards, towards));
-    let pixels = length(cross(axis, across)) / pixel_at(middle);
-    if lod == POINTS && pixels < random(number) {
+    let pixel = pixel_at(middle);
+    let pixels = length(cross(axis, across)) / pixel;
+    let width = max((1.0 + TIP_RADIUS) * crowd.base_radius / pixel, crowd.resolution_scale);
+    if select(1.0, pixels, lod == POINTS) * width < random(number) {
         return;
     }
     let direction = unit(axis, vec3f(0.0, 1.0, 0.0));

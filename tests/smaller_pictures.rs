@@ -1,11 +1,14 @@
 //! Scenes drawn at a smaller size and enlarged, as the window does while something moves.
 #![cfg(feature = "render")]
 
-use ik_arm::document::{Display, Document, Overlay, Theme};
+use ik_arm::document::{Camera, Display, Document, Overlay, Theme};
+use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{Canvas, Gpu, Renderer};
+use ik_arm::rig::{Crowd, Processor};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 use image::RgbaImage;
+use image::imageops::thumbnail;
 
 const SIZE: (u32, u32) = (724, 712);
 const SCALES: [f32; 4] = [0.85, 0.7, 0.6, 0.5];
@@ -94,6 +97,34 @@ fn colours_do_not_jump_when_the_picture_sharpens() {
                 }
             }
         }
+    }
+}
+
+/// Mean difference between two pictures.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.len() as f64
+}
+
+#[test]
+fn far_arms_of_a_crowd_are_as_dense_as_in_full() {
+    let mut bench = Bench::new();
+    let bones = TwoBone::new(200.0, 300.0).expect("lengths");
+    for arms in [2_000, 20_000, 100_000] {
+        let crowd = Crowd { arms, bones, time: 3.25, processor: Processor::Cpu };
+        let (centre, radius) = crowd.bounds();
+        let camera = Camera::default().framing(centre, radius, 1.0);
+        let document = Document { camera, ..Document::default() };
+        let overlays = Overlays { crowd: Some(crowd), ..Overlays::default() };
+        let mut scene = Scene::new(&document, &overlays, Theme::Dark);
+        let with = [1.0, 0.5].map(|scale| bench.draw(&scene, scale));
+        scene.crowd = None;
+        let without = [1.0, 0.5].map(|scale| bench.draw(&scene, scale));
+        // Only the brightness of small areas counts.
+        let areas = |image: &RgbaImage| thumbnail(image, SIZE.0 / 12, SIZE.1 / 12);
+        let added = [0, 1].map(|at| difference(&areas(&with[at]), &areas(&without[at])));
+        let ratio = added[1] / added[0];
+        assert!((ratio - 1.0).abs() < 0.06, "{arms} arms: {added:?}, {ratio}");
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3, Vec4};
 use super::compute::{self, BindingKind};
 use super::crowd_lod::{CrowdLod, CrowdLodData, DrawArguments};
 use super::readback::Readback;
-use super::{CrowdError, CrowdSolver, Gpu, pipeline};
+use super::{Canvas, CrowdError, CrowdSolver, Gpu, pipeline};
 use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
 
@@ -17,9 +17,8 @@ pub(super) const CULL: &str = concat!(
 
 const ARGUMENT_BYTES: u64 = size_of_val(&CrowdLod::NO_DRAWS) as u64;
 
-/// Radii of a limb at its base and its tip, as fractions of the arm's length.
+/// Radius of a limb at its base, as a fraction of the arm's length.
 const BASE_RADIUS: f32 = 0.05;
-const TIP_RADIUS: f32 = 0.034;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -36,7 +35,7 @@ struct CrowdData {
     arms: u32,
     stride: u32,
     base_radius: f32,
-    tip_radius: f32,
+    resolution_scale: f32,
 }
 
 const _: () = assert!(size_of::<CrowdData>() == 8 * 16 + 5 * 16 + 3 * 16);
@@ -77,14 +76,14 @@ struct CrowdBuffers {
 }
 
 impl Crowds {
-    /// Solves the scene's crowd if it has changed, uploads the changes, and returns the number of
-    /// bytes sent. `size` is the picture's in pixels.
+    /// Solves the scene's crowd if it has changed, uploads the changes for a picture on the canvas,
+    /// and returns the number of bytes sent.
     pub fn upload(
         &mut self,
         gpu: &Gpu,
         view: &wgpu::BindGroupLayout,
         scene: &Scene,
-        size: (u32, u32),
+        canvas: &Canvas,
     ) -> u64 {
         let Some(crowd) = scene.crowd.filter(|crowd| crowd.arms > 0) else {
             if let Some(Ok(renderer)) = &mut self.renderer {
@@ -106,7 +105,7 @@ impl Crowds {
             self.times = Some(renderer.solve(gpu, &crowd));
             renderer.uploaded = Some(crowd);
         }
-        sent + renderer.set_view(gpu, &crowd, scene, size)
+        sent + renderer.set_view(gpu, &crowd, scene, canvas)
     }
 
     /// Number of arms and solver time of the last scene's crowd; `None` without a crowd.
@@ -285,8 +284,8 @@ impl CrowdRenderer {
 
     /// Uploads the camera, resets the arguments of the indirect draws, and returns the number of
     /// bytes sent.
-    fn set_view(&self, gpu: &Gpu, crowd: &Crowd, scene: &Scene, size: (u32, u32)) -> u64 {
-        let data = CrowdData::new(crowd, self.solver.stride(), scene, size);
+    fn set_view(&self, gpu: &Gpu, crowd: &Crowd, scene: &Scene, canvas: &Canvas) -> u64 {
+        let data = CrowdData::new(crowd, self.solver.stride(), scene, canvas);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&data));
         gpu.queue.write_buffer(&self.arguments, 0, bytemuck::cast_slice(&CrowdLod::NO_DRAWS));
         size_of::<CrowdData>() as u64 + ARGUMENT_BYTES
@@ -315,7 +314,8 @@ impl CrowdBuffers {
 }
 
 impl CrowdData {
-    fn new(crowd: &Crowd, stride: u32, scene: &Scene, (width, height): (u32, u32)) -> Self {
+    fn new(crowd: &Crowd, stride: u32, scene: &Scene, canvas: &Canvas) -> Self {
+        let (width, height) = canvas.drawn_size();
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
         let reach = crowd.bones.outer_limit();
@@ -336,7 +336,7 @@ impl CrowdData {
             arms: crowd.arms,
             stride,
             base_radius: BASE_RADIUS * reach,
-            tip_radius: TIP_RADIUS * reach,
+            resolution_scale: canvas.resolution_scale(),
         }
     }
 }

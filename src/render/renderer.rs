@@ -106,7 +106,7 @@ impl Renderer {
             + self.spheres.upload(gpu, scene, size)
             + self.lines.upload(gpu, scene)
             + self.labels.upload(gpu, scene, canvas.size(), scale)
-            + self.crowds.upload(gpu, self.view.layout(), scene, size)
+            + self.crowds.upload(gpu, self.view.layout(), scene, canvas)
             + self.skins.upload(gpu, self.view.layout(), scene);
         let count = |lengths: &[usize]| lengths.iter().sum::<usize>() as u32;
         let guides = [scene.guide_solids.len(), scene.guide_balls.len()];
