@@ -231,7 +231,7 @@ impl Drop for Program {
 }
 
 fn is_frame(line: &str) -> bool {
-    line.contains("TRACE") && line.ends_with("drawn")
+    line.contains("TRACE") && line.contains("] frame ")
 }
 
 fn is_error(line: &str) -> bool {
