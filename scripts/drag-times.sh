@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Times of frames while the mouse drags in the real window: scripts/drag-times.sh
 # Drags the hand of an arm with all guides and orbits, then the same with a figure in its skin, once
-# with every frame in full and once within 33 ms a frame. Prints histograms. Builds a release first, unless PROGRAM names a binary.
+# with every frame in full and once within 33 ms a frame. Prints histograms. Builds a release first,
+# unless PROGRAM names a binary.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
