@@ -1,4 +1,4 @@
-//! Validation of every shader without a GPU.
+//! Validation of every shader without a GPU, and of their colour functions on the device.
 #![cfg(feature = "render")]
 
 use ik_arm::render::Gpu;

@@ -44,7 +44,7 @@ pub(super) struct LimbBones {
     /// Direction from the start joint to the uncorrected hand, of any length.
     pub hand_ss: DVec3,
     /// 1 / L, with the chain's length L in start joint space.
-    pub inv_unit: f64,
+    pub inv_length: f64,
     /// Whether both bones have lengths above 0 and the middle joint can turn the lower bone.
     pub is_jointed: bool,
     /// Displacement of a joint by the rounding of its coordinates, in chain lengths.
@@ -110,19 +110,19 @@ impl JointChain {
     /// points in a direction.
     pub fn limb(&self) -> Option<LimbBones> {
         let [upper, lower] = self.lengths_ss;
-        let inv_unit = (upper + lower).recip();
+        let inv_length = (upper + lower).recip();
         let inv_product = (upper * lower).recip();
         let is_jointed = upper > 0.0 && lower > 0.0 && self.middle_ss != DMat3::ZERO;
         let hand_ss = self.upper_ss + self.lower_ss;
         let limb = LimbBones {
             upper_ss: self.upper_ss * (lower * inv_product),
             lower_ss: self.lower_ss * (upper * inv_product),
-            upper: upper * inv_unit,
-            lower: lower * inv_unit,
+            upper: upper * inv_length,
+            lower: lower * inv_length,
             hand_ss,
-            inv_unit,
+            inv_length,
             is_jointed,
-            rounding: self.rounding_ss * inv_unit,
+            rounding: self.rounding_ss * inv_length,
         };
         (self.can_turn && (is_jointed || hand_ss != DVec3::ZERO)).then_some(limb)
     }

@@ -93,8 +93,8 @@ impl TwoBoneJob {
         let twist = f64::from(self.twist);
         let twist = if twist == 0.0 { [0.0, 1.0] } else { twist.sin_cos().into() };
         let solved = match self.pole {
-            Some(_) => solve_hard::<true>(self, twist),
-            None => solve_hard::<false>(self, twist),
+            Some(_) => run_fast_path::<true>(self, twist),
+            None => run_fast_path::<false>(self, twist),
         };
         solved.is_regular.then(|| solved.into())
     }
@@ -111,7 +111,7 @@ impl TwoBoneJob {
     /// The correction of weight 1; `None` if there is nothing to turn.
     fn solve(&self, chain: &JointChain, soft_reach: SoftReach) -> Option<FullCorrection> {
         let limb = chain.limb()?;
-        let target_ss = chain.point_ss(self.target.as_dvec3()) * limb.inv_unit;
+        let target_ss = chain.point_ss(self.target.as_dvec3()) * limb.inv_length;
         let target = target_ss.length();
         let pole_ss = self.pole.map(|pole| chain.vector_ss(pole.as_dvec3()));
         let hinge_ss = self.hinge.map(|axis| chain.axis_ss(axis.as_dvec3()));
@@ -181,7 +181,7 @@ impl TwoBoneJob {
 
 /// Solves a job without softness, with a weight of 1. `twist` is its sine and cosine.
 #[multiversion(targets("x86_64+avx2"))]
-fn solve_hard<const POLE: bool>(job: &TwoBoneJob, twist: [f64; 2]) -> Solved {
+fn run_fast_path<const POLE: bool>(job: &TwoBoneJob, twist: [f64; 2]) -> Solved {
     let TwoBoneJob { start, middle, end, target, pole, hinge, .. } = job;
     let job = FastPathJob {
         axes: [start, middle].map(|joint| joint.matrix3.as_dmat3()),
