@@ -42,8 +42,9 @@ struct SkinPipelines {
     deformer: SkinDeformer,
     materials: SkinMaterials,
     opaque: SurfacePipelines,
-    /// Depth of the nearest surface of see-through skins.
-    depth: SurfacePipelines,
+    /// Depth of the nearest surface of see-through skins, for skins that are not mirrored and for
+    /// mirrored ones.
+    depth: [wgpu::RenderPipeline; 2],
     see_through: SurfacePipelines,
     wire: wgpu::RenderPipeline,
 }
@@ -125,7 +126,7 @@ impl Skins {
     pub fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
-            self.draw(pass, skin, &pipelines.opaque);
+            self.draw(pass, skin, |material| pipelines.opaque.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
@@ -134,24 +135,23 @@ impl Skins {
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
-            self.draw(pass, skin, &pipelines.depth);
-            self.draw(pass, skin, &pipelines.see_through);
+            self.draw(pass, skin, |_| &pipelines.depth[usize::from(skin.is_mirrored)]);
+            self.draw(pass, skin, |material| pipelines.see_through.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
 
-    fn draw(
+    fn draw<'a>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         skin: &DrawnSkin,
-        SurfacePipelines(pipelines): &SurfacePipelines,
+        pipeline: impl Fn(&SkinMaterial) -> &'a wgpu::RenderPipeline,
     ) {
         let Some(mesh) = self.mesh(skin) else { return };
         skin.bind(pass, mesh);
         pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for material in &mesh.materials {
-            let pipelines = &pipelines[usize::from(material.is_textured)];
-            pass.set_pipeline(&pipelines[usize::from(skin.is_mirrored)]);
+            pass.set_pipeline(pipeline(material));
             pass.set_bind_group(2, &material.group, &[]);
             pass.draw_indexed(material.corners.clone(), 0, 0..1);
         }
@@ -212,7 +212,7 @@ impl SkinPipelines {
         Self {
             deformer: SkinDeformer::new(gpu),
             opaque: SurfacePipelines::new(gpu, &plain),
-            depth: SurfacePipelines::new(
+            depth: mirrored_or_not(
                 gpu,
                 &pipeline::PipelineDescriptor {
                     label: "skin depth",
@@ -248,16 +248,25 @@ impl SkinPipelines {
 
 impl SurfacePipelines {
     fn new(gpu: &Gpu, descriptor: &pipeline::PipelineDescriptor<'_>) -> Self {
-        let pipelines = [0.0, 1.0].map(|is_textured| {
-            [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
-                let constants = &[("IS_TEXTURED", is_textured)];
-                let cull = Some(cull);
-                let descriptor = pipeline::PipelineDescriptor { constants, cull, ..*descriptor };
-                pipeline::build(gpu, &descriptor)
-            })
-        });
-        Self(pipelines)
+        Self([0.0, 1.0].map(|is_textured| {
+            let constants = &[("IS_TEXTURED", is_textured)];
+            mirrored_or_not(gpu, &pipeline::PipelineDescriptor { constants, ..*descriptor })
+        }))
     }
+
+    fn of(&self, material: &SkinMaterial, skin: &DrawnSkin) -> &wgpu::RenderPipeline {
+        &self.0[usize::from(material.is_textured)][usize::from(skin.is_mirrored)]
+    }
+}
+
+/// Pipelines for skins that are not mirrored and for mirrored ones.
+fn mirrored_or_not(
+    gpu: &Gpu,
+    descriptor: &pipeline::PipelineDescriptor<'_>,
+) -> [wgpu::RenderPipeline; 2] {
+    [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
+        pipeline::build(gpu, &pipeline::PipelineDescriptor { cull: Some(cull), ..*descriptor })
+    })
 }
 
 impl SkinMesh {
