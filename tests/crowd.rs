@@ -4,6 +4,7 @@
 mod common;
 
 use common::Random;
+use common::pictures::difference;
 use glam::{DVec3, Vec3};
 use ik_arm::document::{AxisView, Camera, Document, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -182,12 +183,6 @@ fn above(radius: f32) -> Camera {
     let pixel = 2.0 * camera.projection(1.6).up.length() / 200.0;
     let base_radius = 0.05 * crowd(1).bones.outer_limit();
     Camera { distance: camera.distance * base_radius / (radius * pixel), ..camera }
-}
-
-/// Mean difference between the colours of two pictures.
-fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
-    let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-    sum as f64 / a.len() as f64
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Scenes drawn at a smaller size and enlarged, as the window does while something moves.
 #![cfg(feature = "render")]
 
+mod common;
+
+use common::pictures::difference;
 use ik_arm::document::{Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::render::{Canvas, Gpu, Renderer};
@@ -98,12 +101,6 @@ fn colours_do_not_jump_when_the_picture_sharpens() {
             }
         }
     }
-}
-
-/// Mean difference between two pictures.
-fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
-    let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-    sum as f64 / a.len() as f64
 }
 
 #[test]

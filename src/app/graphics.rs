@@ -19,6 +19,9 @@ pub(super) struct Graphics {
     pub(super) renderer: Renderer,
     pub(super) picture: ScenePicture,
     pub(super) gpu_timer: Option<GpuTimer>,
+    /// Whether the device works beside the CPU, for a known time. The time of a software adapter is
+    /// part of the CPU's.
+    pub(super) has_own_time: bool,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
     /// Whether the surface still works but should be configured again.
@@ -61,11 +64,13 @@ impl Graphics {
         let config = configuration(&gpu, &surface, window)?;
         let canvas = Canvas::new(&gpu, 1, 1);
         let format = composed_format(&config);
+        let gpu_timer = GpuTimer::new(&gpu);
         let graphics = Self {
             panels: PanelPainter::new(&gpu, format, panels),
             renderer: Renderer::with_labels(&gpu, format),
             picture: ScenePicture { canvas, scene: None, is_drawn: false, is_new: true },
-            gpu_timer: GpuTimer::new(&gpu),
+            has_own_time: gpu_timer.is_some() && !gpu.is_software(),
+            gpu_timer,
             surface,
             config,
             is_stale: false,
@@ -93,12 +98,6 @@ impl Graphics {
     /// Whether the device can measure the time that it takes for a frame.
     pub fn has_clock(&self) -> bool {
         self.gpu_timer.is_some()
-    }
-
-    /// Whether the device works beside the CPU, for a known time. The time of a software adapter is
-    /// part of the CPU's.
-    pub fn has_own_time(&self) -> bool {
-        self.has_clock() && !self.gpu.is_software()
     }
 
     /// Number of an earlier frame and the device's time for it; `None` if no further time is known

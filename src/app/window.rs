@@ -208,7 +208,7 @@ impl AppWindow {
             Ok(Presented::Shown) => {
                 self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
                 self.machine.times.push(frame);
-                if !self.graphics.as_ref().is_some_and(Graphics::has_own_time) {
+                if !self.graphics.as_ref().is_some_and(|graphics| graphics.has_own_time) {
                     let budget = session.preferences().frame_budget.time();
                     self.dynamic_resolution.measure(frame.resolution_scale, frame.total(), budget);
                 }
@@ -405,7 +405,7 @@ impl AppWindow {
             // The times are those of earlier frames.
             while let Some((earlier, time)) = graphics.read_clock() {
                 if let Some(earlier) = machine.times.set_gpu(earlier, time)
-                    && graphics.has_own_time()
+                    && graphics.has_own_time
                 {
                     dynamic_resolution.measure(
                         earlier.resolution_scale,

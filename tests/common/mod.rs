@@ -6,6 +6,8 @@ pub mod damage;
 #[cfg(feature = "document")]
 pub mod documents;
 pub mod missed_targets;
+#[cfg(feature = "document")]
+pub mod pictures;
 mod random;
 pub mod skeletons;
 pub mod strategies;
