@@ -102,8 +102,8 @@ compress() {
 # The crates that are linked, each with its licence, and the text of each licence.
 dependencies() {
     local crates
-    crates=$(cargo tree --locked --edges normal --prefix none --format '{p}|{l}|{r}' |
-        sed 's/ (\*)$//; s/ (proc-macro)//' | grep -v '^ik-arm ' | sort -u)
+    crates=$(cargo tree --locked --package ik-arm --edges normal --prefix none --format '{p}|{l}|{r}' |
+        sed 's/ (\*)$//; s/ (proc-macro)//' | grep -v '^ik-arm' | sort -u)
     printf 'ik-arm links these crates:\n\n'
     awk -F '|' '{ printf "%s: %s, %s\n", $1, $2, $3 }' <<<"$crates"
     licence_texts "$crates"

@@ -6,5 +6,5 @@ cd "$(dirname "$0")/.."
 
 export IK_ARM_SOAK_ACTIONS=${1:-1000000} IK_ARM_SOAK_SEED=${2:-1} RUST_BACKTRACE=0
 
-exec cargo test --locked --release --no-default-features --features document --test soak -- \
-    --ignored --nocapture
+exec cargo test --locked --release --no-default-features --test document -- \
+    --ignored --nocapture soak::

@@ -12,11 +12,11 @@ current_step=
 main() {
     trap finish EXIT
     step "Set-up" set_up virtual-display
-    step "Format" cargo fmt --check
-    step "Clippy" check_features
+    step "Format" cargo fmt --all --check
+    step "Lints" lint
     step "Tests" cargo test --locked
-    step "Tests, no features" cargo test --locked --no-default-features \
-        --lib --test batch --test crowd_solve
+    step "Tests without threads" cargo test --locked --package ik-arm-kinematics \
+        --lib --test kinematics -- batch crowd_solve skin_from_bones
     step "glTF validator" scripts/validate-gltf.sh
     step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
     step "Window" test_window
@@ -41,15 +41,15 @@ step() {
     printf '==> %s: %d s\n' "$current_step" $((SECONDS - started))
 }
 
-# Lints all targets in each set of features. Tests run with the default features; only code under
-# `parallel` differs without them, so batches and crowds are tested without it, too.
-check_features() {
-    local features
-    for features in "" --no-default-features \
-        "--no-default-features --features document" "--no-default-features --features render"; do
-        printf '%s\n' "${features:-default features}"
+# Lints everything with the default features, and each package's library in its smaller sets of features.
+lint() {
+    local arguments
+    for arguments in --all-targets "--package ik-arm-kinematics --lib" \
+        "--package ik-arm --lib --no-default-features" \
+        "--package ik-arm --lib --no-default-features --features render"; do
+        printf '%s\n' "$arguments"
         # shellcheck disable=SC2086 # several arguments
-        cargo clippy --locked --all-targets $features -- -D warnings
+        cargo clippy --locked $arguments -- -D warnings
     done
 }
 

@@ -31,8 +31,8 @@ install_validator() {
 export_files() {
     rm -rf "$files"
     mkdir -p "$files"
-    IK_ARM_GLB_DIR=$files cargo test --locked --test gltf -- --ignored --exact \
-        export::every_file_is_written_for_the_validator
+    IK_ARM_GLB_DIR=$files cargo test --locked --test files -- --ignored --exact \
+        gltf::export::every_file_is_written_for_the_validator
 }
 
 # Fails at any error, warning, information or hint.

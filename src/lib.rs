@@ -1,19 +1,7 @@
 //! A 3D inverse-kinematics arm to pose, look into and understand.
 //!
-//! The crate is the program `ik-arm`. Without its default features it is a library of solvers that
-//! depends only on `glam`, `nalgebra`, `multiversion` and `thiserror`:
-//!
-//! ```
-//! use glam::Vec3;
-//! use ik_arm::kinematics::two_bone::TwoBone;
-//!
-//! let arm = TwoBone::new(200.0, 300.0)?;
-//! let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 30_f32.to_radians());
-//! println!("elbow at {}, hand at {}", pose.elbow, pose.hand);
-//! # Ok::<(), ik_arm::kinematics::two_bone::LengthError>(())
-//! ```
-//!
-//! [Iterative solvers](kinematics::chain_ik) move skeletons of any shape to any number of targets.
+//! The crate is the program `ik-arm`. Its solvers are a library of their own,
+//! [`ik_arm_kinematics`], which other programs use without this crate.
 //!
 //! # Architecture
 //!
@@ -22,12 +10,11 @@
 //!
 //! | module | contents | feature |
 //! | --- | --- | --- |
-//! | [`kinematics`] | mathematics: two-bone arms, one or a batch; twist references; soft limits; IK and FK of the arm; a two-bone job for other programs' skeletons, one or a batch; skeletons; chain solvers, seen from inside; why a target is not reached; path following; splines; skins | |
-//! | [`rig`] | the arm as a hierarchy Root → Limb → Socket with limbs and guides; a skeleton with its targets and its skin; crowds of arms | |
-//! | `document` | saved state: both rigs, keys, timeline, camera, display; bakes | `document` |
-//! | `io` | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | `document` |
-//! | `session` | the open document and state that is not saved; actions, undo and redo; the tour | `document` |
-//! | `scene` | what to draw, as plain lists | `document` |
+//! | `kinematics` | [`ik_arm_kinematics`], re-exported: arms, skeletons and their solvers; its floors are listed there | |
+//! | [`document`] | saved state: both rigs, keys, timeline, camera, display; bakes | |
+//! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
+//! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
+//! | [`scene`] | what to draw, as plain lists | |
 //! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
 //! | `export` | files for other programs: motion, tables, meshes, pictures | `render` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
@@ -64,22 +51,19 @@
 pub mod app;
 #[cfg(feature = "app")]
 pub mod cli;
-#[cfg(feature = "document")]
 pub mod document;
 #[cfg(feature = "render")]
 pub mod export;
-#[cfg(feature = "document")]
 pub mod io;
-pub mod kinematics;
 #[cfg(feature = "render")]
 pub mod render;
-pub mod rig;
-#[cfg(feature = "document")]
 pub mod scene;
-#[cfg(feature = "document")]
 pub mod session;
 #[cfg(feature = "app")]
 pub mod ui;
+
+pub use ik_arm_kinematics as kinematics;
+pub use ik_arm_kinematics::rig;
 
 /// Compiles the code in README.md.
 #[cfg(doctest)]

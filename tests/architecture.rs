@@ -1,7 +1,7 @@
-//! Imports of `src`: floors use only floors above them, and no files of one floor import each other
-//! in a cycle.
+//! Imports inside each package: floors use only floors above them, and no files import each other in a
+//! cycle. Between the packages Cargo checks that.
 //!
-//! The floors are the rows of the table in the docs of `src/lib.rs`, so there is one list of them.
+//! The floors are the rows of the table in the docs of each `lib.rs`, so there is one list of them.
 //! An import counts for the file that defines the item, so a `mod.rs` that only declares modules
 //! and re-exports their items ties no files together. Test modules are not read.
 
@@ -13,30 +13,43 @@ use std::path::Path;
 /// Text of the source files by their path from the crate's folder, such as `src/ui/slider.rs`.
 type Sources = BTreeMap<String, String>;
 
+/// Folders with the sources of the packages.
+const PACKAGES: [&str; 2] = ["kinematics/src", "src"];
+
 #[test]
 fn each_floor_imports_only_floors_above_it() {
-    let sources = sources_of_the_crate();
-    let faults = upward_imports(&Crate::read(&sources), &floors(&sources["src/lib.rs"]));
-    assert!(faults.is_empty(), "imports against the floors in src/lib.rs:\n{}", faults.join("\n"));
+    for folder in PACKAGES {
+        let sources = sources_in(folder);
+        let floors = floors(&sources[&format!("{folder}/lib.rs")]);
+        let faults = upward_imports(&Crate::read(&sources, folder), &floors);
+        assert!(faults.is_empty(), "against the floors in {folder}/lib.rs:\n{}", faults.join("\n"));
+    }
 }
 
 #[test]
 fn no_files_import_each_other_in_a_cycle() {
-    let faults = cycles(&Crate::read(&sources_of_the_crate()));
-    assert!(faults.is_empty(), "files that import each other:\n\n{}", faults.join("\n"));
+    for folder in PACKAGES {
+        let faults = cycles(&Crate::read(&sources_in(folder), folder));
+        assert!(faults.is_empty(), "files that import each other:\n\n{}", faults.join("\n"));
+    }
 }
 
 #[test]
-fn the_table_of_floors_lists_every_module_of_the_crate() {
-    let sources = sources_of_the_crate();
-    let mut listed = floors(&sources["src/lib.rs"]);
-    let mut declared: Vec<_> = Crate::read(&sources).modules[0].children.keys().cloned().collect();
-    listed.sort();
-    declared.sort();
-    assert_eq!(listed, declared);
+fn the_table_of_floors_lists_every_module_of_its_package() {
+    for folder in PACKAGES {
+        let sources = sources_in(folder);
+        let mut listed = floors(&sources[&format!("{folder}/lib.rs")]).concat();
+        let mut declared: Vec<_> =
+            Crate::read(&sources, folder).modules[0].children.keys().cloned().collect();
+        // The program re-exports the library where its own modules expect it.
+        listed.retain(|name| folder != "src" || name != "kinematics");
+        listed.sort();
+        declared.sort();
+        assert_eq!(listed, declared);
+    }
 }
 
-fn sources_of_the_crate() -> Sources {
+fn sources_in(folder: &str) -> Sources {
     fn collect(folder: &Path, sources: &mut Sources) {
         for entry in fs::read_dir(folder).expect("readable folder") {
             let path = entry.expect("readable entry").path();
@@ -49,32 +62,36 @@ fn sources_of_the_crate() -> Sources {
         }
     }
     let mut sources = Sources::new();
-    collect(Path::new("src"), &mut sources);
+    collect(Path::new(folder), &mut sources);
     sources
 }
 
 // The rules
 
-/// Modules in the table of the crate docs, top first.
-fn floors(lib: &str) -> Vec<String> {
+/// The rows of the table in the docs of a package, top first: the modules of each.
+fn floors(lib: &str) -> Vec<Vec<String>> {
     lib.lines()
         .filter_map(|line| line.strip_prefix("//! | "))
         .filter_map(|row| row.split('|').next())
-        .map(|cell| cell.trim().trim_matches(['[', ']', '`']))
-        .filter(|name| !name.is_empty() && *name != "module" && !name.starts_with('-'))
-        .map(str::to_owned)
+        .filter(|cell| cell.contains('`'))
+        .map(|cell| {
+            cell.split(',').map(|name| name.trim().trim_matches(['[', ']', '`']).to_owned())
+        })
+        .map(Iterator::collect)
         .collect()
 }
 
-/// The floor of a file: the top-level folder or file of `src` that it belongs to.
-fn floor(file: &str) -> &str {
-    let inside = file.strip_prefix("src/").unwrap_or(file);
+/// Name of the top-level module that a file belongs to.
+fn top_module(file: &str) -> &str {
+    let inside = file.split_once("src/").map_or(file, |(_, inside)| inside);
     inside.split('/').next().unwrap_or(inside).trim_end_matches(".rs")
 }
 
 /// Imports of something on a floor below the importing file's own.
-fn upward_imports(read: &Crate, floors: &[String]) -> Vec<String> {
-    let height = |file: &str| floors.iter().position(|name| name == floor(file));
+fn upward_imports(read: &Crate, floors: &[Vec<String>]) -> Vec<String> {
+    let height = |file: &str| {
+        floors.iter().position(|floor| floor.iter().any(|name| name == top_module(file)))
+    };
     let against = |import: &Import| match (height(&import.from), height(&import.to)) {
         (Some(from), Some(to)) => to > from,
         (Some(_), None) => true,
@@ -89,9 +106,7 @@ fn cycles(read: &Crate) -> Vec<String> {
     let imports: Vec<_> = read.imports().into_iter().filter(|import| import.ties).collect();
     let mut graph = Graph::new();
     for import in &imports {
-        if floor(&import.from) == floor(&import.to) {
-            graph.entry(&import.from).or_default().insert(&import.to);
-        }
+        graph.entry(&import.from).or_default().insert(&import.to);
     }
     let reached: BTreeMap<&str, BTreeSet<&str>> =
         graph.keys().map(|&file| (file, reachable(&graph, file))).collect();
@@ -228,10 +243,11 @@ enum Meaning {
 }
 
 impl Crate {
-    fn read(sources: &Sources) -> Self {
-        let root = Module { file: "src/lib.rs".into(), ..Module::default() };
+    /// Reads the package whose `lib.rs` lies in `folder`.
+    fn read(sources: &Sources, folder: &str) -> Self {
+        let root = Module { file: format!("{folder}/lib.rs"), ..Module::default() };
         let mut read = Self { modules: vec![root] };
-        read.read_file(sources, 0, "src");
+        read.read_file(sources, 0, folder);
         read
     }
 
@@ -388,9 +404,14 @@ impl Crate {
             found = match name.as_str() {
                 "self" => found,
                 "super" => Meaning::Module(self.modules[inside].parent),
-                name => self
-                    .look_up(inside, name, place + 1 == rest.len(), depth)
-                    .unwrap_or(Meaning::ItemOf(inside)),
+                name => match self.look_up(inside, name, place + 1 == rest.len(), depth) {
+                    Some(meaning) => meaning,
+                    None if self.modules[inside].uses.iter().any(|used| used.name == name) => {
+                        // A re-export from another crate.
+                        return None;
+                    }
+                    None => Meaning::ItemOf(inside),
+                },
             };
         }
         Some(found)
@@ -637,7 +658,7 @@ fn made_up(files: &[(&str, &str)]) -> Crate {
     let lib = ("src/lib.rs", "mod low; mod high;");
     let empty = [("src/low/mod.rs", ""), ("src/high/mod.rs", "")];
     let all = [lib].into_iter().chain(empty).chain(files.iter().copied());
-    Crate::read(&all.map(|(file, text)| (file.to_owned(), text.to_owned())).collect())
+    Crate::read(&all.map(|(file, text)| (file.to_owned(), text.to_owned())).collect(), "src")
 }
 
 /// The first cycle that is found, as the names of its files.
@@ -732,10 +753,9 @@ fn tests_comments_and_strings_import_nothing() {
 
 #[test]
 fn an_import_against_the_floors_is_found_with_its_line() {
-    let lib =
-        "//! | module | what it is |\n//! | --- | --- |\n//! | [`low`] | a |\n//! | `high` | b |\n";
+    let lib = "//! | module | what it is |\n//! | --- | --- |\n//! | [`low`], `helper` | a |\n//! | `high` | b |\n";
     let floors = floors(lib);
-    assert_eq!(floors, ["low", "high"]);
+    assert_eq!(floors, [vec!["low", "helper"], vec!["high"]]);
     let read = made_up(&[
         ("src/low/mod.rs", "mod a;\n\npub use crate::high::High;"),
         ("src/low/a.rs", "fn f() {\n    crate::high::f();\n}"),
@@ -747,4 +767,13 @@ fn an_import_against_the_floors_is_found_with_its_line() {
         "src/low/mod.rs:3 imports crate::high::High of src/high/inner.rs",
     ];
     assert_eq!(upward_imports(&read, &floors), expected);
+}
+
+#[test]
+fn an_import_from_another_crate_that_the_root_re_exports_is_none() {
+    let files = [
+        ("src/lib.rs", "mod low; mod high; pub use other as kinematics;"),
+        ("src/low/mod.rs", "use crate::kinematics::arm::Arm; pub struct Low(Arm);"),
+    ];
+    assert!(made_up(&files).imports().is_empty());
 }

@@ -1,6 +1,5 @@
 //! The files that the fuzzer begins with, and those it found something wrong with, hold what it
 //! asks of any bytes: see `fuzz/README.md`.
-#![cfg(feature = "document")]
 
 #[path = "../fuzz/src/lib.rs"]
 mod checks;

@@ -1,15 +1,11 @@
-//! Random values of all kinds, the same on every run, for tests, benches and examples.
-#![allow(dead_code, unused_imports, reason = "each of them takes what it needs")]
+//! Random documents and damaged files, the same on every run, with the random values of the library's
+//! tests.
+#![allow(dead_code, unused_imports, reason = "each program takes what it needs")]
 
-#[cfg(feature = "document")]
 pub mod damage;
-#[cfg(feature = "document")]
 pub mod documents;
-pub mod missed_targets;
-#[cfg(feature = "document")]
+#[path = "../../kinematics/tests/common/mod.rs"]
+mod kinematics;
 pub mod pictures;
-mod random;
-pub mod skeletons;
-pub mod strategies;
 
-pub use random::Random;
+pub use kinematics::{Random, missed_targets, skeletons, strategies};

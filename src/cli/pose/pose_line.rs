@@ -5,7 +5,6 @@ use super::posed::Posed;
 use super::why_line::WhyLine;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
-use crate::kinematics::saturate_vector;
 use crate::kinematics::skeleton::{JointId, is_within_numbers};
 use crate::rig::TargetKind;
 
@@ -121,5 +120,5 @@ impl ReportLine {
 /// Overflow is clamped to ±f32::MAX.
 fn degrees(radians: Vec3) -> Vec3 {
     let degrees = radians.as_dvec3() * 1_f64.to_degrees();
-    saturate_vector(degrees)
+    degrees.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
 }

@@ -1,0 +1,173 @@
+//! Cyclic coordinate descent: from the tips to the roots, each joint rotates as if it were the only
+//! one.
+//!
+//! Let r be the vectors from the joint to the tips below it, and t the vectors from the joint to
+//! the targets of these tips. For one tip, the joint rotates the tip exactly onto the line to its
+//! target; for several tips, the joint rotates by the best angle about Σ w r × t. The best angle
+//! about a unit axis a has tan θ = Σ w a·(r × t) / Σ w (r·t − (a·r)(a·t)). A joint with limits is
+//! treated as three hinges, x, y and z, each with its best angle within the limits. No rotation
+//! increases the cost.
+//!
+//! During a sweep only the tips are moved. The joints are updated afterwards, in one pass from the
+//! roots, so that the time of an iteration is linear in the number of joints.
+//!
+//! # Source
+//!
+//! L. Wang, C. Chen, *A combined optimization method for solving the inverse kinematics problem of
+//! mechanical manipulators*, 1991.
+
+use glam::{Mat3A, Quat, Vec3A};
+
+use super::align::{PointPair, align, align_within};
+use super::configuration::Configuration;
+use super::inside::{Event, Recorder};
+use super::problem::Problem;
+use crate::skeleton::JointAngles;
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Ccd {
+    /// Rotation `mount` of each link: from the link's space to its parent's, without the link's own
+    /// rotation E.
+    mounts: Vec<Quat>,
+    /// Rotation of each link in this sweep; after the sweep, with the rotations of its ancestors.
+    rotations: Vec<Quat>,
+    pairs: Vec<PointPair>,
+}
+
+impl Ccd {
+    pub fn new(problem: &Problem) -> Self {
+        Self {
+            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            rotations: vec![Quat::IDENTITY; problem.links.len()],
+            pairs: Vec::with_capacity(problem.effectors.len()),
+        }
+    }
+
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) {
+        for index in (0..problem.links.len()).rev() {
+            self.rotations[index] = self.rotate(problem, config, index);
+            self.record(problem, config, index, recorder);
+        }
+        self.update(problem, config);
+        if problem.free_roots {
+            move_roots(problem, config);
+            recorder.record(config, || Event::MoveRoots);
+        }
+    }
+
+    /// Records the rotation of a link, with the configuration in which the links before it in the
+    /// sweep have not been rotated yet.
+    fn record(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+        recorder: &mut Recorder,
+    ) {
+        if !recorder.is_on() {
+            return;
+        }
+        let mut part = self.clone();
+        part.rotations[..index].fill(Quat::IDENTITY);
+        let mut turned = config.clone();
+        part.update(problem, &mut turned);
+        let link = &problem.links[index];
+        let targets =
+            problem.below(link).iter().map(|effector| problem.effectors[*effector].target);
+        let pairs = self.pairs.iter().zip(targets);
+        let rotation = self.rotations[index];
+        let base = config.bases[index];
+        let pairs = pairs.map(|(pair, target)| [base + rotation.inverse() * pair.from, target]);
+        recorder.record(&turned, || Event::Turn { link: index, rotation, pairs: pairs.collect() });
+    }
+
+    /// Finds the rotation of one link that brings the tips below it nearest to their targets, applies
+    /// it to these tips, and returns it.
+    fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) -> Quat {
+        let (link, base) = (&problem.links[index], config.bases[index]);
+        let below = problem.below(link);
+        self.pairs.clear();
+        self.pairs.extend(below.iter().map(|effector| PointPair {
+            from: config.tips[*effector] - base,
+            to: problem.effectors[*effector].target - base,
+            weight: problem.effectors[*effector].weight,
+        }));
+        let rotation = if link.is_limited() {
+            let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+            let axes = Mat3A::from_quat(parent * self.mounts[index])
+                * JointAngles(config.angles[index]).axes();
+            let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+            align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs)
+        } else {
+            let rotation = align(&self.pairs);
+            self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+            rotation
+        };
+        for (effector, pair) in below.iter().zip(&self.pairs) {
+            config.tips[*effector] = base + pair.from;
+        }
+        rotation
+    }
+
+    /// Applies the sweep's rotations to the configuration.
+    fn update(&mut self, problem: &Problem, config: &mut Configuration) {
+        for (index, link) in problem.links.iter().enumerate() {
+            if let Some(parent) = link.parent {
+                self.rotations[index] = self.rotations[parent] * self.rotations[index];
+            }
+            config.orientations[index] = if link.is_limited() {
+                let parent =
+                    link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+                let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+                (parent * self.mounts[index] * own).normalize()
+            } else {
+                (self.rotations[index] * config.orientations[index]).normalize()
+            };
+        }
+        update_points(problem, config);
+    }
+}
+
+/// Updates the positions of joints and tips from the links' orientations.
+fn update_points(problem: &Problem, config: &mut Configuration) {
+    for (index, link) in problem.links.iter().enumerate() {
+        config.bases[index] = match link.parent {
+            Some(parent) => config.bases[parent] + config.orientations[parent] * link.pivot,
+            None => config.shifts[link.tree] + link.pivot,
+        };
+    }
+    for (effector, tip) in problem.effectors.iter().zip(&mut config.tips) {
+        *tip = match effector.link {
+            Some(link) => config.bases[link] + config.orientations[link] * effector.tip,
+            None => config.shifts[effector.tree] + effector.tip,
+        };
+    }
+}
+
+/// Shifts each tree by the weighted mean vector from its tips to their targets, unless that
+/// overflows.
+pub(super) fn move_roots(problem: &Problem, config: &mut Configuration) {
+    for tree in 0..problem.trees.len() {
+        let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
+        for (effector, tip) in
+            problem.effectors.iter().zip(&config.tips).filter(|(effector, _)| effector.tree == tree)
+        {
+            sum += effector.weight * (effector.target - *tip);
+            weights += effector.weight;
+        }
+        let by = sum / weights;
+        if !problem.can_shift(tree, config.shifts[tree] + by) {
+            continue;
+        }
+        config.shifts[tree] += by;
+        let bases = problem.links.iter().zip(&mut config.bases);
+        bases.filter(|(link, _)| link.tree == tree).for_each(|(_, base)| *base += by);
+        let tips = problem.effectors.iter().zip(&mut config.tips);
+        tips.filter(|(effector, _)| effector.tree == tree).for_each(|(_, tip)| *tip += by);
+    }
+}

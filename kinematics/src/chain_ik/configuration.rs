@@ -1,0 +1,156 @@
+use glam::{Mat3A, Quat, Vec3, Vec3A};
+
+use super::problem::{EndEffector, Problem};
+use crate::skeleton::{JointAngles, nearest_angles};
+
+/// Angles of all links, shifts of all trees, and the positions that follow from both, in problem
+/// space (see [`Problem`]).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Configuration {
+    pub angles: Vec<Vec3>,
+    /// Translation of each tree from its origin.
+    pub shifts: Vec<Vec3A>,
+    /// G, the rotation from a link's space to skeleton space.
+    pub frames: Vec<Mat3A>,
+    /// Rotation axes of each link's three angles in skeleton space, as columns.
+    pub axes: Vec<Mat3A>,
+    /// G as quaternions, for methods that use orientations instead of angles; empty for other
+    /// methods. While they are used, `frames` and `axes` are stale.
+    pub orientations: Vec<Quat>,
+    /// Position of each link's joint, the base of its bone.
+    pub bases: Vec<Vec3A>,
+    /// Position of each end effector's tip.
+    pub tips: Vec<Vec3A>,
+}
+
+impl Configuration {
+    pub fn new(problem: &Problem) -> Self {
+        let links = problem.links.len();
+        let mut config = Self {
+            angles: problem.links.iter().map(|link| link.start).collect(),
+            shifts: vec![Vec3A::ZERO; problem.trees.len()],
+            frames: vec![Mat3A::IDENTITY; links],
+            axes: vec![Mat3A::IDENTITY; links],
+            orientations: Vec::new(),
+            bases: vec![Vec3A::ZERO; links],
+            tips: vec![Vec3A::ZERO; problem.effectors.len()],
+        };
+        config.forward(problem);
+        config
+    }
+
+    /// Forward kinematics: updates `frames`, `axes`, `bases` and `tips` from angles and shifts.
+    pub fn forward(&mut self, problem: &Problem) {
+        for (index, link) in problem.links.iter().enumerate() {
+            let (parent, base) = match link.parent {
+                Some(parent) => {
+                    let frame = self.frames[parent];
+                    (frame, self.bases[parent] + frame * link.pivot)
+                }
+                None => (Mat3A::IDENTITY, self.shifts[link.tree] + link.pivot),
+            };
+            let (rotation, axes) = JointAngles(self.angles[index]).matrix_and_axes();
+            let mounted = parent * link.mount;
+            self.bases[index] = base;
+            self.axes[index] = mounted * axes;
+            self.frames[index] = mounted * rotation;
+        }
+        for (effector, tip) in problem.effectors.iter().zip(&mut self.tips) {
+            *tip = match effector.link {
+                Some(link) => self.bases[link] + self.frames[link] * effector.tip,
+                None => self.shifts[effector.tree] + effector.tip,
+            };
+        }
+    }
+
+    /// Sets `orientations` from `frames`.
+    pub fn set_orientations(&mut self) {
+        self.orientations.clear();
+        self.orientations.extend(self.frames.iter().map(Quat::from_mat3a));
+    }
+
+    /// Euler angles of a link. If they follow from orientations, they are those nearest to `near`.
+    pub fn angles_near(&self, problem: &Problem, index: usize, near: Vec3) -> Vec3 {
+        let link = &problem.links[index];
+        if link.is_limited() || self.orientations.is_empty() {
+            return self.angles[index];
+        }
+        let parent = link.parent.map_or(Quat::IDENTITY, |parent| self.orientations[parent]);
+        let mounted = Mat3A::from_quat(parent) * link.mount;
+        nearest_angles(mounted.transpose() * Mat3A::from_quat(self.orientations[index]), near)
+    }
+
+    /// Sets the angles that follow from `orientations`.
+    pub fn update_angles(&mut self, problem: &Problem) {
+        for index in 0..problem.links.len() {
+            self.angles[index] = self.angles_near(problem, index, self.angles[index]);
+        }
+    }
+
+    /// The cost f = Σ ½ w |tip − target|².
+    pub fn cost(&self, problem: &Problem) -> f64 {
+        let costs = problem.effectors.iter().zip(&self.tips).map(|(effector, tip)| {
+            let residual = tip.as_dvec3() - effector.target.as_dvec3();
+            0.5 * f64::from(effector.weight) * residual.length_squared()
+        });
+        costs.sum()
+    }
+
+    /// Largest distance from a tip to its target, in world units.
+    pub fn error(&self, problem: &Problem) -> f64 {
+        let errors = problem
+            .effectors
+            .iter()
+            .zip(&self.tips)
+            .map(|(effector, tip)| problem.error(effector, *tip));
+        errors.fold(0.0, f64::max)
+    }
+
+    /// Weighted root mean square distance from tips to targets, in the problem's units.
+    pub fn distance(&self, problem: &Problem) -> f64 {
+        let weights: f64 =
+            problem.effectors.iter().map(|effector| f64::from(effector.weight)).sum();
+        (2.0 * self.cost(problem) / weights.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Weighted mean distance from tips to targets, in the problem's units. One far target does not
+    /// hide how much nearer the other tips are.
+    pub fn mean_distance(&self, problem: &Problem) -> f64 {
+        let of_effector = |(effector, tip): (&EndEffector, &Vec3A)| {
+            let weight = f64::from(effector.weight);
+            (weight * f64::from(effector.target.distance(*tip)), weight)
+        };
+        let all = problem.effectors.iter().zip(&self.tips).map(of_effector);
+        let (sum, weights) = all.fold((0.0, 0.0), |(sum, weights), (distance, weight)| {
+            (sum + distance, weights + weight)
+        });
+        sum / f64::max(weights, f64::MIN_POSITIVE)
+    }
+
+    /// Largest distance of a joint or tip from its position in another configuration.
+    pub fn max_displacement(&self, from: &Self) -> f32 {
+        let bases = self.bases.iter().zip(&from.bases);
+        let both = bases.chain(self.tips.iter().zip(&from.tips));
+        both.map(|(here, there)| here.distance_squared(*there)).fold(0.0, f32::max).sqrt()
+    }
+
+    /// Whether both configurations have equal angles, orientations and positions.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.angles == other.angles
+            && self.orientations == other.orientations
+            && self.bases == other.bases
+            && self.tips == other.tips
+    }
+
+    pub fn copy_from(&mut self, from: &Self) {
+        self.angles.clone_from(&from.angles);
+        self.shifts.clone_from(&from.shifts);
+        self.orientations.clone_from(&from.orientations);
+        if from.orientations.is_empty() {
+            self.frames.clone_from(&from.frames);
+            self.axes.clone_from(&from.axes);
+        }
+        self.bases.clone_from(&from.bases);
+        self.tips.clone_from(&from.tips);
+    }
+}

@@ -1,0 +1,81 @@
+use glam::{Quat, Vec3A};
+
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::coordinates::Coordinates;
+
+/// Keeps what a method computes in an iteration, in the problem's units; nothing if it is off.
+pub(in crate::chain_ik) struct Recorder(Option<Vec<Record>>);
+
+/// A part of an iteration with the configuration after it.
+pub(in crate::chain_ik) struct Record {
+    pub event: Event,
+    pub config: Configuration,
+}
+
+/// A part of an iteration.
+pub(in crate::chain_ik) enum Event {
+    /// Straight chains were bent before the first iteration.
+    Bend,
+    /// The gradient was computed; with damped least squares, for this λ.
+    Gradient { descent: Coordinates, damping: Option<f32> },
+    /// The angles were changed by `factor` times `by`, within the limits, after `tries` longer or less
+    /// damped steps that were refused.
+    Step { by: Coordinates, factor: f32, tries: u32, damping: Option<f32> },
+    /// One link was rotated; `pairs` are the tips below it before, and their targets.
+    Turn { link: usize, rotation: Quat, pairs: Vec<[Vec3A; 2]> },
+    /// The roots were moved.
+    MoveRoots,
+    /// Points were moved from the targets towards the roots.
+    Backward(Vec<LinkSegment>),
+    /// Points were moved back from the roots.
+    Forward(Vec<LinkSegment>),
+    /// The passes were undone, because they raised the cost.
+    Undo,
+    /// The elbow of the limb that ends with this link was placed.
+    PlaceElbow(usize),
+    /// The link was turned to the target.
+    Aim(usize),
+    /// The method starts again from another pose, or the solver ends with the best pose.
+    Restart,
+}
+
+/// A link from its joint to one of its points.
+#[derive(Clone, Copy)]
+pub(in crate::chain_ik) struct LinkSegment {
+    pub link: usize,
+    pub ends: [Vec3A; 2],
+}
+
+impl Recorder {
+    pub fn off() -> Self {
+        Self(None)
+    }
+
+    pub fn on() -> Self {
+        Self(Some(Vec::new()))
+    }
+
+    pub fn is_on(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Keeps a part of the iteration that ended with `config`.
+    pub fn record(&mut self, config: &Configuration, event: impl FnOnce() -> Event) {
+        if let Some(records) = &mut self.0 {
+            records.push(Record { event: event(), config: config.clone() });
+        }
+    }
+
+    /// Keeps a change to `config`, unless that is the configuration after the last part.
+    pub fn record_change(&mut self, config: &Configuration, event: Event) {
+        if let Some(records) = &mut self.0
+            && records.last().is_none_or(|last| !last.config.is_same(config))
+        {
+            records.push(Record { event, config: config.clone() });
+        }
+    }
+
+    pub fn into_records(self) -> Vec<Record> {
+        self.0.unwrap_or_default()
+    }
+}

@@ -1,0 +1,150 @@
+use glam::Vec3;
+
+use super::Ellipsoid;
+use crate::skeleton::{JointId, RotationAxis, Skeleton};
+
+/// A part of an iteration. Positions and lengths are in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SubStep {
+    /// What was computed.
+    pub kind: SubStepKind,
+    /// The skeleton in the pose after it.
+    pub pose: Skeleton,
+    /// Largest distance from a tip to its target in that pose, as far as the method counts it.
+    pub error: f32,
+}
+
+/// What is computed in a part of an iteration.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SubStepKind {
+    /// Straight chains, which no method can bend, are bent before the first iteration.
+    Bend,
+    /// Transpose and damped least squares: the Jacobian and the gradient. The pose is unchanged.
+    Gradient(Gradient),
+    /// Transpose and damped least squares: the angles are changed.
+    Step(StepTaken),
+    /// CCD: one joint is turned.
+    Turn(Turn),
+    /// Free roots are moved.
+    MoveRoots,
+    /// FABRIK: the pass from the targets to the roots, as segments from joints to points. The pose is
+    /// unchanged.
+    Backward(Vec<[Vec3; 2]>),
+    /// FABRIK: the pass back from the roots, as segments from joints to points.
+    Forward(Vec<[Vec3; 2]>),
+    /// FABRIK: the passes raised the error and are undone; a sweep of CCD follows.
+    Undo,
+    /// Two-bone: the upper joint of the limb that ends with this joint is turned, so that the elbow is
+    /// at its place.
+    PlaceElbow(JointId),
+    /// Two-bone: this joint is turned to the target.
+    Aim(JointId),
+    /// The method starts again from another pose, or the solver returns to the best pose.
+    Restart,
+}
+
+/// The Jacobian of all tips, and the gradient of f.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient {
+    /// One column for each angle and each tip that it moves, joints from the root on.
+    pub columns: Vec<Column>,
+    /// The speeds that each tip can have in different directions.
+    pub ellipsoids: Vec<Ellipsoid>,
+    /// The damping λ of damped least squares.
+    pub damping: Option<f32>,
+}
+
+/// A column of the Jacobian.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// The joint that turns.
+    pub joint: JointId,
+    /// The axis of its angle.
+    pub axis: RotationAxis,
+    /// The joint whose tip moves.
+    pub tip: JointId,
+    /// Position of the tip.
+    pub at: Vec3,
+    /// Velocity of the tip, per radian of the angle.
+    pub by: Vec3,
+}
+
+/// A change of angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepTaken {
+    /// The changes of all angles, joints from the root on.
+    pub changes: Vec<AngleChange>,
+    /// The moves of all tips.
+    pub tips: Vec<TipMove>,
+    /// The step length τ of the transpose, in radians per squared length.
+    pub length: Option<f32>,
+    /// The damping λ of damped least squares.
+    pub damping: Option<f32>,
+    /// Number of longer or less damped steps that were refused before.
+    pub refused: u32,
+}
+
+/// The change of an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleChange {
+    /// The joint.
+    pub joint: JointId,
+    /// The axis of its angle.
+    pub axis: RotationAxis,
+    /// The component of the gradient of f.
+    pub gradient: f32,
+    /// The change in radians.
+    pub by: f32,
+    /// Whether the angle is at a limit afterwards.
+    pub is_at_limit: bool,
+}
+
+/// The move of a tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TipMove {
+    /// The joint whose tip moves.
+    pub joint: JointId,
+    /// The position before.
+    pub from: Vec3,
+    /// The position that the Jacobian predicts.
+    pub predicted: Vec3,
+    /// The position after.
+    pub to: Vec3,
+}
+
+/// The turn of one joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn {
+    /// The joint.
+    pub joint: JointId,
+    /// Its position.
+    pub base: Vec3,
+    /// Unit axis of the turn; zero for no turn.
+    pub axis: Vec3,
+    /// Angle of the turn in radians, seen against the axis.
+    pub angle: f32,
+    /// For each tip below the joint its position before, its target, and its position after.
+    pub tips: Vec<[Vec3; 3]>,
+}
+
+impl SubStepKind {
+    /// What is done, in a few words.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Self::Bend => "Bend the straight chain",
+            Self::Gradient(Gradient { damping: None, .. }) => "Compute the Jacobian",
+            Self::Gradient(_) => "Compute the Jacobian and its ellipsoid",
+            Self::Step(StepTaken { damping: None, .. }) => "Step along the gradient",
+            Self::Step(_) => "Take the damped step",
+            Self::Turn(_) => "Turn one joint",
+            Self::MoveRoots => "Move the roots",
+            Self::Backward(_) => "Pass backward, from the target to the root",
+            Self::Forward(_) => "Pass forward, from the root to the tip",
+            Self::Undo => "Undo the passes",
+            Self::PlaceElbow(_) => "Place the elbow",
+            Self::Aim(_) => "Turn to the target",
+            Self::Restart => "Start again from another pose",
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The Jacobian: derivatives of tips with respect to joint angles.
+//!
+//! The column of the Jacobian J for one Euler angle of a joint with base b, for a tip p, is a × (p
+//! − b), where the unit vector a is the angle's axis. A force F at p has the component Jᵀ F = a ·
+//! ((p − b) × F) along that angle. Summing forces and moments from tips to roots gives this
+//! component for all joints in one pass.
+//!
+//! # Source
+//!
+//! S. Buss, *Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and Damped
+//! Least Squares methods*, 2004.
+
+use glam::{Mat3A, Vec3, Vec3A};
+
+use super::configuration::Configuration;
+use super::coordinates::Coordinates;
+use super::problem::Problem;
+use crate::skeleton::{JointAngles, JointId, Skeleton, clamp_to_limits};
+
+/// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
+/// space and per radian; zero for joints other than the joint and its ancestors.
+///
+/// # Panics
+///
+/// If there is no such joint.
+pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
+    let pose = skeleton.pose_in_skeleton();
+    let mut columns = vec![[Vec3::ZERO; 3]; skeleton.joints().len()];
+    for index in skeleton.ancestors(joint) {
+        let Some(above) = skeleton.joint(index) else { continue };
+        let parent = above.parent.map_or(Mat3A::IDENTITY, |parent| pose.full(parent).matrix3);
+        let axes = parent * Mat3A::from(above.frame) * JointAngles(above.rotation).axes();
+        let arm = Vec3A::from(pose.tip(joint) - pose.base(index));
+        columns[index.index()] =
+            [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
+    }
+    columns
+}
+
+/// Force and moment (about the tree's origin) on each link, from all end effectors at the link and
+/// below.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Wrenches(Vec<(Vec3A, Vec3A)>);
+
+impl Wrenches {
+    /// Writes the negative gradient of the cost, Jᵀ W (target − p), to `descent`.
+    pub fn descend(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        descent: &mut Coordinates,
+    ) {
+        let force = |index: usize| {
+            let effector = &problem.effectors[index];
+            (effector.target - config.tips[index]) * effector.weight
+        };
+        self.apply_transpose(problem, config, force, descent);
+    }
+
+    /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F at
+    /// the tip of an end effector.
+    pub fn apply_transpose(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        force: impl Fn(usize) -> Vec3A,
+        Coordinates { angles, shifts }: &mut Coordinates,
+    ) {
+        self.0.clear();
+        self.0.resize(problem.links.len(), (Vec3A::ZERO, Vec3A::ZERO));
+        angles.clear();
+        angles.resize(problem.links.len(), Vec3::ZERO);
+        shifts.clear();
+        shifts.resize(problem.trees.len(), Vec3A::ZERO);
+
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let force = force(index);
+            shifts[effector.tree] += force;
+            if let Some(link) = effector.link {
+                self.add(link, force, config.tips[index].cross(force));
+            }
+        }
+        for (index, link) in problem.links.iter().enumerate().rev() {
+            let (force, moment) = self.0[index];
+            let about_base = moment - config.bases[index].cross(force);
+            angles[index] = (config.axes[index].transpose() * about_base).into();
+            if let Some(parent) = link.parent {
+                self.add(parent, force, moment);
+            }
+        }
+    }
+
+    fn add(&mut self, link: usize, force: Vec3A, moment: Vec3A) {
+        self.0[link].0 += force;
+        self.0[link].1 += moment;
+    }
+}
+
+/// Applies a step within the limits; non-finite components are left unchanged.
+pub(super) fn advance(
+    problem: &Problem,
+    from: &Coordinates,
+    by: &Coordinates,
+    factor: f32,
+    config: &mut Configuration,
+) {
+    for (index, link) in problem.links.iter().enumerate() {
+        let (before, angles) = (from.angles[index], from.angles[index] + factor * by.angles[index]);
+        let angles = if angles.is_finite() { angles } else { before };
+        config.angles[index] = clamp_to_limits(&link.limits, angles);
+    }
+    if problem.free_roots {
+        // The square of the chain's length converts the units of angles to those of shifts.
+        let lever = factor * problem.length * problem.length;
+        for (index, shifts) in config.shifts.iter_mut().enumerate() {
+            let (before, moved) =
+                (from.shifts[index], from.shifts[index] + lever * by.shifts[index]);
+            *shifts = if problem.can_shift(index, moved) { moved } else { before };
+        }
+    }
+    config.forward(problem);
+}

@@ -1,0 +1,125 @@
+use super::{Method, OptionField, SolveError};
+
+/// Options of all methods.
+///
+/// ```
+/// use ik_arm_kinematics::chain_ik::{Method, SolverOptions};
+///
+/// let mut options = SolverOptions::new(Method::Ccd).with_tolerance(1e-3);
+/// options.iterations = Some(50);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct SolverOptions {
+    /// The method.
+    pub method: Method,
+    /// Maximum number of iterations; `None` for the [method's default](Method::budget).
+    pub iterations: Option<u32>,
+    /// Distance in world units: a solver has converged if no tip is farther from its target. `None`
+    /// for 1e-4 of the chain's length.
+    pub tolerance: Option<f32>,
+    /// Initial damping λ of damped least squares, in chain lengths.
+    pub damping: f32,
+    /// Step length of [`Method::TransposeFixed`], in units of 1/Σ w r², with the weights w of the
+    /// targets and the distances r from joints to tips in the bind pose.
+    pub step: f32,
+    /// What solvers may change of roots.
+    pub root: Root,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            iterations: None,
+            tolerance: None,
+            damping: 0.05,
+            step: 1.0,
+            root: Root::Turns,
+        }
+    }
+}
+
+impl SolverOptions {
+    /// Default options of a method.
+    #[must_use]
+    pub fn new(method: Method) -> Self {
+        Self::default().with_method(method)
+    }
+
+    /// These options with another method.
+    #[must_use]
+    pub fn with_method(self, method: Method) -> Self {
+        Self { method, ..self }
+    }
+
+    /// These options with a maximum number of iterations.
+    #[must_use]
+    pub fn with_iterations(self, iterations: u32) -> Self {
+        Self { iterations: Some(iterations), ..self }
+    }
+
+    /// These options with a tolerance, in world units.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f32) -> Self {
+        Self { tolerance: Some(tolerance), ..self }
+    }
+
+    /// These options with an initial damping λ, in chain lengths.
+    #[must_use]
+    pub fn with_damping(self, damping: f32) -> Self {
+        Self { damping, ..self }
+    }
+
+    /// These options with a step length, in the units of [`Self::step`].
+    #[must_use]
+    pub fn with_step(self, step: f32) -> Self {
+        Self { step, ..self }
+    }
+
+    /// These options with another mobility of roots.
+    #[must_use]
+    pub fn with_root(self, root: Root) -> Self {
+        Self { root, ..self }
+    }
+
+    pub(super) fn check(&self) -> Result<(), SolveError> {
+        let is_positive = |value: f32| value.is_finite() && value > 0.0;
+        let checks = [
+            (OptionField::Damping, self.damping, is_positive(self.damping)),
+            (OptionField::Step, self.step, is_positive(self.step)),
+            (
+                OptionField::Tolerance,
+                self.tolerance.unwrap_or_default(),
+                self.tolerance.is_none_or(|value| value.is_finite() && value >= 0.0),
+            ),
+        ];
+        match checks.into_iter().find(|(.., is_valid)| !is_valid) {
+            Some((field, value, _)) => Err(SolveError::Option { field, value }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Mobility of roots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Root {
+    /// Roots keep their angles and offsets.
+    Locked,
+    /// Roots rotate and keep their offsets. Files of earlier versions call it `fixed`.
+    #[default]
+    #[cfg_attr(feature = "serde", serde(alias = "fixed"))]
+    Turns,
+    /// Roots rotate, and solvers change their offsets.
+    Free,
+}
+
+impl Root {
+    /// All mobilities.
+    pub const ALL: [Self; 3] = [Self::Locked, Self::Turns, Self::Free];
+}

@@ -1,0 +1,338 @@
+use super::configuration::Configuration;
+use super::escape::Escape;
+use super::inside::{Event, Recorder, SubStep, sub_steps};
+use super::method_state::MethodState;
+use super::problem::{self, Problem};
+use super::stall::StallDetector;
+use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
+use crate::saturate::saturate;
+use crate::skeleton::Skeleton;
+
+/// An iterative solver that moves the bone tips of a skeleton to targets.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
+/// use ik_arm_kinematics::chain_ik::{SolverOptions, ChainSolver, TipTarget};
+///
+/// let mut skeleton = Skeleton::with_root("root");
+/// let upper = skeleton.add(Joint::new("upper", Some(JointId::new(0)), Vec3::Y))?;
+/// let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y) };
+/// let lower = skeleton.add(lower)?;
+///
+/// let target = TipTarget { joint: lower, point: Vec3::new(1.0, 0.5, 0.0), weight: 1.0 };
+/// let mut solver = ChainSolver::new(&skeleton, &[target], &SolverOptions::default())?;
+/// assert!(solver.run().converged());
+/// solver.write(&mut skeleton);
+/// assert!(skeleton.tip(lower).distance(target.point) < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChainSolver {
+    report: Report,
+    max_iterations: u32,
+    /// In world units.
+    tolerance: f64,
+    problem: Problem,
+    config: Configuration,
+    /// The configuration before the first iteration.
+    start: Configuration,
+    state: MethodState,
+    stall: StallDetector,
+    escape: Escape,
+}
+
+impl ChainSolver {
+    /// Prepares a solver without making an iteration.
+    ///
+    /// # Errors
+    ///
+    /// See [`SolveError`].
+    pub fn new(
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
+        options.check()?;
+        let problem = problem::build(skeleton, targets, options)?;
+        let tolerance = options.tolerance.map_or(1e-4 * problem.world_length(), f64::from);
+        let state = MethodState::new(&problem, skeleton, options)?;
+        let mut config = Configuration::new(&problem);
+        if state.uses_orientations() {
+            config.set_orientations();
+        }
+        let stall =
+            StallDetector::new(options.method, problem.length_from_world(tolerance), &config);
+        let report =
+            Report { method: options.method, iterations: 0, error: 0.0, status: Status::Iterating };
+        let max_iterations = options.iterations.unwrap_or(options.method.budget());
+        let (start, escape) = (config.clone(), Escape::new(&config));
+        let mut solver = Self {
+            report,
+            max_iterations,
+            tolerance,
+            problem,
+            config,
+            start,
+            state,
+            stall,
+            escape,
+        };
+        solver.set_targets(targets);
+        Ok(solver)
+    }
+
+    /// Progress so far.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        self.report
+    }
+
+    /// Distance in world units: the solver has converged if no tip is farther from its target.
+    #[must_use]
+    pub fn tolerance(&self) -> f32 {
+        saturate(self.tolerance)
+    }
+
+    /// Makes one iteration, unless the solver has converged or stalled. The maximum number of
+    /// iterations is ignored.
+    pub fn step(&mut self) -> Report {
+        self.step_with(&mut Recorder::off())
+    }
+
+    /// Makes one iteration like [`ChainSolver::step`], with the same bits, and returns what the method
+    /// computed in it, in the order in which it did; the last sub-step has the pose after the
+    /// iteration, as [`ChainSolver::write`] writes it to `skeleton`: the skeleton for which the solver
+    /// was made, in the FK pose.
+    pub fn step_inside(&mut self, skeleton: &Skeleton) -> (Report, Vec<SubStep>) {
+        let mut recorder = Recorder::on();
+        let report = self.step_with(&mut recorder);
+        let pose = |config: &Configuration| {
+            let mut pose = skeleton.clone();
+            self.write_configuration(config, &mut pose);
+            pose
+        };
+        (report, sub_steps(recorder.into_records(), &self.problem, skeleton.transform(), pose))
+    }
+
+    fn step_with(&mut self, recorder: &mut Recorder) -> Report {
+        if matches!(self.report.status, Status::Converged | Status::Stalled) {
+            return self.report;
+        }
+        if self.report.iterations == 0 {
+            self.start(recorder);
+        }
+        let can_go_on = self.state.iterate(&self.problem, &mut self.config, recorder);
+        self.report.iterations += 1;
+        self.measure();
+        if !self.report.converged()
+            && (!can_go_on || self.stall.observe(&self.problem, &self.config))
+        {
+            self.escape_or_stall();
+            recorder.record_change(&self.config, Event::Restart);
+        }
+        if self.report.status == Status::OutOfIterations {
+            self.escape.restore_best(&self.problem, &mut self.config);
+            recorder.record_change(&self.config, Event::Restart);
+            self.measure();
+        }
+        self.report
+    }
+
+    /// Iterates until the solver has converged, has stalled or is out of iterations.
+    pub fn run(&mut self) -> Report {
+        while !self.is_over() {
+            self.step();
+        }
+        self.report
+    }
+
+    /// Whether the solver has converged, has stalled or is out of iterations.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.report.status != Status::Iterating
+    }
+
+    /// Moves the targets and restarts from the current pose with no iterations made. The targets
+    /// must be for the same joints, in the same order; their weights stay as they were.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::NoJoint`] for other joints or another order; [`SolveError::Point`];
+    /// [`SolveError::Weight`].
+    pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
+        let effectors = &self.problem.effectors;
+        for (index, effector) in effectors.iter().enumerate() {
+            let joint = targets.get(index).map(|target| target.joint);
+            if joint != Some(effector.joint) {
+                return Err(SolveError::NoJoint(joint.unwrap_or(effector.joint)));
+            }
+        }
+        if let Some(more) = targets.get(effectors.len()) {
+            return Err(SolveError::NoJoint(more.joint));
+        }
+        for target in targets {
+            problem::check_target(target)?;
+        }
+        self.set_targets(targets);
+        Ok(())
+    }
+
+    /// Writes the solved Euler angles and the offsets of free roots into `skeleton`, which must be
+    /// the skeleton for which the solver was made. Of all equivalent angles of a joint, it writes
+    /// those nearest to the joint's present angles.
+    pub fn write(&self, skeleton: &mut Skeleton) {
+        self.write_configuration(&self.config, skeleton);
+    }
+
+    fn write_configuration(&self, config: &Configuration, skeleton: &mut Skeleton) {
+        if self.problem.free_roots {
+            for (index, tree) in self.problem.trees.iter().enumerate() {
+                let offset = self.problem.root_offset(index, config.shifts[index]);
+                skeleton.write_local(tree.root, |root| root.offset = offset);
+            }
+        } else if config.is_same(&self.start) {
+            // Nothing has moved: writes the angles from before the run, bit for bit, also if other
+            // angles have been written since.
+            for link in &self.problem.links {
+                skeleton.write_local(link.joint, |joint| joint.rotation = link.start);
+            }
+            return;
+        }
+        let mut config = config.clone();
+        if let MethodState::Fabrik(fabrik) = &self.state {
+            fabrik.update_orientations(&mut config);
+        }
+        for (index, link) in self.problem.links.iter().enumerate() {
+            skeleton.write_local(link.joint, |joint| {
+                joint.rotation = config.angles_near(&self.problem, index, joint.rotation);
+            });
+        }
+    }
+
+    fn set_targets(&mut self, targets: &[TipTarget]) {
+        if self.problem.free_roots {
+            self.problem.approach(targets, &self.config.tips);
+        } else {
+            self.problem.set_targets(targets);
+        }
+        self.report.iterations = 0;
+        self.measure();
+        self.state.restart();
+        self.escape.reset();
+        self.stall.set_reference(&self.problem, &self.config);
+    }
+
+    /// Updates the error and the status of the report.
+    fn measure(&mut self) {
+        let error = self.config.error(&self.problem);
+        self.report.error = saturate(error);
+        self.report.status = if error <= self.tolerance {
+            Status::Converged
+        } else if self.report.iterations >= self.max_iterations {
+            Status::OutOfIterations
+        } else {
+            Status::Iterating
+        };
+    }
+
+    /// Bends straight chains that no method can bend. Without any, the configuration keeps its bits.
+    fn start(&mut self, recorder: &mut Recorder) {
+        self.escape.best.copy_from(&self.config);
+        if self.bend() {
+            recorder.record(&self.config, || Event::Bend);
+        } else {
+            self.config.copy_from(&self.escape.best);
+        }
+    }
+
+    /// Bends straight chains that no method can bend. Returns whether there was one.
+    fn bend(&mut self) -> bool {
+        let mut scratch = std::mem::take(&mut self.escape.scratch);
+        let any =
+            self.change_angles(|problem, config| perturb::bend(problem, config, &mut scratch));
+        self.escape.scratch = scratch;
+        any
+    }
+
+    /// Whether the method may start from another pose than it has come to.
+    fn can_escape(&self) -> bool {
+        let is_closed_form = matches!(self.state, MethodState::TwoBone(_));
+        !is_closed_form && !self.problem.free_roots
+    }
+
+    /// Changes the configuration's angles. If `change` returns `false`, nothing has changed but for
+    /// rounding.
+    fn change_angles(&mut self, change: impl FnOnce(&Problem, &mut Configuration) -> bool) -> bool {
+        if !self.can_escape() {
+            return false;
+        }
+        let config = &mut self.config;
+        if let MethodState::Fabrik(fabrik) = &self.state {
+            fabrik.update_orientations(config);
+        }
+        let uses_orientations = self.state.uses_orientations();
+        if uses_orientations {
+            config.update_angles(&self.problem);
+            config.forward(&self.problem);
+        }
+        let any = change(&self.problem, config);
+        if any && uses_orientations {
+            config.set_orientations();
+        }
+        any
+    }
+
+    /// Returns to the best configuration so far and starts again from there in another way. If all
+    /// ways have failed, the solver has stalled: another run from there would change nothing.
+    fn escape_or_stall(&mut self) {
+        if matches!(self.state, MethodState::TwoBone(_)) {
+            self.report.status = Status::Stalled;
+            return;
+        }
+        self.escape.observe(&self.problem, &self.stall.reference);
+        let can_go_on = self.escape();
+        self.measure();
+        self.stall.set_reference(&self.problem, &self.config);
+        if !can_go_on && !self.report.converged() {
+            self.report.status = Status::Stalled;
+        }
+    }
+
+    /// Changes the best configuration so far in the next way that changes anything. Returns whether
+    /// there was one.
+    fn escape(&mut self) -> bool {
+        loop {
+            self.config.copy_from(&self.escape.best);
+            let attempt = self.escape.attempts;
+            self.escape.attempts += 1;
+            let learns = self.state.restart();
+            let goes_on = match attempt {
+                0 => self.bend() || learns,
+                1..=perturb::STARTS_INSIDE => self.change_angles(|problem, config| {
+                    perturb::leave_limits(problem, config, attempt - 1)
+                }),
+                _ => return false,
+            };
+            if goes_on {
+                return true;
+            }
+        }
+    }
+}
+
+/// Solves a skeleton in place with a new [`ChainSolver`].
+///
+/// # Errors
+///
+/// See [`SolveError`].
+pub fn solve(
+    skeleton: &mut Skeleton,
+    targets: &[TipTarget],
+    options: &SolverOptions,
+) -> Result<Report, SolveError> {
+    let mut solver = ChainSolver::new(skeleton, targets, options)?;
+    let report = solver.run();
+    solver.write(skeleton);
+    Ok(report)
+}

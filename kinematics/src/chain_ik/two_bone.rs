@@ -1,0 +1,142 @@
+//! Closed form for a target's joint and its parent: [`TwoBone`] in the plane of their bones.
+//!
+//! The elbow keeps its side: its direction from the line between shoulder and hand is transported
+//! by the smallest rotation of this line. The upper bone rotates with the whole plane, so that an
+//! elbow that is a hinge remains a hinge. A straight or folded limb is first bent within its
+//! limits.
+
+use glam::{Mat3A, Vec3, Vec3A};
+
+use super::ccd::move_roots;
+use super::configuration::Configuration;
+use super::inside::{Event, Recorder};
+use super::perturb::bent_angles;
+use super::problem::Problem;
+use super::{SolveError, TwoBoneRefusal};
+use crate::skeleton::{JointId, Limit, Skeleton, angle_triples, clamp_to_limits};
+use crate::two_bone::TwoBone;
+use crate::{normalize, rotation_between};
+
+/// The two links above one end effector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LinkPair {
+    effector: usize,
+    upper: usize,
+    lower: usize,
+    arm: TwoBone,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TwoBones {
+    /// Limbs, sorted from the roots to the tips.
+    limbs: Vec<LinkPair>,
+}
+
+impl TwoBones {
+    pub fn new(problem: &Problem, skeleton: &Skeleton) -> Result<Self, SolveError> {
+        let mut limbs: Vec<LinkPair> = Vec::new();
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let refuse = |reason| SolveError::TwoBone { joint: effector.joint, reason };
+            let parent = skeleton[effector.joint].parent;
+            let parent = parent.ok_or_else(|| refuse(TwoBoneRefusal::NoParent))?;
+            // All ancestors of a target that may turn have links.
+            let link = |joint: JointId| problem.links.iter().position(|link| link.joint == joint);
+            let lower = link(effector.joint).ok_or_else(|| refuse(TwoBoneRefusal::Locked))?;
+            let upper = link(parent).ok_or_else(|| refuse(TwoBoneRefusal::ParentLocked))?;
+            let lengths = [problem.links[lower].pivot.length(), effector.tip.length()];
+            let arm = TwoBone::new(lengths[0], lengths[1])
+                .map_err(|_| refuse(TwoBoneRefusal::NoLength))?;
+            let is_taken = |limb: &LinkPair| {
+                [limb.upper, limb.lower].iter().any(|link| *link == upper || *link == lower)
+            };
+            if limbs.iter().any(is_taken) {
+                return Err(refuse(TwoBoneRefusal::Shared));
+            }
+            limbs.push(LinkPair { effector: index, upper, lower, arm });
+        }
+        limbs.sort_by_key(|limb| limb.upper);
+        Ok(Self { limbs })
+    }
+
+    pub fn solve(&self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
+        for limb in &self.limbs {
+            self.bend_if_straight(problem, config, *limb);
+            place_elbow(problem, config, *limb);
+            recorder.record(config, || Event::PlaceElbow(limb.lower));
+            aim_hand(problem, config, *limb);
+            recorder.record(config, || Event::Aim(limb.lower));
+        }
+        if problem.free_roots {
+            move_roots(problem, config);
+            config.forward(problem);
+            recorder.record(config, || Event::MoveRoots);
+        }
+    }
+
+    /// Bends a limb that is too straight to define a plane.
+    fn bend_if_straight(&self, problem: &Problem, config: &mut Configuration, limb: LinkPair) {
+        // Sine of the angle between the bones below which the plane of the bones is only rounding.
+        const STRAIGHT: f32 = 1e-4;
+        const BEND: f32 = 0.1;
+        let upper =
+            normalize(config.bases[limb.lower] - config.bases[limb.upper]).unwrap_or_default();
+        let lower =
+            normalize(config.tips[limb.effector] - config.bases[limb.lower]).unwrap_or_default();
+        if upper.cross(lower).length() < STRAIGHT {
+            config.angles[limb.lower] = bent_angles(problem, config, limb.lower, upper, BEND);
+            config.forward(problem);
+        }
+    }
+}
+
+/// Rotates the upper bone together with the limb's plane, so that the elbow is where the closed
+/// form puts it. A bone that is so short that it underflows beside the chain's length is left
+/// unchanged.
+fn place_elbow(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
+    let shoulder = config.bases[limb.upper];
+    let (upper, hand) =
+        (config.bases[limb.lower] - shoulder, config.tips[limb.effector] - shoulder);
+    let cursor = problem.effectors[limb.effector].target - shoulder;
+
+    let Some(along) = normalize(upper) else { return };
+    let old_normal = normalize(hand.cross(upper));
+    let old_normal = old_normal.unwrap_or_else(|| along.any_orthonormal_vector());
+    let old_pointer = normalize(hand).unwrap_or_else(|| old_normal.cross(along));
+    let pointer = normalize(cursor).unwrap_or(old_pointer);
+    let transported = rotation_between(old_pointer, pointer) * old_normal;
+    let normal = normalize(transported.reject_from_normalized(pointer));
+    let normal = normal.unwrap_or_else(|| pointer.any_orthonormal_vector());
+
+    let solved = limb.arm.solve(Vec3::X * cursor.length(), 0.0);
+    let elbow = pointer * solved.along + normal.cross(pointer) * solved.out;
+    let Some(new_along) = normalize(elbow) else { return };
+    let plane = |along: Vec3A, normal: Vec3A| Mat3A::from_cols(along, normal, along.cross(normal));
+    let rotation = plane(new_along, normal) * plane(along, old_normal).transpose();
+    rotate_link(problem, config, limb.upper, rotation);
+}
+
+/// Rotates the lower bone towards the target.
+fn aim_hand(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
+    let elbow = config.bases[limb.lower];
+    let (lower, cursor) =
+        (config.tips[limb.effector] - elbow, problem.effectors[limb.effector].target - elbow);
+    rotate_link(problem, config, limb.lower, Mat3A::from_quat(rotation_between(lower, cursor)));
+}
+
+/// Rotates a link by a rotation in skeleton space, within its limits. Of the two equivalent Euler
+/// triples it takes the farther one only if the limits contain that one and not the nearer one.
+fn rotate_link(problem: &Problem, config: &mut Configuration, index: usize, rotation: Mat3A) {
+    let link = &problem.links[index];
+    let parent = link.parent.map_or(Mat3A::IDENTITY, |parent| config.frames[parent]);
+    let own = (parent * link.mount).transpose() * rotation * config.frames[index];
+    let [near, far] = angle_triples(own, config.angles[index]);
+    let is_within = |angles: Vec3| {
+        let fits = |(angle, limit): (f32, Option<Limit>)| {
+            limit.is_none_or(|limit| (limit.min..=limit.max).contains(&angle))
+        };
+        angles.to_array().into_iter().zip(link.limits).all(fits)
+    };
+    let angles = if is_within(far) && !is_within(near) { far } else { near };
+    config.angles[index] = clamp_to_limits(&link.limits, angles);
+    config.forward(problem);
+}

@@ -1,0 +1,142 @@
+use glam::Vec3;
+
+use crate::chain_ik::{Method, Root, SolverOptions, TipTarget};
+use crate::skeleton::{JointId, Limit, RotationAxis, Skeleton, SkeletonError};
+
+/// A change that brings a tip nearer to its target.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remedy {
+    /// Moves the target of a joint.
+    MoveTarget {
+        /// The joint of the target.
+        joint: JointId,
+        /// The new position, in the world.
+        point: Vec3,
+    },
+    /// Lengthens all bones from a root to the tip of a joint.
+    Lengthen {
+        /// The last joint.
+        joint: JointId,
+        /// Factor of the lengths.
+        factor: f32,
+    },
+    /// Changes what solvers may do with roots.
+    SetRoot(Root),
+    /// Widens limits of angles.
+    WidenLimits(Vec<WidenedLimit>),
+    /// Lets solvers turn joints.
+    Unlock(Vec<JointId>),
+    /// Disables the target of a joint.
+    SwitchOff(JointId),
+    /// Changes the weight of a target.
+    SetWeight {
+        /// The joint of the target.
+        joint: JointId,
+        /// The new weight.
+        weight: f32,
+    },
+    /// Solves by another method.
+    UseMethod(Method),
+    /// Solves from other joint angles.
+    StartFrom(Start),
+    /// Raises the maximum number of iterations.
+    AllowIterations(u32),
+    /// Gives a target full influence.
+    FullInfluence(JointId),
+    /// Lets a limb stretch.
+    Stretch {
+        /// The joint of the limb's target.
+        joint: JointId,
+        /// Maximum factor by which the bones are lengthened.
+        max_stretch: f32,
+    },
+    /// Lets a limb move up to its limits without slowing down before them, and fold completely.
+    HardLimits(JointId),
+}
+
+/// A limit that a remedy widens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WidenedLimit {
+    /// The joint.
+    pub joint: JointId,
+    /// The axis of the angle.
+    pub axis: RotationAxis,
+    /// The widened range.
+    pub limit: Limit,
+    /// Increase of the range, in radians.
+    pub by: f32,
+}
+
+/// Joint angles from which a solve starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Whether the chain is only bent a little from where it is.
+    pub is_bend: bool,
+    /// Euler angles in radians.
+    pub angles: Vec<(JointId, Vec3)>,
+}
+
+impl Remedy {
+    /// Applies the part of the remedy that concerns joints.
+    ///
+    /// # Errors
+    ///
+    /// [`SkeletonError`] for joints that the skeleton does not have, and for lengths that overflow.
+    pub fn change_skeleton(&self, skeleton: &mut Skeleton) -> Result<(), SkeletonError> {
+        match self {
+            Self::Lengthen { joint, factor } => lengthen(skeleton, *joint, *factor),
+            Self::WidenLimits(widened) => widened.iter().try_for_each(|widened| {
+                skeleton.change(widened.joint, |joint| {
+                    joint.limits[widened.axis as usize] = Some(widened.limit);
+                })
+            }),
+            Self::Unlock(joints) => joints
+                .iter()
+                .try_for_each(|joint| skeleton.change(*joint, |joint| joint.locked = false)),
+            Self::StartFrom(start) => start
+                .angles
+                .iter()
+                .try_for_each(|(joint, angles)| skeleton.set_rotation(*joint, *angles)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Applies the part of the remedy that concerns the solver.
+    pub fn change_options(&self, options: &mut SolverOptions) {
+        match self {
+            Self::SetRoot(root) => options.root = *root,
+            Self::UseMethod(method) => options.method = *method,
+            Self::AllowIterations(iterations) => options.iterations = Some(*iterations),
+            _ => {}
+        }
+    }
+
+    /// Applies the part of the remedy that concerns targets of chains.
+    pub fn change_targets(&self, targets: &mut Vec<TipTarget>) {
+        let mut change = |joint: JointId, change: &dyn Fn(&mut TipTarget)| {
+            targets.iter_mut().filter(|target| target.joint == joint).for_each(change);
+        };
+        match self {
+            Self::MoveTarget { joint, point } => change(*joint, &|target| target.point = *point),
+            Self::SetWeight { joint, weight } => change(*joint, &|target| target.weight = *weight),
+            Self::SwitchOff(joint) => targets.retain(|target| target.joint != *joint),
+            _ => {}
+        }
+    }
+}
+
+fn lengthen(skeleton: &mut Skeleton, joint: JointId, factor: f32) -> Result<(), SkeletonError> {
+    let path: Vec<_> = skeleton.ancestors(joint).collect();
+    for joint in &path {
+        let bone = &skeleton[*joint];
+        let (axis, offset) = (bone.axis * factor, bone.offset);
+        let is_at_tip = bone.parent.is_some_and(|parent| offset == skeleton[parent].axis);
+        let is_root = bone.parent.is_none();
+        skeleton.set_axis(*joint, axis)?;
+        // A joint at its parent's tip moves with the tip.
+        if !is_root && !is_at_tip {
+            skeleton.change(*joint, |joint| joint.offset = offset * factor)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,238 @@
+//! Diagnoses and remedies in words.
+
+use super::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
+use crate::chain_ik::Root;
+use crate::skeleton::JointId;
+
+/// Names for sentences.
+#[derive(Clone, Copy)]
+pub struct Names<'a> {
+    /// The name of a joint.
+    pub joint: &'a dyn Fn(JointId) -> String,
+    /// The name of what the target of a joint moves: the hand of an arm's lower bone, or the joint.
+    pub tip: &'a dyn Fn(JointId) -> String,
+}
+
+impl Diagnosis {
+    /// The cause as a sentence without a full stop, such as "The limits of elbow keep hand away from
+    /// its target".
+    pub fn sentence(&self, names: Names<'_>) -> String {
+        let target = (names.tip)(self.target);
+        match self.cause {
+            Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
+                let base = (names.joint)(base);
+                out_of_reach([&target, &base], distance, [shortest, longest], boundary)
+            }
+            Cause::Limits if self.joints == [self.target] => {
+                format!("The limits of {target} itself keep its tip away from the target")
+            }
+            Cause::Limits => {
+                format!(
+                    "The limits of {} keep {target} away from its target",
+                    listed(&self.joints, names)
+                )
+            }
+            Cause::Locked => {
+                let verb = if self.joints.len() == 1 { "is" } else { "are" };
+                format!(
+                    "{} {verb} locked, and {target} needs to turn there",
+                    listed(&self.joints, names)
+                )
+            }
+            Cause::Conflict { with } => {
+                let other = (names.tip)(with);
+                format!("{target} and {other} reach their targets one at a time, not together")
+            }
+            Cause::Stalled => {
+                format!(
+                    "The solver stopped where no small turn helps, though {target} can get nearer"
+                )
+            }
+            Cause::Singular { .. } => {
+                format!("No joint can move {target} in the direction of its target")
+            }
+            Cause::OutOfIterations { iterations } => {
+                let s = if iterations == 1 { "" } else { "s" };
+                format!(
+                    "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
+                )
+            }
+            Cause::Influence { influence: 0.0 } => {
+                format!("The target of {target} has no influence: the joint angles alone pose it")
+            }
+            Cause::Influence { influence } => {
+                let percent = significant(100.0 * influence);
+                format!("{target} is only {percent} % of the way from its FK pose to its target")
+            }
+        }
+    }
+}
+
+impl Remedy {
+    /// The change as an imperative without a full stop, such as "Unlock elbow".
+    pub fn sentence(&self, names: Names<'_>) -> String {
+        let (verb, rest) = self.words(names);
+        format!("{} {rest}", verb.imperative())
+    }
+
+    /// What the change did, without a full stop, such as "Unlocked elbow".
+    pub fn done(&self, names: Names<'_>) -> String {
+        let (verb, rest) = self.words(names);
+        format!("{} {rest}", verb.past())
+    }
+
+    fn words(&self, names: Names<'_>) -> (Verb, String) {
+        let tip = |joint: &JointId| (names.tip)(*joint);
+        match self {
+            Self::MoveTarget { joint, .. } => {
+                (Verb::Move, format!("the target of {} within reach", tip(joint)))
+            }
+            Self::Lengthen { factor, .. } => {
+                (Verb::Lengthen, format!("the bones by {}", percent(*factor - 1.0)))
+            }
+            Self::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
+            Self::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
+            Self::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),
+            Self::WidenLimits(widened) => (Verb::Widen, widen(widened, names)),
+            Self::Unlock(joints) => (Verb::Unlock, listed(joints, names)),
+            Self::SwitchOff(joint) => (Verb::SwitchOff, format!("the target of {}", tip(joint))),
+            Self::SetWeight { joint, weight } => {
+                let weight = significant(*weight);
+                (Verb::Set, format!("the weight of the target of {} to {weight}", tip(joint)))
+            }
+            Self::UseMethod(method) => (Verb::Set, format!("the solver to {}", method.title())),
+            Self::StartFrom(Start { is_bend: true, .. }) => {
+                (Verb::Bend, "the chain a little".to_owned())
+            }
+            Self::StartFrom(_) => {
+                (Verb::Move, "the joints to the middle of their limits".to_owned())
+            }
+            Self::AllowIterations(iterations) => (Verb::Allow, format!("{iterations} iterations")),
+            Self::FullInfluence(joint) => {
+                (Verb::Set, format!("the influence of the target of {} to 1", tip(joint)))
+            }
+            Self::Stretch { max_stretch, .. } => {
+                (Verb::Let, format!("the limb stretch by up to {}", percent(*max_stretch - 1.0)))
+            }
+            Self::HardLimits(_) => (Verb::SwitchOff, "the soft limits".to_owned()),
+        }
+    }
+}
+
+/// What a remedy does.
+enum Verb {
+    Allow,
+    Bend,
+    Lengthen,
+    Let,
+    Lock,
+    Move,
+    Set,
+    SwitchOff,
+    Unlock,
+    Widen,
+}
+
+impl Verb {
+    fn imperative(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allow",
+            Self::Bend => "Bend",
+            Self::Lengthen => "Lengthen",
+            Self::Let => "Let",
+            Self::Lock => "Lock",
+            Self::Move => "Move",
+            Self::Set => "Set",
+            Self::SwitchOff => "Switch off",
+            Self::Unlock => "Unlock",
+            Self::Widen => "Widen",
+        }
+    }
+
+    fn past(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allowed",
+            Self::Bend => "Bent",
+            Self::Lengthen => "Lengthened",
+            Self::Lock => "Locked",
+            Self::Move => "Moved",
+            Self::Let | Self::Set => self.imperative(),
+            Self::SwitchOff => "Switched off",
+            Self::Unlock => "Unlocked",
+            Self::Widen => "Widened",
+        }
+    }
+}
+
+fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
+    let degrees = |it: &WidenedLimit| it.by.to_degrees().round();
+    match widened {
+        [one] => {
+            format!(
+                "the limit of {} about {} by {}°",
+                (names.joint)(one.joint),
+                one.axis,
+                degrees(one)
+            )
+        }
+        several => {
+            let most = several.iter().map(degrees).fold(0.0, f32::max);
+            format!("{} limits by up to {most}°", several.len())
+        }
+    }
+}
+
+/// Joints as a list in words, at most three of them by name.
+fn listed(joints: &[JointId], names: Names<'_>) -> String {
+    let names: Vec<_> = joints.iter().map(|joint| (names.joint)(*joint)).collect();
+    match &names[..] {
+        [] => "the chain".to_owned(),
+        [one] => one.clone(),
+        [one, two] => format!("{one} and {two}"),
+        [one, two, three] => format!("{one}, {two} and {three}"),
+        [one, two, rest @ ..] => format!("{one}, {two} and {} more joints", rest.len()),
+    }
+}
+
+fn out_of_reach(
+    [target, base]: [&str; 2],
+    distance: f32,
+    [shortest, longest]: [f32; 2],
+    boundary: Boundary,
+) -> String {
+    let (at, least, most) = (significant(distance), significant(shortest), significant(longest));
+    let is_far = distance > 0.5 * (shortest + longest);
+    match boundary {
+        Boundary::Bones if is_far => format!(
+            "{target} cannot reach that far: the target is {at} from {base}, the bones are {most} long"
+        ),
+        Boundary::Bones => format!(
+            "{target} cannot come that near: the target is {at} from {base}, the bones fold to {least}"
+        ),
+        Boundary::SoftLimit => {
+            let end = if is_far { "straight" } else { "folded" };
+            format!("The soft limits slow {target} down before the limb is {end}")
+        }
+        Boundary::ElbowAngle => format!(
+            "The smallest elbow angle keeps {target} away from its target, {at} from {base}"
+        ),
+    }
+}
+
+/// A fraction in percent, rounded up.
+fn percent(fraction: f32) -> String {
+    format!("{} %", (100.0 * fraction).ceil())
+}
+
+/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`.
+pub fn significant(value: f32) -> String {
+    let magnitude = value.abs().log10().floor();
+    let decimals =
+        if magnitude.is_finite() { (2.0 - magnitude).clamp(0.0, 8.0) as usize } else { 0 };
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}

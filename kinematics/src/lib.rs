@@ -1,0 +1,70 @@
+//! Inverse and forward kinematics of arms and skeletons, as pure functions of numbers.
+//!
+//! ```
+//! use glam::Vec3;
+//! use ik_arm_kinematics::two_bone::TwoBone;
+//!
+//! let arm = TwoBone::new(200.0, 300.0)?;
+//! let pose = arm.solve(Vec3::new(250.0, 120.0, 60.0), 30_f32.to_radians());
+//! println!("elbow at {}, hand at {}", pose.elbow, pose.hand);
+//! # Ok::<(), ik_arm_kinematics::two_bone::LengthError>(())
+//! ```
+//!
+//! [`job::TwoBoneJob`] turns the joints of a limb in somebody else's skeleton.
+//! [Iterative solvers](chain_ik) move skeletons of any shape to any number of targets.
+//!
+//! # Architecture
+//!
+//! Each module uses only modules of its own row and of the rows above. Imports between files form no
+//! circle. A test of the repository checks both.
+//!
+//! | modules | contents |
+//! | --- | --- |
+//! | [`angle`], [`euler`], [`follow`], [`spline`], `normalize`, `rotation_between`, `saturate`, `shared` | angles, rotations, curves, points along a path |
+//! | [`two_bone`] | the closed form of two bones |
+//! | [`batch`], [`soft_reach`], [`twist`] | many arms at once; a hand that slows down before the arm is straight; twist references |
+//! | [`fk`], [`ik`], [`job`], [`pop`] | the arm by its joint angles and by its hand; correcting a limb of another program's skeleton; why an elbow jumped |
+//! | [`skeleton`] | trees of joints and their forward kinematics |
+//! | [`limb_ik`], [`skin`] | limbs of skeletons in closed form; skins and how they follow the joints |
+//! | [`chain_ik`], [`diagnosis`], [`swing`] | iterative solvers, seen from inside; why a target is not reached and what would help |
+//! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets and skin, crowds of arms |
+//!
+//! # Conventions
+//!
+//! - Right-handed axes: +x right, +y up, +z towards the viewer.
+//! - Angles are radians.
+//! - A target out of reach gives a result, not an error. Errors name the field and the rule.
+//!
+//! # Features
+//!
+//! `parallel` solves batches on all cores (rayon). `serde` implements `Serialize` and `Deserialize` for
+//! skeletons, targets, options of solvers and their reports.
+
+pub mod angle;
+pub mod batch;
+pub mod chain_ik;
+pub mod diagnosis;
+pub mod euler;
+pub mod fk;
+pub mod follow;
+pub mod ik;
+pub mod job;
+pub mod limb_ik;
+mod normalize;
+pub mod pop;
+pub mod rig;
+mod rotation_between;
+mod saturate;
+mod shared;
+pub mod skeleton;
+pub mod skin;
+pub mod soft_reach;
+pub mod spline;
+pub mod swing;
+pub mod twist;
+pub mod two_bone;
+
+pub use shared::Shared;
+
+pub(crate) use normalize::normalize;
+pub(crate) use rotation_between::rotation_between;

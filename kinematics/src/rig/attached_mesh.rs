@@ -1,0 +1,74 @@
+use glam::Vec3;
+
+use super::skin_part::SkinPart;
+use crate::skeleton::{JointId, Skeleton, SkeletonPose};
+use crate::skin::SkinnedMesh;
+
+/// A skinned mesh on the joints of a skeleton, with its materials and its thickness around each bone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttachedMesh {
+    /// The mesh.
+    pub mesh: SkinnedMesh,
+    /// The parts of the mesh in the order of its triangles, one after the other.
+    pub parts: Vec<SkinPart>,
+    /// For each joint, how thick the mesh is around its bone: the mean distance from the bone to the vertices
+    /// whose greatest weight is this joint's, in skeleton units; 0 for a joint without such vertices.
+    pub radii: Vec<f32>,
+    /// For each joint, the box around those vertices in the joint's own space in the bind pose: its lowest and its
+    /// highest corner; `None` for a joint without such vertices.
+    pub boxes: Vec<Option<[Vec3; 2]>>,
+    /// The bones on which the thickness was measured: the axis of each joint.
+    axes: Vec<Vec3>,
+}
+
+impl AttachedMesh {
+    /// Measures the thickness of a mesh around the bones of its skeleton. Triangles after the last of `parts`
+    /// become a white part.
+    pub fn new(mesh: SkinnedMesh, mut parts: Vec<SkinPart>, skeleton: &Skeleton) -> Self {
+        let listed: usize = parts.iter().map(|part| part.triangles).sum();
+        let rest = mesh.mesh().triangles.len().saturating_sub(listed);
+        if rest > 0 {
+            parts.push(SkinPart { triangles: rest, colour: [1.0; 3], texture: None });
+        }
+        let mut sums = vec![(0.0_f64, 0_u32); skeleton.joints().len()];
+        let mut boxes = vec![None; sums.len()];
+        for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
+            let joint = weights.first();
+            if let (Some(bone), Some(bind)) =
+                (skeleton.joint(joint), mesh.inverse_binds().get(joint.index()))
+            {
+                let at = bind.transform_point3(*position);
+                let distance = bone.distance(at);
+                // Numbers near the limit of f32 overflow.
+                if !distance.is_finite() {
+                    continue;
+                }
+                let (sum, count) = &mut sums[joint.index()];
+                *sum += f64::from(distance);
+                *count += 1;
+                let [low, high] = boxes[joint.index()].get_or_insert([at, at]);
+                (*low, *high) = (low.min(at), high.max(at));
+            }
+        }
+        let mean = |(sum, count): (f64, u32)| (sum / f64::from(count.max(1))) as f32;
+        let axes = skeleton.joints().iter().map(|joint| joint.axis).collect();
+        Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes, axes }
+    }
+
+    /// Whether the mesh was measured on joints with the bones of this skeleton.
+    pub(super) fn is_measured_on(&self, skeleton: &Skeleton) -> bool {
+        skeleton.joints().iter().map(|joint| joint.axis).eq(self.axes.iter().copied())
+    }
+
+    /// The corners of boxes in the world that contain nearly all of the mesh in a pose.
+    pub fn corners(&self, pose: &SkeletonPose) -> impl Iterator<Item = Vec3> {
+        let corners = move |(joint, bounds): (usize, &Option<[Vec3; 2]>)| {
+            let ends = (*bounds)?;
+            let to_world = pose.full(JointId::new(joint));
+            let end = move |corner: usize, axis: usize| ends[corner >> axis & 1][axis];
+            let corner = move |at: usize| Vec3::from_array([end(at, 0), end(at, 1), end(at, 2)]);
+            Some((0..8).map(move |at| to_world.transform_point3(corner(at))))
+        };
+        self.boxes.iter().enumerate().filter_map(corners).flatten()
+    }
+}

@@ -1,0 +1,182 @@
+use glam::Vec3;
+
+use super::limb_settings::LimbSettings;
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetKind};
+use super::target_order::LimbOrder;
+use crate::Shared;
+use crate::chain_ik::{ChainSolver, Report, SolveError, TipTarget};
+use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
+use crate::skeleton::{JointId, Skeleton};
+
+/// A skeleton posed at a time: by its angles (FK) and by its targets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EvaluatedSkeleton {
+    /// The skeleton with its own angles, or on its path.
+    pub fk: Shared<Skeleton>,
+    /// The skeleton posed by its targets.
+    pub solved: Shared<Skeleton>,
+    /// Results for the rig's targets, in their order.
+    pub targets: Vec<TargetReport>,
+}
+
+/// Result of an evaluation for one target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TargetReport {
+    /// Position of the target, in the world.
+    pub position: Vec3,
+    /// Position of the limb's pole, in the world; `None` for another elbow reference.
+    pub pole: Option<Vec3>,
+    /// Distance from the tip to the target in the evaluated pose, in the world.
+    pub error: f32,
+    /// What the solver reports.
+    pub outcome: TargetOutcome,
+}
+
+/// The result of solving for a target.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TargetOutcome {
+    /// The target is disabled or has no influence.
+    Off,
+    /// The report of the solver of all whole-body targets.
+    WholeBody(Report),
+    /// The report of the limb.
+    Limb(LimbReport),
+    /// The solver refuses the whole-body targets.
+    Refused(SolveError),
+    /// The target's joint does not end a limb.
+    NoLimb(NoLimb),
+}
+
+impl SkeletonRig {
+    /// The skeleton at a time in seconds, as a function of the rig and the time alone.
+    ///
+    /// The whole-body targets are solved together, from the FK pose; the limb targets then one after
+    /// the other, in the order of their joints, but each after those that move the joints that it is
+    /// on.
+    pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
+        let fk = self.fk_at(time);
+        let mut solved = fk.clone();
+        let outcomes = self.solve_targets(&mut solved, time);
+        let report = |(target, outcome): (&Target, TargetOutcome)| {
+            let position = target.in_world(&solved, time);
+            let error = solved
+                .joint(target.joint)
+                .map_or(0.0, |_| solved.tip(target.joint).distance(position).min(f32::MAX));
+            let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
+            TargetReport { position, pole, error, outcome }
+        };
+        let targets = self.targets.iter().zip(outcomes).map(report).collect();
+        EvaluatedSkeleton { fk, solved, targets }
+    }
+
+    /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without the
+    /// reports.
+    pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
+        let mut skeleton = self.fk_at(time);
+        self.solve_targets(&mut skeleton, time);
+        skeleton
+    }
+
+    /// Poses `solved`, the FK pose, by the targets; returns the outcome for each.
+    fn solve_targets(&self, solved: &mut Shared<Skeleton>, time: f64) -> Vec<TargetOutcome> {
+        let mut outcomes = vec![TargetOutcome::Off; self.targets.len()];
+        self.solve_whole_body(solved, time, &mut outcomes);
+        self.solve_limbs(solved, time, &mut outcomes);
+        outcomes
+    }
+
+    fn solve_whole_body(
+        &self,
+        solved: &mut Shared<Skeleton>,
+        time: f64,
+        outcomes: &mut [TargetOutcome],
+    ) {
+        let is_active =
+            |target: &&Target| target.is_posing() && target.kind == TargetKind::WholeBody;
+        let active: Vec<&Target> = self.targets.iter().filter(is_active).collect();
+        if active.is_empty() {
+            return;
+        }
+        let tips: Vec<TipTarget> = active.iter().map(|it| it.tip_target(solved, time)).collect();
+        let outcome = match ChainSolver::new(solved, &tips, &self.solver) {
+            Ok(mut solver) => {
+                let report = solver.run();
+                let mut full = Skeleton::clone(solved);
+                solver.write(&mut full);
+                blend(solved, &full, &active);
+                TargetOutcome::WholeBody(report)
+            }
+            Err(error) => TargetOutcome::Refused(error),
+        };
+        for (target, slot) in self.targets.iter().zip(outcomes) {
+            if is_active(&target) {
+                *slot = outcome.clone();
+            }
+        }
+    }
+
+    fn solve_limbs(
+        &self,
+        solved: &mut Shared<Skeleton>,
+        time: f64,
+        outcomes: &mut [TargetOutcome],
+    ) {
+        let is_limb = |index: &usize| {
+            let target = &self.targets[*index];
+            target.is_posing() && target.limb().is_some()
+        };
+        let limbs = (0..self.targets.len()).filter(is_limb).collect();
+        for index in LimbOrder::new(self, limbs).indices {
+            let target = &self.targets[index];
+            let Some(settings) = target.limb() else { continue };
+            outcomes[index] = match Limb::ending_at(solved, target.joint) {
+                Ok(limb) => {
+                    let limb_target = target.limb_target(settings, solved, time);
+                    let report = limb_ik::solve(solved.make_mut(), limb, &limb_target);
+                    report.map_or(TargetOutcome::Refused(SolveError::Singular), TargetOutcome::Limb)
+                }
+                Err(error) => TargetOutcome::NoLimb(error),
+            };
+        }
+    }
+}
+
+impl Target {
+    /// The target at a time in seconds, for a solver of chains.
+    pub(super) fn tip_target(&self, pose: &Skeleton, time: f64) -> TipTarget {
+        TipTarget { joint: self.joint, point: self.in_world(pose, time), weight: self.weight }
+    }
+
+    fn limb_target(&self, settings: &LimbSettings, pose: &Skeleton, time: f64) -> LimbTarget {
+        LimbTarget {
+            point: self.in_world(pose, time),
+            reference: settings.reference_in_world(pose),
+            twist: settings.twist,
+            soft_reach: settings.soft_reach,
+            hand: settings.hand_in_world(pose, self.space),
+            influence: self.influence,
+        }
+    }
+}
+
+/// Turns the joints of a pose towards those of `full`, each by the greatest influence of the targets
+/// that move it.
+fn blend(pose: &mut Shared<Skeleton>, full: &Skeleton, targets: &[&Target]) {
+    let mut influences = vec![0.0_f32; full.joints().len()];
+    for target in targets {
+        for joint in full.ancestors(target.joint) {
+            let influence = &mut influences[joint.index()];
+            *influence = influence.max(target.influence);
+        }
+    }
+    for (joint, influence) in (0..).map(JointId::new).zip(influences) {
+        let (before, after) = (&pose[joint], &full[joint]);
+        if influence > 0.0 && before != after {
+            let rotation = before.angles_towards(after.rotation, influence);
+            let offset = before.offset.lerp(after.offset, influence);
+            pose.make_mut()
+                .write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+        }
+    }
+}

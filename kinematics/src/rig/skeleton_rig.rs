@@ -1,0 +1,260 @@
+use glam::{Vec3, Vec3A};
+
+use super::follow_path::FollowPath;
+use super::limb_settings::LimbSettings;
+use super::moved_joints::MovedJoints;
+use super::skin::Skin;
+use super::target::{Target, TargetKind};
+use crate::Shared;
+use crate::chain_ik::{SolverOptions, TipTarget};
+use crate::limb_ik::Limb;
+use crate::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
+use crate::spline::Spline;
+
+/// The skeleton with its targets and the options of its solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkeletonRig {
+    /// The joints.
+    pub skeleton: Shared<Skeleton>,
+    /// Targets for the tips of joints, at most one per joint.
+    pub targets: Vec<Target>,
+    /// Options of the solver.
+    pub solver: SolverOptions,
+    /// Number of solver iterations per displayed frame during a solver run.
+    pub iterations_per_frame: u32,
+    /// Path that the chain of the first root follows over time, instead of its own angles.
+    pub follow_path: Option<FollowPath>,
+    /// The keys of the head's offset, with [`FollowPath::Head`]. The evaluation of a document sets them; they
+    /// are `None` in a document that is not evaluated, and never saved.
+    pub head_track: Option<Shared<Spline<Vec3>>>,
+    /// The mesh that follows the joints; `None` for bones alone.
+    pub skin: Option<Skin>,
+}
+
+impl SkeletonRig {
+    /// Maximum of [`Self::iterations_per_frame`].
+    pub const MAX_ITERATIONS_PER_FRAME: u32 = 1000;
+
+    /// A skeleton without targets.
+    pub fn new(skeleton: Skeleton) -> Self {
+        Self {
+            skeleton: Shared::from(skeleton),
+            targets: Vec::new(),
+            solver: SolverOptions::default(),
+            iterations_per_frame: 1,
+            follow_path: None,
+            head_track: None,
+            skin: None,
+        }
+    }
+
+    /// Distance in world units within which a tip counts as at its target.
+    pub fn tolerance(&self) -> f32 {
+        self.solver.tolerance.unwrap_or_else(|| 1e-4 * self.reach())
+    }
+
+    /// The joints, for editing. They are copied first if other rigs share them.
+    pub fn skeleton_mut(&mut self) -> &mut Skeleton {
+        self.skeleton.make_mut()
+    }
+
+    /// Index of a joint's target in [`Self::targets`]; `None` if the joint has none.
+    pub fn target(&self, joint: JointId) -> Option<usize> {
+        self.targets.iter().position(|target| target.joint == joint)
+    }
+
+    /// For each joint the greatest influence of the targets that turn it; 0 for a joint that has its FK
+    /// angles.
+    pub fn influences(&self) -> Vec<f32> {
+        let mut influences = Vec::new();
+        self.write_influences(&mut influences);
+        influences
+    }
+
+    /// Writes [`SkeletonRig::influences`] into a list, reusing its memory.
+    pub fn write_influences(&self, influences: &mut Vec<f32>) {
+        influences.clear();
+        influences.resize(self.skeleton.joints().len(), 0.0);
+        for target in self.targets.iter().filter(|target| target.is_posing()) {
+            for joint in self.moved_by(target).turned {
+                let influence = &mut influences[joint.index()];
+                *influence = influence.max(target.influence);
+            }
+        }
+    }
+
+    /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the
+    /// joint has its FK angles.
+    pub fn target_that_turns(&self, joint: JointId) -> Option<&Target> {
+        let turns =
+            |target: &&Target| target.is_posing() && self.moved_by(target).turned.contains(&joint);
+        let posing = self.targets.iter().filter(turns);
+        posing.max_by(|one, other| one.influence.total_cmp(&other.influence))
+    }
+
+    /// The joints that a target turns if it poses the skeleton.
+    pub(super) fn moved_by(&self, target: &Target) -> MovedJoints {
+        MovedJoints::new(&self.skeleton, self.solver.root, target)
+    }
+
+    /// The joint that a target is named after: the hand of its limb, or the joint whose tip it brings to
+    /// the target.
+    pub fn end_of(&self, target: &Target) -> JointId {
+        let limb = target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
+        limb.and_then(|limb| limb.hand).unwrap_or(target.joint)
+    }
+
+    /// Index in [`Self::targets`] of the target that a joint is posed by as an end: the joint's own, or
+    /// that of the limb whose hand it is.
+    pub fn target_of_end(&self, joint: JointId) -> Option<usize> {
+        let ends_at = |target: &Target| self.end_of(target) == joint;
+        self.target(joint).or_else(|| self.targets.iter().position(ends_at))
+    }
+
+    /// A target with full influence at the tip of a joint in a pose: for a hand or
+    /// foot, or the bone above it, of the limb of two bones that ends there; otherwise for the whole
+    /// body. `None` if the joint is missing or has a target.
+    pub fn new_target(&self, joint: JointId, pose: &Skeleton) -> Option<Target> {
+        self.skeleton.joint(joint)?;
+        let limb = Limb::for_end(&self.skeleton, joint);
+        let (joint, kind) = match limb {
+            Some(limb) => (limb.lower, TargetKind::Limb(LimbSettings::default())),
+            None => (joint, TargetKind::WholeBody),
+        };
+        let target = Target::new(joint, pose.tip(joint), self.default_path_radius());
+        self.target(joint).is_none().then_some(Target { kind, influence: 1.0, ..target })
+    }
+
+    /// The enabled targets at a time in seconds, for a solver; those on joints are where the FK pose
+    /// has them.
+    pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
+        let fk = self.fk_at(time);
+        let enabled = self.targets.iter().filter(|target| target.enabled);
+        enabled.map(|target| target.tip_target(&fk, time)).collect()
+    }
+
+    /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
+    pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
+        if self.targets.iter().any(Target::is_posing) {
+            self.skeleton_at(time).write_pose(pose);
+        } else {
+            self.write_fk(time, pose);
+        }
+    }
+
+    /// Whether an enabled target or the skeleton moves over time without keys.
+    pub fn is_moving(&self) -> bool {
+        let moves = |target: &Target| target.enabled && target.is_moving();
+        matches!(self.follow_path, Some(FollowPath::Ring(_))) || self.targets.iter().any(moves)
+    }
+
+    /// Whether any joint has a bone, that is, an axis of non-zero length.
+    pub fn has_bones(&self) -> bool {
+        self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
+    }
+
+    /// Renumbers the joints of the targets and of the skin after an edit of the skeleton; drops the targets
+    /// of removed joints.
+    pub fn remap(&mut self, remap: &JointRemap) {
+        self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
+        self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap, &self.skeleton));
+    }
+
+    /// Makes a skin from bones again if the bind pose or its shape have changed since it was made, and
+    /// measures one from a file again if the bones have.
+    pub fn refresh_skin(&mut self) {
+        let refreshed = self.skin.as_ref().and_then(|skin| skin.refreshed(&self.skeleton));
+        if refreshed.is_some() {
+            self.skin = refreshed;
+        }
+    }
+}
+
+/// Size of the skeleton, and the grid and bounding spheres that fit it.
+impl SkeletonRig {
+    /// Radius of the path of a new target, in world units.
+    pub fn default_path_radius(&self) -> f32 {
+        const FRACTION: f32 = 0.15;
+        FRACTION * self.reach()
+    }
+
+    /// Length in the world of the longest chain from a root to a tip along bones and offsets: a
+    /// measure of the skeleton's size. It is 1 if that length is 0 or overflows.
+    pub fn reach(&self) -> f32 {
+        self.reach_in(&mut Vec::new())
+    }
+
+    /// [`SkeletonRig::reach`] with a buffer for intermediate results.
+    pub fn reach_in(&self, reach: &mut Vec<f32>) -> f32 {
+        let joints = self.skeleton.joints();
+        reach.clear();
+        reach.resize(joints.len(), 0.0);
+        let mut farthest = 0.0_f32;
+        for (index, joint) in joints.iter().enumerate() {
+            let above =
+                joint.parent.map_or(0.0, |parent| reach[parent.index()] + joint.offset.length());
+            reach[index] = above;
+            farthest = farthest.max(above + joint.axis.length());
+        }
+        let axes = self.skeleton.transform().matrix3;
+        let scale = [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3A::length);
+        let reach = farthest * scale.into_iter().fold(0.0, f32::max);
+        if reach.is_finite() && reach > 0.0 { reach } else { 1.0 }
+    }
+
+    /// Width of a cell of the grid around a skeleton of this reach: the largest power of ten that
+    /// is at most half the reach.
+    pub fn grid_cell_for(reach: f32) -> f32 {
+        let cell = 10_f32.powf((reach * 0.5).log10().floor());
+        if cell.is_normal() { cell } else { 1.0 }
+    }
+
+    /// Centre and radius of a bounding sphere of a pose, the targets at a time in seconds, the
+    /// followed path and a skin from a file, in the world. The radius is at least a quarter of the reach.
+    pub fn bounds(&self, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
+        self.bounds_with_reach(self.reach(), pose, time)
+    }
+
+    /// [`SkeletonRig::bounds`] for a `reach` that the caller has already computed.
+    pub fn bounds_with_reach(&self, reach: f32, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
+        let place = |target: &Target| match target.space.joint() {
+            Some(joint) => pose.full(joint).transform_point3(target.at(time)),
+            None => target.at(time),
+        };
+        let targets = self.targets.iter().map(place);
+        let path = self.path_points();
+        // A skin from bones is about as large as the bones, and may not have been made yet.
+        let skin = self.skin.as_ref().and_then(Skin::file_mesh);
+        let skin = skin.into_iter().flat_map(|mesh| mesh.corners(pose));
+        let points = pose.points().chain(targets).chain(path).chain(skin);
+        let (centre, radius) = bounding_sphere(points).unwrap_or_default();
+        (centre, radius.max(0.25 * reach))
+    }
+
+    /// Centre and radius of a bounding sphere of the bones of some joints, in the world; `None`
+    /// without joints.
+    pub fn bounds_of(&self, pose: &SkeletonPose, joints: &[JointId]) -> Option<(Vec3, f32)> {
+        let ends = joints.iter().flat_map(|joint| [pose.base(*joint), pose.tip(*joint)]);
+        let (centre, radius) = bounding_sphere(ends)?;
+        Some((centre, radius.max(0.05 * self.reach())))
+    }
+}
+
+/// Centre and radius of the sphere around the bounding box of the finite points; `None` without
+/// finite points.
+fn bounding_sphere(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, f32)> {
+    let (low, high) = points
+        .filter(|point| point.is_finite())
+        .map(|point| (point, point))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    // Halved first, so that the sum does not overflow.
+    let (low, high) = (low * 0.5, high * 0.5);
+    Some((low + high, low.distance(high).min(f32::MAX)))
+}
+
+impl Default for SkeletonRig {
+    /// A new skeleton: one root to add joints to.
+    fn default() -> Self {
+        Self::new(Skeleton::with_root("root"))
+    }
+}

@@ -1,0 +1,112 @@
+use glam::{DQuat, Vec3};
+
+use super::limb_settings::LimbSettings;
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetKind};
+use crate::Shared;
+use crate::angle;
+use crate::limb_ik::{self, ElbowReference, Limb};
+use crate::skeleton::Skeleton;
+
+/// Matches between the FK pose and the pose that a target solves for.
+impl SkeletonRig {
+    /// Moves a target to where the skeleton at `time`, in seconds, has the tip without it. A limb's
+    /// target also takes over the hand's orientation, if it keeps one, and the elbow's side: by moving
+    /// the pole, or by its twist. At any influence the skeleton is then posed as without the target.
+    pub fn match_target_to_fk(&mut self, index: usize, time: f64) {
+        let pose = self.skeleton_at_without(index, time);
+        let target = self.targets[index];
+        if pose.joint(target.joint).is_none() {
+            return;
+        }
+        let mut target = target.placed(&pose, time, pose.tip(target.joint));
+        if let (TargetKind::Limb(settings), Ok(limb)) =
+            (target.kind, Limb::ending_at(&pose, target.joint))
+        {
+            target.kind = TargetKind::Limb(settings.matched(&pose, limb, &target));
+        }
+        self.targets[index] = target;
+    }
+
+    /// Writes the pose at `time`, in seconds, to the FK angles of the joints that a target moves. With
+    /// an influence between 0 and 1, the target then moves to the tip, where FK and IK agree. The
+    /// skeleton does not move, unless a part of a stretch is blended in: FK has no stretch.
+    pub fn match_fk_to_pose(&mut self, index: usize, time: f64) {
+        let solved = self.skeleton_at(time);
+        let target = self.targets[index];
+        let is_whole_body = target.kind == TargetKind::WholeBody;
+        for joint in self.moved_by(&target).turned {
+            // A limb changes offsets only by stretch, which FK does not have.
+            let offset =
+                if is_whole_body { solved[joint].offset } else { self.skeleton[joint].offset };
+            let rotation = solved[joint].rotation;
+            self.skeleton_mut()
+                .write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+        }
+        let pose = self.skeleton_at_without(index, time);
+        if let Some(settings) = self.targets[index].limb_mut()
+            && let Ok(limb) = Limb::ending_at(&pose, target.joint)
+        {
+            settings.match_elbow(&pose, limb);
+        }
+        if target.influence < 1.0 {
+            self.match_target_to_fk(index, time);
+        }
+    }
+}
+
+impl SkeletonRig {
+    /// The skeleton at a time in seconds, posed by all targets but one.
+    fn skeleton_at_without(&self, index: usize, time: f64) -> Shared<Skeleton> {
+        let mut without = self.clone();
+        without.targets[index].enabled = false;
+        without.skeleton_at(time)
+    }
+}
+
+impl LimbSettings {
+    /// The settings with which the limb of a target at its tip stays in a pose.
+    fn matched(mut self, pose: &Skeleton, limb: Limb, target: &Target) -> Self {
+        if let (Some(angles), Some(hand)) = (self.orientation, limb.hand) {
+            let rotation = pose.rotation_in_world(hand).as_quat();
+            self.orientation = Some(target.space.angles_from_world(pose, rotation, angles));
+        }
+        self.match_elbow(pose, limb);
+        self
+    }
+
+    /// Turns the pole about the limb, or sets the twist, so that the elbow stays where a pose has it.
+    fn match_elbow(&mut self, pose: &Skeleton, limb: Limb) {
+        // Radians; rounding turns no pole and no twist.
+        const SAME: f32 = 1e-5;
+        let reference = self.reference_in_world(pose);
+        let Some(twist) = limb_ik::fk_twist(pose, limb, reference) else { return };
+        let twist = angle::nearest(twist, self.twist);
+        if (twist - self.twist).abs() <= SAME {
+            return;
+        }
+        match self.turned_pole(pose, limb, twist - self.twist) {
+            Some(pole) => self.reference = ElbowReference::Pole(pole),
+            None => self.twist = twist,
+        }
+    }
+
+    /// The pole, in its space, turned by an angle in radians about the line from the limb's base to its
+    /// tip. `None` without a pole, and for one so near to that line that it gives no direction.
+    fn turned_pole(&self, pose: &Skeleton, limb: Limb, angle: f32) -> Option<Vec3> {
+        // Sine of the angle between the line and the pole.
+        const NEAR: f64 = 1e-2;
+        let transform = pose.transform().as_daffine3();
+        let to_skeleton = transform.inverse();
+        let place = |point: Vec3| to_skeleton.transform_point3(point.as_dvec3());
+        let base = place(pose.base(limb.upper));
+        let axis = (place(pose.tip(limb.lower)) - base).try_normalize()?;
+        let pole = place(self.pole_in_world(pose)?) - base;
+        if axis.cross(pole).length() <= NEAR * pole.length() {
+            return None;
+        }
+        let turned = base + DQuat::from_axis_angle(axis, f64::from(angle)) * pole;
+        let turned = transform.transform_point3(turned).as_vec3();
+        turned.is_finite().then(|| self.pole_space.point_from_world(pose, turned))
+    }
+}

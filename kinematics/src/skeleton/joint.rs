@@ -1,0 +1,170 @@
+use glam::{Affine3A, Mat3, Mat3A, Vec3};
+
+use super::{
+    JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
+    nearest_angles,
+};
+
+/// A ball joint and its bone.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Joint {
+    /// Name, unique within the skeleton.
+    pub name: String,
+    /// The parent, which precedes the joint; `None` for a root.
+    pub parent: Option<JointId>,
+    /// Vector from the parent's base to this joint's base, in the parent's space; for a root, from
+    /// the skeleton's origin. An offset equal to the parent's axis puts the joint on the parent's
+    /// tip.
+    pub offset: Vec3,
+    /// The bone's vector from base to tip, in the joint's own space. Zero for a joint without a
+    /// bone.
+    pub axis: Vec3,
+    /// Euler angles about the frame's x, y and z in radians, unbounded; x is applied first.
+    pub rotation: Vec3,
+    /// The frame A in which the angles are measured: a right-handed orthonormal basis as columns.
+    pub frame: Mat3,
+    /// Range of each angle, in the order x, y, z; `None` for an unlimited angle.
+    pub limits: [Option<Limit>; 3],
+    /// Whether solvers leave the rotation unchanged.
+    pub locked: bool,
+    /// Whether keys that move this joint also move the tip of its parent's bone, so that the bone ends
+    /// here at every time.
+    pub connected: bool,
+    /// Radius with which the bone is drawn, in skeleton units.
+    pub radius: f32,
+}
+
+impl Joint {
+    /// An unlimited joint at its parent's base, with a radius of a tenth of its bone's length.
+    pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
+        Self {
+            name: name.to_owned(),
+            parent,
+            offset: Vec3::ZERO,
+            axis,
+            rotation: Vec3::ZERO,
+            frame: Mat3::IDENTITY,
+            limits: [None; 3],
+            locked: false,
+            connected: false,
+            radius: (axis.as_dvec3().length() * 0.1) as f32,
+        }
+    }
+
+    /// Distance of a point in the joint's own space from its bone.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let along = point.dot(self.axis) / self.axis.length_squared();
+        let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
+        point.distance(self.axis * along)
+    }
+
+    /// The rotation R, in the space of the joint's base.
+    pub fn local_rotation(&self) -> Mat3A {
+        self.rotation_by(self.rotation)
+    }
+
+    /// The rotation R for other Euler angles.
+    pub fn rotation_by(&self, angles: Vec3) -> Mat3A {
+        // Exact, and most joints of a figure are in their bind pose.
+        if angles == Vec3::ZERO {
+            return Mat3A::IDENTITY;
+        }
+        let rotation = JointAngles(angles).matrix();
+        if self.frame == Mat3::IDENTITY {
+            return rotation;
+        }
+        let frame = Mat3A::from(self.frame);
+        frame * rotation * frame.transpose()
+    }
+
+    /// Unit axis about which the joint's angle x, y or z (`axis` 0, 1 or 2) turns, in the space of the
+    /// joint's base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z with the joint's frame A.
+    pub fn rotation_axis(&self, axis: usize) -> Vec3 {
+        (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
+    }
+
+    /// Transform T(offset) · R from the joint's own space to its parent's.
+    pub fn local(&self) -> Affine3A {
+        Affine3A { matrix3: self.local_rotation(), translation: self.offset.into() }
+    }
+
+    /// T(offset): [`Joint::local`] without the rotation.
+    pub(super) fn local_in_bind_pose(&self) -> Affine3A {
+        Affine3A::from_translation(self.offset)
+    }
+
+    /// Euler angles of `rotation`, which is in the space of the joint's base. Of all equivalent
+    /// angles, these are the ones nearest to the joint's present angles. They may violate the
+    /// limits.
+    pub fn angles_of(&self, rotation: Mat3A) -> Vec3 {
+        let frame = Mat3A::from(self.frame);
+        nearest_angles(frame.transpose() * rotation * frame, self.rotation)
+    }
+
+    /// Of all angles equivalent to `angles` and within the limits, those nearest to `near`. Without
+    /// any, `angles`.
+    pub fn equivalent_angles(&self, angles: Vec3, near: Vec3) -> Vec3 {
+        let triples = super::equivalent_triples(angles, near).into_iter();
+        let mut within = triples.filter(|triple| self.clamped(*triple) == *triple);
+        within.next().unwrap_or(angles)
+    }
+
+    /// The Euler angles `rotation` clamped to the limits.
+    pub fn clamped(&self, rotation: Vec3) -> Vec3 {
+        clamp_to_limits(&self.limits, rotation)
+    }
+
+    /// Widens the limits just enough to contain `angles`.
+    pub fn widen_limits(&mut self, angles: Vec3) {
+        for (limit, angle) in self.limits.iter_mut().zip(angles.to_array()) {
+            if let Some(Limit { min, max }) = limit {
+                (*min, *max) = (min.min(angle), max.max(angle));
+            }
+        }
+    }
+
+    /// Whether any angle has a limit.
+    pub fn is_limited(&self) -> bool {
+        self.limits.iter().any(Option::is_some)
+    }
+
+    pub(super) fn clamp(&mut self) {
+        self.rotation = self.clamped(self.rotation);
+    }
+
+    pub(super) fn check(&self, joint: JointId) -> Result<(), SkeletonError> {
+        const ORTHONORMAL: f32 = 1e-5;
+        if let Some(parent) = self.parent.filter(|parent| *parent >= joint) {
+            return Err(SkeletonError::Parent { joint, parent });
+        }
+        if self.name.trim().is_empty() {
+            return Err(SkeletonError::NoName);
+        }
+        let vectors = [
+            (JointField::Offset, self.offset),
+            (JointField::Axis, self.axis),
+            (JointField::Rotation, self.rotation),
+        ];
+        for (field, value) in vectors {
+            if !value.is_finite() {
+                return Err(SkeletonError::NotFinite { joint, field, value });
+            }
+        }
+        if !(self.radius.is_finite() && self.radius >= 0.0) {
+            return Err(SkeletonError::Radius { joint, value: self.radius });
+        }
+        let squared = self.frame.transpose() * self.frame;
+        if !(squared.abs_diff_eq(Mat3::IDENTITY, ORTHONORMAL) && self.frame.determinant() > 0.0) {
+            return Err(SkeletonError::Frame { joint });
+        }
+        for (axis, limit) in RotationAxis::ALL.into_iter().zip(self.limits) {
+            if let Some(Limit { min, max }) = limit
+                && !(min.is_finite() && max.is_finite() && min <= max)
+            {
+                return Err(SkeletonError::Limit { joint, axis, min, max });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,146 @@
+use core::ops::Index;
+
+use glam::{Affine3A, Vec3};
+
+use super::joint_id::MOST_JOINTS;
+use super::{Joint, JointId, SkeletonError};
+use crate::Shared;
+
+/// A forest of joints with its transform to the world.
+///
+/// ```
+/// use glam::Vec3;
+/// use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
+///
+/// let mut skeleton = Skeleton::with_root("hip");
+/// let thigh = skeleton.add(Joint::new("thigh", Some(JointId::new(0)), Vec3::Y))?;
+/// let shin = skeleton.add(Joint { offset: Vec3::Y, ..Joint::new("shin", Some(thigh), Vec3::Y) })?;
+///
+/// skeleton.set_rotation(thigh, Vec3::new(0.0, 0.0, std::f32::consts::FRAC_PI_2))?;
+/// assert!(skeleton.tip(shin).distance(Vec3::new(-2.0, 0.0, 0.0)) < 1e-6);
+/// # Ok::<(), ik_arm_kinematics::skeleton::SkeletonError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    pub(super) joints: Vec<Shared<Joint>>,
+    pub(super) transform: Affine3A,
+}
+
+impl Default for Skeleton {
+    /// A skeleton without joints.
+    fn default() -> Self {
+        Self { joints: Vec::new(), transform: Affine3A::IDENTITY }
+    }
+}
+
+impl Skeleton {
+    /// Maximum number of joints.
+    pub const MOST_JOINTS: usize = MOST_JOINTS;
+
+    /// A skeleton of one locked joint without a bone.
+    pub fn with_root(name: &str) -> Self {
+        let root = Joint { locked: true, ..Joint::new(name, None, Vec3::ZERO) };
+        Self { joints: vec![root.into()], ..Self::default() }
+    }
+
+    /// A skeleton of joints in which parents precede their children. Rotations are clamped to the
+    /// limits.
+    ///
+    /// # Errors
+    ///
+    /// See [`SkeletonError`].
+    pub fn from_joints(joints: Vec<Joint>) -> Result<Self, SkeletonError> {
+        let mut skeleton = Self::default();
+        if joints.len() > Self::MOST_JOINTS {
+            return Err(SkeletonError::TooMany);
+        }
+        let mut names = std::collections::HashSet::new();
+        for (index, joint) in joints.iter().enumerate() {
+            joint.check(index.into())?;
+            if !names.insert(joint.name.as_str()) {
+                return Err(SkeletonError::Name(joint.name.clone()));
+            }
+        }
+        let clamped = |mut joint: Joint| {
+            joint.clamp();
+            joint.into()
+        };
+        skeleton.joints = joints.into_iter().map(clamped).collect();
+        Ok(skeleton)
+    }
+
+    /// All joints, parents before children. Clones of a skeleton share unchanged joints in memory.
+    pub fn joints(&self) -> &[Shared<Joint>] {
+        &self.joints
+    }
+
+    /// The joint with this index; `None` if the skeleton has no such joint.
+    pub fn joint(&self, joint: JointId) -> Option<&Joint> {
+        self.joints.get(joint.index()).map(|joint| &**joint)
+    }
+
+    /// The indices of all joints, parents before children.
+    pub fn ids(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = JointId> + ExactSizeIterator + Clone + use<> {
+        (0..self.joints.len()).map(JointId::new)
+    }
+
+    /// All joints with their indices, parents before children.
+    pub fn iter(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (JointId, &Joint)> + ExactSizeIterator + Clone {
+        self.joints.iter().enumerate().map(|(index, joint)| (JointId::new(index), &**joint))
+    }
+
+    /// Index of the joint with this name; `None` if the skeleton has no such joint.
+    pub fn find(&self, name: &str) -> Option<JointId> {
+        self.joints.iter().position(|joint| joint.name == name).map(JointId::new)
+    }
+
+    /// The joints whose parent is `joint`.
+    pub fn children(&self, joint: JointId) -> impl Iterator<Item = JointId> + '_ {
+        self.iter().filter(move |(_, child)| child.parent == Some(joint)).map(|(child, _)| child)
+    }
+
+    /// The joint, its parent, and so on up to its root.
+    pub fn ancestors(&self, joint: JointId) -> impl Iterator<Item = JointId> + '_ {
+        let first = self.joint(joint).map(|_| joint);
+        std::iter::successors(first, |joint| self.joint(*joint)?.parent)
+    }
+
+    /// Whether `joint` is in the subtree of `root`: `root` itself or one of its descendants.
+    pub fn is_in_subtree(&self, joint: JointId, root: JointId) -> bool {
+        self.ancestors(joint).any(|above| above == root)
+    }
+
+    /// Transform from skeleton space to the world.
+    pub fn transform(&self) -> Affine3A {
+        self.transform
+    }
+
+    /// Replaces the transform from skeleton space to the world. A singular transform (a scale of 0)
+    /// is allowed here and refused by solvers.
+    ///
+    /// # Errors
+    ///
+    /// [`SkeletonError::Transform`] if the transform is not finite.
+    pub fn set_transform(&mut self, transform: Affine3A) -> Result<(), SkeletonError> {
+        if !transform.is_finite() {
+            return Err(SkeletonError::Transform);
+        }
+        self.transform = transform;
+        Ok(())
+    }
+}
+
+impl Index<JointId> for Skeleton {
+    type Output = Joint;
+
+    /// # Panics
+    ///
+    /// If there is no such joint; [`Skeleton::joint`] returns `None` then.
+    fn index(&self, joint: JointId) -> &Joint {
+        &self.joints[joint.index()]
+    }
+}

@@ -1,0 +1,214 @@
+//! The round cones that a skin is made of, and which of them blend: those of a joint with those of its
+//! parent, and siblings that start at one point. All others do not, so that fingers do not melt together.
+
+use glam::DVec3;
+
+use super::error::SkinShapeError;
+use super::round_cone::RoundCone;
+use super::shape::{Blob, SkinShape};
+use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+
+/// One round cone of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The joint that it moves with.
+    pub joint: JointId,
+    pub cone: RoundCone,
+    kind: PartKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum PartKind {
+    Bone,
+    /// From a bone to a child whose base is not on it.
+    Link,
+    Blob,
+}
+
+/// Parts that blend into one surface.
+#[derive(Clone, Debug)]
+pub struct Group {
+    pub members: Vec<Member>,
+}
+
+/// One or two parts as a member of a group.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Member {
+    Part(usize),
+    /// Two bones that meet, with the width of their blend, which depends on the bend.
+    Bend(usize, usize, f64),
+}
+
+/// The parts of one connected tree, and the groups that blend.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub parts: Vec<Part>,
+    pub groups: Vec<Group>,
+}
+
+impl Body {
+    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any part.
+    pub fn all(skeleton: &Skeleton, shape: &SkinShape) -> Result<Vec<Self>, SkinShapeError> {
+        shape.check(skeleton)?;
+        let pose = skeleton.bind_pose_in_skeleton();
+        let mut parts = bones(skeleton, &pose, shape.thickness);
+        parts.extend(links(skeleton, &pose, shape.thickness));
+        parts.extend(blobs(&shape.blobs, &pose, shape.thickness));
+        if parts.is_empty() {
+            return Err(SkinShapeError::NoRadius);
+        }
+        let root = |joint: JointId| skeleton.ancestors(joint).last().unwrap_or(joint);
+        let roots = skeleton.ids().filter(|joint| skeleton[*joint].parent.is_none());
+        let of_root = |tree: JointId| {
+            let parts = parts.iter().copied().filter(|part| root(part.joint) == tree);
+            Self::new(parts.collect(), skeleton)
+        };
+        Ok(roots.map(of_root).filter(|body| !body.parts.is_empty()).collect())
+    }
+
+    fn new(parts: Vec<Part>, skeleton: &Skeleton) -> Self {
+        let mut of_joint = vec![Vec::new(); skeleton.joints().len()];
+        for (index, part) in parts.iter().enumerate() {
+            of_joint[part.joint.index()].push(index);
+        }
+        let mut groups: Vec<Group> = skeleton
+            .iter()
+            .filter(|(joint, _)| !of_joint[joint.index()].is_empty())
+            .map(|(id, joint)| {
+                let above = joint.parent.map_or(&[][..], |parent| &of_joint[parent.index()]);
+                group(&parts, above, &of_joint[id.index()])
+            })
+            .collect();
+        groups.extend(forks(&parts, skeleton));
+        Self { parts, groups }
+    }
+
+    /// Makes parts that are thinner than `radius` that thick.
+    pub fn thicken(&mut self, radius: f64) {
+        for part in &mut self.parts {
+            part.cone = part.cone.thickened(radius);
+        }
+    }
+}
+
+/// A bone has its joint's radius at its base. At its tip it has the radius of the one joint that continues
+/// it; otherwise its own.
+fn bones(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let with_radius = skeleton.iter().filter(|(_, joint)| joint.radius > 0.0);
+    let bone = |(id, joint): (JointId, &Joint)| {
+        let mut at_tip = skeleton.children(id).filter(|child| is_at_tip(skeleton, *child));
+        let radius = match (at_tip.next(), at_tip.next()) {
+            (Some(child), None) if skeleton[child].radius > 0.0 => skeleton[child].radius,
+            _ => joint.radius,
+        };
+        let (base, tip) = (pose.base(id).as_dvec3(), pose.tip(id).as_dvec3());
+        let [base_radius, tip_radius] =
+            [joint.radius, radius].map(|radius| f64::from(radius * thickness));
+        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
+        Part { joint: id, cone, kind: PartKind::Bone }
+    };
+    with_radius.map(bone).collect()
+}
+
+/// Round cones from bones to the bases of children that are not on them, so that no part of a body
+/// floats beside it.
+fn links(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let link = |(id, joint): (JointId, &Joint)| {
+        let parent = joint.parent?;
+        let radius = f64::from(joint.radius.min(skeleton[parent].radius) * thickness);
+        let (base, tip) = (pose.base(parent).as_dvec3(), pose.tip(parent).as_dvec3());
+        let child = pose.base(id).as_dvec3();
+        let near = nearest_on_segment(base, tip, child);
+        let is_apart = near.distance(child) > 1e-4 * radius;
+        let cone = || RoundCone::new(near, child, radius, radius);
+        let part = || Part { joint: parent, cone: cone(), kind: PartKind::Link };
+        (radius > 0.0 && is_apart).then(part)
+    };
+    skeleton.iter().filter_map(link).collect()
+}
+
+fn blobs(blobs: &[Blob], pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
+    let part = |blob: &Blob| {
+        let space = pose.full(blob.joint);
+        let [base, tip] =
+            [blob.base, blob.tip].map(|centre| space.transform_point3(centre).as_dvec3());
+        let [base_radius, tip_radius] =
+            [blob.base_radius, blob.tip_radius].map(|radius| f64::from(radius * thickness));
+        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
+        Part { joint: blob.joint, cone, kind: PartKind::Blob }
+    };
+    blobs.iter().map(part).collect()
+}
+
+fn nearest_on_segment(base: DVec3, tip: DVec3, point: DVec3) -> DVec3 {
+    let axis = tip - base;
+    let fraction = (point - base).dot(axis) / axis.length_squared();
+    if fraction.is_finite() { base + axis * fraction.clamp(0.0, 1.0) } else { base }
+}
+
+fn is_at_tip(skeleton: &Skeleton, child: JointId) -> bool {
+    let joint = &skeleton[child];
+    let Some(parent) = joint.parent.map(|parent| &skeleton[parent]) else { return false };
+    joint.offset.distance(parent.axis) <= 1e-4 * parent.axis.length()
+}
+
+/// The parts of a joint and of its parent.
+fn group(parts: &[Part], of_parent: &[usize], of_joint: &[usize]) -> Group {
+    let is_bone = |index: &&usize| parts[**index].kind == PartKind::Bone;
+    let bones = [of_parent, of_joint].map(|of| of.iter().find(is_bone).copied());
+    let mut members: Vec<Member> = match bones {
+        [Some(above), Some(own)] => {
+            vec![Member::Bend(above, own, bend_width(&parts[above].cone, &parts[own].cone, false))]
+        }
+        bones => bones.into_iter().flatten().map(Member::Part).collect(),
+    };
+    let others = of_parent.iter().chain(of_joint).filter(|index| !is_bone(index));
+    members.extend(others.map(|index| Member::Part(*index)));
+    Group { members }
+}
+
+/// Siblings that start at one point and blend there.
+fn forks(parts: &[Part], skeleton: &Skeleton) -> Vec<Group> {
+    let parent = |part: &Part| skeleton[part.joint].parent;
+    let bones = || parts.iter().enumerate().filter(|(_, part)| part.kind == PartKind::Bone);
+    let mut forks = Vec::new();
+    for (second, other) in bones() {
+        for (first, part) in bones().take_while(|(first, _)| *first < second) {
+            if parent(part).is_some() && parent(part) == parent(other) {
+                let width = bend_width(&part.cone, &other.cone, true);
+                if width > 0.0 {
+                    forks.push(Group { members: vec![Member::Bend(first, second, width)] });
+                }
+            }
+        }
+    }
+    forks
+}
+
+/// Width of the blend of two bones, at most half of their smaller radius: the more, the sharper the bend,
+/// since bones in line would swell where they meet.
+fn bend_width(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
+    let most = 0.5 * one.least_radius().min(other.least_radius());
+    most * sharpness(one, other, are_siblings)
+}
+
+/// How sharply two bones meet: 0 if they go straight on with one radius, 1 for a bend by 90° or more or if
+/// one is twice as thick. 0 for bones that do not meet.
+fn sharpness(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
+    let direction = |cone: &RoundCone| cone.direction().try_normalize();
+    let cosine = direction(one).zip(direction(other)).map(|(one, other)| one.dot(other));
+    let apart = |one: (DVec3, f64), other: (DVec3, f64)| one.0.distance_squared(other.0);
+    let (ends, sign) = if are_siblings {
+        ([one.start(), other.start()], -1.0)
+    } else if apart(one.end(), other.start()) <= apart(one.start(), other.end()) {
+        ([one.end(), other.start()], 1.0)
+    } else {
+        ([one.start(), other.end()], 1.0)
+    };
+    let [(point, radius), (other_point, other_radius)] = ends;
+    let least = radius.min(other_radius);
+    let bend = cosine.map_or(0.0, |cosine| 1.0 - sign * cosine);
+    let step = (radius - other_radius).abs() / least;
+    let apart = point.distance(other_point) / least;
+    bend.max(step).clamp(0.0, 1.0) * (1.0 - apart).max(0.0)
+}

@@ -1,0 +1,211 @@
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+use super::error::SkinError;
+use super::skin_pose::SkinPose;
+use super::skinning::Skinning;
+use super::triangle_mesh::{MeshHit, TriangleMesh};
+use super::vertex_weights::VertexWeights;
+use crate::skeleton::{JointId, Skeleton};
+
+/// A mesh whose vertices follow joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinnedMesh {
+    mesh: TriangleMesh,
+    weights: Vec<VertexWeights>,
+    inverse_binds: Vec<Affine3A>,
+}
+
+impl SkinnedMesh {
+    /// Maximum number of vertices: graphics devices of any kind can hold as many.
+    pub const MOST_VERTICES: usize = 2_500_000;
+    /// Maximum number of triangles.
+    pub const MOST_TRIANGLES: usize = 5_000_000;
+
+    /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹ from
+    /// mesh space to the joint's own space.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinError`] if the lists do not fit each other or are too long, or a number is not finite.
+    pub fn new(
+        mesh: TriangleMesh,
+        weights: Vec<VertexWeights>,
+        inverse_binds: Vec<Affine3A>,
+    ) -> Result<Self, SkinError> {
+        let vertices = mesh.positions.len();
+        for (list, most, got) in [
+            ("vertices", Self::MOST_VERTICES, vertices),
+            ("triangles", Self::MOST_TRIANGLES, mesh.triangles.len()),
+        ] {
+            if got > most {
+                return Err(SkinError::TooMany { list, most, got });
+            }
+        }
+        let coordinates = match mesh.texture_coordinates.len() {
+            0 => vertices,
+            some => some,
+        };
+        let lists = [
+            ("normals", mesh.normals.len()),
+            ("texture coordinates", coordinates),
+            ("weights", weights.len()),
+        ];
+        for (list, got) in lists {
+            if got != vertices {
+                return Err(SkinError::Count { list, vertices, got });
+            }
+        }
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
+            if let Some(&got) = corners.iter().find(|corner| **corner as usize >= vertices) {
+                return Err(SkinError::Triangle { triangle, vertices, got });
+            }
+        }
+        let joints = inverse_binds.len();
+        for (vertex, weights) in weights.iter().enumerate() {
+            if let Some((got, _)) = weights.iter().find(|(joint, _)| joint.index() >= joints) {
+                return Err(SkinError::Joint { vertex, joints, got });
+            }
+        }
+        for vectors in [&mesh.positions, &mesh.normals] {
+            if let Some(vertex) = vectors.iter().position(|vector| !vector.is_finite()) {
+                return Err(SkinError::NotFinite { vertex, got: vectors[vertex] });
+            }
+        }
+        let coordinates = &mesh.texture_coordinates;
+        if let Some(vertex) = coordinates.iter().position(|vector| !vector.is_finite()) {
+            let got = coordinates[vertex].extend(0.0);
+            return Err(SkinError::NotFinite { vertex, got });
+        }
+        if let Some(joint) = inverse_binds.iter().position(|bind| !bind.is_finite()) {
+            return Err(SkinError::Bind { joint: JointId::new(joint) });
+        }
+        Ok(Self { mesh, weights, inverse_binds })
+    }
+
+    /// The mesh as it was attached, in mesh space.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// Weights of the vertices.
+    pub fn weights(&self) -> &[VertexWeights] {
+        &self.weights
+    }
+
+    /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space.
+    pub fn inverse_binds(&self) -> &[Affine3A] {
+        &self.inverse_binds
+    }
+
+    /// Position in the world of a vertex of the posed mesh.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such vertex.
+    pub fn posed_vertex(&self, pose: &SkinPose, skinning: Skinning, vertex: u32) -> Vec3 {
+        let vertex = vertex as usize;
+        let position = self.mesh.positions[vertex];
+        let blend = pose.blend(&self.weights[vertex], position, skinning);
+        pose.to_world().transform_point3(blend.transform_point3(position))
+    }
+
+    /// The joint with the greatest weight at a point of the mesh.
+    pub fn heaviest_joint(&self, hit: &MeshHit) -> JointId {
+        let weights = hit.corners.iter().zip(hit.shares).flat_map(|(corner, share)| {
+            self.weights[*corner as usize]
+                .iter()
+                .map(move |(joint, weight)| (joint, weight * share))
+        });
+        VertexWeights::heaviest(weights).0.first()
+    }
+
+    /// The same mesh with its joints renumbered: `joints[i]` is the new index of joint i, and the weights of
+    /// joints without one go to their nearest ancestor that has one, or else to the new joint 0. `parents`
+    /// are the parents of the old joints, which precede their children.
+    #[must_use]
+    pub fn renumbered(&self, joints: &[Option<JointId>], parents: &[Option<JointId>]) -> Self {
+        let mut heirs: Vec<Option<JointId>> = Vec::with_capacity(parents.len());
+        for (old, parent) in parents.iter().enumerate() {
+            let of_parent = parent.and_then(|parent| heirs.get(parent.index()).copied().flatten());
+            heirs.push(joints.get(old).copied().flatten().or(of_parent));
+        }
+        let heir = |joint: JointId| heirs.get(joint.index()).copied().flatten().unwrap_or_default();
+        let of_heirs = |weights: &VertexWeights| {
+            VertexWeights::heaviest(weights.iter().map(|(joint, weight)| (heir(joint), weight))).0
+        };
+        let count = joints.iter().flatten().map(|joint| joint.index() + 1).max().unwrap_or(1);
+        let mut inverse_binds = vec![Affine3A::IDENTITY; count];
+        for (joint, bind) in joints.iter().zip(&self.inverse_binds) {
+            if let Some(joint) = joint {
+                inverse_binds[joint.index()] = *bind;
+            }
+        }
+        let weights = self.weights.iter().map(of_heirs).collect();
+        Self { mesh: self.mesh.clone(), weights, inverse_binds }
+    }
+
+    /// Memory in bytes.
+    pub fn bytes(&self) -> usize {
+        let TriangleMesh { positions, normals, texture_coordinates, triangles } = &self.mesh;
+        size_of_val(&positions[..])
+            + size_of_val(&normals[..])
+            + size_of_val(&texture_coordinates[..])
+            + size_of_val(&triangles[..])
+            + size_of_val(&self.weights[..])
+            + size_of_val(&self.inverse_binds[..])
+    }
+
+    /// How the joints of a posed skeleton move the mesh.
+    pub fn pose(&self, skeleton: &Skeleton) -> SkinPose {
+        let mut pose = SkinPose::default();
+        self.write_pose(skeleton, &mut pose);
+        pose
+    }
+
+    /// Writes [`SkinnedMesh::pose`] into an existing pose, reusing its memory.
+    pub fn write_pose(&self, skeleton: &Skeleton, pose: &mut SkinPose) {
+        pose.refill(&self.inverse_binds, skeleton);
+    }
+
+    /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from outside
+    /// also if the skeleton's transform mirrors.
+    pub fn posed(&self, pose: &SkinPose, skinning: Skinning) -> TriangleMesh {
+        let mut posed = self.mesh.clone();
+        self.write_posed(pose, skinning, &mut posed.positions, &mut posed.normals);
+        if pose.to_world().matrix3.determinant() < 0.0 {
+            for [_, second, third] in &mut posed.triangles {
+                core::mem::swap(second, third);
+            }
+        }
+        posed
+    }
+
+    /// Writes the positions and unit normals of the mesh posed in the world into existing lists.
+    pub fn write_posed(
+        &self,
+        pose: &SkinPose,
+        skinning: Skinning,
+        positions: &mut Vec<Vec3>,
+        normals: &mut Vec<Vec3>,
+    ) {
+        positions.clear();
+        normals.clear();
+        let vertices = self.mesh.positions.iter().zip(&self.mesh.normals).zip(&self.weights);
+        for ((position, normal), weights) in vertices {
+            let blend = pose.to_world() * pose.blend(weights, *position, skinning);
+            positions.push(blend.transform_point3(*position));
+            normals.push(posed_normal(blend.matrix3, *normal));
+        }
+    }
+}
+
+/// A normal under the linear part of a transform: the inverse transpose, computed by cofactors so that
+/// a collapsed mesh has normals too. Without a direction, the original normal.
+fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
+    let Mat3A { x_axis, y_axis, z_axis } = linear;
+    let cofactors =
+        Mat3A::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));
+    let mirror = if x_axis.dot(y_axis.cross(z_axis)) < 0.0 { -1.0 } else { 1.0 };
+    let posed = cofactors * Vec3A::from(normal) * mirror;
+    posed.try_normalize().map_or(normal, Vec3::from)
+}

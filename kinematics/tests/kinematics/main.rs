@@ -1,0 +1,27 @@
+//! The library of kinematics against independent twins: f64, finite differences, matrix products.
+
+mod arm_rig;
+mod batch;
+mod chain_ik;
+mod chain_ik_gradient;
+#[path = "../common/mod.rs"]
+mod common;
+mod crowd_solve;
+mod diagnose;
+mod evaluate;
+mod fk;
+mod ik;
+mod limb_ik;
+mod pop;
+mod skeleton;
+mod skin_from_bones;
+mod skinning;
+mod soft_reach;
+mod solver_inside;
+mod spline;
+mod swing;
+mod target_match;
+mod twist;
+mod two_bone;
+mod two_bone_accuracy;
+mod two_bone_job;

@@ -1,0 +1,344 @@
+//! Skins made from the bones of random skeletons: closed, on the surface of the bones, smooth.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::{DVec3, Vec3};
+use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+use ik_arm_kinematics::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh, VertexWeights};
+
+use crate::common::Random;
+
+const TREES: u64 = 200;
+
+/// A skeleton of 1 to 60 joints with radii from 1 to 10, straight, crooked, folded or with joints away from
+/// their parents' tips; one bone in ten has no length, one joint in thirty is another root.
+fn any_skeleton(random: &mut Random) -> Skeleton {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Style {
+        Straight,
+        Crooked,
+        Folded,
+        Apart,
+    }
+    let style = random.one_of(&[Style::Straight, Style::Crooked, Style::Folded, Style::Apart]);
+    let joints = 1 + random.below(60).min(random.below(60));
+    let mut list: Vec<Joint> = Vec::new();
+    for index in 0..joints {
+        let parent = match index {
+            0 => None,
+            _ if random.chance(0.03) => None,
+            _ if random.chance(0.7) => Some(index - 1),
+            _ => Some(random.below(index)),
+        };
+        let above = parent.map(|parent| list[parent].axis);
+        let direction = match (style, above.and_then(Vec3::try_normalize)) {
+            (Style::Straight, _) => Vec3::Y,
+            (Style::Folded, Some(above)) => (0.05 * random.direction() - above).normalize(),
+            _ => random.direction(),
+        };
+        let length = if random.chance(0.1) { 0.0 } else { random.power_of_ten(0.0..0.8) as f32 };
+        let name = format!("j{index}");
+        let mut joint = Joint::new(&name, parent.map(JointId::new), direction * length);
+        joint.radius = random.power_of_ten(0.0..1.0) as f32;
+        joint.offset = match above {
+            None => random.vector(30.0),
+            Some(_) if style == Style::Apart && random.chance(0.3) => random.vector(10.0),
+            Some(tip) => tip,
+        };
+        list.push(joint);
+    }
+    Skeleton::from_joints(list).expect("skeleton")
+}
+
+fn coarse() -> SkinShape {
+    SkinShape { detail: SkinShape::LEAST_DETAIL, ..SkinShape::default() }
+}
+
+fn roots(skeleton: &Skeleton) -> usize {
+    skeleton.joints().iter().filter(|joint| joint.parent.is_none()).count()
+}
+
+// Independent measures
+
+/// Signed distance of the round cone from `base` to `tip`: the least over the spheres between its ends,
+/// by golden-section search.
+fn cone_distance(point: DVec3, ends: [(DVec3, f64); 2]) -> f64 {
+    let [(base, base_radius), (tip, tip_radius)] = ends;
+    let at =
+        |t: f64| point.distance(base.lerp(tip, t)) - (base_radius + (tip_radius - base_radius) * t);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let third = (high - low) * 0.381_966;
+        if at(low + third) < at(high - third) { high -= third } else { low += third }
+    }
+    at(low).min(at(0.0)).min(at(1.0))
+}
+
+/// The bones of a skeleton whose joints all start at their parents' tips, as round cones.
+fn cones(skeleton: &Skeleton) -> Vec<[(DVec3, f64); 2]> {
+    let pose: SkeletonPose = skeleton.bind_pose_in_skeleton();
+    let cone = |id: JointId| {
+        let children: Vec<JointId> = skeleton.children(id).collect();
+        let radius = f64::from(skeleton[id].radius);
+        let tip_radius = match children[..] {
+            [child] => f64::from(skeleton[child].radius),
+            _ => radius,
+        };
+        [(pose.base(id).as_dvec3(), radius), (pose.tip(id).as_dvec3(), tip_radius)]
+    };
+    skeleton.ids().map(cone).collect()
+}
+
+/// Number of connected pieces of a mesh.
+fn pieces(mesh: &SkinnedMesh) -> usize {
+    let mut neighbours: HashMap<u32, Vec<u32>> = HashMap::new();
+    for [a, b, c] in &mesh.mesh().triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            neighbours.entry(*from).or_default().push(*to);
+        }
+    }
+    let mut seen = HashSet::new();
+    let mut count = 0;
+    for vertex in 0..mesh.mesh().positions.len() as u32 {
+        if seen.insert(vertex) {
+            count += 1;
+            let mut open = vec![vertex];
+            while let Some(vertex) = open.pop() {
+                for next in &neighbours[&vertex] {
+                    if seen.insert(*next) {
+                        open.push(*next);
+                    }
+                }
+            }
+        }
+    }
+    count
+}
+
+fn assert_is_closed(mesh: &SkinnedMesh, case: &str) {
+    let mut directed: HashMap<(u32, u32), usize> = HashMap::new();
+    for [a, b, c] in &mesh.mesh().triangles {
+        for edge in [(*a, *b), (*b, *c), (*c, *a)] {
+            *directed.entry(edge).or_default() += 1;
+        }
+    }
+    for ((from, to), count) in &directed {
+        assert_eq!(*count, 1, "{case}: edge {from}–{to} is passed {count} times in one direction");
+        assert!(directed.contains_key(&(*to, *from)), "{case}: edge {from}–{to} has one face");
+    }
+}
+
+fn assert_has_no_degenerate_face(mesh: &SkinnedMesh, case: &str) {
+    for (index, triangle) in mesh.mesh().triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|corner| mesh.mesh().positions[corner as usize]);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let height = (b - a).cross(c - a).length() / longest;
+        assert!(height > 1e-4 * longest, "{case}: triangle {index} is {height:.1e} high");
+    }
+}
+
+/// Greatest change of a joint's weight along an edge.
+fn greatest_jump(mesh: &SkinnedMesh) -> f32 {
+    let jump = |one: &VertexWeights, other: &VertexWeights| {
+        let joints = one.iter().chain(other.iter()).map(|(joint, _)| joint);
+        joints.map(|joint| (one.of(joint) - other.of(joint)).abs()).fold(0.0, f32::max)
+    };
+    let edges = mesh.mesh().triangles.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]);
+    let weights = |vertex: u32| &mesh.weights()[vertex as usize];
+    edges.map(|(from, to)| jump(weights(from), weights(to))).fold(0.0, f32::max)
+}
+
+// Tests
+
+#[test]
+fn skins_of_random_trees_are_closed_and_smooth_with_one_surface_for_each_tree() {
+    for seed in 0..TREES {
+        let skeleton = any_skeleton(&mut Random(seed));
+        let mesh = SkinnedMesh::from_bones(&skeleton, &coarse()).expect("skin");
+        let case = format!("seed {seed}, {} joints", skeleton.joints().len());
+        assert_is_closed(&mesh, &case);
+        assert_has_no_degenerate_face(&mesh, &case);
+        assert_eq!(pieces(&mesh), roots(&skeleton), "{case}: pieces");
+        let jump = greatest_jump(&mesh);
+        assert!(jump <= 0.35, "{case}: a weight jumps by {jump}");
+        for weights in mesh.weights() {
+            let sum: f32 = weights.iter().map(|(_, weight)| weight).sum();
+            assert!((sum - 1.0).abs() < 1e-6, "{case}: weights sum to {sum}");
+        }
+    }
+}
+
+#[test]
+fn vertices_are_on_the_bones_or_outside_them_by_at_most_the_blend_of_two() {
+    for seed in 0..40 {
+        let mut random = Random(1000 + seed);
+        let skeleton = crate::common::skeletons::chain(&mut random, 1 + seed as usize % 7, 4.0);
+        let mesh = SkinnedMesh::from_bones(&skeleton, &SkinShape::default()).expect("skin");
+        let cones: Vec<_> = cones(&skeleton).into_iter().filter(|[base, _]| base.1 > 0.0).collect();
+        for (vertex, position) in mesh.mesh().positions.iter().enumerate() {
+            let distances = cones.iter().map(|cone| cone_distance(position.as_dvec3(), *cone));
+            let distance = distances.fold(f64::INFINITY, f64::min);
+            let greatest = cones.iter().flatten().map(|end| end.1).fold(0.0, f64::max);
+            let least = cones.iter().flatten().map(|end| end.1).fold(f64::INFINITY, f64::min);
+            assert!(distance > -1e-3 * greatest, "seed {seed}: vertex {vertex} at {distance}");
+            // The smooth minimum is lower by a quarter of its width, which is half a radius.
+            let blend = 0.125 * least + 0.125 * (greatest - least);
+            assert!(distance < blend + 1e-3 * greatest, "seed {seed}: {vertex} at {distance}");
+        }
+    }
+}
+
+/// Bones of one length and radius in line.
+fn tube(bones: usize, length: f32, radius: f32) -> Skeleton {
+    let bone = |index: usize| Joint {
+        offset: if index == 0 { Vec3::ZERO } else { Vec3::Y * length },
+        radius,
+        ..Joint::new(
+            &format!("bone {index}"),
+            index.checked_sub(1).map(JointId::new),
+            Vec3::Y * length,
+        )
+    };
+    Skeleton::from_joints((0..bones).map(bone).collect()).expect("skeleton")
+}
+
+#[test]
+fn a_straight_chain_of_one_radius_is_a_straight_tube() {
+    for bones in 1..6 {
+        let mesh =
+            SkinnedMesh::from_bones(&tube(bones, 3.0, 0.5), &SkinShape::default()).expect("skin");
+        let top = 3.0 * bones as f32;
+        for position in mesh.mesh().positions.iter().filter(|at| at.y > 0.0 && at.y < top) {
+            let radius = position.with_y(0.0).length();
+            assert!(
+                (radius / 0.5 - 1.0).abs() < 1e-3,
+                "{bones} bones: radius {radius} at {position}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_middle_third_of_a_long_bone_follows_that_bone_alone() {
+    let mesh = SkinnedMesh::from_bones(&tube(4, 3.1, 0.5), &SkinShape::default()).expect("skin");
+    for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
+        let along = position.y / 3.1;
+        if (0.0..4.0).contains(&along) && (1.0 / 3.0..2.0 / 3.0).contains(&along.fract()) {
+            let own = weights.of(JointId::new(along as usize));
+            assert!(own >= 0.95, "{own} at {position}");
+        }
+    }
+}
+
+#[test]
+fn weights_are_of_joints_within_two_steps_of_the_nearest_bone() {
+    let mesh = SkinnedMesh::from_bones(&tube(8, 0.4, 0.5), &SkinShape::default()).expect("skin");
+    for weights in mesh.weights() {
+        let first = weights.first().index();
+        assert!(weights.iter().all(|(joint, _)| joint.index().abs_diff(first) <= 2), "{weights:?}");
+    }
+}
+
+#[test]
+fn parallel_siblings_do_not_melt_together() {
+    let mut joints = vec![Joint { radius: 1.0, ..Joint::new("palm", None, Vec3::Y * 2.0) }];
+    for (index, x) in [-0.45_f32, 0.45].into_iter().enumerate() {
+        let finger = Joint::new(&format!("finger {index}"), Some(0.into()), Vec3::Y * 4.0);
+        joints.push(Joint { offset: Vec3::new(x, 2.0, 0.0), radius: 0.4, ..finger });
+    }
+    let skeleton = Skeleton::from_joints(joints).expect("skeleton");
+    let mesh = SkinnedMesh::from_bones(&skeleton, &SkinShape::default()).expect("skin");
+    let between = |at: &&Vec3| at.x.abs() < 0.04 && at.y > 3.2;
+    assert_eq!(mesh.mesh().positions.iter().filter(between).count(), 0);
+}
+
+#[test]
+fn blobs_are_part_of_the_surface_and_move_with_their_joint() {
+    let skeleton = tube(2, 4.0, 0.5);
+    let blob = Blob {
+        joint: 1.into(),
+        base: Vec3::new(0.0, 2.0, 0.0),
+        tip: Vec3::new(2.0, 2.0, 0.0),
+        base_radius: 0.4,
+        tip_radius: 0.6,
+    };
+    let shape = SkinShape { blobs: vec![blob], ..SkinShape::default() };
+    let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+    assert_is_closed(&mesh, "blob");
+    assert_eq!(pieces(&mesh), 1);
+    let farthest = mesh.mesh().positions.iter().map(|at| at.x).fold(0.0, f32::max);
+    assert!((farthest - 2.6).abs() < 0.02, "{farthest}");
+    for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
+        assert!(position.x < 1.0 || weights.of(1.into()) == 1.0, "{weights:?} at {position}");
+    }
+}
+
+#[test]
+fn the_same_skeleton_gives_the_same_skin_bit_for_bit() {
+    let skeleton = any_skeleton(&mut Random(77));
+    let skin = || SkinnedMesh::from_bones(&skeleton, &coarse()).expect("skin");
+    assert_eq!(skin(), skin());
+}
+
+#[test]
+fn a_skin_scales_with_its_skeleton_and_takes_far_and_tiny_ones() {
+    let plain = SkinnedMesh::from_bones(&tube(2, 3.0, 0.5), &SkinShape::default()).expect("skin");
+    for scale in [1e-6_f32, 1e6] {
+        let scaled = tube(2, 3.0 * scale, 0.5 * scale);
+        let scaled = SkinnedMesh::from_bones(&scaled, &SkinShape::default()).expect("skin");
+        let ratio = scaled.mesh().size() / plain.mesh().size() / scale;
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+        assert_is_closed(&scaled, "scaled");
+    }
+}
+
+#[test]
+fn bones_of_very_different_sizes_get_a_mesh_of_bounded_size() {
+    let mut joints =
+        tube(3, 100.0, 20.0).joints().iter().map(|it| Joint::clone(it)).collect::<Vec<_>>();
+    joints[2].radius = 1e-3;
+    let skeleton = Skeleton::from_joints(joints).expect("skeleton");
+    let mesh = SkinnedMesh::from_bones(&skeleton, &coarse()).expect("skin");
+    assert!(mesh.mesh().positions.len() < 300_000, "{}", mesh.mesh().positions.len());
+    assert_is_closed(&mesh, "thin");
+    assert_eq!(pieces(&mesh), 1);
+}
+
+#[test]
+fn what_cannot_become_a_skin_is_refused_with_the_reason() {
+    let refused = |skeleton: &Skeleton, shape: SkinShape| {
+        SkinnedMesh::from_bones(skeleton, &shape).expect_err("refused").to_string()
+    };
+    let tube = tube(2, 3.0, 0.5);
+    assert_eq!(
+        refused(&Skeleton::with_root("root"), SkinShape::default()),
+        "a skin from bones needs a joint with a radius above 0, and there is none"
+    );
+    assert_eq!(
+        refused(&tube, SkinShape { detail: 0.5, ..SkinShape::default() }),
+        "skin detail must be from 1.2 to 16, got 0.5"
+    );
+    assert_eq!(
+        refused(&tube, SkinShape { thickness: f32::NAN, ..SkinShape::default() }),
+        "skin thickness must be finite and above 0, got NaN"
+    );
+    let blob = |joint: usize, radius| Blob {
+        joint: joint.into(),
+        base: Vec3::ZERO,
+        tip: Vec3::Y,
+        base_radius: 1.0,
+        tip_radius: radius,
+    };
+    let with = |blob| SkinShape { blobs: vec![blob], ..SkinShape::default() };
+    assert_eq!(refused(&tube, with(blob(2, 1.0))), "the joint of blob 0 must be below 2, got 2");
+    assert_eq!(
+        refused(&tube, with(blob(0, 0.0))),
+        "centres and radii of blob 0 must be finite, and the radii above 0"
+    );
+    let far = Blob { base: Vec3::X * 1e30, ..blob(0, 1.0) };
+    let error = SkinnedMesh::from_bones(&tube, &with(far)).expect_err("refused");
+    assert!(matches!(error, SkinShapeError::TooThin { .. }), "{error}");
+    let huge = self::tube(2, 1.6e38, 1e38);
+    let error = SkinnedMesh::from_bones(&huge, &SkinShape::default()).expect_err("refused");
+    assert!(matches!(error, SkinShapeError::NotFinite(_)), "{error}");
+}

@@ -1,0 +1,9 @@
+//! What allocates memory, and how much.
+
+mod chain_ik;
+#[path = "../common/mod.rs"]
+mod common;
+#[cfg(feature = "render")]
+mod render;
+mod scene;
+mod sharing;

@@ -1,0 +1,353 @@
+//! The examples with targets: each does what its sentence says, at every frame.
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Document};
+use ik_arm::io::Example;
+use ik_arm::kinematics::limb_ik::Limb;
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+use ik_arm::rig::{EvaluatedSkeleton, TargetSpace};
+
+use crate::common::Random;
+
+/// Length of the figure's legs and of its arms, without feet and hands.
+const LEG: f32 = 0.84;
+const ARM: f32 = 0.54;
+
+fn opened(name: &str) -> Document {
+    let opened = Example::find(name).expect("there").open().expect("opens");
+    assert_eq!(opened.warnings, []);
+    opened.document
+}
+
+fn evaluated(document: &Document, time: f64) -> EvaluatedSkeleton {
+    document.evaluate(time).skeleton_rig.evaluate(time)
+}
+
+/// The skeleton at a time, with its joints by name.
+struct Posed {
+    time: f64,
+    skeleton: Skeleton,
+    pose: SkeletonPose,
+}
+
+impl Posed {
+    fn new(document: &Document, time: f64) -> Self {
+        let skeleton = Skeleton::clone(&evaluated(document, time).solved);
+        Self { time, pose: skeleton.pose(), skeleton }
+    }
+
+    /// The poses of the timeline, four for each frame.
+    fn all(document: &Document) -> Vec<Self> {
+        let (from, to) = (document.timeline.start, document.timeline.end);
+        let step = 0.25 / document.timeline.frame_rate;
+        let count = ((to - from) / step).round() as usize;
+        (0..=count).map(|index| Self::new(document, from + index as f64 * step)).collect()
+    }
+
+    fn id(&self, name: &str) -> JointId {
+        self.skeleton.find(name).expect("a joint")
+    }
+
+    fn joint(&self, name: &str) -> &Joint {
+        &self.skeleton[self.id(name)]
+    }
+
+    fn base(&self, name: &str) -> Vec3 {
+        self.pose.base(self.id(name))
+    }
+
+    fn tip(&self, name: &str) -> Vec3 {
+        self.pose.tip(self.id(name))
+    }
+
+    /// Angle about +y of the axis from one joint's base to another's, in radians.
+    fn heading(&self, from: &str, to: &str) -> f32 {
+        let axis = self.base(to) - self.base(from);
+        (-axis.z).atan2(axis.x)
+    }
+}
+
+fn assert_within_limits(posed: &Posed) {
+    for (_, joint) in posed.skeleton.iter() {
+        let clamped = joint.clamped(joint.rotation);
+        assert!(clamped.distance(joint.rotation) < 1e-5, "{} at {} s", joint.name, posed.time);
+    }
+}
+
+fn assert_all_in_picture(document: &Document, poses: &[Posed]) {
+    // The narrowest viewport of the window is about square.
+    let projection = document.camera.projection(1.0);
+    for posed in poses {
+        for point in posed.pose.points() {
+            let seen = projection.project(point).expect("before the eye");
+            assert!(
+                seen.abs().max_element() < 0.97,
+                "{point} at {} s is seen at {seen}",
+                posed.time
+            );
+        }
+    }
+}
+
+/// Pearson's correlation of two series.
+fn correlation(one: &[f32], other: &[f32]) -> f32 {
+    let mean = |of: &[f32]| of.iter().sum::<f32>() / of.len() as f32;
+    let (a, b) = (mean(one), mean(other));
+    let sum = |of: &dyn Fn(f32, f32) -> f32| -> f32 {
+        one.iter().zip(other).map(|(x, y)| of(x - a, y - b)).sum()
+    };
+    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
+}
+
+// Human
+
+#[test]
+fn the_human_stands_at_its_targets_by_its_own_angles() {
+    let human = opened("human");
+    let EvaluatedSkeleton { fk, solved, targets } = evaluated(&human, 0.0);
+    for joint in fk.ids() {
+        assert!(fk.tip(joint).distance(solved.tip(joint)) < 1e-5, "{}", fk[joint].name);
+    }
+    let ends = ["left_hand", "right_hand", "left_foot", "right_foot"];
+    assert_eq!(targets.len(), ends.len());
+    for (target, end) in human.skeleton_rig.targets.iter().zip(ends) {
+        let limb = Limb::for_end(&fk, fk.find(end).expect("a joint")).expect("a limb");
+        assert_eq!((target.joint, target.influence), (limb.lower, 1.0), "{end}");
+        assert!(target.limb().is_some() && target.enabled, "{end}");
+    }
+    let posed = Posed::new(&human, 0.0);
+    for foot in ["left_foot", "right_foot"] {
+        // The ball of the toes, of radius 0.0231, is on the floor.
+        assert!((0.0231..0.025).contains(&posed.tip(foot).y), "{foot}");
+    }
+    assert_within_limits(&posed);
+}
+
+#[test]
+fn the_humans_hands_and_feet_stay_when_its_pelvis_moves() {
+    let mut human = opened("human");
+    let mut random = Random(15);
+    let before = Posed::new(&human, 0.0);
+    let pelvis = before.id("pelvis");
+    let home = before.base("pelvis");
+    let mut reached = 0;
+    for _ in 0..500 {
+        let point = home + random.vector(0.1) - Vec3::Y * 0.1;
+        Channel::Offset(pelvis).set(&mut human, point);
+        Channel::Rotation(pelvis).set(&mut human, random.vector(0.15));
+        let after = Posed::new(&human, 0.0);
+        assert!(after.base("pelvis").distance(point) < 1e-6);
+        for (end, top, within) in [
+            ("left_hand", "left_upper_arm", 0.18..ARM),
+            ("right_hand", "right_upper_arm", 0.18..ARM),
+            ("left_foot", "left_thigh", 0.27..LEG),
+            ("right_foot", "right_thigh", 0.27..LEG),
+        ] {
+            let place = before.base(end);
+            if within.contains(&after.base(top).distance(place)) {
+                let moved = after.base(end).distance(place);
+                assert!(moved < 1e-5 * ARM, "{end} moves by {moved} with the pelvis at {point}");
+                reached += 1;
+            }
+        }
+        assert_within_limits(&after);
+    }
+    assert!(reached > 1_900, "{reached} of 2,000");
+}
+
+// Walk
+
+/// Times and places of a foot's stands: as long as heel and toe are at the heights of a flat foot.
+fn stands(poses: &[Posed], foot: &str) -> Vec<Vec<(f64, Vec3, Vec3)>> {
+    let heights = |posed: &Posed| (posed.base(foot).y, posed.tip(foot).y);
+    let lowest = poses.iter().map(|it| heights(it).0).fold(f32::MAX, f32::min);
+    let is_flat = |posed: &&Posed| {
+        let (heel, toe) = heights(posed);
+        heel < lowest + 5e-4 && (heel - toe - 0.06).abs() < 5e-4
+    };
+    let parts = poses.chunk_by(|one, other| is_flat(&one) == is_flat(&other));
+    let standing = parts.filter(|part| part.first().is_some_and(|it| is_flat(&it)));
+    let place = |posed: &Posed| (posed.time, posed.base(foot), posed.tip(foot));
+    standing.map(|part| part.iter().map(place).collect()).collect()
+}
+
+#[test]
+fn standing_feet_stay_where_they_are() {
+    let walk = opened("walk");
+    let poses = Posed::all(&walk);
+    for foot in ["left_foot", "right_foot"] {
+        let stands = stands(&poses, foot);
+        assert!(stands.len() >= 2, "{foot} stands {} times", stands.len());
+        for stand in &stands {
+            let ((from, heel, toe), (to, ..)) = (stand[0], stand[stand.len() - 1]);
+            assert!(to - from > 0.25, "{foot} stands from {from} to {to} s");
+            for (time, now_heel, now_toe) in stand {
+                let moved = heel.distance(*now_heel).max(toe.distance(*now_toe));
+                assert!(moved < 1e-3 * LEG, "{foot} slides by {moved} until {time} s");
+            }
+        }
+        let places: Vec<f32> = stands.iter().map(|stand| stand[0].1.z).collect();
+        let strides = places.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(strides.into_iter().all(|stride| stride > 1.0), "{foot}: {places:?}");
+    }
+}
+
+#[test]
+fn toes_stay_while_the_heel_rises_and_no_foot_is_below_the_floor() {
+    let poses = Posed::all(&opened("walk"));
+    let mut rising = 0;
+    for foot in ["left_foot", "right_foot"] {
+        for pair in poses.windows(2) {
+            let [toe, next] = [0, 1].map(|index: usize| pair[index].tip(foot));
+            assert!(toe.y > 0.028, "{foot}: {toe} at {} s", pair[0].time);
+            assert!(pair[0].base(foot).y > 0.089, "{foot} at {} s", pair[0].time);
+            let is_rising = pair[1].base(foot).y > pair[0].base(foot).y + 1e-3;
+            // Above, the toes leave the floor.
+            if is_rising && pair[1].base(foot).y < 0.2 && toe.y < 0.031 {
+                rising += 1;
+                assert!(toe.distance(next) < 2e-3, "{foot} slips at {} s", pair[0].time);
+            }
+        }
+    }
+    assert!(rising > 40, "{rising}");
+}
+
+#[test]
+fn each_foot_steps_at_least_twice_past_the_other_and_the_knees_stay_bent_forwards() {
+    let poses = Posed::all(&opened("walk"));
+    let leads = |posed: &Posed| posed.base("left_foot").z > posed.base("right_foot").z;
+    let changes: Vec<bool> = poses
+        .windows(2)
+        .filter(|pair| leads(&pair[0]) != leads(&pair[1]))
+        .map(|pair| leads(&pair[1]))
+        .collect();
+    for left in [true, false] {
+        let steps = changes.iter().filter(|is_left| **is_left == left).count();
+        assert!(steps >= 2, "{changes:?}");
+    }
+    for posed in &poses {
+        assert_within_limits(posed);
+        for side in ["left", "right"] {
+            let knee = posed.joint(&format!("{side}_shin")).rotation.x.to_degrees();
+            assert!((5.0..80.0).contains(&knee), "{side} knee {knee} at {} s", posed.time);
+            let [hip, knee, ankle] =
+                ["thigh", "shin", "foot"].map(|bone| posed.base(&format!("{side}_{bone}")));
+            let along = (knee - hip).dot(ankle - hip) / (ankle - hip).length_squared();
+            let forward = knee - hip.lerp(ankle, along);
+            let aside = forward.x.abs() / forward.length();
+            assert!(forward.z > 0.0 && aside < 0.4, "{side} knee: {aside} at {} s", posed.time);
+        }
+    }
+}
+
+#[test]
+fn the_pelvis_travels_and_bobs_at_a_steady_pace() {
+    let poses = Posed::all(&opened("walk"));
+    let pelvis: Vec<Vec3> = poses.iter().map(|posed| posed.base("pelvis")).collect();
+    let count = pelvis.len() - 1;
+    let travel = pelvis[count].z - pelvis[0].z;
+    assert!(travel > 1.0, "{travel}");
+    for (index, point) in pelvis.iter().enumerate() {
+        let steady = pelvis[0].z + travel * index as f32 / count as f32;
+        assert!((point.z - steady).abs() < 0.01, "{} s: {point}", poses[index].time);
+    }
+    let heights = || pelvis.iter().map(|point| point.y);
+    let bob = heights().fold(f32::MIN, f32::max) - heights().fold(f32::MAX, f32::min);
+    assert!((0.02..0.06).contains(&bob), "{bob}");
+}
+
+#[test]
+fn arms_swing_against_the_legs_and_the_shoulders_against_the_hips() {
+    let walk = opened("walk");
+    let poses = Posed::all(&walk);
+    let ahead = |joint: &'static str| -> Vec<f32> {
+        poses.iter().map(|posed| posed.base(joint).z - posed.base("pelvis").z).collect()
+    };
+    for (hand, foot) in [("left_hand", "left_foot"), ("right_hand", "right_foot")] {
+        let (hand, foot) = (ahead(hand), ahead(foot));
+        let swing = hand.iter().copied().fold(f32::MIN, f32::max)
+            - hand.iter().copied().fold(f32::MAX, f32::min);
+        assert!(swing > 0.25, "{swing}");
+        let together = correlation(&hand, &foot);
+        assert!(together < -0.8, "{together}");
+    }
+    let heading = |left, right| -> Vec<f32> {
+        poses.iter().map(|posed| posed.heading(right, left)).collect()
+    };
+    let shoulders = heading("left_upper_arm", "right_upper_arm");
+    let together = correlation(&shoulders, &heading("left_thigh", "right_thigh"));
+    assert!(together < -0.8, "{together}");
+    let posed: Vec<JointId> = walk.skeleton_rig.targets.iter().map(|it| it.joint).collect();
+    assert_eq!(posed, ["left_shin", "right_shin"].map(|name| poses[0].id(name)));
+}
+
+// Wheel
+
+#[test]
+fn both_hands_stay_on_the_turning_wheel() {
+    let wheel = opened("wheel");
+    let mut random = Random(2);
+    let start = Posed::new(&wheel, 0.0);
+    let joint = start.id("wheel");
+    let rim: Vec<JointId> = start.skeleton.children(joint).collect();
+    let mut turned = 0.0_f32;
+    for _ in 0..50 {
+        let time = f64::from(random.within(0.0..4.0));
+        let posed = Posed::new(&wheel, time);
+        for hand in ["left_hand", "right_hand"] {
+            let wrist = posed.base(hand);
+            for bone in &rim {
+                let distance = |of: &Posed, point: Vec3| point.distance(of.pose.tip(*bone));
+                let moved = distance(&posed, wrist) - distance(&start, start.base(hand));
+                assert!(moved.abs() < 1e-5 * ARM, "{hand} moves by {moved} at {time} s");
+            }
+            let grips = rim.iter().map(|bone| {
+                let middle = (posed.pose.base(*bone) + posed.pose.tip(*bone)) / 2.0;
+                middle.distance((wrist + posed.tip(hand)) / 2.0)
+            });
+            let grip = grips.fold(f32::MAX, f32::min);
+            assert!(grip < 0.06, "{hand} is {grip} from the rim at {time} s");
+        }
+        for foot in ["left_foot", "right_foot"] {
+            assert!(posed.base(foot).distance(start.base(foot)) < 1e-5 * LEG, "{foot}");
+        }
+        assert_within_limits(&posed);
+        turned = turned.max(posed.joint("wheel").rotation.z.abs());
+    }
+    assert!(turned.to_degrees() > 45.0, "{turned}");
+    for target in &wheel.skeleton_rig.targets[..2] {
+        assert_eq!(target.space, TargetSpace::Joint(joint));
+    }
+}
+
+// Table
+
+#[test]
+fn the_hand_rests_flat_on_the_table_while_the_shoulder_moves() {
+    const REACH: f32 = 0.6;
+    let poses = Posed::all(&opened("table"));
+    let start = &poses[0];
+    // The slats' axes are 0.026 below the table's top, as is the hand's above it.
+    let top = start.base("table").y + 0.026;
+    assert!((start.base("palm").y - top - 0.026).abs() < 5e-3);
+    assert!((start.tip("palm").y - start.base("palm").y).abs() < 1e-3, "it is flat");
+    let mut moved = 0.0_f32;
+    for posed in &poses {
+        moved = moved.max(posed.base("shoulder").distance(start.base("shoulder")));
+        assert!(posed.base("palm").distance(start.base("palm")) < 1e-5 * REACH);
+        assert!(posed.tip("palm").distance(start.tip("palm")) < 1e-5 * REACH);
+        assert!(posed.base("forearm").y > top + 0.034, "the elbow is above the table");
+        assert_within_limits(posed);
+    }
+    assert!(moved > 0.3, "{moved}");
+}
+
+// Pictures
+
+#[test]
+fn the_cameras_show_the_whole_motion() {
+    for name in ["walk", "wheel", "table"] {
+        let document = opened(name);
+        assert_all_in_picture(&document, &Posed::all(&document));
+    }
+}

@@ -1,0 +1,26 @@
+//! Documents and sessions: what is evaluated, edited, played and drawn as plain lists.
+
+mod arm_figures;
+mod bake;
+mod bones;
+#[path = "../common/mod.rs"]
+mod common;
+mod dissolve;
+mod edits;
+mod elbow_circle;
+mod examples;
+mod framing;
+mod gallery;
+mod keys;
+mod posing;
+mod session;
+mod session_edges;
+mod session_pops;
+mod snake;
+mod snake_head;
+mod soak;
+mod solver_runs;
+mod straight_legs;
+mod target_spaces;
+mod tour;
+mod up_axis;

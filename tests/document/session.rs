@@ -1,0 +1,646 @@
+//! A session stays valid under any actions.
+
+use glam::Vec3;
+use ik_arm::document::{
+    Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
+    SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
+};
+use ik_arm::io::{Example, OpenOptions};
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
+use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::two_bone::TwoBonePose;
+use ik_arm::session::{
+    Action, Dialog, DragInput, EditAction, FileAction, Grip, PlaybackAction, PointHandle, PoseMode,
+    SelectAction, Session, SolverAction, TransactionAction, ViewAction,
+};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+use crate::common::Random;
+use crate::common::strategies::config;
+
+fn numbers() -> impl Strategy<Value = f32> + Clone {
+    prop_oneof![
+        8 => -3.0..3.0_f32,
+        1 => Just(0.0),
+        1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(1e30), Just(-1e-30)],
+    ]
+}
+
+fn points() -> impl Strategy<Value = Vec3> + Clone {
+    [numbers(), numbers(), numbers()].prop_map(Vec3::from_array)
+}
+
+fn joints() -> impl Strategy<Value = JointId> + Clone {
+    (0_usize..9).prop_map(JointId::new)
+}
+
+fn rays() -> impl Strategy<Value = Ray> {
+    [-1.0..1.0_f32, -1.0..1.0].prop_map(|[x, y]| {
+        Camera::default().framing(Vec3::ZERO, 3.0, 1.0).projection(1.0).ray(glam::Vec2::new(x, y))
+    })
+}
+
+fn grips() -> impl Strategy<Value = Grip> {
+    let handles = prop_oneof![
+        Just(PointHandle::Free),
+        (0..3_usize).prop_map(PointHandle::Axis),
+        (0..3_usize).prop_map(PointHandle::Plane)
+    ];
+    prop_oneof![
+        handles.clone().prop_map(Grip::Hand),
+        handles.clone().prop_map(Grip::Pole),
+        handles.clone().prop_map(Grip::Root),
+        Just(Grip::Twist),
+        (0..3_usize).prop_map(Grip::Shoulder),
+        Just(Grip::Bend),
+        (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
+        (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Head(joint, handle)),
+        (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
+        (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
+    ]
+}
+
+fn followed_paths() -> impl Strategy<Value = Option<FollowPath>> {
+    let ring = WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 };
+    prop_oneof![Just(None), Just(Some(FollowPath::Head)), Just(Some(FollowPath::Ring(ring)))]
+}
+
+fn building() -> impl Strategy<Value = Action> {
+    prop_oneof![
+        3 => (joints(), proptest::option::of(points()))
+            .prop_map(|(parent, tip)| Action::from(EditAction::AddChild { parent, tip })),
+        1 => Just(Action::from(EditAction::AddRoot)),
+        1 => vec(joints(), 1..3).prop_map(EditAction::DeleteJoints).prop_map(Action::from),
+        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::from(EditAction::RenameJoint { joint, name })),
+        2 => (joints(), proptest::option::of(joints()))
+            .prop_map(|(joint, parent)| Action::from(EditAction::ReparentJoint { joint, parent })),
+        1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(EditAction::SetAxis { joint, axis })),
+        1 => (joints(), 0..3_usize, numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
+            Action::from(EditAction::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
+        }),
+        1 => (joints(), any::<bool>())
+            .prop_map(|(joint, locked)| Action::from(EditAction::SetLocked { joint, locked })),
+        1 => vec(joints(), 0..3).prop_map(SelectAction::Joints).prop_map(Action::from),
+    ]
+}
+
+fn posing() -> impl Strategy<Value = Action> {
+    let paths = prop_oneof![
+        Just(TargetPath::Still),
+        Just(TargetPath::Circle),
+        Just(TargetPath::FigureEight)
+    ];
+    let motion = (paths, numbers(), numbers()).prop_map(|(path, radius, period)| TargetMotion {
+        path,
+        radius,
+        period,
+    });
+    prop_oneof![
+        2 => (joints(), points())
+            .prop_map(|(joint, rotation)| Action::from(EditAction::SetRotation { joint, rotation })),
+        2 => joints().prop_map(EditAction::AddTarget).prop_map(Action::from),
+        1 => joints().prop_map(EditAction::RemoveTarget).prop_map(Action::from),
+        2 => (joints(), points(), numbers(), any::<bool>(), motion).prop_map(
+            |(joint, home, weight, enabled, motion)| Action::from(EditAction::SetTarget(Target {
+                weight, enabled, motion, ..Target::new(joint, home, 1.0)
+            }))
+        ),
+        1 => (0..6_usize, numbers(), 0..3_usize).prop_map(|(method, damping, root)| {
+            let root = Root::ALL[root];
+            Action::from(EditAction::SetSolver(
+                SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
+            ))
+        }),
+        2 => followed_paths().prop_map(EditAction::SetFollowPath).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetHead).prop_map(Action::from),
+        1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
+        2 => Just(Action::from(SolverAction::Step)),
+        1 => Just(Action::from(SolverAction::Reset)),
+        1 => Just(Action::from(SolverAction::Compare)),
+        1 => (0..20_u32).prop_map(SolverAction::Show).prop_map(Action::from),
+        1 => Just(Action::from(EditAction::ApplyPose)),
+        1 => any::<bool>().prop_map(PlaybackAction::Play).prop_map(Action::from),
+        2 => (0.0..60.0).prop_map(PlaybackAction::Advance).prop_map(Action::from),
+        1 => Just(Action::from(EditAction::ResetPose)),
+    ]
+}
+
+fn arming() -> impl Strategy<Value = Action> {
+    let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
+    let soft_reach = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
+    prop_oneof![
+        3 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
+        2 => points().prop_map(EditAction::SetRoot).prop_map(Action::from),
+        2 => any::<bool>().prop_map(EditAction::PinHand).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetPin).prop_map(Action::from),
+        3 => (0..4_usize).prop_map(|twist_reference| Action::from(EditAction::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
+        2 => points().prop_map(EditAction::SetPole).prop_map(Action::from),
+        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::from(EditAction::SetSoftReach(
+            SoftReach::new(softness, stretch, angle).expect("a softening")
+        ))),
+        2 => parts().prop_map(EditAction::SetInfluence).prop_map(Action::from),
+        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(EditAction::SwitchPoseMode).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetShoulder).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetBend).prop_map(Action::from),
+        1 => points().prop_map(EditAction::SetHandOrientation).prop_map(Action::from),
+        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(EditAction::SetHandSpace).prop_map(Action::from),
+        1 => Just(Action::from(ViewAction::ResetTransport)),
+        1 => any::<bool>().prop_map(|arm| {
+            Action::from(EditAction::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
+        }),
+    ]
+}
+
+fn channels() -> impl Strategy<Value = Channel> + Clone {
+    prop_oneof![
+        prop_oneof![
+            (0..Channel::ARM.len()).prop_map(|channel| Channel::ARM[channel]),
+            Just(Channel::Translation),
+            Just(Channel::Overlay(Overlay::Cursor)),
+        ],
+        joints().prop_map(Channel::Rotation),
+        joints().prop_map(Channel::Offset),
+        joints().prop_map(Channel::Target),
+        joints().prop_map(Channel::Enabled),
+    ]
+}
+
+fn keying() -> impl Strategy<Value = Action> {
+    let times = prop_oneof![(0..5).prop_map(|step| f64::from(step) * 0.5), -1.0..9.0_f64];
+    let key = (channels(), times.clone());
+    prop_oneof![
+        4 => vec(channels(), 1..4).prop_map(EditAction::Key).prop_map(Action::from),
+        3 => times.clone().prop_map(PlaybackAction::SetTime).prop_map(Action::from),
+        1 => vec(key.clone(), 1..3).prop_map(EditAction::DeleteKeys).prop_map(Action::from),
+        1 => vec(channels(), 1..3).prop_map(EditAction::ClearChannels).prop_map(Action::from),
+        1 => (vec(key.clone(), 1..3), -2.0..2.0_f64)
+            .prop_map(|(keys, by)| Action::from(EditAction::MoveKeys { keys, by, raise: Vec3::ZERO })),
+        1 => vec(key, 1..3).prop_map(SelectAction::Keys).prop_map(Action::from),
+        1 => Just(Action::from(SelectAction::CopyKeys)),
+        1 => Just(Action::from(EditAction::PasteKeys)),
+        1 => any::<bool>().prop_map(PlaybackAction::SetAutoKey).prop_map(Action::from),
+        1 => (times.clone(), times, 0.0..70.0).prop_map(|(start, end, frame_rate)| {
+            Action::from(EditAction::SetTimeline(Timeline { start, end, frame_rate }))
+        }),
+        1 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetTwist).prop_map(Action::from),
+        1 => numbers().prop_map(EditAction::SetUpper).prop_map(Action::from),
+        1 => any::<bool>().prop_map(|shown| Action::from(EditAction::ShowOverlay(Overlay::Cursor, shown))),
+        1 => points().prop_map(EditAction::SetTranslation).prop_map(Action::from),
+        1 => numbers().prop_map(|metres| Action::from(EditAction::SetMetres(Some(metres)))),
+        1 => Just(Action::from(TransactionAction::Undo)),
+        1 => Just(Action::from(TransactionAction::Redo)),
+    ]
+}
+
+fn dragging() -> impl Strategy<Value = Action> {
+    let input = (rays(), any::<bool>(), any::<bool>()).prop_map(|(ray, precise, snap)| DragInput {
+        ray,
+        precise,
+        snap,
+    });
+    prop_oneof![
+        (grips(), rays()).prop_map(|(grip, ray)| Action::from(TransactionAction::Grab {
+            grip,
+            ray,
+            forward: Camera::default().projection(1.0).forward
+        })),
+        input.prop_map(TransactionAction::Drag).prop_map(Action::from),
+        "[-0-9.,]{0,4}".prop_map(TransactionAction::TypeOffset).prop_map(Action::from),
+        Just(Action::from(TransactionAction::Commit)),
+        Just(Action::from(TransactionAction::Cancel)),
+    ]
+}
+
+fn actions() -> impl Strategy<Value = Vec<Action>> {
+    vec(
+        prop_oneof![3 => building(), 3 => posing(), 2 => dragging(), 3 => keying(), 3 => arming()],
+        1..80,
+    )
+}
+
+fn session() -> Session {
+    let document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    Session::with_document(Default::default(), document)
+}
+
+fn check(session: &Session) -> Result<(), TestCaseError> {
+    let rig = session.skeleton_rig();
+    let joints = rig.skeleton.joints();
+    prop_assert_eq!(session.skeleton_pose().len(), joints.len());
+    prop_assert!(session.selection().iter().all(|joint| *joint < JointId::new(joints.len())));
+    prop_assert!(session.hovered().is_none_or(|joint| joint < JointId::new(joints.len())));
+    let mut names = std::collections::HashSet::new();
+    for (index, joint) in joints.iter().enumerate() {
+        prop_assert!(joint.parent.is_none_or(|parent| parent < JointId::new(index)));
+        prop_assert!(joint.rotation.is_finite() && joint.axis.is_finite());
+        prop_assert!(joint.offset.is_finite(), "{} at {}", joint.name, joint.offset);
+        prop_assert!(names.insert(&joint.name), "two are called {}", joint.name);
+        prop_assert_eq!(joint.clamped(joint.rotation), joint.rotation);
+    }
+    let mut targeted = std::collections::HashSet::new();
+    for target in &rig.targets {
+        prop_assert!(target.joint < JointId::new(joints.len()) && targeted.insert(target.joint));
+        prop_assert!(target.home.is_finite() && target.weight > 0.0);
+    }
+    check_arm(session.arm(), session.pose())?;
+    let document = session.document();
+    prop_assert!(document.timeline.is_valid());
+    for (channel, track) in document.keys.tracks() {
+        prop_assert!(channel.value(document).is_some(), "{channel:?} is of nothing");
+        prop_assert!(track.knots().is_sorted_by(|a, b| a.time < b.time));
+        prop_assert!(track.knots().iter().all(|knot| knot.value.is_finite()));
+    }
+    for (channel, time) in session.selected_keys() {
+        prop_assert!(document.keys.track(*channel).and_then(|track| track.get(*time)).is_some());
+    }
+    Ok(())
+}
+
+/// The limbs have their lengths.
+fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
+    prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
+    prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor_in_root().is_finite());
+    prop_assert!(
+        arm.ik_state.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3)
+    );
+    let bones =
+        [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
+    let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
+    let tolerance = 2e-6 * (bones[0] + bones[1]);
+    prop_assert!((elbow.length() - bones[0]).abs() <= tolerance, "{:?}", pose);
+    prop_assert!(((hand - elbow).length() - bones[1]).abs() <= tolerance, "{:?}", pose);
+    Ok(())
+}
+
+/// A document without its cameras, which undo leaves alone.
+fn without_views(document: &Document) -> Document {
+    Document { camera: Camera::default(), other_rig_camera: None, ..document.clone() }
+}
+
+/// A document without cameras, shown rig and overlays.
+fn content(document: &Document) -> Document {
+    Document { rig: RigKind::Arm, display: Display::default(), ..without_views(document) }
+}
+
+proptest! {
+    #![proptest_config(config(200, 0x5ce1_e70e))]
+
+    #[test]
+    fn any_actions_leave_a_valid_session(actions in actions()) {
+        let mut session = session();
+        for action in actions {
+            session.apply(action);
+            check(&session)?;
+        }
+    }
+
+    #[test]
+    fn a_cancelled_drag_restores_the_session(before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
+        let mut session = session();
+        for action in before {
+            session.apply(action);
+        }
+        for action in [Action::from(TransactionAction::Cancel), Action::from(PlaybackAction::Play(false))] {
+            session.apply(action);
+        }
+        let (document, shown) = (session.document().clone(), session.shown().clone());
+        let forward = session.camera().projection(1.0).forward;
+        let ray = session.camera().projection(1.0).ray(glam::Vec2::ZERO);
+        session.apply(TransactionAction::Grab { grip, ray, forward });
+        let held = session.is_editing();
+        for action in drag {
+            let goes_on = matches!(action, Action::Transaction(TransactionAction::Drag(_)) | Action::Transaction(TransactionAction::TypeOffset(_)));
+            if goes_on {
+                session.apply(action);
+            }
+        }
+        session.apply(TransactionAction::Cancel);
+        if held {
+            prop_assert!(same(session.skeleton_rig(), &shown.skeleton_rig));
+            prop_assert_eq!(session.arm(), &shown.arm);
+            prop_assert_eq!(&session.document().keys, &document.keys);
+        }
+    }
+
+    #[test]
+    fn undo_returns_to_the_first_document_and_redo_to_the_last(actions in actions()) {
+        let mut session = session();
+        let first = session.document().clone();
+        for action in actions {
+            session.apply(action);
+        }
+        for action in [Action::from(TransactionAction::Commit), Action::from(PlaybackAction::Play(false))] {
+            session.apply(action);
+        }
+        while session.redo_label().is_some() {
+            session.apply(TransactionAction::Redo);
+        }
+        let last = session.document().clone();
+        prop_assert!(session.is_unsaved() || content(&last) == content(&first));
+        while session.undo_label().is_some() {
+            session.apply(TransactionAction::Undo);
+            check(&session)?;
+        }
+        prop_assert_eq!(without_views(session.document()), without_views(&first));
+        prop_assert!(!session.is_unsaved());
+        while session.redo_label().is_some() {
+            session.apply(TransactionAction::Redo);
+            check(&session)?;
+        }
+        prop_assert_eq!(without_views(session.document()), without_views(&last));
+    }
+}
+
+/// A hand keyed at two positions a second apart, at a time between them.
+fn halfway() -> Session {
+    let mut session = Session::default();
+    for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetHand(hand));
+        session.apply(EditAction::Key(vec![Channel::Hand]));
+    }
+    session.apply(PlaybackAction::SetTime(0.5));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
+    session
+}
+
+#[test]
+fn an_unkeyed_edit_is_shown_until_the_time_changes() {
+    let mut session = halfway();
+    let document = session.document().clone();
+    session.apply(FileAction::Saved("x.json".into()));
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    assert!(session.is_overridden(Channel::Hand));
+    assert_eq!(
+        session.message(),
+        Some("Unkeyed change: press K or it is lost when the time changes")
+    );
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
+    assert_eq!(session.document().keys, document.keys);
+    for time in [0.6, 0.5] {
+        session.apply(PlaybackAction::SetTime(time));
+        let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
+        assert!(session.arm().cursor_in_root().distance(expected) < 1e-3);
+        assert!(!session.is_overridden(Channel::Hand));
+    }
+}
+
+#[test]
+fn an_unkeyed_edit_can_be_undone_and_keyed() {
+    let mut session = halfway();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(TransactionAction::Undo);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
+    session.apply(TransactionAction::Redo);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
+    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(PlaybackAction::SetTime(0.0));
+    session.apply(PlaybackAction::SetTime(0.5));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
+}
+
+#[test]
+fn an_unkeyed_edit_leaves_the_document_unchanged() {
+    let mut session = halfway();
+    session.apply(FileAction::Saved("x.json".into()));
+    let document = session.document().clone();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::SetTime(0.6));
+    assert_eq!(session.document(), &document);
+    assert!(!session.is_unsaved());
+    // It left no undo step; the next undo is of the step before.
+    session.apply(TransactionAction::Undo);
+    assert_eq!(session.document().keys.count(), 1);
+}
+
+#[test]
+fn a_key_replaces_an_unkeyed_edit() {
+    let mut session = halfway();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::SetAutoKey(true));
+    session.apply(EditAction::SetHand(Vec3::Z * 60.0));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 60.0);
+    assert!(!session.is_overridden(Channel::Hand));
+
+    let mut session = halfway();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(EditAction::ClearChannels(vec![Channel::Hand]));
+    session.apply(EditAction::SetHand(Vec3::Z * 70.0));
+    session.apply(EditAction::SetTwist(1.0));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 70.0);
+    assert_eq!(session.document().arm.cursor_in_root(), Vec3::Z * 70.0);
+}
+
+#[test]
+fn selected_and_copied_keys_follow_their_joints() {
+    let mut session = Session::default();
+    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    let channels: Vec<Channel> =
+        (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
+    session.apply(EditAction::Key(channels));
+    let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
+    let foot = name(&session, JointId::new(15));
+    session.apply(SelectAction::Keys(vec![(Channel::Rotation(JointId::new(15)), 0.0)]));
+    session.apply(SelectAction::Channels(vec![Channel::Rotation(JointId::new(15))]));
+    session.apply(SelectAction::CopyKeys);
+    session.apply(EditAction::DeleteJoints(vec![JointId::new(8)]));
+    let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
+    assert_eq!(name(&session, joint), foot);
+    assert!(session.selected_channels().contains(&Channel::Rotation(joint)));
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(EditAction::PasteKeys);
+    assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
+    // Undo restores the joint indices and clears the selection: no wrong joint is selected.
+    session.apply(TransactionAction::Undo);
+    session.apply(TransactionAction::Undo);
+    assert_eq!((session.selected_keys(), session.selection()), (&[][..], &[][..]));
+}
+
+#[test]
+fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
+    let mut session = Session::default();
+    session.apply(FileAction::Open { path: "slow.glb".into(), options: OpenOptions::default() });
+    session.apply(EditAction::SetTwist(1.0));
+    let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
+    session.apply(opened.clone());
+    assert_eq!(session.arm().twist, 1.0);
+    assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
+    session.apply(FileAction::Discard(Box::new(opened)));
+    assert_eq!(session.document(), &Document::default());
+}
+
+#[test]
+fn many_keys_move_at_once() {
+    let mut session = Session::default();
+    let mut document = Document::default();
+    for frame in 0..50_000 {
+        document.keys.insert(Channel::Hand, f64::from(frame) / 30.0, Vec3::X * frame as f32);
+    }
+    session.apply(FileAction::Opened { document: Box::new(document), file: None, contents: None });
+    let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
+    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
+    let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
+    assert_eq!((track.len(), track[0].time), (50_000, 1.0));
+}
+
+#[test]
+fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
+    let mut session = halfway();
+    session.apply(PlaybackAction::SetTime(0.0));
+    let skins = Channel::Overlay(Overlay::OnionSkins);
+    session.apply(EditAction::Key(vec![skins]));
+    session.apply(PlaybackAction::SetTime(0.5));
+    session.apply(EditAction::ShowOverlay(Overlay::OnionSkins, true));
+    session.apply(EditAction::Key(vec![skins]));
+    for (time, shown) in [(0.4, false), (0.6, true)] {
+        session.apply(PlaybackAction::SetTime(time));
+        assert_eq!(session.overlays().onion_skins.is_empty(), !shown, "at {time} s");
+    }
+}
+
+#[test]
+fn a_cancelled_drag_restores_no_edit_that_the_time_has_discarded() {
+    let mut session = halfway();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(TransactionAction::Begin);
+    session.apply(PlaybackAction::SetTime(1.0));
+    session.apply(TransactionAction::Cancel);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0);
+}
+
+#[test]
+fn with_auto_key_every_edit_makes_a_key() {
+    let mut session = Session::default();
+    session.apply(PlaybackAction::SetAutoKey(true));
+    for (time, twist) in [(0.0, 6.0), (1.0, 0.5)] {
+        session.apply(PlaybackAction::SetTime(time));
+        session.apply(EditAction::SetTwist(twist));
+    }
+    let keys = &session.document().keys;
+    let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
+    assert_eq!(channels, [Channel::Twist]);
+    // The shorter turn, past 0.
+    let twist = keys.value(Channel::Twist, 1.0).expect("a key").x;
+    assert!((twist - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{twist}");
+    // A switch gets no key by being switched.
+    session.apply(EditAction::ShowOverlay(Overlay::Cursor, false));
+    assert!(!session.document().keys.has(Channel::Overlay(Overlay::Cursor)));
+}
+
+#[test]
+fn playing_keeps_time_at_any_frame_rate_and_edits_nothing() {
+    for (steps, step) in [(200, 0.01), (4, 0.5), (1, 2.0)] {
+        let mut session = halfway();
+        session.apply(PlaybackAction::SetTime(0.0));
+        let document = session.document().clone();
+        session.apply(PlaybackAction::Play(true));
+        for tick in 0..=steps {
+            session.apply(PlaybackAction::Advance(50.0 + f64::from(tick) * step));
+        }
+        assert!((session.time() - 2.0).abs() < 1e-9, "{}", session.time());
+        assert_eq!(session.document(), &document);
+    }
+}
+
+#[test]
+fn playing_stops_at_the_end_or_loops() {
+    for (looping, expected, playing) in [(true, 1.5, true), (false, 8.0, false)] {
+        let mut session = halfway();
+        session.apply(PlaybackAction::SetTime(0.0));
+        session.apply(PlaybackAction::SetLooping(looping));
+        session.apply(PlaybackAction::Play(true));
+        for seconds in [1.0, 10.5] {
+            session.apply(PlaybackAction::Advance(seconds));
+        }
+        assert_eq!((session.time(), session.is_playing()), (expected, playing));
+    }
+}
+
+#[test]
+fn a_paused_solver_uses_the_new_weight_of_a_target() {
+    let mut session = Session::default();
+    session.apply(FileAction::OpenExample(Example::find("two-targets").expect("an example")));
+    let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
+    let targets: Vec<_> = session.skeleton_rig().targets.clone();
+    for (target, home) in targets.iter().zip(apart) {
+        session.apply(EditAction::SetTarget(Target { home, ..*target }));
+    }
+    let heavy = targets[0];
+    let gap = |session: &mut Session| {
+        (0..400).for_each(|_| drop(session.apply(SolverAction::Step)));
+        session.solver_run().expect("it steps").skeleton().tip(heavy.joint).distance(apart[0])
+    };
+    let before = gap(&mut session);
+    session.apply(EditAction::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
+    let after = gap(&mut session);
+    assert!(after < before * 0.99, "{before} before and {after} after");
+}
+
+#[test]
+fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles() {
+    let mut session = Session::default();
+    session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
+    let before = session.document().clone();
+    let target = session.skeleton_rig().targets[0];
+    let tip = session.skeleton_pose().tip(target.joint);
+    assert!(tip.distance(target.home) > 0.1, "the joints' own angles do not reach the target");
+    session.apply(EditAction::SetTarget(Target { influence: 1.0, ..target }));
+    let tip = session.skeleton_pose().tip(target.joint);
+    assert!(tip.distance(target.home) < 1e-3, "{tip}");
+    assert_eq!(session.skeleton(), before.skeleton());
+    assert_eq!(session.ring(target.joint, 0), None, "its angles pose nothing");
+    session.apply(EditAction::SetTarget(Target { influence: 0.5, ..target }));
+    let ring = session.ring(target.joint, 0).expect("a movable angle");
+    assert_eq!(ring.centre, session.skeleton_pose().base(target.joint));
+    assert_eq!(session.skeleton(), before.skeleton());
+    session.apply(TransactionAction::Undo);
+    session.apply(TransactionAction::Undo);
+    assert_eq!(session.document(), &before);
+}
+
+/// Equal, and NaN equals NaN.
+fn same(a: &SkeletonRig, b: &SkeletonRig) -> bool {
+    a == b || format!("{a:?}") == format!("{b:?}")
+}
+
+#[test]
+fn home_frames_all_that_the_hand_can_reach() {
+    let mut random = Random(0x0f2a_9e55);
+    for case in 0..2_000 {
+        let arm = reaching_arm(&mut random);
+        let limits = arm.reach_limits();
+        let document = Document { arm, ..Document::default() };
+        let session = Session::with_document(Default::default(), document);
+        let projection = session.framing_all().projection(1.0);
+        for _ in 0..20 {
+            let far = arm.root + random.direction() * limits.outer;
+            let at = projection.project(far).expect("before the eye");
+            assert!(at.abs().max_element() <= 1.0, "case {case}: {far} is drawn at {at}");
+        }
+        let distance = session.pose().distance;
+        let rounding = 1e-6 * limits.outer;
+        let reach = limits.inner - rounding..=limits.outer + rounding;
+        assert!(reach.contains(&distance), "case {case}: {distance} is not in {reach:?}");
+        let rig = arm.rig(session.pose());
+        assert_eq!((rig.limits(), rig.pointer().length), (limits, limits.outer), "case {case}");
+    }
+}
+
+/// An arm whose Cursor is in reach, too far or too close, by IK, FK or a blend.
+fn reaching_arm(random: &mut Random) -> Arm {
+    let stretch = random.one_of(&[1.0, 1.0, 1.5, 3.0]);
+    let angle = random.one_of(&[0.0, 0.0, 0.5, 1.5]);
+    let lengths = [random.within(10.0..500.0), random.within(10.0..500.0)];
+    let mut arm = Arm::new(lengths[0], lengths[1]).expect("lengths");
+    arm.root = random.vector(300.0);
+    arm.soft_reach =
+        SoftReach::new(random.one_of(&[0.0, 0.3]), stretch, angle).expect("soft limits");
+    arm.influence = random.one_of(&[0.0, 0.4, 1.0, 1.0]);
+    arm.fk.bend = random.within(-3.1..3.1);
+    arm.fk.stretch = random.one_of(&[1.0, 0.5, 2.0]);
+    arm.set_cursor(random.direction() * arm.bones.outer_limit() * random.within(0.0..4.0));
+    arm
+}

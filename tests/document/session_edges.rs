@@ -1,0 +1,363 @@
+//! Invalid actions leave a session unchanged.
+
+use glam::{Vec2, Vec3};
+use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
+use ik_arm::io::{Example, to_json};
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::scene::Scene;
+use ik_arm::session::{
+    Action, CameraMotion, Constraint, Drag, DragInput, EditAction, FileAction, Grip,
+    PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences, SelectAction, Session,
+    ShellAction, SolverAction, TransactionAction, TurnDrag, ViewAction,
+};
+
+fn ray() -> Ray {
+    Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
+}
+
+/// A session with a skeleton of one root.
+fn session() -> Session {
+    Session::with_document(Preferences::default(), Document::default())
+}
+
+#[test]
+fn an_invalid_camera_is_ignored() {
+    let camera = Camera::default();
+    for invalid in [
+        Camera { target: Vec3::NAN, ..camera },
+        Camera { yaw: f32::INFINITY, ..camera },
+        Camera { pitch: 1.6, ..camera },
+        Camera { distance: 0.0, ..camera },
+        Camera { distance: f32::NAN, ..camera },
+    ] {
+        let mut session = session();
+        session.apply(ViewAction::SetCamera(invalid));
+        session.apply(ViewAction::GlideTo(invalid));
+        for seconds in [0.0, 0.1, 1.0] {
+            session.apply(PlaybackAction::Advance(seconds));
+        }
+        assert_eq!(session.camera(), &camera, "after {invalid:?}");
+    }
+}
+
+#[test]
+fn an_invalid_camera_drag_is_ignored() {
+    for (motion, to, aspect) in [
+        (CameraMotion::Pan, Vec2::NAN, 1.0),
+        (CameraMotion::Pan, Vec2::splat(f32::MAX), 2.0),
+        (CameraMotion::Zoom, Vec2::NAN, 1.0),
+        (CameraMotion::Orbit, Vec2::X, f32::INFINITY),
+    ] {
+        let mut session = session();
+        session.apply(ViewAction::Grab(motion, Vec2::ZERO));
+        session.apply(ViewAction::Drag { to, aspect });
+        assert_eq!(session.camera(), &Camera::default(), "after {motion:?} to {to}");
+    }
+}
+
+#[test]
+fn a_frame_at_a_non_finite_time_changes_nothing() {
+    let mut session = session();
+    let to = Camera { yaw: 3.0, ..Camera::default() };
+    session.apply(ViewAction::GlideTo(to));
+    session.apply(PlaybackAction::Play(true));
+    for seconds in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        session.apply(PlaybackAction::Advance(seconds));
+        assert_eq!((session.camera(), session.time()), (&Camera::default(), 0.0));
+    }
+    for seconds in [2.0, 4.0] {
+        session.apply(PlaybackAction::Advance(seconds));
+    }
+    assert_eq!((session.camera(), session.time()), (&to, 2.0));
+}
+
+#[test]
+fn actions_on_a_fourth_axis_are_refused() {
+    for axis in [3, usize::MAX] {
+        let mut session = session();
+        let before = session.document().clone();
+        session.apply(EditAction::SetLimit { joint: JointId::new(0), axis, limit: None });
+        assert_eq!(
+            session.message(),
+            Some(&*format!("The axis of a joint must be 0, 1 or 2, got {axis}"))
+        );
+        let (line, plane) = (PointHandle::Axis(axis), PointHandle::Plane(axis));
+        for grip in [
+            Grip::Hand(line),
+            Grip::Pole(plane),
+            Grip::Target(JointId::new(0), line),
+            Grip::Tip(JointId::new(0), plane),
+        ]
+        .into_iter()
+        .chain([Grip::Shoulder(axis), Grip::Ring(JointId::new(0), axis)])
+        {
+            session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            assert!(!session.is_editing(), "{grip:?} holds nothing");
+        }
+        assert_eq!(session.ring(JointId::new(0), axis), None);
+        let grip = Grip::Hand(PointHandle::Free);
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
+            session.apply(TransactionAction::Constrain(Some(constraint)));
+            session.apply(TransactionAction::TypeOffset("1".to_owned()));
+            assert_eq!(session.point_drag().and_then(PointDrag::constraint), None);
+        }
+        session.apply(TransactionAction::Cancel);
+        assert_eq!(session.document(), &before);
+    }
+}
+
+#[test]
+fn a_missing_joint_cannot_be_hovered() {
+    let mut session = session();
+    for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
+        let joint = JointId::new(joint);
+        session.apply(SelectAction::Hover(Some(joint)));
+        assert_eq!(session.hovered(), is_there.then_some(joint));
+    }
+}
+
+#[test]
+fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
+    let mut session = session();
+    session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
+    session.apply(EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
+    session.apply(TransactionAction::Begin);
+    session.apply(EditAction::DeleteJoints(vec![JointId::new(1)]));
+    let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(JointId::new(1)), 0.0)];
+    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
+    let tracks = session.document().keys.tracks();
+    let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
+    assert_eq!(left, [(Channel::Hand, 1.0)]);
+}
+
+#[test]
+fn keys_made_while_others_move_stay() {
+    let mut session = session();
+    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(TransactionAction::Begin);
+    let keys = vec![(Channel::Hand, 0.0)];
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
+    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
+    assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
+    session.apply(EditAction::Key(vec![Channel::Root]));
+    session.apply(EditAction::MoveKeys {
+        keys: vec![(Channel::Hand, 2.0)],
+        by: 1.0,
+        raise: Vec3::ZERO,
+    });
+    let tracks = session.document().keys.tracks();
+    let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
+    assert_eq!(left, [(Channel::Hand, 3.0), (Channel::Root, 0.0)]);
+}
+
+#[test]
+fn a_dragged_tip_is_released_when_the_joints_change() {
+    let hang = EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) };
+    for change in [
+        EditAction::DeleteJoints(vec![JointId::new(2)]),
+        EditAction::AddRoot,
+        EditAction::ReparentJoint { joint: JointId::new(2), parent: None },
+    ] {
+        let mut session = session();
+        session.apply(hang.clone());
+        session.apply(EditAction::AddChild { parent: JointId::new(1), tip: None });
+        let grip = Grip::Tip(JointId::new(1), PointHandle::Free);
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        assert!(session.drag().is_some());
+        session.apply(change);
+        let joints = session.skeleton().joints().len();
+        session.apply(TransactionAction::TypeOffset("0.1".to_owned()));
+        assert!(session.drag().is_none() && session.is_editing());
+        assert_eq!(session.skeleton().joints().len(), joints);
+    }
+}
+
+#[test]
+fn a_comparison_is_made_anew_when_the_joints_change() {
+    for change in [
+        Action::from(EditAction::DeleteJoints(vec![JointId::new(3)])),
+        EditAction::AddRoot.into(),
+        TransactionAction::Undo.into(),
+    ] {
+        let mut session = session();
+        session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
+        session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
+        session.apply(SolverAction::Compare);
+        session.apply(PlaybackAction::Advance(1.0));
+        assert_eq!(session.overlays().ghosts.len(), 6);
+        session.apply(change);
+        for ghost in session.overlays().ghosts {
+            assert_eq!(ghost.pose.len(), session.skeleton_pose().len());
+        }
+        let _ = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+    }
+}
+
+#[test]
+fn a_ring_dragged_by_an_invalid_ray_does_not_turn() {
+    let mut session = session();
+    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+    let before = session.document().clone();
+    for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
+        for invalid in [f32::INFINITY, f32::NAN, f32::MAX] {
+            session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+            let (origin, direction) = (Vec3::splat(invalid), Vec3::new(-0.4, 0.4, invalid));
+            for ray in
+                [Ray { origin, ..ray() }, Ray { direction, ..ray() }, Ray { origin, direction }]
+            {
+                session.apply(TransactionAction::Drag(DragInput {
+                    ray,
+                    precise: false,
+                    snap: false,
+                }));
+                assert!(
+                    session.drag().and_then(Drag::turn).is_some_and(|it| it.turned().is_finite())
+                );
+                assert!(session.message().is_none(), "{:?}", session.message());
+            }
+            session.apply(TransactionAction::Cancel);
+            assert_eq!(session.document(), &before);
+            session.apply(ShellAction::CloseDialog);
+        }
+    }
+}
+
+#[test]
+fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
+    let far = f32::MAX;
+    for actions in [
+        vec![
+            Action::from(EditAction::ShowRig(RigKind::Skeleton)),
+            EditAction::SetTranslation(Vec3::new(-far, 0.3, 0.2)).into(),
+        ],
+        vec![
+            Action::from(FileAction::NewSkeleton),
+            EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::splat(far)) }.into(),
+        ],
+        vec![
+            EditAction::SetRoot(Vec3::splat(far)).into(),
+            EditAction::SetHand(Vec3::splat(far)).into(),
+        ],
+        vec![
+            EditAction::SetUpper(far).into(),
+            EditAction::SetLower(far).into(),
+            EditAction::SetHand(Vec3::splat(-far)).into(),
+        ],
+    ] {
+        let mut session = session();
+        for action in actions {
+            session.apply(action);
+        }
+        for camera in [session.framing_all(), session.framing_selection()] {
+            assert!(camera.is_valid(), "{camera:?}");
+        }
+        let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+        assert!(scene.planes.centre.is_finite() && scene.planes.radius.is_finite());
+        assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
+        assert!(scene.solids.iter().all(|solid| solid.transform.is_finite()));
+    }
+}
+
+#[test]
+fn a_joint_that_would_overflow_is_not_reparented() {
+    let mut session = session();
+    let far = Vec3::new(-1e19, 0.7, -f32::MAX);
+    for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
+        session.apply(EditAction::AddChild { parent: JointId::new(parent), tip });
+    }
+    session.apply(EditAction::AddRoot);
+    session.apply(EditAction::SetRotation {
+        joint: JointId::new(1),
+        rotation: Vec3::new(1.0, -3.0, 2.0),
+    });
+    for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
+        let parent = parent.map(JointId::new);
+        session.apply(EditAction::ReparentJoint { joint: JointId::new(joint), parent });
+        for joint in session.skeleton().joints() {
+            assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
+        }
+    }
+}
+
+#[test]
+fn undo_and_redo_keep_the_sign_of_a_zero() {
+    let mut session = session();
+    let text = |session: &Session| to_json(session.document()).expect("saved");
+    let mut texts = vec![text(&session)];
+    for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
+        session.apply(TransactionAction::Begin);
+        for x in [1.0, x] {
+            session.apply(EditAction::SetRotation {
+                joint: JointId::new(0),
+                rotation: Vec3::new(x, 0.0, 0.0),
+            });
+        }
+        session.apply(EditAction::SetHand(Vec3::X * hand));
+        session.apply(TransactionAction::Commit);
+        texts.push(text(&session));
+    }
+    for (back, steps) in
+        [(TransactionAction::Undo, [2, 1, 0]), (TransactionAction::Redo, [1, 2, 3])]
+    {
+        for step in steps {
+            session.apply(back.clone());
+            assert_eq!(text(&session), texts[step]);
+        }
+    }
+}
+
+#[test]
+fn drags_and_snaps_that_overflow_are_clamped() {
+    for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
+        let mut session = session();
+        session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
+        session.apply(EditAction::SetPole(Vec3::new(0.0, 0.0, pole)));
+        let grip = Grip::Pole(PointHandle::Axis(2));
+        session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
+        session.apply(TransactionAction::TypeOffset(typed.to_owned()));
+        let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };
+        session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap }));
+        assert!(session.point_drag().is_some_and(|drag| drag.moved().is_finite()));
+        assert!(session.arm().pole.is_finite(), "{:?}", session.message());
+        assert!(session.message().is_none(), "{:?}", session.message());
+    }
+}
+
+#[test]
+fn the_same_revision_is_saved_as_the_same_text() {
+    let mut session = session();
+    let (revision, text) = (session.revision(), to_json(session.document()).expect("saved"));
+    session.apply(TransactionAction::Begin);
+    for x in [1.0, -0.0] {
+        session.apply(EditAction::SetRoot(Vec3::new(x, 0.0, 0.0)));
+    }
+    session.apply(TransactionAction::Commit);
+    assert_eq!(session.revision(), revision);
+    assert_eq!(to_json(session.document()).expect("saved"), text);
+}
+
+#[test]
+fn a_ring_snap_that_overflows_is_clamped() {
+    for angle in [f32::MAX, f32::MIN] {
+        let mut session = session();
+        session
+            .apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
+        let axis = session.ring(JointId::new(0), 0).expect("a ring").axis;
+        let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
+        let (one, other) = axis.any_orthonormal_pair();
+        let grip = Grip::Ring(JointId::new(0), 0);
+        session.apply(TransactionAction::Grab { grip, ray: seen(one), forward: -axis });
+        for precise in [false, true] {
+            session.apply(TransactionAction::Drag(DragInput {
+                ray: seen(other),
+                precise,
+                snap: true,
+            }));
+            let turned = session.drag().and_then(Drag::turn).map(TurnDrag::turned);
+            assert!(turned.is_some_and(f32::is_finite), "{turned:?}");
+            assert!(session.message().is_none(), "{:?}", session.message());
+        }
+        assert!(session.skeleton().joints()[0].rotation.is_finite());
+    }
+}

@@ -1,0 +1,290 @@
+//! All kinds of actions. A new action does not compile without its line here.
+
+use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
+use ik_arm::io::OpenOptions;
+use ik_arm::kinematics::skeleton::RotationAxis;
+use ik_arm::kinematics::spline::{Interpolation, Slopes};
+use ik_arm::rig::Processor;
+use ik_arm::session::{
+    Action, ArmFigure, ArmJoint, BakeAction, EditAction, FileAction, FrameBudget, InsideLayer,
+    Navigation, PanelTab, PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction,
+    TourAction, TransactionAction, ViewAction,
+};
+
+use crate::soak::values::Values;
+
+/// Sorts of actions; they come in bursts of one sort.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sort {
+    Arm,
+    Build,
+    Solve,
+    Keys,
+    Edit,
+    Drag,
+    Files,
+    /// Leaves the document unchanged, except for its camera.
+    Look,
+    Time,
+}
+
+impl Sort {
+    pub const ALL: [Self; 9] = [
+        Self::Arm,
+        Self::Build,
+        Self::Solve,
+        Self::Keys,
+        Self::Edit,
+        Self::Drag,
+        Self::Files,
+        Self::Look,
+        Self::Time,
+    ];
+}
+
+pub struct Kind {
+    pub name: &'static str,
+    pub sort: Sort,
+    /// Relative frequency.
+    pub weight: u32,
+    pub make: fn(&mut Values<'_>) -> Action,
+}
+
+/// One line for each kind: sort, relative frequency, constructor.
+macro_rules! kinds {
+    ($($group:ident($payload:ident) {
+        $($name:ident: $sort:ident $weight:literal, $make:expr;)*
+    })*) => {
+        pub const KINDS: &[Kind] = &[$($(Kind {
+            name: concat!(stringify!($group), "::", stringify!($name)),
+            sort: Sort::$sort,
+            weight: $weight,
+            make: |values| {
+                let make: fn(&mut Values<'_>) -> $payload = $make;
+                make(values).into()
+            },
+        }),*),*];
+
+        /// Index of an action's kind.
+        pub fn kind(action: &Action) -> usize {
+            let name = match action {
+                $($(Action::$group($payload::$name { .. }) => {
+                    concat!(stringify!($group), "::", stringify!($name))
+                })*)*
+            };
+            KINDS.iter().position(|kind| kind.name == name).expect("every kind is listed")
+        }
+    };
+}
+
+kinds! {
+    Edit(EditAction) {
+        SetHand: Arm 10, |v| EditAction::SetHand(v.cursor());
+        SetTwist: Arm 4, |v| EditAction::SetTwist(v.angle());
+        SetRoot: Arm 4, |v| { let size = v.size(); EditAction::SetRoot(v.point(size)) };
+        SetPin: Arm 3, |v| EditAction::SetPin(v.cursor());
+        PinHand: Arm 3, |v| EditAction::PinHand(v.coin());
+        SetTwistReference: Arm 5, |v| EditAction::SetTwistReference(v.one_of(&TwistReferenceKind::ALL));
+        SetPole: Arm 3, |v| { let size = v.size(); EditAction::SetPole(v.point(size)) };
+        SetSoftReach: Arm 3, |v| EditAction::SetSoftReach(v.soft_reach());
+        SetInfluence: Arm 4, |v| EditAction::SetInfluence(v.part());
+        SwitchPoseMode: Arm 4, |v| EditAction::SwitchPoseMode(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
+        SetShoulder: Arm 3, |v| EditAction::SetShoulder(v.angles());
+        SetBend: Arm 3, |v| EditAction::SetBend(v.angle());
+        SetHandOrientation: Arm 3, |v| EditAction::SetHandOrientation(v.angles());
+        SetHandSpace: Arm 3, |v| EditAction::SetHandSpace(v.one_of(&[HandSpace::LowerLimb, HandSpace::World]));
+        SetUpper: Arm 2, |v| EditAction::SetUpper(v.length());
+        SetLower: Arm 2, |v| EditAction::SetLower(v.length());
+        ResetPose: Arm 1, |_| EditAction::ResetPose;
+        ResetAll: Arm 1, |_| EditAction::ResetAll;
+        ShowOverlay: Edit 3, |v| EditAction::ShowOverlay(v.layer(), v.coin());
+        ShowRig: Edit 3, |v| EditAction::ShowRig(v.one_of(&[RigKind::Arm, RigKind::Skeleton]));
+        AddChild: Build 8, |v| EditAction::AddChild {
+            parent: v.joint(),
+            tip: if v.coin() { None } else { Some(v.small_point()) },
+        };
+        AddJoint: Build 4, |v| EditAction::AddJoint {
+            tip: if v.coin() { None } else { Some(v.small_point()) },
+        };
+        AddRoot: Build 1, |_| EditAction::AddRoot;
+        DeleteJoints: Build 2, |v| EditAction::DeleteJoints(v.some_joints());
+        DissolveJoints: Build 2, |v| EditAction::DissolveJoints(v.some_joints());
+        RenameJoint: Build 2, |v| EditAction::RenameJoint { joint: v.joint(), name: v.name() };
+        ReparentJoint: Build 3, |v| EditAction::ReparentJoint {
+            joint: v.joint(),
+            parent: if v.chance(0.2) { None } else { Some(v.joint()) },
+        };
+        SetRotation: Build 6, |v| EditAction::SetRotation { joint: v.joint(), rotation: v.angles() };
+        SetAxis: Build 3, |v| EditAction::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
+        SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.axis(), limit: v.limit() };
+        SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
+        AddSkin: Build 1, |_| EditAction::AddSkin;
+        ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
+        PackSkin: Build 1, |_| EditAction::PackSkin;
+        SetSkin: Build 2, |v| EditAction::SetSkin(v.skin());
+        SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
+        SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
+        SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());
+        TurnYUp: Build 1, |_| EditAction::TurnYUp;
+        AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
+        RemoveTarget: Solve 2, |v| EditAction::RemoveTarget(v.aimed());
+        SetTarget: Solve 6, |v| EditAction::SetTarget(v.target());
+        MatchTargetToFk: Solve 2, |v| EditAction::MatchTargetToFk(v.aimed());
+        MatchFkToPose: Solve 2, |v| EditAction::MatchFkToPose(v.aimed());
+        SetTargetSpace: Solve 2, |v| EditAction::SetTargetSpace { joint: v.aimed(), space: v.space() };
+        SetPoleSpace: Solve 1, |v| EditAction::SetPoleSpace { joint: v.aimed(), space: v.space() };
+        ApplyRemedy: Solve 3, |v| EditAction::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
+        SetSolver: Solve 3, |v| EditAction::SetSolver(v.options());
+        SetIterationsPerFrame: Solve 1, |v| EditAction::SetIterationsPerFrame(v.iterations_per_frame());
+        ApplyPose: Solve 3, |_| EditAction::ApplyPose;
+        Key: Keys 6, |v| EditAction::Key(v.channels());
+        DeleteKeys: Keys 2, |v| EditAction::DeleteKeys(v.keys());
+        ClearChannels: Keys 1, |v| EditAction::ClearChannels(v.channels());
+        MoveKeys: Keys 4, |v| EditAction::MoveKeys { keys: v.keys(), by: v.shift(), raise: if v.coin() { glam::Vec3::ZERO } else { v.small_point() } };
+        SetInterpolation: Keys 2, |v| EditAction::SetInterpolation(v.keys(), v.one_of(&Interpolation::ALL));
+        SetSlopes: Keys 2, |v| EditAction::SetSlopes(v.keys(), v.coin().then(|| Slopes { arriving: v.small_point(), leaving: v.small_point() }));
+        PasteKeys: Keys 2, |_| EditAction::PasteKeys;
+        Bake: Keys 1, |v| EditAction::Bake(v.baked());
+        SetTimeline: Keys 2, |v| EditAction::SetTimeline(v.timeline());
+        SetMetres: Edit 1, |v| EditAction::SetMetres(if v.coin() { None } else { Some(v.above_0(2.0)) });
+    }
+    Transaction(TransactionAction) {
+        Begin: Edit 4, |_| TransactionAction::Begin;
+        Commit: Edit 3, |_| TransactionAction::Commit;
+        Cancel: Edit 2, |_| TransactionAction::Cancel;
+        Undo: Edit 8, |_| TransactionAction::Undo;
+        Redo: Edit 5, |_| TransactionAction::Redo;
+        Grab: Drag 6, |v| TransactionAction::Grab { grip: v.grip(), ray: v.ray(), forward: v.forward() };
+        Drag: Drag 10, |v| TransactionAction::Drag(v.drag_input());
+        Constrain: Drag 2, |v| TransactionAction::Constrain(v.constraint());
+        TypeOffset: Drag 2, |v| TransactionAction::TypeOffset(v.typed());
+    }
+    Select(SelectAction) {
+        Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
+        Hover: Look 2, |v| SelectAction::Hover(if v.coin() { None } else { Some(v.joint()) });
+        Wiggle: Look 1, |v| {
+            let axis = v.one_of(&RotationAxis::ALL);
+            SelectAction::Wiggle(if v.coin() { None } else { Some((v.joint(), axis)) })
+        };
+        ArmJoint: Look 1, |v| {
+            let joints = [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow)];
+            SelectAction::ArmJoint(v.one_of(&joints))
+        };
+        Figure: Look 1, |v| {
+            SelectAction::Figure(if v.coin() { None } else { Some(v.one_of(&ArmFigure::ALL)) })
+        };
+        Keys: Look 3, |v| SelectAction::Keys(v.keys());
+        Channels: Look 1, |v| SelectAction::Channels(v.channels());
+        CopyKeys: Look 2, |_| SelectAction::CopyKeys;
+    }
+    View(ViewAction) {
+        ResetTransport: Look 1, |_| ViewAction::ResetTransport;
+        SetCamera: Look 1, |v| ViewAction::SetCamera(v.camera());
+        GlideTo: Look 1, |v| ViewAction::GlideTo(v.camera());
+        Grab: Look 1, |v| ViewAction::Grab(v.turn(), v.place());
+        Drag: Look 2, |v| ViewAction::Drag { to: v.place(), aspect: v.aspect() };
+        Drop: Look 1, |_| ViewAction::Drop;
+        Cancel: Look 1, |_| ViewAction::Cancel;
+        ShowExplain: Look 1, |v| ViewAction::ShowExplain(v.coin());
+        ShowTab: Look 1, |v| {
+            let tabs = [RigKind::Arm, RigKind::Skeleton].map(PanelTab::of).concat();
+            ViewAction::ShowTab(v.one_of(&tabs))
+        };
+        ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
+        FollowSelection: Look 1, |v| ViewAction::FollowSelection(v.coin());
+        ShowInside: Look 1, |v| ViewAction::ShowInside(v.one_of(&InsideLayer::ALL), v.coin());
+        ShowCrowd: Look 1, |v| ViewAction::ShowCrowd(v.coin());
+        SetCrowdSize: Look 1, |v| ViewAction::SetCrowdSize(v.one_of(&[0, 1, 1_000, 1_000_000, u32::MAX]));
+        SetCrowdSolver: Look 1, |v| ViewAction::SetCrowdSolver(v.one_of(&[Processor::Cpu, Processor::Gpu]));
+        AnimateCrowd: Look 1, |v| ViewAction::AnimateCrowd(v.coin());
+        ShowGraphEditor: Look 1, |v| ViewAction::ShowGraphEditor(v.coin());
+    }
+    Playback(PlaybackAction) {
+        Play: Time 4, |v| PlaybackAction::Play(v.chance(0.7));
+        SetTime: Time 8, |v| PlaybackAction::SetTime(v.time());
+        SetLooping: Time 1, |v| PlaybackAction::SetLooping(v.coin());
+        SetSpeed: Time 1, |v| PlaybackAction::SetSpeed(v.speed());
+        SetAutoKey: Look 2, |v| PlaybackAction::SetAutoKey(v.chance(0.3));
+        Advance: Time 14, |v| PlaybackAction::Advance(v.seconds());
+    }
+    Solver(SolverAction) {
+        Run: Solve 5, |v| SolverAction::Run(v.chance(0.8));
+        Step: Solve 4, |_| SolverAction::Step;
+        Compare: Solve 1, |_| SolverAction::Compare;
+        Reset: Solve 1, |_| SolverAction::Reset;
+        ShowPart: Solve 3, |v| SolverAction::ShowPart {
+            iteration: v.random.below(30) as u32,
+            part: if v.coin() { None } else { Some(v.one_of(&[0, 1, 2, 9, usize::MAX])) },
+        };
+        Walk: Solve 1, |v| SolverAction::Walk(v.coin());
+        Show: Solve 4, |v| SolverAction::Show(v.random.below(30) as u32);
+    }
+    Bake(BakeAction) {
+        Start: Look 1, |v| BakeAction::Start(v.bake());
+        Started: Look 1, |v| BakeAction::Started(v.bake_job());
+        Ended: Keys 1, |v| BakeAction::Ended(v.bake_job(), Ok(v.baked()));
+    }
+    File(FileAction) {
+        SavePicture: Look 1, |v| FileAction::SavePicture(v.name());
+        Export: Look 1, |v| FileAction::Export(v.export());
+        ExportStarted: Look 1, |v| FileAction::ExportStarted(v.job());
+        CancelExport: Look 1, |_| FileAction::CancelExport;
+        ExportEnded: Look 1, |v| FileAction::ExportEnded(if v.coin() { Ok(v.name()) } else { Err(v.name()) });
+        StopExportAndQuit: Look 1, |_| FileAction::StopExportAndQuit;
+        AskPath: Look 1, |v| FileAction::AskPath(v.path_dialog());
+        ChoosePath: Look 1, |_| FileAction::ChoosePath;
+        ChoseNothing: Look 1, |_| FileAction::ChoseNothing;
+        NoSystemDialog: Look 1, |v| FileAction::NoSystemDialog(v.path_dialog());
+        Open: Files 1, |v| FileAction::Open { path: v.path(), options: OpenOptions::default() };
+        Opened: Files 1, |v| FileAction::Opened { document: Box::new(v.document()), file: v.file(), contents: None };
+        NotOpened: Look 1, |v| FileAction::NotOpened { path: v.path(), why: v.name() };
+        LocateSkin: Look 1, |v| FileAction::LocateSkin(v.path());
+        SkinLocated: Build 1, |v| FileAction::SkinLocated { path: v.path(), before: v.skin_file(), read: Box::new(v.located_skin()) };
+        Save: Look 1, |_| FileAction::Save;
+        SaveAs: Look 1, |v| FileAction::SaveAs(v.path());
+        Saved: Files 4, |v| FileAction::Saved(v.path());
+        NotSaved: Look 1, |v| FileAction::NotSaved { path: v.path(), why: v.name() };
+        SaveAnd: Files 1, |v| FileAction::SaveAnd(Box::new(leaving(v)));
+        Discard: Files 1, |v| FileAction::Discard(Box::new(leaving(v)));
+        Recover: Files 1, |v| FileAction::Recover { document: Box::new(v.document()), file: v.file() };
+        DeclineRecovery: Look 1, |_| FileAction::DeclineRecovery;
+        DeclineTurn: Look 1, |_| FileAction::DeclineTurn;
+        OpenExample: Files 1, |v| FileAction::OpenExample(v.example());
+        New: Files 1, |_| FileAction::New;
+        NewSkeleton: Files 1, |_| FileAction::NewSkeleton;
+        Quit: Look 2, |_| FileAction::Quit;
+    }
+    Shell(ShellAction) {
+        SetTheme: Look 1, |v| ShellAction::SetTheme(v.one_of(&[Theme::Dark, Theme::Light]));
+        SetNavigation: Look 1, |v| ShellAction::SetNavigation(v.one_of(&Navigation::ALL));
+        SetFrameBudget: Look 1, |v| ShellAction::SetFrameBudget(v.one_of(&FrameBudget::ALL));
+        OpenDialog: Look 2, |v| ShellAction::OpenDialog(v.dialog());
+        CloseDialog: Look 1, |_| ShellAction::CloseDialog;
+        Report: Look 1, |v| ShellAction::Report(v.name());
+        Fail: Look 1, |v| ShellAction::Fail(v.name());
+        ClearMessage: Look 1, |_| ShellAction::ClearMessage;
+        CopyPose: Look 1, |_| ShellAction::CopyPose;
+    }
+    Tour(TourAction) {
+        Enter: Files 1, |v| TourAction::Enter(if v.random.below(40) == 0 { 10 + v.random.below(4) } else { v.random.below(10) });
+        Guess: Look 1, |v| TourAction::Guess(v.random.below(5));
+        Demonstrate: Edit 1, |_| TourAction::Demonstrate;
+        Leave: Files 2, |_| TourAction::Leave;
+        Decline: Look 1, |_| TourAction::Decline;
+    }
+}
+
+/// Actions that ask first if there are unsaved changes.
+pub fn leaving(values: &mut Values<'_>) -> FileAction {
+    match values.random.below(6) {
+        0 => FileAction::NewSkeleton,
+        1 => FileAction::Recover { document: Box::new(values.document()), file: values.file() },
+        2 => FileAction::Opened {
+            document: Box::new(values.document()),
+            file: values.file(),
+            contents: None,
+        },
+        3 => FileAction::Quit,
+        _ => FileAction::OpenExample(values.example()),
+    }
+}

@@ -1,0 +1,160 @@
+//! Checks of poses in f64: lengths, reach, and references to joints and targets.
+
+use glam::{DMat3, Vec3};
+use ik_arm::document::Arm;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
+use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
+use ik_arm::session::{Drag, Grip, PointDrag, Session, SolverRun, TurnDrag};
+
+use crate::soak::{Broken, hold};
+
+/// Half an ulp of a number near 1.
+const U: f64 = f32::EPSILON as f64 / 2.0;
+
+pub fn all(session: &Session) -> Result<(), Broken> {
+    arm(session.arm(), session.pose())?;
+    let skeleton = session.skeleton_rig().skeleton_at(session.time());
+    joints(&skeleton, session.skeleton_pose())?;
+    places(session)
+}
+
+fn arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
+    let numbers = [pose.distance, pose.along, pose.out, pose.twist, pose.stretch];
+    let are_finite = numbers.into_iter().all(f32::is_finite);
+    hold!(
+        are_finite && pose.elbow.is_finite() && pose.hand.is_finite(),
+        "the arm is finite: {pose:?}"
+    );
+    let pointer = pose.pointer;
+    hold!(
+        pointer.direction.is_finite() && pointer.heading.is_finite(),
+        "the arm faces: {pointer:?}"
+    );
+    lengths(arm, pose)?;
+    reach(arm, pose)
+}
+
+/// |elbow| = σ d₁ and |hand − elbow| = σ d₂ to 3e-7·L, unless they overflow.
+fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
+    const EXACT: f64 = 3e-7;
+    let bones = arm.bones.stretched(pose.stretch);
+    let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
+    let sum = upper + lower;
+    if sum > f64::from(f32::MAX) * 0.4 {
+        return Ok(());
+    }
+    let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
+    let within = EXACT * sum + f64::from(f32::MIN_POSITIVE);
+    let off = (elbow.length() - upper).abs().max((elbow.distance(hand) - lower).abs());
+    hold!(off <= within, "limbs keep their lengths: off by {:e} of L: {arm:?} {pose:?}", off / sum);
+    Ok(())
+}
+
+/// Checks the reported reach, with ε = 1e-6·L.
+fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
+    let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
+    let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
+    let cursor = arm.cursor_in_root().as_dvec3();
+    let missed = pose.hand.as_dvec3().distance(cursor);
+    let is_reached = pose.reach == Some(Reach::Reached);
+    let rounding = 4.0 * U * cursor.length();
+    hold!(
+        !is_reached || missed <= near + rounding,
+        "reached is there: {missed:e} {arm:?} {pose:?}"
+    );
+    let is_exact = arm.influence == 1.0 && arm.soft_reach.is_hard();
+    let is_there = !is_reached || pose.hand == arm.cursor_in_root();
+    hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {arm:?} {pose:?}");
+    let (inner, outer) = ((upper - lower).abs(), upper + lower);
+    let asked = cursor.length();
+    let is_clear = asked > inner * (1.0 + 1e-6) && asked < outer * (1.0 - 1e-6);
+    let is_possible = !is_exact || !is_clear || is_reached;
+    hold!(is_possible, "what can be reached is: {arm:?} {pose:?}");
+    Ok(())
+}
+
+fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
+    let joints = skeleton.joints();
+    hold!(pose.len() == joints.len(), "every joint is posed");
+    let stand =
+        DMat3::from_cols_array(&skeleton.transform().matrix3.to_cols_array().map(f64::from));
+    let back = (stand.determinant().abs() > 1e-30).then(|| stand.inverse());
+    let size = |m: DMat3| m.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+    for (index, joint) in joints.iter().enumerate() {
+        let (base, tip) = (pose.base(JointId::new(index)), pose.tip(JointId::new(index)));
+        hold!(base.is_finite() && tip.is_finite(), "{:?} is somewhere: {base} {tip}", joint.name);
+        let Some(back) = back else { continue };
+        let [base, tip] = [base, tip].map(Vec3::as_dvec3);
+        let farthest = f64::from(f32::MAX) * 0.1;
+        if base.abs().max(tip.abs()).max_element() > farthest {
+            continue;
+        }
+        let (bone, length) = (back * (tip - base), joint.axis.as_dvec3().length());
+        let coarse = 8.0 * U * base.abs().max(tip.abs()).max_element() * 3.0 * size(back);
+        // A product of rotations is a rotation up to one rounding each.
+        let depth = skeleton.ancestors(JointId::new(index)).count() as f64;
+        let skew = 4.0 * size(stand) * size(back) * (4.0 + depth) * U * length;
+        let off = (bone.length() - length).abs();
+        hold!(
+            off <= coarse + skew,
+            "{:?} is as long as it is: off by {off:e} of {length}",
+            joint.name
+        );
+    }
+    Ok(())
+}
+
+/// Every reference to a joint, target or key exists.
+fn places(session: &Session) -> Result<(), Broken> {
+    let joints = session.skeleton().joints().len();
+    hold!(
+        session.selection().iter().all(|joint| *joint < JointId::new(joints)),
+        "selected joints are there"
+    );
+    hold!(
+        session.hovered().is_none_or(|joint| joint < JointId::new(joints)),
+        "the joint pointed at is there"
+    );
+    let document = session.document();
+    for (channel, time) in session.selected_keys() {
+        let key = document.keys.track(*channel).and_then(|track| track.get(*time));
+        hold!(key.is_some(), "the selected key {channel:?} at {time} is there");
+    }
+    for channel in session.selected_channels() {
+        hold!(channel.value(document).is_some(), "the selected channel {channel:?} is there");
+    }
+    hold!(session.time().is_finite(), "the time is finite: {}", session.time());
+    let (slowest, fastest) = Session::SPEEDS;
+    hold!((slowest..=fastest).contains(&session.speed()), "the speed is one: {}", session.speed());
+    let held = session.point_drag().map_or(Vec3::ZERO, PointDrag::moved);
+    let turned = session.drag().and_then(Drag::turn).map_or(0.0, TurnDrag::turned);
+    hold!(held.is_finite() && turned.is_finite(), "what is held is somewhere: {held} {turned}");
+    if let Some(Grip::Ring(_, axis) | Grip::Shoulder(axis)) = session.drag().map(Drag::grip) {
+        hold!(axis < 3, "a ring is about x, y or z");
+    }
+    session.solver_runs().try_for_each(solver_run)
+}
+
+fn solver_run(run: &SolverRun) -> Result<(), Broken> {
+    let errors = run.iterates().iter().all(|it| it.error.is_finite() && it.error >= 0.0);
+    hold!(errors && run.report().error.is_finite(), "a solver knows how far it is off");
+    let latest = run.iterates().latest().iteration;
+    hold!(latest == run.report().iterations, "the latest iterate is kept");
+    hold!(run.shown().iteration <= latest, "the shown iterate is one of them");
+    let is_posed = run.skeleton().joints().iter().zip(run.shown().joints());
+    let mut is_posed = is_posed.map(|(joint, local)| (joint.rotation, joint.offset) == local);
+    hold!(is_posed.all(|is_posed| is_posed), "the ghost has the angles of the shown iterate");
+    Ok(())
+}
+
+/// Joints outside all targets' chains have not been rotated by solvers.
+pub fn locked(before: &Skeleton, after: &Skeleton) -> Result<(), Broken> {
+    for (before, after) in before.joints().iter().zip(after.joints()) {
+        let bits = |v: Vec3| v.to_array().map(f32::to_bits);
+        let has_turned = bits(before.rotation) != bits(after.rotation);
+        hold!(!(before.locked && has_turned), "{:?} is locked and does not turn", before.name);
+        let is_same = before.axis == after.axis && before.name == after.name;
+        hold!(is_same && before.limits == after.limits, "a solver only turns {:?}", before.name);
+    }
+    Ok(())
+}

@@ -1,0 +1,218 @@
+//! Checks of documents and of their state at a time.
+
+use std::collections::HashSet;
+use std::f32::consts::FRAC_PI_2;
+
+use glam::Vec3;
+use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, SkeletonRig, Target};
+use ik_arm::kinematics::chain_ik::SolverOptions;
+use ik_arm::kinematics::ik::IkState;
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skin::VertexWeights;
+use ik_arm::rig::{Skin, SkinSource};
+use ik_arm::session::Session;
+
+use crate::soak::{Broken, hold};
+
+/// Checks that all numbers are finite and in range.
+pub fn document(document: &Document) -> Result<(), Broken> {
+    let Document { arm, skeleton_rig, timeline, camera, other_rig_camera, metres_per_unit, .. } =
+        document;
+    self::arm(arm)?;
+    skeleton(skeleton_rig)?;
+    hold!(skeleton_rig.head_track.is_none(), "the head's keys are in the document once");
+    self::camera(camera)?;
+    other_rig_camera.as_ref().map_or(Ok(()), self::camera)?;
+    hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
+    hold!(
+        metres_per_unit.is_none_or(is_above_0),
+        "a unit is longer than nothing: {metres_per_unit:?}"
+    );
+    keys(document)
+}
+
+/// Checks the same of the document at the current time.
+pub fn shown(session: &Session) -> Result<(), Broken> {
+    let shown = session.shown();
+    arm(&shown.arm)?;
+    skeleton(&shown.skeleton_rig)?;
+    hold!(shown.camera == session.document().camera, "the shown camera is the document's");
+    hold!(shown.keys == session.document().keys, "the shown keys are the document's");
+    Ok(())
+}
+
+fn is_above_0(value: f32) -> bool {
+    value.is_finite() && value > 0.0
+}
+
+fn arm(arm: &Arm) -> Result<(), Broken> {
+    const UNIT: f32 = 1e-5;
+    let is_unit = |length: f32| (length - 1.0).abs() < UNIT;
+    let Arm {
+        twist,
+        root,
+        bones,
+        ik_state: IkState { pointer, transported },
+        pole,
+        soft_reach: _,
+        influence,
+        fk,
+        hand_orientation,
+        ..
+    } = arm;
+    hold!(
+        arm.cursor_in_root().is_finite() && arm.cursor_in_world().is_finite(),
+        "the cursor is finite"
+    );
+    hold!(twist.is_finite(), "the twist is finite: {twist}");
+    hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
+    hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
+    hold!(is_unit(pointer.direction.length()), "the arm faces somewhere: {pointer:?}");
+    hold!(is_unit(pointer.heading.length()), "the arm heads somewhere: {pointer:?}");
+    if let Some(it) = transported {
+        let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
+        hold!(are_units, "the transported frame has unit vectors: {it:?}");
+        let across = it.direction.dot(it.outward);
+        hold!(
+            across.abs() < UNIT,
+            "the transported direction is perpendicular to the Pointer: {it:?}"
+        );
+    }
+    hold!((0.0..=1.0).contains(influence), "the influence is from 0 to 1: {influence}");
+    hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
+    hold!(is_above_0(fk.stretch), "limbs are stretched by a factor: {fk:?}");
+    let HandOrientation { angles, roll, .. } = hand_orientation;
+    hold!(
+        angles.is_finite() && roll.is_finite(),
+        "the angles of the hand are finite: {hand_orientation:?}"
+    );
+    Ok(())
+}
+
+fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
+    let SkeletonRig {
+        skeleton,
+        targets,
+        solver,
+        iterations_per_frame,
+        follow_path,
+        head_track: _,
+        skin,
+    } = rig;
+    let joints = skeleton.joints();
+    hold!(skeleton.transform().is_finite(), "the skeleton is somewhere");
+    let mut names = HashSet::new();
+    for (index, joint) in joints.iter().enumerate() {
+        self::joint(joint, index)?;
+        hold!(names.insert(joint.name.as_str()), "no two joints are called {:?}", joint.name);
+    }
+    let mut aimed = HashSet::new();
+    for target in targets {
+        self::target(target, joints.len())?;
+        hold!(aimed.insert(target.joint), "joint {} has one target", target.joint);
+    }
+    if let Some(skin) = skin {
+        self::skin(skin, skeleton)?;
+    }
+    let SolverOptions { iterations, tolerance, damping, step, .. } = *solver;
+    hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
+    hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");
+    hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
+    let per_frame = 1..=SkeletonRig::MAX_ITERATIONS_PER_FRAME;
+    hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
+    hold!(follow_path.is_none_or(|it| it.is_valid()), "the snake has a way: {follow_path:?}");
+    Ok(())
+}
+
+fn skin(skin: &Skin, skeleton: &Skeleton) -> Result<(), Broken> {
+    let mesh = match &skin.source {
+        SkinSource::Bones(bones) => {
+            let shape = bones.shape();
+            hold!(shape.check(skeleton).is_ok(), "the skin has a shape: {shape:?}");
+            return Ok(());
+        }
+        SkinSource::Mesh(mesh) => mesh,
+    };
+    let count = skeleton.joints().len();
+    let mut own = HashSet::new();
+    for joint in mesh.joints().iter().flatten() {
+        hold!(joint.index() < count, "the skin has joints of the skeleton: {joint:?}");
+        hold!(own.insert(joint), "no two joints of the file are the same joint: {joint:?}");
+    }
+    if let Ok(mesh) = mesh.mesh() {
+        let joints = mesh.mesh.weights().iter().flat_map(VertexWeights::iter);
+        let greatest = joints.map(|(joint, _)| joint.index()).max().unwrap_or(0);
+        hold!(greatest < count.max(1), "vertices follow joints of the skeleton: {greatest}");
+    }
+    Ok(())
+}
+
+fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
+    let Joint {
+        name,
+        parent,
+        offset,
+        axis,
+        rotation,
+        frame,
+        limits,
+        locked: _,
+        connected: _,
+        radius,
+    } = joint;
+    hold!(!name.trim().is_empty(), "joint {index} has a name");
+    hold!(
+        parent.is_none_or(|parent| parent < JointId::new(index)),
+        "{name:?} hangs from one before it"
+    );
+    let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
+    hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
+    hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
+    for limit in limits.iter().flatten() {
+        let Limit { min, max } = limit;
+        hold!(min.is_finite() && max.is_finite() && min <= max, "{name:?} has limits: {limit:?}");
+    }
+    hold!(joint.clamped(*rotation) == *rotation, "{name:?} is within its limits: {joint:?}");
+    Ok(())
+}
+
+fn target(target: &Target, joints: usize) -> Result<(), Broken> {
+    let Target { joint, home, space: _, kind: _, influence, weight, enabled: _, motion } = target;
+    hold!(*joint < JointId::new(joints), "a target is of a joint: {joint} of {joints}");
+    hold!(home.is_finite() && is_above_0(*weight), "a target can be aimed at: {target:?}");
+    hold!((0.0..=1.0).contains(influence), "influence is a fraction: {target:?}");
+    hold!(motion.radius.is_finite() && is_above_0(motion.period), "a target goes: {target:?}");
+    Ok(())
+}
+
+fn camera(camera: &Camera) -> Result<(), Broken> {
+    let Camera { target, yaw, pitch, distance, orthographic: _ } = camera;
+    hold!(target.is_finite() && yaw.is_finite(), "the camera looks somewhere: {camera:?}");
+    hold!((-FRAC_PI_2..=FRAC_PI_2).contains(pitch), "the camera is upright: {camera:?}");
+    hold!(is_above_0(*distance), "the camera is away from what it looks at: {camera:?}");
+    Ok(())
+}
+
+fn keys(document: &Document) -> Result<(), Broken> {
+    for (channel, track) in document.keys.tracks() {
+        let knots = track.knots();
+        hold!(!knots.is_empty(), "{channel:?} has keys");
+        hold!(knots.is_sorted_by(|a, b| a.time < b.time), "keys of {channel:?} are in order");
+        let are_finite = knots.iter().all(|knot| knot.time.is_finite() && knot.value.is_finite());
+        hold!(are_finite, "keys of {channel:?} are finite: {knots:?}");
+        let is_right = |value: Vec3| match channel.quantity() {
+            Quantity::Length => value.x > 0.0,
+            Quantity::Fraction => (0.0..=1.0).contains(&value.x),
+            Quantity::Switch => value.x == 0.0 || value.x == 1.0,
+            Quantity::Point | Quantity::Angle | Quantity::Angles => true,
+        };
+        let values = knots.iter().map(|knot| knot.value);
+        hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");
+        // A target without, for instance, an orientation of its own keeps the keys of one.
+        let is_of_target =
+            channel.target().is_some_and(|it| document.skeleton_rig.target(it).is_some());
+        let is_of_something = is_of_target || channel.value(document).is_some();
+        hold!(is_of_something, "{channel:?} is of something");
+    }
+    Ok(())
+}

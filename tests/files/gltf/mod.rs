@@ -1,0 +1,13 @@
+//! glTF: exports match the document and round trip; invalid files are refused.
+
+mod damage;
+mod documents;
+mod export;
+mod glb;
+mod import;
+mod interpolation;
+#[cfg(feature = "app")]
+mod posed;
+mod round_trip;
+mod skin;
+mod text;

@@ -1,0 +1,174 @@
+//! Export and import keep positions.
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::rig::ArmPart;
+
+use crate::common::Random;
+use crate::gltf::documents::{all, example, glb, keyed_arm};
+
+fn reopened(document: &Document) -> Opened {
+    let bytes = glb(document);
+    io::read("test.glb", &bytes[..], &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Bases of bones, and the arm's hand, in metres.
+fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
+    let document = document.evaluate(time);
+    let named = match document.rig {
+        RigKind::Skeleton => {
+            let skeleton = document.skeleton_rig.skeleton_at(time);
+            let pose = skeleton.pose();
+            let joints = skeleton.joints().iter().enumerate();
+            joints
+                .map(|(index, joint)| (joint.name.clone(), pose.base(JointId::new(index))))
+                .collect()
+        }
+        RigKind::Arm => {
+            let rig = document.arm.rig(&document.arm.pose());
+            let parts =
+                [("upper", ArmPart::Root), ("lower", ArmPart::Elbow), ("hand", ArmPart::Hand)];
+            parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()
+        }
+    };
+    let metres = document.metres_per_unit();
+    named.into_iter().map(|(name, point): (String, Vec3)| (name, point * metres)).collect()
+}
+
+/// The same of an imported document, in which an arm's hand is a joint only where the length of
+/// its bone has keys.
+fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
+    let document = document.evaluate(time);
+    let skeleton = document.skeleton();
+    let pose = skeleton.pose();
+    let base = |name| skeleton.find(name).map(|joint| pose.base(joint));
+    let arm_hand = || {
+        let end_of_lower = || skeleton.find("lower").map(|lower| pose.tip(lower));
+        base("lower_tip").or_else(end_of_lower).filter(|_| name == "hand")
+    };
+    base(name).or_else(arm_hand)
+}
+
+fn largest(points: &[(String, Vec3)]) -> f32 {
+    let centre = points.iter().map(|(_, point)| *point).sum::<Vec3>() / points.len() as f32;
+    points.iter().map(|(_, point)| point.distance(centre)).fold(0.0, f32::max)
+}
+
+fn check(name: &str, document: &Document, opened: &Opened) {
+    let timeline = document.timeline;
+    let frames = if opened.document.keys.is_empty() { 1 } else { timeline.frames() };
+    for frame in 0..frames {
+        let expected = bases(document, timeline.time(frame));
+        let size = largest(&expected).max(0.25 * document.metres_per_unit());
+        let time = frame as f64 / timeline.frame_rate;
+        for (joint, expected) in &expected {
+            let found = imported(&opened.document, time, joint);
+            let Some(found) = found else { panic!("{name} has no joint {joint}") };
+            let gap = found.distance(*expected);
+            // f32 are coarse far from the origin.
+            let largest = expected.abs().max_element();
+            let coarse = 2.0 * (largest.next_up() - largest);
+            assert!(
+                gap <= 1e-4 * size + coarse,
+                "{name}, {joint} at frame {frame}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_joint_is_where_it_was_in_every_frame() {
+    for (name, document) in all().into_iter().filter(|(name, _)| name != "names") {
+        let opened = reopened(&document);
+        let Opened { document: read, warnings, order, skeletons, .. } = &opened;
+        assert_eq!(read.rig, RigKind::Skeleton);
+        assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
+        assert_eq!(order.len(), read.skeleton().joints().len());
+        let moves = document.is_animated();
+        assert_eq!(moves, !read.keys.is_empty(), "{name}");
+        check(&name, &document, &opened);
+    }
+}
+
+#[test]
+fn animations_keep_their_duration_and_frame_rate() {
+    for name in ["snake", "human-keyed-0", "keyed-lengths"] {
+        let (_, document) = all().into_iter().find(|(other, _)| other == name).expect(name);
+        let (was, is) = (document.timeline, reopened(&document).document.timeline);
+        assert_eq!((is.start, is.frame_rate, is.frames()), (0.0, was.frame_rate, was.frames()));
+    }
+}
+
+#[test]
+fn still_documents_have_no_keys_and_keep_their_pose() {
+    for name in ["human", "arm", "degenerate"] {
+        let document = example(name);
+        let opened = reopened(&document);
+        assert!(opened.document.keys.is_empty(), "{name}");
+        check(name, &document, &opened);
+    }
+}
+
+#[test]
+fn a_skeleton_keeps_its_joints_and_the_bones_of_its_leaves() {
+    let document = example("human");
+    let (was, is) = (document.skeleton(), reopened(&document).document);
+    let is = is.skeleton();
+    let names = |skeleton: &Skeleton| -> Vec<String> {
+        skeleton.joints().iter().map(|joint| joint.name.clone()).collect()
+    };
+    assert_eq!(names(is), names(was));
+    for (index, joint) in was.joints().iter().enumerate() {
+        assert_eq!(is.joints()[index].parent, joint.parent);
+        if was.children(JointId::new(index)).next().is_none() {
+            assert!(
+                is.tip(JointId::new(index)).distance(was.tip(JointId::new(index))) < 1e-4,
+                "{}",
+                joint.name
+            );
+        }
+    }
+}
+
+#[test]
+fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
+    let read = reopened(&keyed_arm(&mut Random(1))).document;
+    let skeleton = read.skeleton();
+    let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
+}
+
+#[test]
+fn a_chain_of_the_largest_number_of_joints_keeps_its_lengths() {
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24.0 };
+    let joint = |index: usize| {
+        let parent = index.checked_sub(1);
+        let offset = parent.map_or(Vec3::ZERO, |_| Vec3::Y);
+        Joint { offset, ..Joint::new(&format!("j{index}"), parent.map(JointId::new), Vec3::Y) }
+    };
+    let joints = (0..Skeleton::MOST_JOINTS).map(joint).collect();
+    *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
+    for joint in 0..Skeleton::MOST_JOINTS {
+        for (time, angle) in [(0.0, 0.0), (0.125, 0.002)] {
+            let angles = Vec3::splat(angle * (joint % 7) as f32);
+            document.keys.insert(Channel::Rotation(JointId::new(joint)), time, angles);
+        }
+    }
+    let opened = reopened(&document);
+    let joints = opened.document.skeleton().joints();
+    assert_eq!(joints.len(), Skeleton::MOST_JOINTS);
+    assert!(
+        opened.document.keys.tracks().all(|(channel, _)| matches!(channel, Channel::Rotation(_)))
+    );
+    let (was, is) = (document.evaluate(0.125), opened.document.evaluate(0.125));
+    let (was, is) = (was.skeleton().pose(), is.skeleton().pose());
+    let gap = (0..was.len())
+        .map(|joint| was.base(JointId::new(joint)).distance(is.base(JointId::new(joint))));
+    let far =
+        (0..was.len()).map(|joint| was.base(JointId::new(joint)).length()).fold(0.0, f32::max);
+    assert!(gap.fold(0.0, f32::max) < 1e-5 * far);
+}

@@ -1,0 +1,689 @@
+//! Import of the meshes of skins, with every form of their numbers.
+
+use std::io::Cursor;
+
+use glam::{Affine3A, DMat4, DVec3, Mat3, Mat4, Quat, Vec2, Vec3};
+use ik_arm::document::{Document, Overlay, Skin};
+use ik_arm::io::{self, Opened};
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::skin::{Skinning, TriangleMesh};
+use ik_arm::rig::{AttachedMesh, SkinSource};
+use serde_json::{Value, json};
+
+use crate::common::Random;
+use crate::gltf::documents::{all, glb};
+use crate::gltf::text::{Text, base64, push};
+
+fn opened(text: &Text) -> Opened {
+    io::parse("test.gltf", &text.embedded(), &io::OpenOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn skin(opened: &Opened) -> &Skin {
+    let warnings: Vec<String> = opened.warnings.iter().map(ToString::to_string).collect();
+    opened.document.skeleton_rig.skin.as_ref().unwrap_or_else(|| panic!("a skin; {warnings:?}"))
+}
+
+fn attached(opened: &Opened) -> &AttachedMesh {
+    skin(opened).mesh().expect("a mesh")
+}
+
+fn warnings(opened: &Opened) -> Vec<String> {
+    opened.warnings.iter().map(|it| format!("{}: {}", it.field, it.reason)).collect()
+}
+
+fn little_endian<const N: usize>(numbers: impl IntoIterator<Item = [u8; N]>) -> Vec<u8> {
+    numbers.into_iter().flatten().collect()
+}
+
+/// A strip of four triangles with six vertices along three joints of [`Text::chain`].
+struct Strip {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    coordinates: Vec<Vec2>,
+    /// For each vertex two joints and their weights, which are multiples of 1/255.
+    joints: Vec<[u8; 4]>,
+    weights: Vec<[u8; 4]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Strip {
+    fn new() -> Self {
+        let vertices = || (0..6).map(|at| (at % 2, at / 2));
+        Self {
+            positions: vertices().map(|(x, y)| Vec3::new(x as f32 * 0.5, y as f32, 0.25)).collect(),
+            normals: vertices().map(|(x, _)| Vec3::new(x as f32, 0.0, 1.0).normalize()).collect(),
+            coordinates: vertices().map(|(x, y)| Vec2::new(x as f32, y as f32 * 0.5)).collect(),
+            joints: vertices().map(|(_, y)| [y as u8, (y as u8 + 1) % 3, 0, 0]).collect(),
+            weights: vertices()
+                .map(|(x, _)| if x == 0 { [204, 51, 0, 0] } else { [153, 102, 0, 0] })
+                .collect(),
+            triangles: vec![[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]],
+        }
+    }
+
+    fn corners(&self) -> Vec<u32> {
+        self.triangles.as_flattened().to_vec()
+    }
+
+    fn floats(vectors: &[Vec3]) -> Vec<f32> {
+        vectors.iter().flat_map(Vec3::to_array).collect()
+    }
+
+    /// A chain with the strip as its mesh, in the plainest form.
+    fn text(&self) -> Text {
+        let mut text = Text::chain();
+        let weights: Vec<f32> =
+            self.weights.as_flattened().iter().map(|weight| f32::from(*weight) / 255.0).collect();
+        let coordinates: Vec<f32> = self.coordinates.iter().flat_map(Vec2::to_array).collect();
+        let attributes = json!({
+            "POSITION": text.floats(3, &Self::floats(&self.positions)),
+            "NORMAL": text.floats(3, &Self::floats(&self.normals)),
+            "TEXCOORD_0": text.floats(2, &coordinates),
+            "WEIGHTS_0": text.floats(4, &weights),
+        });
+        let joints = text.accessor(self.joints.as_flattened(), 5121, 6, "VEC4");
+        text.json["accessors"][joints]["normalized"] = json!(false);
+        let corners = self.corners();
+        let bytes = little_endian(corners.iter().map(|corner| corner.to_le_bytes()));
+        let indices = text.accessor(&bytes, 5125, corners.len(), "SCALAR");
+        text.json["meshes"] = json!([{
+            "primitives": [{ "attributes": attributes, "indices": indices }]
+        }]);
+        attributes_of(&mut text)["JOINTS_0"] = json!(joints);
+        let body = push(&mut text.json["nodes"], json!({ "mesh": 0, "skin": 0 }));
+        text.json["scenes"][0]["nodes"] = json!([0, body]);
+        text
+    }
+}
+
+fn primitive(text: &mut Text) -> &mut Value {
+    &mut text.json["meshes"][0]["primitives"][0]
+}
+
+fn attributes_of(text: &mut Text) -> &mut Value {
+    &mut primitive(text)["attributes"]
+}
+
+#[track_caller]
+fn assert_is_strip(opened: &Opened, strip: &Strip, what: &str) {
+    let mesh = &attached(opened).mesh;
+    let TriangleMesh { positions, normals, texture_coordinates, triangles } = mesh.mesh();
+    assert_eq!(triangles, &strip.triangles, "{what}");
+    let vertices = positions.iter().zip(normals).zip(texture_coordinates).zip(mesh.weights());
+    assert_eq!(positions.len(), 6, "{what}");
+    for (vertex, (((position, normal), at), weights)) in vertices.enumerate() {
+        assert!(position.distance(strip.positions[vertex]) < 1e-4, "{what}: {position}");
+        assert!(normal.distance(strip.normals[vertex]) < 1e-4, "{what}: {normal}");
+        assert!(at.distance(strip.coordinates[vertex]) < 1e-4, "{what}: {at}");
+        for place in 0..2 {
+            let joint = JointId::new(usize::from(strip.joints[vertex][place]));
+            let weight = f32::from(strip.weights[vertex][place]) / 255.0;
+            assert!((weights.of(joint) - weight).abs() < 1e-4, "{what}: {weights:?}");
+        }
+    }
+}
+
+#[test]
+fn every_form_of_an_accessor_gives_the_same_mesh() {
+    let strip = Strip::new();
+    let plain = opened(&strip.text());
+    assert_is_strip(&plain, &strip, "plain");
+    assert_eq!(warnings(&plain), [""; 0]);
+    let check = |what: &str, change: &dyn Fn(&mut Text)| {
+        let mut text = strip.text();
+        change(&mut text);
+        assert_is_strip(&opened(&text), &strip, what);
+        let binary = io::read("test.glb", &text.binary()[..], &io::OpenOptions::default())
+            .expect("it opens");
+        assert_is_strip(&binary, &strip, what);
+    };
+    check("joints of two bytes", &|text| {
+        let wide = strip.joints.as_flattened().iter().map(|joint| u16::from(*joint).to_le_bytes());
+        let joints = text.accessor(&little_endian(wide), 5123, 6, "VEC4");
+        text.json["accessors"][joints]["normalized"] = json!(false);
+        attributes_of(text)["JOINTS_0"] = json!(joints);
+    });
+    check("weights of one byte", &|text| {
+        let weights = text.accessor(strip.weights.as_flattened(), 5121, 6, "VEC4");
+        attributes_of(text)["WEIGHTS_0"] = json!(weights);
+    });
+    check("weights of two bytes", &|text| {
+        let wide =
+            strip.weights.as_flattened().iter().map(|it| (u16::from(*it) * 257).to_le_bytes());
+        let weights = text.accessor(&little_endian(wide), 5123, 6, "VEC4");
+        attributes_of(text)["WEIGHTS_0"] = json!(weights);
+    });
+    check("indices of one byte", &|text| {
+        let corners: Vec<u8> = strip.corners().iter().map(|corner| *corner as u8).collect();
+        let indices = text.accessor(&corners, 5121, corners.len(), "SCALAR");
+        text.json["accessors"][indices]["normalized"] = json!(false);
+        primitive(text)["indices"] = json!(indices);
+    });
+    check("indices of two bytes", &|text| {
+        let corners = strip.corners();
+        let bytes = little_endian(corners.iter().map(|corner| (*corner as u16).to_le_bytes()));
+        let indices = text.accessor(&bytes, 5123, corners.len(), "SCALAR");
+        text.json["accessors"][indices]["normalized"] = json!(false);
+        primitive(text)["indices"] = json!(indices);
+    });
+    check("a triangle strip without indices", &|text| {
+        primitive(text)["mode"] = json!(5);
+        primitive(text).as_object_mut().expect("an object").remove("indices");
+    });
+    check("texture coordinates of two bytes", &|text| {
+        let numbers = strip.coordinates.iter().flat_map(Vec2::to_array);
+        let bytes = numbers.map(|number| ((number * 65535.0).round() as u16).to_le_bytes());
+        let coordinates = text.accessor(&little_endian(bytes), 5123, 6, "VEC2");
+        attributes_of(text)["TEXCOORD_0"] = json!(coordinates);
+    });
+    check("quantized normals with a stride", &|text| {
+        let number = |number: f32| ((number * 127.0).round() as i8).to_le_bytes();
+        let mut bytes = Vec::new();
+        for normal in &strip.normals {
+            bytes.extend(normal.to_array().map(number).as_flattened());
+            bytes.push(99);
+        }
+        let normals = text.accessor(&bytes, 5120, 6, "VEC3");
+        let view = text.json["accessors"][normals]["bufferView"].as_u64().expect("a view") as usize;
+        text.json["bufferViews"][view]["byteStride"] = json!(4);
+        attributes_of(text)["NORMAL"] = json!(normals);
+    });
+    check("positions between other numbers", &|text| {
+        let mut bytes = vec![7; 4];
+        for position in &strip.positions {
+            bytes
+                .extend(Strip::floats(&[*position]).iter().flat_map(|number| number.to_le_bytes()));
+            bytes.extend([9; 8]);
+        }
+        let positions = text.accessor(&bytes, 5126, 6, "VEC3");
+        let view =
+            text.json["accessors"][positions]["bufferView"].as_u64().expect("a view") as usize;
+        text.json["bufferViews"][view]["byteStride"] = json!(20);
+        text.json["accessors"][positions]["byteOffset"] = json!(4);
+        attributes_of(text)["POSITION"] = json!(positions);
+    });
+    for component in [5121, 5123, 5125] {
+        for has_view in [true, false] {
+            check("sparse positions", &|text| sparse(text, &strip, component, has_view));
+        }
+    }
+}
+
+/// Makes the positions sparse: all are wrong or missing in the view, but the sparse rows overwrite them.
+fn sparse(text: &mut Text, strip: &Strip, component: u32, has_view: bool) {
+    let positions = text.floats(3, &[5.0; 18]);
+    let places: Vec<u8> = (0..6_u32)
+        .flat_map(|place| match component {
+            5121 => vec![place as u8],
+            5123 => (place as u16).to_le_bytes().to_vec(),
+            _ => place.to_le_bytes().to_vec(),
+        })
+        .collect();
+    let bytes = little_endian(Strip::floats(&strip.positions).iter().map(|it| it.to_le_bytes()));
+    let (places, rows) = (text.view(&places), text.view(&bytes));
+    let accessor = &mut text.json["accessors"][positions];
+    accessor["sparse"] = json!({
+        "count": 6,
+        "indices": { "bufferView": places, "componentType": component },
+        "values": { "bufferView": rows },
+    });
+    if !has_view {
+        accessor.as_object_mut().expect("an object").remove("bufferView");
+    }
+    attributes_of(text)["POSITION"] = json!(positions);
+}
+
+#[test]
+fn a_fan_turns_around_its_first_vertex() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    primitive(&mut text)["mode"] = json!(6);
+    primitive(&mut text).as_object_mut().expect("an object").remove("indices");
+    let triangles = &attached(&opened(&text)).mesh.mesh().triangles.clone();
+    assert_eq!(triangles[..], [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
+}
+
+#[test]
+fn missing_normals_follow_from_the_triangles() {
+    let mut text = Strip::new().text();
+    attributes_of(&mut text).as_object_mut().expect("an object").remove("NORMAL");
+    let opened = opened(&text);
+    for normal in &attached(&opened).mesh.mesh().normals {
+        assert!(normal.distance(Vec3::Z) < 1e-6, "{normal}");
+    }
+}
+
+// Poses
+
+/// A random transform of a node: the file's fields, and the matrix.
+fn placed(random: &mut Random) -> (Value, DMat4) {
+    let translation = random.vector(1.0);
+    let rotation = Quat::from_mat3(&random.rotation()).normalize();
+    let scale = Vec3::from_array([(); 3].map(|()| random.within(0.5..2.0)));
+    let json = json!({
+        "translation": translation.to_array(), "rotation": rotation.to_array(),
+        "scale": scale.to_array(),
+    });
+    let matrix = DMat4::from_scale_rotation_translation(
+        scale.as_dvec3(),
+        rotation.as_dquat().normalize(),
+        translation.as_dvec3(),
+    );
+    (json, matrix)
+}
+
+#[test]
+fn the_rest_pose_is_that_of_the_file_with_any_nodes_and_inverse_bind_matrices() {
+    let mut random = Random(0x51ce);
+    for _ in 0..50 {
+        let strip = Strip::new();
+        let mut text = strip.text();
+        let mut worlds: Vec<DMat4> = Vec::new();
+        for node in 0..3 {
+            let (fields, local) = placed(&mut random);
+            for (key, value) in fields.as_object().expect("an object") {
+                text.json["nodes"][node][key] = value.clone();
+            }
+            worlds.push(worlds.last().copied().unwrap_or(DMat4::IDENTITY) * local);
+        }
+        let binds: Vec<Mat4> = (0..3).map(|_| placed(&mut random).1.as_mat4()).collect();
+        let numbers: Vec<f32> = binds.iter().flat_map(Mat4::to_cols_array).collect();
+        let bytes = little_endian(numbers.iter().map(|number| number.to_le_bytes()));
+        let accessor = text.accessor(&bytes, 5126, 3, "MAT4");
+        text.json["skins"][0]["inverseBindMatrices"] = json!(accessor);
+        // The order of the skin's joints is not that of the nodes.
+        text.json["skins"][0]["joints"] = json!([1, 2, 0]);
+        let opened = opened(&text);
+        let mesh = &attached(&opened).mesh;
+        let posed = mesh.posed(&mesh.pose(opened.document.skeleton()), Skinning::Linear);
+        for (vertex, found) in posed.positions.iter().enumerate() {
+            let mut expected = DVec3::ZERO;
+            for place in 0..2 {
+                let joint = usize::from(strip.joints[vertex][place]);
+                let weight = f64::from(strip.weights[vertex][place]) / 255.0;
+                let node = [1, 2, 0][joint];
+                let matrix = worlds[node] * binds[joint].as_dmat4();
+                expected += weight * matrix.transform_point3(strip.positions[vertex].as_dvec3());
+            }
+            assert!(found.as_dvec3().distance(expected) < 1e-4, "{found}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn meshes_on_nodes_below_a_joint_follow_it_rigidly() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    // The lamp is a child of the first joint, and not a joint itself.
+    text.json["nodes"][3]["mesh"] = json!(1);
+    text.json["nodes"][3]["scale"] = json!([1, -2, 1]);
+    let flag = text.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    push(
+        &mut text.json["meshes"],
+        json!({ "primitives": [{ "attributes": { "POSITION": flag } }] }),
+    );
+    let mut opened = opened(&text);
+    assert_eq!(warnings(&opened), [""; 0]);
+    let at = Vec3::new(5.0, 0.0, 0.0);
+    let corners = [at, at + Vec3::X, at - 2.0 * Vec3::Y];
+    let shown = |document: &Document| {
+        let mesh =
+            &document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
+        mesh.posed(&mesh.pose(document.skeleton()), Skinning::Linear)
+    };
+    let flag = |posed: &TriangleMesh| {
+        // Meshes are in the order of their nodes.
+        let triangle = posed.triangles[0];
+        assert_eq!(posed.triangles.len(), strip.triangles.len() + 1);
+        triangle.map(|corner| posed.positions[corner as usize])
+    };
+    // The scale mirrors the flag; its corners are still counter-clockwise seen from its front, +z.
+    let [a, b, c] = flag(&shown(&opened.document));
+    assert_eq!([a, b, c], [corners[0], corners[2], corners[1]]);
+    let turn = Vec3::new(0.0, 0.0, std::f32::consts::FRAC_PI_2);
+    opened
+        .document
+        .skeleton_rig
+        .skeleton_mut()
+        .set_rotation(JointId::new(0), turn)
+        .expect("a joint");
+    for (found, rest) in flag(&shown(&opened.document)).iter().zip([a, b, c]) {
+        let expected = Quat::from_rotation_z(turn.z) * rest;
+        assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
+    }
+}
+
+#[test]
+fn five_joints_are_cut_to_the_four_heaviest_and_counted() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    let mut joints = [[0_u8; 4]; 6];
+    let mut weights = [0.0_f32; 24];
+    // The third vertex has all weight of the two first joints in five parts, the others none more.
+    joints[2] = [2, 2, 2, 2];
+    weights[8..12].copy_from_slice(&[0.1, 0.1, 0.1, 0.1]);
+    let accessor = text.accessor(joints.as_flattened(), 5121, 6, "VEC4");
+    text.json["accessors"][accessor]["normalized"] = json!(false);
+    attributes_of(&mut text)["JOINTS_1"] = json!(accessor);
+    let accessor = text.floats(4, &weights);
+    attributes_of(&mut text)["WEIGHTS_1"] = json!(accessor);
+    let same_joint = opened(&text);
+    assert_eq!(warnings(&same_joint), [""; 0], "weights of one joint add up to one");
+    assert!((attached(&same_joint).mesh.weights()[2].of(JointId::new(2)) - 0.6 / 1.4).abs() < 1e-6);
+
+    let nodes: Vec<Value> = (0..6)
+        .map(|at| json!({ "name": format!("j{at}"), "children": if at < 5 { vec![at + 1] } else { vec![] } }))
+        .collect();
+    let mut many = Text::new(json!(nodes), &[0, 1, 2, 3, 4, 5]);
+    let positions = many.floats(3, &Strip::floats(&strip.positions));
+    let first = many.accessor(&[0, 1, 2, 3].repeat(6), 5121, 6, "VEC4");
+    let second = many.accessor(&[4, 5, 0, 0].repeat(6), 5121, 6, "VEC4");
+    for joints in [first, second] {
+        many.json["accessors"][joints]["normalized"] = json!(false);
+    }
+    let mut of_first = [0.25_f32; 24];
+    let mut of_second = [0.0_f32; 24];
+    of_first[0..4].copy_from_slice(&[0.3, 0.2, 0.2, 0.05]);
+    of_second[0..4].copy_from_slice(&[0.15, 0.1, 0.0, 0.0]);
+    let (of_first, of_second) = (many.floats(4, &of_first), many.floats(4, &of_second));
+    many.json["meshes"] = json!([{ "primitives": [{ "attributes": {
+        "POSITION": positions, "JOINTS_0": first, "WEIGHTS_0": of_first,
+        "JOINTS_1": second, "WEIGHTS_1": of_second,
+    } }] }]);
+    push(&mut many.json["nodes"], json!({ "mesh": 0, "skin": 0 }));
+    let cut = opened(&many);
+    assert_eq!(
+        warnings(&cut),
+        [
+            "skins[0]: 1 of 6 vertices follow more than four joints; the four heaviest are kept, and up to \
+          15.0 % of the weight of a vertex is lost"
+        ]
+    );
+    let kept = attached(&cut).mesh.weights()[0];
+    let expected = [(0, 0.3), (1, 0.2), (2, 0.2), (4, 0.15)];
+    for ((joint, weight), (index, part)) in kept.iter().zip(expected) {
+        assert_eq!(joint.index(), index);
+        assert!((weight - part / 0.85).abs() < 1e-6, "{kept:?}");
+    }
+}
+
+// Materials
+
+fn png(colour: [u8; 3]) -> Vec<u8> {
+    encoded(colour, image::ImageFormat::Png)
+}
+
+fn encoded(colour: [u8; 3], format: image::ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let image = image::RgbImage::from_pixel(8, 4, image::Rgb(colour));
+    image.write_to(&mut bytes, format).expect("an image");
+    bytes.into_inner()
+}
+
+#[test]
+fn base_colours_and_their_textures_are_read_from_every_place() {
+    let strip = Strip::new();
+    let folder = tempfile::tempdir().expect("a folder");
+    let jpeg = encoded([200, 100, 50], image::ImageFormat::Jpeg);
+    std::fs::write(folder.path().join("skin 1.jpg"), &jpeg).expect("a file");
+    let mut text = strip.text();
+    let first = primitive(&mut text).clone();
+    let primitives: Vec<Value> = (0..4)
+        .map(|material| {
+            let mut primitive = first.clone();
+            primitive["material"] = json!(material);
+            primitive
+        })
+        .collect();
+    text.json["meshes"][0]["primitives"] = json!(primitives);
+    let view = text.view(&png([10, 20, 30]));
+    text.json["images"] = json!([
+        { "bufferView": view, "mimeType": "image/png" },
+        { "uri": format!("data:image/png;base64,{}", base64(&png([40, 50, 60]))) },
+        { "uri": "skin%201.jpg" },
+    ]);
+    text.json["textures"] = json!([{ "source": 0 }, { "source": 1 }, { "source": 2 }]);
+    let textured = |texture: usize| json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } });
+    text.json["materials"] = json!([
+        textured(0), textured(1), textured(2),
+        { "pbrMetallicRoughness": { "baseColorFactor": [0.2140411, 1.0, 0.0, 0.5] } },
+    ]);
+    let path = folder.path().join("figure.gltf");
+    std::fs::write(&path, text.embedded()).expect("a file");
+    let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
+    assert_eq!(warnings(&opened), [""; 0]);
+    let parts = &attached(&opened).parts;
+    assert_eq!(parts.iter().map(|part| part.triangles).collect::<Vec<_>>(), [4; 4]);
+    let near = |found: [u8; 4], expected: [u8; 3]| {
+        let gap = |channel: usize| found[channel].abs_diff(expected[channel]) <= 2;
+        (0..3).all(gap) && found[3] == 255
+    };
+    for (part, colour) in parts.iter().zip([[10, 20, 30], [40, 50, 60], [200, 100, 50]]) {
+        let texture = part.texture.as_ref().expect("a texture");
+        assert_eq!(texture.size, [8, 4]);
+        assert!(texture.pixels.iter().all(|pixel| near(*pixel, colour)), "{colour:?}");
+        assert_eq!(part.colour, [1.0; 3]);
+    }
+    assert!(parts[3].texture.is_none());
+    let [red, green, blue] = parts[3].colour;
+    assert!((red - 0.5).abs() < 1e-4 && green == 1.0 && blue == 0.0, "{:?}", parts[3].colour);
+    assert_eq!(skin(&opened).colour, [1.0; 3], "the colours of the file are not changed");
+}
+
+#[test]
+fn what_is_not_read_is_told_in_one_remark() {
+    let mut text = Strip::new().text();
+    primitive(&mut text)["targets"] = json!([{}]);
+    primitive(&mut text)["material"] = json!(0);
+    text.json["materials"] = json!([{
+        "normalTexture": { "index": 0 }, "emissiveFactor": [1, 0, 0], "alphaMode": "MASK",
+        "extensions": { "KHR_materials_clearcoat": {} },
+    }]);
+    push(&mut text.json["meshes"], json!({ "primitives": [] }));
+    push(&mut text.json["nodes"], json!({ "mesh": 1 }));
+    let opened = opened(&text);
+    assert_eq!(
+        warnings(&opened),
+        [
+            "meshes: not read: 1 mesh that follows no joint of the skin, KHR_materials_clearcoat, emission, \
+          morph targets, normal textures, transparency"
+        ]
+    );
+}
+
+#[test]
+fn a_texture_that_cannot_be_decoded_is_left_out_with_the_reason() {
+    let mut text = Strip::new().text();
+    primitive(&mut text)["material"] = json!(0);
+    text.json["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    text.json["textures"] = json!([{ "source": 0 }]);
+    text.json["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
+    let opened = opened(&text);
+    let warnings = warnings(&opened);
+    assert!(warnings[0].starts_with("images[0]: not read: "), "{warnings:?}");
+    assert!(attached(&opened).parts[0].texture.is_none());
+}
+
+// Skins
+
+#[test]
+fn of_several_skins_each_has_its_own_mesh() {
+    let mut text = Strip::new().text();
+    push(&mut text.json["skins"], json!({ "name": "other", "joints": [1, 2] }));
+    let corner = text.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let joints = text.accessor(&[1, 0, 0, 0].repeat(3), 5121, 3, "VEC4");
+    text.json["accessors"][joints]["normalized"] = json!(false);
+    let weights = text.floats(4, &[1.0, 0.0, 0.0, 0.0].repeat(3));
+    push(
+        &mut text.json["meshes"],
+        json!({ "primitives": [{
+        "attributes": { "POSITION": corner, "JOINTS_0": joints, "WEIGHTS_0": weights }
+    }] }),
+    );
+    push(&mut text.json["nodes"], json!({ "mesh": 1, "skin": 1 }));
+    for (name, triangles) in [("skin", 4), ("other", 1)] {
+        let opened = io::parse("x.gltf", &text.embedded(), &io::OpenOptions::of_skeleton(name))
+            .expect("it opens");
+        assert_eq!(attached(&opened).mesh.mesh().triangles.len(), triangles, "{name}");
+    }
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read_is_left_out_with_the_reason() {
+    let refusal = |change: &dyn Fn(&mut Text)| {
+        let mut text = Strip::new().text();
+        change(&mut text);
+        let opened = opened(&text);
+        assert_eq!(opened.document.skeleton().joints().len(), 3);
+        assert!(opened.document.skeleton_rig.skin.is_none());
+        warnings(&opened).remove(0)
+    };
+    let indices = refusal(&|text| {
+        let far = text.accessor(&[0, 1, 9], 5121, 3, "SCALAR");
+        text.json["accessors"][far]["normalized"] = json!(false);
+        primitive(text)["indices"] = json!(far);
+    });
+    assert!(
+        indices.ends_with("must be below 6, the number of vertices, got 9; the skin is left out"),
+        "{indices}"
+    );
+    let joints = refusal(&|text| {
+        let far = text.accessor(&[7; 24], 5121, 6, "VEC4");
+        text.json["accessors"][far]["normalized"] = json!(false);
+        attributes_of(text)["JOINTS_0"] = json!(far);
+    });
+    assert!(joints.contains("must be below 3, the number of joints, got 7"), "{joints}");
+    let short = refusal(&|text| {
+        let short = text.floats(3, &[0.0; 9]);
+        attributes_of(text)["NORMAL"] = json!(short);
+    });
+    assert!(short.contains("attributes.NORMAL: must have 6 rows like POSITION, got 3"), "{short}");
+    let infinite = refusal(&|text| {
+        let far = text.floats(3, &[f32::INFINITY; 18]);
+        attributes_of(text)["POSITION"] = json!(far);
+    });
+    assert!(infinite.contains("texture coordinates must be finite"), "{infinite}");
+    let packed = refusal(&|text| {
+        text.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    });
+    assert!(packed.starts_with("extensionsRequired: "), "{packed}");
+    let sparse = refusal(&|text| {
+        let strip = Strip::new();
+        self::sparse(text, &strip, 5121, true);
+        text.json["accessors"].as_array_mut().expect("a list").last_mut().expect("one")["count"] =
+            json!(3);
+    });
+    assert!(sparse.contains("must be below 3, the number of rows, got 3"), "{sparse}");
+}
+
+// Round trips
+
+/// The posed vertices of the corners of all triangles, in order.
+fn corners(document: &Document, time: f64) -> Vec<Vec3> {
+    let document = document.evaluate(time);
+    let rig = &document.skeleton_rig;
+    let mesh = &rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
+    let posed = mesh.posed(&mesh.pose(&rig.skeleton_at(time)), Skinning::Linear);
+    posed.triangles.as_flattened().iter().map(|corner| posed.positions[*corner as usize]).collect()
+}
+
+#[test]
+fn an_exported_skin_has_the_same_vertices_at_every_key_when_it_is_opened() {
+    let with_skin = all().into_iter().filter(|(_, document)| {
+        document.rig == ik_arm::document::RigKind::Skeleton && document.skeleton_rig.skin.is_some()
+    });
+    let mut count = 0;
+    let mut random = Random(0x1a57);
+    for (name, mut document) in with_skin {
+        // A scale that differs between axes cannot be exported: nodes only turn and move.
+        let mirror = if random.coin() { -1.0 } else { 1.0 };
+        let linear = random.rotation() * Mat3::from_diagonal(Vec3::new(mirror, 1.0, 1.0));
+        let transform =
+            Affine3A::from_mat3_translation(linear * random.within(0.2..3.0), Vec3::ONE);
+        document.skeleton_mut().set_transform(transform).expect("finite");
+        let read = io::read("x.glb", &glb(&document)[..], &io::OpenOptions::default())
+            .expect("it opens")
+            .document;
+        let size = document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+        let scale = transform.matrix3.determinant().abs().cbrt() * document.metres_per_unit();
+        let size = size.mesh.mesh().size() * scale;
+        let frames = if document.is_animated() { document.timeline.frames() } else { 1 };
+        for frame in (0..frames).step_by(frames.div_ceil(20)) {
+            let time = document.timeline.time(frame);
+            let expected = corners(&document, time);
+            let found = corners(&read, time - document.timeline.start);
+            assert_eq!(found.len(), expected.len(), "{name}");
+            for (found, expected) in found.iter().zip(expected) {
+                let expected = expected * document.metres_per_unit();
+                let gap = found.distance(expected);
+                assert!(gap < 1e-4 * size, "{name}, frame {frame}: {found}, not {expected}");
+            }
+        }
+        count += 1;
+    }
+    assert!(count >= 4, "{count}");
+}
+
+#[test]
+fn parts_and_textures_survive_export_and_import() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    let mut second = primitive(&mut text).clone();
+    second["material"] = json!(1);
+    primitive(&mut text)["material"] = json!(0);
+    push(&mut text.json["meshes"][0]["primitives"], second);
+    let view = text.view(&png([10, 200, 30]));
+    text.json["images"] = json!([{ "bufferView": view, "mimeType": "image/png" }]);
+    text.json["textures"] = json!([{ "source": 0 }]);
+    text.json["materials"] = json!([
+        { "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "baseColorFactor": [1, 0.25, 1, 1] } },
+        { "pbrMetallicRoughness": { "baseColorFactor": [0, 0.5, 1, 1] } },
+    ]);
+    let before = opened(&text);
+    let after = io::read("x.glb", &glb(&before.document)[..], &io::OpenOptions::default())
+        .expect("it opens");
+    assert_eq!(warnings(&after), [""; 0]);
+    let (before_parts, after_parts) = (&attached(&before).parts, &attached(&after).parts);
+    assert_eq!(before_parts.len(), 2);
+    for (before, after) in before_parts.iter().zip(after_parts) {
+        assert_eq!((before.triangles, &before.texture), (after.triangles, &after.texture));
+        let gap = |channel: usize| (before.colour[channel] - after.colour[channel]).abs();
+        assert!((0..3).all(|channel| gap(channel) < 1e-5), "{before:?}, {after:?}");
+    }
+    let coordinates = &attached(&after).mesh.mesh().texture_coordinates;
+    assert_eq!(coordinates[..6], strip.coordinates[..]);
+}
+
+#[test]
+fn a_skin_of_a_file_is_shown_instead_of_the_bones_and_blended_linearly() {
+    let opened = opened(&Strip::new().text());
+    let display = opened.document.display;
+    assert!(display.shows(Overlay::Skin) && !display.shows(Overlay::Bones));
+    assert_eq!(skin(&opened).skinning, Skinning::Linear);
+    let SkinSource::Mesh(mesh) = &skin(&opened).source else { panic!("from a file") };
+    assert!(mesh.file().is_none(), "a text without a path can only be packed");
+}
+
+#[test]
+fn triangles_of_a_mirrored_node_are_turned_around() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    text.json["nodes"][4]["scale"] = json!([-1, 1, 1]);
+    let opened = opened(&text);
+    let mesh = attached(&opened).mesh.mesh();
+    assert_eq!(mesh.positions, strip.positions, "the place of the node makes no difference");
+    let turned: Vec<[u32; 3]> = strip.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    assert_eq!(mesh.triangles, turned);
+}
+
+#[test]
+fn meshes_beyond_the_limits_are_refused_before_they_are_read() {
+    let mut text = Strip::new().text();
+    let first = primitive(&mut text).clone();
+    text.json["meshes"][0]["primitives"] = json!(vec![first; 10_001]);
+    let opened = opened(&text);
+    let said = warnings(&opened).remove(0);
+    assert!(said.contains("a skin must have at most 10000 primitives, got 10001"), "{said}");
+}

@@ -1,0 +1,135 @@
+//! Pictures of what a solver computes in a part of an iteration, of a wiggle, of why a target is not
+//! reached, and of the arm's figures, compared with those in `tests/golden`.
+
+use glam::Vec3;
+use ik_arm::document::{Camera, Overlay, Target, Theme};
+use ik_arm::io::Example;
+use ik_arm::kinematics::chain_ik::Method;
+use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
+use ik_arm::scene::Scene;
+use ik_arm::session::{
+    ArmFigure, EditAction, FileAction, PlaybackAction, Preferences, SelectAction, Session,
+    SolverAction, ViewAction,
+};
+
+use crate::pictures;
+
+fn example(name: &str) -> Session {
+    let mut session = Session::new(Preferences::default());
+    session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
+    session
+}
+
+/// An example of the inside of a solver, at a part of its first iteration.
+fn inside(name: &str, part: usize) -> Session {
+    let mut session = example(name);
+    session.apply(SolverAction::ShowPart { iteration: 1, part: Some(part) });
+    session
+}
+
+fn check(name: &str, session: &Session) {
+    for (name, theme) in [(name.to_owned(), Theme::Dark), (format!("{name}-light"), Theme::Light)] {
+        pictures::check(&name, &Scene::new(session.shown(), &session.overlays(), theme));
+    }
+}
+
+#[test]
+fn the_jacobian_and_its_ellipsoid_at_the_tip_of_a_chain() {
+    check("inside_columns", &inside("inside-dls", 0));
+}
+
+#[test]
+fn the_step_of_damped_least_squares_and_the_angles_that_it_turned() {
+    check("inside_step", &inside("inside-dls", 1));
+}
+
+#[test]
+fn the_rays_and_the_turn_of_one_joint_of_ccd() {
+    check("inside_turn", &inside("inside-ccd", 1));
+}
+
+#[test]
+fn both_passes_of_fabrik() {
+    check("inside_backward", &inside("inside-fabrik", 0));
+    check("inside_forward", &inside("inside-fabrik", 1));
+}
+
+#[test]
+fn the_triangle_and_the_circle_of_two_bones() {
+    let mut session = example("inside-ccd");
+    session.apply(SolverAction::Reset);
+    let target = session.skeleton_rig().targets[0];
+    let home = session.skeleton().base(JointId::new(2)) + Vec3::new(0.45, 0.2, 0.25);
+    session.apply(EditAction::SetTarget(Target { home, ..target }));
+    let options = session.skeleton_rig().solver.with_method(Method::TwoBone);
+    session.apply(EditAction::SetSolver(options));
+    session.apply(SolverAction::Step);
+    let parts = session.solver_run().expect("a run").parts().len();
+    session.apply(SolverAction::ShowPart { iteration: 1, part: Some(parts - 1) });
+    check("inside_two_bones", &session);
+}
+
+#[test]
+fn a_joint_that_swings_with_its_path_and_the_line_of_the_jacobian() {
+    let mut session = example("inside-dls");
+    session.apply(SolverAction::Reset);
+    session.apply(SelectAction::Joints(vec![JointId::new(1)]));
+    session.apply(SelectAction::Wiggle(Some((JointId::new(1), RotationAxis::Z))));
+    for seconds in [0.0, 0.2, 0.4] {
+        session.apply(PlaybackAction::Advance(seconds));
+    }
+    check("wiggle", &session);
+}
+
+#[test]
+fn the_joints_that_keep_a_tip_from_its_target() {
+    let session = example("at-a-limit");
+    assert_eq!(session.why()[0].joints, [JointId::new(2)]);
+    check("why_limits", &session);
+}
+
+#[test]
+fn the_circles_of_the_elbows_and_knees_of_a_figure() {
+    let mut session = example("human");
+    session.apply(EditAction::ShowOverlay(Overlay::ElbowCircle, true));
+    session.apply(EditAction::ShowSkin { skin: false, bones: true });
+    let camera = Camera { distance: 2.6, ..*session.camera() };
+    session.apply(ViewAction::SetCamera(camera));
+    check("limb_circles", &session);
+}
+
+/// The arm with a line of its figures lit up.
+fn lit(figure: ArmFigure) -> Session {
+    let mut session = Session::new(Preferences::default());
+    session.apply(EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0)));
+    session.apply(EditAction::SetTwist(0.5));
+    session.apply(SelectAction::Figure(Some(figure)));
+    let camera = Camera { distance: 640.0, ..*session.camera() };
+    session.apply(ViewAction::SetCamera(camera));
+    session
+}
+
+#[test]
+fn the_axes_of_root_limb_and_socket() {
+    let mut session = lit(ArmFigure::Distance);
+    session.apply(SelectAction::Figure(None));
+    session.apply(EditAction::ShowOverlay(Overlay::Frames, true));
+    check("frames", &session);
+}
+
+#[test]
+fn the_yaw_and_the_pitch_of_the_pointer() {
+    check("figure_yaw", &lit(ArmFigure::Yaw));
+    check("figure_pitch", &lit(ArmFigure::Pitch));
+}
+
+#[test]
+fn the_coordinates_of_the_elbow() {
+    check("figure_elbow", &lit(ArmFigure::Elbow));
+}
+
+#[test]
+fn a_limb_and_the_angle_at_the_elbow() {
+    check("figure_upper", &lit(ArmFigure::Upper));
+    check("figure_elbow_angle", &lit(ArmFigure::ElbowAngle));
+}

@@ -1,0 +1,369 @@
+//! Pictures of the singularities of twist references, of twisting limbs, and of a hand, compared
+//! with the ones kept in `tests/golden`; and numbers read off such pictures.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test golden_trouble` keeps the new ones; look at them before
+//! committing.
+
+use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
+use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme};
+use ik_arm::kinematics::twist::{Stereographic, TwistReference};
+use ik_arm::kinematics::two_bone::Pointer;
+use ik_arm::render::PictureRenderer;
+use ik_arm::rig::TaperedCylinder;
+use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
+use ik_arm::session::Overlays;
+use image::RgbaImage;
+
+use crate::pictures::{GPU, check, compare, draw, kept};
+
+const POLE: Vec3 = Vec3::new(180.0, 260.0, 200.0);
+
+fn scene(document: &Document, theme: Theme) -> Scene {
+    Scene::new(document, &Overlays::default(), theme)
+}
+
+fn globe(reference: TwistReference) -> Globe {
+    let arm = Arm::default();
+    Globe { centre: arm.root, radius: arm.bones.outer_limit(), reference }
+}
+
+fn globe_scene(reference: TwistReference, theme: Theme) -> Scene {
+    let mut document = Document::default();
+    document.camera = Camera { target: Vec3::ZERO, distance: 1650.0, ..document.camera };
+    let mut scene = scene(&document, theme);
+    scene.add_globe(globe(reference));
+    scene
+}
+
+fn references() -> [(&'static str, TwistReference); 3] {
+    [
+        ("limb", TwistReference::Limb),
+        ("pole", TwistReference::Pole(POLE)),
+        ("stereographic", TwistReference::Stereographic(Stereographic::default())),
+    ]
+}
+
+#[test]
+fn the_globe_of_each_reference_in_both_themes() {
+    for (name, reference) in references() {
+        check(&format!("globe_{name}"), &globe_scene(reference, Theme::Dark));
+        check(&format!("globe_{name}-light"), &globe_scene(reference, Theme::Light));
+    }
+}
+
+#[test]
+fn the_globe_seen_from_inside() {
+    let mut inside =
+        globe_scene(TwistReference::Stereographic(Stereographic::default()), Theme::Dark);
+    let target = Vec3::NEG_X * globe(TwistReference::Limb).radius;
+    inside.camera = Camera { target, yaw: 1.8, pitch: 0.2, distance: 430.0, ..inside.camera };
+    let eye = inside.camera.projection(1.0).eye;
+    assert!(eye.distance(Vec3::ZERO) < globe(TwistReference::Limb).radius);
+    check("globe_inside", &inside);
+}
+
+#[test]
+fn another_reference_is_another_globe() {
+    for (name, reference) in references() {
+        for (other, another) in references() {
+            let drawn = draw(&globe_scene(another, Theme::Dark));
+            let same = compare(&drawn, &kept(&format!("globe_{name}"))).is_ok();
+            assert_eq!(same, reference == another, "{name} and {other}");
+        }
+    }
+}
+
+/// Nothing but a globe before an empty sky.
+fn bare(globe: Globe, theme: Theme, camera: Camera) -> Scene {
+    let display = Overlay::all().fold(Display::default(), |all, one| all.with(one, false));
+    let mut scene = scene(&Document { display, camera, ..Document::default() }, theme);
+    scene.solids.clear();
+    scene.balls.clear();
+    scene.globe = Some(globe);
+    scene
+}
+
+fn picture(scene: &Scene, side: u32) -> RgbaImage {
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    PictureRenderer::new(&gpu, side, side, 1.0).draw(scene).expect("drawn")
+}
+
+/// Expected colours of a pixel of the globe, if they are smooth there: the
+/// ramp's for the library's own gain where the far and the near side are met, laid over the sky.
+fn expected(scene: &Scene, at: (u32, u32), side: u32, sky: [f64; 3]) -> Option<[f64; 3]> {
+    const FAR_OPACITY: f64 = 0.65;
+    let globe = scene.globe?;
+    let (radius, centre) = (f64::from(globe.radius), globe.centre.as_dvec3());
+    let ray = scene.camera.projection(1.0).ray(glam::Vec2::new(
+        (at.0 as f32 + 0.5) / side as f32 * 2.0 - 1.0,
+        1.0 - (at.1 as f32 + 0.5) / side as f32 * 2.0,
+    ));
+    let (origin, direction) =
+        (ray.origin.as_dvec3() - centre, ray.direction.as_dvec3().normalize());
+    let middle = -origin.dot(direction);
+    let half = (radius * radius - (origin + direction * middle).length_squared()).sqrt();
+    // Towards the rim the globe is denser.
+    (half > 0.65 * radius).then_some(())?;
+    let near_is_seen = middle > half || scene.camera.orthographic;
+    let far_opacity = if near_is_seen { FAR_OPACITY } else { 1.0 };
+    let sides = [(middle + half, far_opacity), (middle - half, 1.0)];
+    let mut colour = sky;
+    for (along, share) in sides.into_iter().take(1 + usize::from(near_is_seen)) {
+        let gain = gain(globe.reference, (origin + direction * along) / radius);
+        let between_lines =
+            [1.0, 2.0, 5.0].iter().all(|line: &f64| (gain / line).ln().abs() > 0.15);
+        between_lines.then_some(())?;
+        let [r, g, b, a] = scene.palette.gain(gain as f32).channels().map(f64::from);
+        let a = a * share;
+        colour = [0, 1, 2].map(|channel| colour[channel] * (1.0 - a) + [r, g, b][channel] * a);
+    }
+    Some(colour)
+}
+
+fn gain(reference: TwistReference, direction: DVec3) -> f64 {
+    let pointer = Pointer::towards(direction.as_vec3(), Pointer::default());
+    f64::from(reference.gain(pointer))
+}
+
+#[test]
+fn every_pixel_of_a_globe_has_the_colour_of_its_gain() {
+    const SIDE: u32 = 240;
+    const STEP: usize = 7;
+    const OFF: f64 = 2.5 / 255.0;
+    let tilted = Stereographic::new(Vec3::new(0.4, 0.8, 0.7), Vec3::Y).expect("a map");
+    let references = [
+        TwistReference::Limb,
+        TwistReference::Pole(Vec3::new(-0.3, 0.2, 0.9) * 300.0),
+        TwistReference::Stereographic(tilted),
+        TwistReference::Transport,
+    ];
+    let outside =
+        Camera { target: Vec3::ZERO, yaw: 0.5, pitch: 0.9, distance: 1700.0, orthographic: false };
+    let cameras = [
+        outside,
+        Camera { orthographic: true, ..outside },
+        Camera { distance: 60.0, pitch: -0.6, ..outside },
+    ];
+    for (reference, camera, theme) in references.into_iter().flat_map(|reference| {
+        cameras.into_iter().flat_map(move |camera| {
+            [Theme::Dark, Theme::Light].map(|theme| (reference, camera, theme))
+        })
+    }) {
+        let globe = Globe { centre: Vec3::new(20.0, -30.0, 10.0), ..globe(reference) };
+        let scene = bare(globe, theme, camera);
+        let drawn = picture(&scene, SIDE);
+        let mut without = scene.clone();
+        without.globe = None;
+        let sky = picture(&without, SIDE);
+        let mut compared = 0;
+        for (x, y, pixel) in drawn.enumerate_pixels().step_by(STEP) {
+            let screen = |pixel: &image::Rgba<u8>| {
+                [0, 1, 2].map(|channel| f64::from(pixel.0[channel]) / 255.0)
+            };
+            let Some(expected) = expected(&scene, (x, y), SIDE, screen(sky.get_pixel(x, y))) else {
+                continue;
+            };
+            let seen = screen(pixel);
+            let off = [0, 1, 2].map(|channel| (seen[channel] - expected[channel]).abs());
+            assert!(
+                off.iter().all(|off| *off < OFF),
+                "{reference:?} {camera:?} {theme:?} at {x}, {y}: {seen:?}, not {expected:?}"
+            );
+            compared += 1;
+        }
+        assert!(compared > 500, "{reference:?}: only {compared} pixels");
+    }
+}
+
+#[test]
+fn an_invalid_pole_is_drawn_as_the_globe_of_transport() {
+    let camera = Camera { distance: 1700.0, ..Document::default().camera };
+    let calm = picture(&bare(globe(TwistReference::Transport), Theme::Dark, camera), 200);
+    for pole in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
+        let pole = globe(TwistReference::Pole(pole));
+        assert_eq!(picture(&bare(pole, Theme::Dark, camera), 200), calm);
+    }
+}
+
+#[test]
+fn a_globe_without_a_size_is_not_drawn() {
+    let plain = scene(&Document::default(), Theme::Dark);
+    for (centre, radius) in [
+        (Vec3::ZERO, 0.0),
+        (Vec3::ZERO, -1.0),
+        (Vec3::ZERO, f32::NAN),
+        (Vec3::ZERO, f32::INFINITY),
+        (Vec3::NAN, 1.0),
+    ] {
+        let globe = Globe { centre, radius, reference: TwistReference::Limb };
+        let mut with = plain.clone();
+        with.add_globe(globe);
+        assert_eq!(with, plain, "{globe:?}");
+        with.globe = Some(globe);
+        let drawn = draw(&with);
+        assert_eq!(drawn, draw(&plain), "{globe:?}");
+    }
+}
+
+#[test]
+fn every_singular_direction_is_marked_on_the_globe() {
+    let expected = [
+        (TwistReference::Limb, vec![Vec3::Y, Vec3::NEG_Y]),
+        (TwistReference::Pole(Vec3::X * 30.0), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::X * 1e-30), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::X * 1e30), vec![Vec3::X, Vec3::NEG_X]),
+        (TwistReference::Pole(Vec3::ZERO), vec![]),
+        (TwistReference::Stereographic(Stereographic::default()), vec![Vec3::NEG_X]),
+        (TwistReference::Transport, vec![]),
+    ];
+    for (reference, directions) in expected {
+        let mut marked = scene(&Document::default(), Theme::Dark);
+        let before = (marked.balls.len(), marked.labels.len());
+        let globe = Globe { centre: Vec3::new(1.0, 2.0, 3.0), radius: 100.0, reference };
+        marked.add_globe(globe);
+        assert_eq!(marked.globe, Some(globe));
+        let places: Vec<_> = directions.iter().map(|way| globe.centre + way * 100.0).collect();
+        let balls: Vec<_> = marked.balls[before.0..].iter().map(|ball| ball.centre).collect();
+        let labels: Vec<_> = marked.labels[before.1..].iter().map(|label| label.at).collect();
+        assert_eq!((&balls, &labels), (&places, &places), "{reference:?}");
+        assert!(directions.iter().all(|way| gain(reference, way.as_dvec3()) > 1e6));
+    }
+}
+
+/// Lightness as people see it: L of Oklab.
+fn lightness(colour: [f32; 4]) -> f32 {
+    let light = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    let [r, g, b, _] = colour.map(light);
+    let l = 0.412_22 * r + 0.536_33 * g + 0.051_45 * b;
+    let m = 0.211_90 * r + 0.680_70 * g + 0.107_40 * b;
+    let s = 0.088_30 * r + 0.281_72 * g + 0.629_98 * b;
+    0.210_45 * l.cbrt() + 0.793_62 * m.cbrt() - 0.004_07 * s.cbrt()
+}
+
+#[test]
+fn the_colours_of_gains_rise_in_contrast() {
+    for theme in [Theme::Dark, Theme::Light] {
+        let palette = Palette::new(theme);
+        let background = lightness(palette.sky_bottom.mixed(palette.sky_top, 0.5).channels());
+        let ramp: Vec<_> = (0..=40)
+            .map(|step| palette.gain(((step as f32 / 40.0) * Palette::MAX_GAIN.ln_1p()).exp_m1()))
+            .collect();
+        let contrast = |colour: &Colour| {
+            (lightness(colour.channels()) - background).abs() * colour.channels()[3]
+        };
+        let contrasts: Vec<_> = ramp.iter().map(contrast).collect();
+        assert!(contrasts.windows(2).all(|pair| pair[1] > pair[0]), "{theme:?}: {contrasts:?}");
+        assert_eq!(palette.gain(0.0), palette.gains[0]);
+        assert_eq!(palette.gain(f32::NAN), palette.gains[0]);
+        for hot in [Palette::MAX_GAIN, 100.0, f32::INFINITY] {
+            assert_eq!(palette.gain(hot), palette.gains[Palette::GAINS - 1]);
+        }
+    }
+}
+
+/// The default arm, without its hand, with stripes on both limbs, from near.
+fn striped(upper: Option<f32>, lower: Option<f32>) -> Scene {
+    let mut document = Document::default();
+    document.camera = Camera { distance: 720.0, ..document.camera };
+    document.display = document.display.with(Overlay::Hand, false);
+    let mut scene = scene(&document, Theme::Dark);
+    let colours = [scene.palette.upper, scene.palette.lower];
+    for (colour, stripes) in colours.into_iter().zip([upper, lower]) {
+        let limbs = scene.solids.iter_mut().filter(|solid| solid.colour == colour);
+        assert_eq!(limbs.map(|limb| limb.stripes = stripes).count(), 1);
+    }
+    scene
+}
+
+#[test]
+fn straight_and_winding_stripes() {
+    let turn = 270_f32.to_radians();
+    check("stripes", &striped(Some(0.0), Some(turn)));
+    for (upper, lower) in [(Some(0.0), Some(-turn)), (Some(turn), Some(turn)), (None, Some(turn))] {
+        assert!(compare(&draw(&striped(upper, lower)), &kept("stripes")).is_err());
+    }
+    let none = draw(&striped(None, None));
+    for no_angle in [f32::NAN, f32::INFINITY] {
+        assert_eq!(draw(&striped(Some(no_angle), None)), none);
+    }
+}
+
+/// Along a cylinder's middle as it is seen from the front, a line k of n is where 2πk/n + t·winding
+/// is a quarter turn: from +y to +z.
+#[test]
+fn stripes_wind_right_handed_from_base_to_tip() {
+    const SIDE: u32 = 400;
+    const STRIPES: f32 = 5.0;
+    let (transform, shape) =
+        TaperedCylinder::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
+    for winding in [270_f32, -270.0, 500.0].map(f32::to_radians) {
+        // Turned so that its +y is the world's, whatever +y the cone was given.
+        let transform = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..transform };
+        let camera = Camera { target: Vec3::ZERO, distance: 300.0, ..Document::default().camera };
+        let mut scene =
+            bare(globe(TwistReference::Transport), Theme::Light, camera.along(AxisView::Front));
+        scene.globe = None;
+        let (colour, stripes) = (Colour([200, 200, 200, 255]), Some(winding));
+        scene.solids.push(Solid { transform, shape, colour, stripes });
+        let drawn = picture(&scene, SIDE);
+        let projection = scene.camera.projection(1.0);
+        for step in 5..95 {
+            let along = step as f32 / 100.0;
+            let at = projection.project(Vec3::new(200.0 * along - 100.0, 0.0, 30.0)).expect("seen");
+            let pixel = (at * glam::Vec2::new(0.5, -0.5) + 0.5) * SIDE as f32;
+            let shade = drawn.get_pixel(pixel.x as u32, pixel.y as u32).0[0];
+            let phase = (0.25 - along * winding / std::f32::consts::TAU) * STRIPES;
+            let off = (phase - phase.round()).abs();
+            // A line is 0.13 wide, and a pixel on its edge is between.
+            if !(0.03..0.12).contains(&off) {
+                assert_eq!(shade < 160, off < 0.03, "at {along}, {off} off a line: {shade}");
+            }
+        }
+    }
+}
+
+/// A hand held up before an empty sky, its palm to the front.
+fn hand(theme: Theme, yaw: f32) -> Scene {
+    let camera = Camera {
+        target: Vec3::new(3.0, 46.0, 0.0),
+        yaw,
+        pitch: 0.15,
+        distance: 185.0,
+        orthographic: false,
+    };
+    let mut scene = bare(globe(TwistReference::Transport), theme, camera);
+    scene.globe = None;
+    let colour = scene.palette.joint;
+    let held_up = Mat3::from_cols(Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X);
+    scene.add_hand(Affine3A::from_mat3(held_up), 100.0, colour);
+    scene
+}
+
+#[test]
+fn a_hand_from_its_palm_and_from_its_back() {
+    check("hand", &hand(Theme::Dark, 0.35));
+    check("hand_back-light", &hand(Theme::Light, 3.6));
+}
+
+#[test]
+fn a_hand_has_the_given_length_and_the_thumb_of_a_right_hand() {
+    let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -1.1, 2.0);
+    let transform = Affine3A::from_rotation_translation(turn, Vec3::new(7.0, -3.0, 12.0));
+    for size in [0.5, 100.0] {
+        let mut scene = scene(&Document::default(), Theme::Dark);
+        let before = (scene.balls.len(), scene.solids.len());
+        scene.add_hand(transform, size, scene.palette.joint);
+        let local = |point: Vec3| transform.inverse().transform_point3(point) / size;
+        let balls: Vec<_> = scene.balls[before.0..]
+            .iter()
+            .map(|ball| (local(ball.centre), ball.radius / size))
+            .collect();
+        let longest = balls.iter().map(|(at, radius)| at.length() + radius).fold(0.0, f32::max);
+        assert!((longest - 1.0).abs() < 0.01, "{longest}");
+        let widest = |sign: f32| balls.iter().map(|(at, _)| at.z * sign).fold(0.0, f32::max);
+        assert!(widest(-1.0) > 1.3 * widest(1.0), "the thumb is at −z");
+        let furthest = balls.iter().max_by(|a, b| a.0.x.total_cmp(&b.0.x)).expect("balls");
+        assert!(furthest.0.y < 0.0, "fingers bend towards the palm, at −y");
+        assert!(scene.solids.len() > before.1 + 15, "five fingers and a palm");
+    }
+}

@@ -1,0 +1,133 @@
+//! Skins moved by the device against those moved by the CPU.
+
+use glam::{Affine3A, Vec2, Vec3};
+use ik_arm::document::{Camera, Document, Overlay, RigKind, Skin, Theme};
+use ik_arm::io::Example;
+use ik_arm::kinematics::Shared;
+use ik_arm::kinematics::skeleton::{JointId, Skeleton};
+use ik_arm::kinematics::skin::{SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights};
+use ik_arm::render::SkinDeformer;
+use ik_arm::rig::{FileMesh, MeshSkin, SkeletonRig, SkinPart, SkinSource, SkinTexture};
+use ik_arm::scene::Scene;
+use ik_arm::session::Overlays;
+
+use crate::common::Random;
+use crate::common::skeletons::{shake, transform, tree};
+use crate::pictures::{GPU, draw};
+
+fn assert_agrees(skeleton: &Skeleton, mesh: &SkinnedMesh, case: &str) {
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let deformer = SkinDeformer::new(&gpu);
+    let pose = mesh.pose(skeleton);
+    for skinning in Skinning::ALL {
+        let expected = mesh.posed(&pose, skinning);
+        let (positions, normals) = deformer.deform(&gpu, mesh, &pose, skinning).expect("deformed");
+        assert_eq!(positions.len(), expected.positions.len());
+        let size = expected.size();
+        for (vertex, at) in positions.iter().enumerate() {
+            let error = at.distance(expected.positions[vertex]) / size;
+            assert!(error < 1e-5, "{case}, {skinning}: vertex {vertex} is {error:.1e} away");
+            let turned = normals[vertex].distance(expected.normals[vertex]);
+            assert!(turned < 1e-2, "{case}, {skinning}: normal {vertex} is off by {turned:.1e}");
+        }
+    }
+}
+
+#[test]
+fn the_device_moves_the_skins_of_all_examples_as_the_cpu_does() {
+    let mut skins = 0;
+    for example in Example::ALL {
+        let document = example.open().expect("opens").document;
+        let Some(skin) = &document.skeleton_rig.skin else { continue };
+        let mesh = &skin.mesh().expect("a mesh").mesh;
+        for time in [0.0, 0.7] {
+            let shown = document.evaluate(time);
+            let posed = shown.skeleton_rig.skeleton_at(time);
+            assert_agrees(&posed, mesh, &format!("{} at {time} s", example.name));
+        }
+        skins += 1;
+    }
+    assert!(skins >= 5, "{skins} examples have skins");
+}
+
+#[test]
+fn the_device_moves_skins_of_random_trees_as_the_cpu_does() {
+    for seed in 0..12 {
+        let mut random = Random(seed);
+        let (mut skeleton, _) = tree(&mut random, 3, 1.0);
+        skeleton.set_transform(transform(&mut random)).expect("transform");
+        let shape = SkinShape { detail: SkinShape::LEAST_DETAIL, ..SkinShape::default() };
+        let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+        // Attached in another space, with a scale.
+        let attached = Affine3A::from_scale(Vec3::splat(random.within(0.5..2.0)));
+        let binds = mesh.inverse_binds().iter().map(|bind| *bind * attached).collect();
+        let mesh = SkinnedMesh::new(mesh.mesh().clone(), mesh.weights().to_vec(), binds);
+        shake(&mut random, &mut skeleton);
+        assert_agrees(&skeleton, &mesh.expect("mesh"), &format!("seed {seed}"));
+    }
+}
+
+/// A square of the size 2 about the origin, with the colours and textures of its two halves.
+fn square(parts: Vec<SkinPart>) -> Document {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    let positions: Vec<Vec3> =
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| corner(x, y)).into();
+    let coordinates = positions.iter().map(|at| Vec2::new(0.5 * at.x + 0.5, 0.5 - 0.5 * at.y));
+    let mesh = TriangleMesh {
+        normals: vec![Vec3::Z; 4],
+        texture_coordinates: coordinates.collect(),
+        positions,
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let weights = vec![VertexWeights::rigid(JointId::new(0)); 4];
+    let mesh = SkinnedMesh::new(mesh, weights, vec![Affine3A::IDENTITY]).expect("a mesh");
+    let skeleton = Skeleton::with_root("root");
+    let in_file = FileMesh { mesh, parents: vec![None], parts };
+    let skin = MeshSkin::new(in_file.into(), None, vec![Some(JointId::new(0))], &skeleton);
+    let mut rig = SkeletonRig::new(skeleton);
+    rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
+    let camera =
+        Camera { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 4.0, ..Camera::default() };
+    let display = [Overlay::Skin].into_iter().collect();
+    Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, display, ..Document::default() }
+}
+
+/// The greatest channel at a point of the square, which is nearly white otherwise.
+fn channel_at(picture: &image::RgbaImage, x: f32, y: f32) -> usize {
+    let (width, height) = (picture.width() as f32, picture.height() as f32);
+    let at = (0.5 * width + 0.2 * height * x, 0.5 * height - 0.2 * height * y);
+    let pixel = picture.get_pixel(at.0 as u32, at.1 as u32).0;
+    let greatest = (0..3).max_by_key(|channel| pixel[*channel]).expect("three channels");
+    let others = (0..3).filter(|channel| *channel != greatest);
+    assert!(others.into_iter().all(|other| pixel[other] < pixel[greatest] / 2), "{pixel:?}");
+    greatest
+}
+
+#[test]
+fn each_part_has_its_colour_and_its_texture_the_right_way_up() {
+    let part = |colour, texture| SkinPart { triangles: 1, colour, texture };
+    // Red at the upper left, green at the upper right, blue below.
+    let [red, green, blue] = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]];
+    let pixels: Vec<[u8; 4]> = (0..64)
+        .map(|at| {
+            if at >= 32 {
+                blue
+            } else if at % 8 < 4 {
+                red
+            } else {
+                green
+            }
+        })
+        .collect();
+    let texture = SkinTexture { file: Vec::new(), size: [8, 8], pixels };
+    let texture = Shared::from(texture);
+    let textured =
+        square(vec![part([1.0; 3], Some(texture.clone())), part([1.0; 3], Some(texture))]);
+    let picture = draw(&Scene::new(&textured, &Overlays::default(), Theme::Dark));
+    for (x, y, expected) in [(-0.6, 0.6, 0), (0.6, 0.6, 1), (-0.6, -0.6, 2), (0.6, -0.6, 2)] {
+        assert_eq!(channel_at(&picture, x, y), expected, "at {x}, {y}");
+    }
+    let coloured = square(vec![part([1.0, 0.1, 0.1], None), part([0.1, 1.0, 0.1], None)]);
+    let picture = draw(&Scene::new(&coloured, &Overlays::default(), Theme::Dark));
+    assert_eq!((channel_at(&picture, 0.6, -0.6), channel_at(&picture, -0.6, 0.6)), (0, 1));
+}
