@@ -32,14 +32,18 @@ impl JointAnimation {
         let is_moving = rig.is_moving() && timeline.is_valid();
         let frames = if is_moving { timeline.frames() } else { 1 };
         let joints = bones.nodes.len();
+        let too_long = || GlbError::TooLong { frames, joints };
+        if frames > GlbError::MAX_FRAMES {
+            return Err(too_long());
+        }
         let first = first_time(timeline);
         let in_file = |time: f64| (first + (time - timeline.start)).max(0.0) as f32;
         let times = Rc::new((0..frames).map(|frame| in_file(timeline.time(frame))).collect());
         let mut recorder = TrackRecorder::new(kept, joints, &times, in_file);
         let moments = recorder.moments((0..frames).map(|frame| timeline.time(frame)));
         let count = moments.len();
-        if frames > GlbError::MAX_FRAMES || count.saturating_mul(joints) > GlbError::MAX_SAMPLES {
-            return Err(GlbError::TooLong { frames, joints });
+        if count.saturating_mul(joints) > GlbError::MAX_SAMPLES {
+            return Err(too_long());
         }
         let mut previous: Vec<DQuat> =
             bones.bind_pose.iter().map(|bind_pose| bind_pose.rotation).collect();
