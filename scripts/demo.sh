@@ -12,6 +12,7 @@ source scripts/window.sh
 hand_path=("733 376" "853 240" "700 183" "623 317" "795 288")
 
 picture=$target/demo.png
+program=$target/demo/ik-arm
 
 main() {
     if [[ ${1-} == -- ]]; then
@@ -23,7 +24,7 @@ main() {
     if has_display; then
         set_up
         build
-        exec "$target/release/ik-arm" "$@"
+        exec "$program" "$@"
     fi
     set_up virtual-display
     build
@@ -36,7 +37,7 @@ main() {
 }
 
 build() {
-    cargo build --release --locked
+    cargo build --profile demo --locked
 }
 
 pose_hand() {

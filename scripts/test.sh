@@ -8,24 +8,32 @@ source scripts/setup.sh
 source scripts/display.sh
 
 current_step=
+window_log=${CARGO_TARGET_DIR:-target}/window-tests.log
+window_tests=
 
 main() {
     trap finish EXIT
-    step "Set-up" set_up virtual-display
+    step "Set-up" set_up virtual-display node:nodejs curl:curl
     step "Format" cargo fmt --all --check
-    step "Lints" lint
-    step "Tests" cargo test --locked
-    step "Tests without threads" cargo test --locked --package ik-arm-kinematics \
-        --lib --test kinematics -- batch crowd_solve skin_from_bones
+    step "Tests" run_tests
+    # Tests of the window wait more than they compute; they wait while the compiler works.
+    test_window >"$window_log" 2>&1 &
+    window_tests=$!
     step "glTF validator" scripts/validate-gltf.sh
+    step "Lints" lint
     step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
-    step "Window" test_window
+    step "Tests without threads" test_without_threads
+    step "Window" end_of_window_tests
     printf '\nEverything passed in %d s.\n' "$SECONDS"
 }
 
 finish() {
     local status=$?
-    stop_virtual_display
+    if [[ -n $window_tests ]]; then
+        # With the display that it has started.
+        kill "$window_tests" 2>/dev/null || true
+        wait "$window_tests" 2>/dev/null || true
+    fi
     if [[ $status -ne 0 ]]; then
         printf '\n==> FAILED: %s\n' "$current_step" >&2
     fi
@@ -41,12 +49,29 @@ step() {
     printf '==> %s: %d s\n' "$current_step" $((SECONDS - started))
 }
 
+# Tests of both packages. cargo-nextest, where it is installed, names slow and hanging tests; it runs
+# each test in a process of its own, and none of those in documentation.
+run_tests() {
+    if cargo nextest --version >/dev/null 2>&1; then
+        cargo nextest run --locked --no-fail-fast
+        cargo test --locked --doc
+    else
+        cargo test --locked
+    fi
+}
+
+# Only code under the feature `parallel` differs without it. Unoptimised, because it is compiled for this
+# alone.
+test_without_threads() {
+    cargo test --locked --package ik-arm-kinematics --lib --test batches \
+        --config profile.dev.package.ik-arm-kinematics.opt-level=0
+}
+
 # Lints everything with the default features, and each package's library in its smaller sets of features.
 lint() {
     local arguments
-    for arguments in --all-targets "--package ik-arm-kinematics --lib" \
-        "--package ik-arm --lib --no-default-features" \
-        "--package ik-arm --lib --no-default-features --features render"; do
+    for arguments in --all-targets "--package ik-arm --lib --no-default-features" \
+        "--package ik-arm-kinematics --lib"; do
         printf '%s\n' "$arguments"
         # shellcheck disable=SC2086 # several arguments
         cargo clippy --locked $arguments -- -D warnings
@@ -54,16 +79,33 @@ lint() {
 }
 
 test_window() {
+    trap end_test_window EXIT
     # One after the other: they share the screen.
     local test=(cargo test --locked --test window -- --ignored --nocapture --test-threads=1)
     if is_linux; then
         start_virtual_display
         # A Wayland desktop would get the window instead.
-        env -u WAYLAND_DISPLAY DISPLAY="$virtual_display" "${test[@]}"
-        stop_virtual_display
+        env -u WAYLAND_DISPLAY DISPLAY="$virtual_display" "${test[@]}" &
     else
-        "${test[@]}"
+        "${test[@]}" &
     fi
+    # In the background, so that a signal ends it at once.
+    wait $!
+}
+
+end_test_window() {
+    local tests
+    tests=$(jobs -p)
+    [[ -z $tests ]] || kill $tests 2>/dev/null || true
+    stop_virtual_display
+}
+
+end_of_window_tests() {
+    local tests=$window_tests status=0
+    window_tests=
+    wait "$tests" || status=$?
+    cat "$window_log"
+    return "$status"
 }
 
 main "$@"

@@ -5,25 +5,32 @@ cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
 source scripts/setup.sh
 
-validator=gltf-validator@2.0.0-dev.3.10
-tools=(node:nodejs npm:npm)
+# A package without dependencies, so node alone runs it.
+validator=gltf-validator-2.0.0-dev.3.10
+url=https://registry.npmjs.org/gltf-validator/-/$validator.tgz
+sha512=a1d278934b519065e20c69fbf320c183e7c16c022f0675f187747002d6b47a64b11adc9a80513c078c442c1d6861edd2e510fc0a2dee640b1969ab1c1f62c011
+tools=(node:nodejs curl:curl)
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 files=$target/gltf
 
 main() {
-    set_up
-    require_tools "${tools[@]}"
+    set_up "${tools[@]}"
     install_validator
     export_files
     validate_files
 }
 
 install_validator() {
-    local folder=$target/$validator
-    if [[ ! -d $folder/node_modules/gltf-validator ]]; then
-        say "installing $validator"
-        mkdir -p "$folder"
-        npm install --prefix "$folder" --no-save --no-audit --no-fund "$validator"
+    local folder=$target/$validator archive
+    if [[ ! -d $folder ]]; then
+        say "downloading $validator"
+        archive=$(mktemp)
+        curl --proto '=https' --tlsv1.2 -sSf -o "$archive" "$url"
+        sha512sum --quiet --check <<<"$sha512  $archive"
+        mkdir -p "$folder/node_modules/gltf-validator"
+        tar --extract --gzip --file "$archive" --strip-components 1 \
+            --directory "$folder/node_modules/gltf-validator"
+        rm "$archive"
     fi
     export NODE_PATH=$folder/node_modules
 }

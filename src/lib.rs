@@ -15,8 +15,8 @@
 //! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
 //! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
 //! | [`scene`] | what to draw, as plain lists | |
-//! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `render` |
-//! | `export` | files for other programs: motion, tables, meshes, pictures | `render` |
+//! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `app` |
+//! | `export` | files for other programs: motion, tables, meshes, pictures | `app` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
 //! | `app` | window, surface and frame loop (winit) | `app` |
 //! | `cli` | commands: solve, pose, render, export, bake, skin, examples, tour, gui | `app` |
@@ -52,10 +52,10 @@ pub mod app;
 #[cfg(feature = "app")]
 pub mod cli;
 pub mod document;
-#[cfg(feature = "render")]
+#[cfg(feature = "app")]
 pub mod export;
 pub mod io;
-#[cfg(feature = "render")]
+#[cfg(feature = "app")]
 pub mod render;
 pub mod scene;
 pub mod session;

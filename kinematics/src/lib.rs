@@ -68,3 +68,8 @@ pub use shared::Shared;
 
 pub(crate) use normalize::normalize;
 pub(crate) use rotation_between::rotation_between;
+
+/// Compiles the code in README.md.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

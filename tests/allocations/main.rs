@@ -3,7 +3,7 @@
 mod chain_ik;
 #[path = "../common/mod.rs"]
 mod common;
-#[cfg(feature = "render")]
+#[cfg(feature = "app")]
 mod render;
 mod scene;
 mod sharing;

@@ -8,4 +8,4 @@ pub mod documents;
 mod kinematics;
 pub mod pictures;
 
-pub use kinematics::{Random, missed_targets, skeletons, strategies};
+pub use kinematics::{Random, all_cases, cases, missed_targets, skeletons, strategies};

@@ -13,7 +13,7 @@ use ik_arm::io;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{EditAction, FileAction, Session};
 
-use crate::common::Random;
+use crate::common::{Random, cases};
 
 /// Names the file that a child process saves to.
 const TO: &str = "IK_ARM_TEST_SAVES_TO";
@@ -66,13 +66,13 @@ impl Drop for Saver {
 
 #[test]
 fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it_saves() {
-    const KILLS: usize = 200;
+    let kills = cases(200);
     let documents = old_and_new();
     let texts = documents.each_ref().map(|document| io::to_json(document).expect("written"));
     let folder = tempfile::tempdir().expect("a folder");
     let mut random = Random(0x5a7e);
     let (mut found, mut interrupted) = ([0; 2], 0);
-    for kill in 0..KILLS {
+    for kill in 0..kills {
         let folder = folder.path().join(kill.to_string());
         fs::create_dir(&folder).expect("a folder");
         let path = folder.join("document.json");
@@ -97,9 +97,9 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
         interrupted += usize::from(fs::read_dir(&folder).expect("a folder").count() > 1);
         fs::remove_dir_all(&folder).expect("removed");
     }
-    println!("{found:?} of {KILLS} were old and new; {interrupted} were killed in the middle");
+    println!("{found:?} of {kills} were old and new; {interrupted} were killed in the middle");
     assert!(found.iter().all(|count| *count > 0), "{found:?}: the moments were not random");
-    assert!(interrupted > KILLS / 10, "only {interrupted} were killed while they wrote");
+    assert!(interrupted > kills / 10, "only {interrupted} were killed while they wrote");
 }
 
 /// A session with changes, and what it says when it is told to save to `path`.

@@ -1,5 +1,5 @@
 //! Pictures drawn without a window, compared with formulas and with those in `tests/golden`.
-#![cfg(feature = "render")]
+#![cfg(feature = "app")]
 
 #[path = "../common/mod.rs"]
 mod common;

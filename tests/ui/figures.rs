@@ -1,13 +1,14 @@
 //! The arm's figures and formulas: their numbers, and the lines that light up in the view.
 
 use egui::accesskit::Role;
-use egui::{Pos2, Rect, lerp, vec2};
+use egui::{Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::Overlay;
 use ik_arm::session::{ArmFigure, EditAction, PanelTab};
 
 use crate::bench::{Bench, SMALL};
+use crate::common::all_cases;
 
 /// The rows of the page, with what they light up.
 const ROWS: [(&str, ArmFigure); 18] = [
@@ -85,11 +86,11 @@ fn the_sides_of_the_triangle_light_up_the_limbs() {
     let mut bench = Bench::after([EditAction::SetHand(Vec3::new(360.0, 0.0, 0.0))]);
     let panel = triangle(&bench);
     let mut seen = Vec::new();
-    for row in 0..60 {
-        for column in 0..40 {
-            let part = vec2(column as f32 / 39.0, row as f32 / 59.0);
-            let at = panel.lerp_inside(part);
-            bench.move_to(at);
+    let (columns, rows) = if all_cases() { (40, 60) } else { (20, 30) };
+    for row in 0..rows {
+        for column in 0..columns {
+            let part = vec2(column as f32, row as f32) / vec2(columns as f32, rows as f32);
+            bench.move_to(panel.lerp_inside(part));
             bench.frame([]);
             if let Some(figure) = bench.session().figure()
                 && !seen.contains(&figure)
@@ -126,13 +127,13 @@ fn both_right_triangles_light_up_level_yaw_and_pitch() {
     bench.reveal(Role::Image, name);
     let drawing = bench.rect(Role::Image, name);
     let mut seen = [Vec::new(), Vec::new()];
-    for column in 0..60 {
-        for row in 0..40 {
-            let x = lerp(drawing.x_range().min..=drawing.x_range().max, column as f32 / 59.0);
-            let y = lerp(drawing.y_range().min..=drawing.y_range().max, row as f32 / 39.0);
-            bench.move_to(Pos2::new(x, y));
+    let (columns, rows) = if all_cases() { (60, 40) } else { (30, 20) };
+    for column in 0..columns {
+        for row in 0..rows {
+            let part = vec2(column as f32, row as f32) / vec2(columns as f32, rows as f32);
+            bench.move_to(drawing.lerp_inside(part));
             bench.frame([]);
-            let half = usize::from(column >= 30);
+            let half = usize::from(2 * column >= columns);
             seen[half].extend(bench.session().figure());
         }
     }

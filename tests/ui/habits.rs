@@ -297,16 +297,16 @@ fn export_shows_only_the_fields_of_its_format() {
 fn a_message_goes_when_its_time_is_over_and_an_error_stays_longer() {
     let mut bench = first(LARGE);
     bench.apply([ShellAction::Report("A message".to_owned())]);
-    bench.wait(6.0);
+    bench.skip(6.0);
     assert!(bench.says("A message"));
     bench.apply([ShellAction::Report("Another message".to_owned())]);
-    bench.wait(9.0);
+    bench.skip(9.0);
     assert!(bench.says("Another message"), "each has its own time");
-    bench.wait(5.0);
+    bench.skip(5.0);
     assert_eq!(bench.session().message(), None);
     bench.apply([ShellAction::Fail("an error".to_owned())]);
-    bench.wait(20.0);
+    bench.skip(20.0);
     assert!(bench.says("An error"));
-    bench.wait(12.0);
+    bench.skip(12.0);
     assert_eq!(bench.session().message(), None);
 }

@@ -8,6 +8,8 @@ mod arm_pin;
 mod arm_posing;
 mod bake;
 mod bench;
+#[path = "../common/mod.rs"]
+mod common;
 mod controls;
 mod crowd;
 mod dialogs;

@@ -1,12 +1,10 @@
 //! The library of kinematics against independent twins: f64, finite differences, matrix products.
 
 mod arm_rig;
-mod batch;
 mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]
 mod common;
-mod crowd_solve;
 mod diagnose;
 mod evaluate;
 mod fk;

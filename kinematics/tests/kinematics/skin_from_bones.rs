@@ -6,9 +6,9 @@ use glam::{DVec3, Vec3};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use ik_arm_kinematics::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh, VertexWeights};
 
-use crate::common::Random;
+use crate::common::{Random, cases};
 
-const TREES: u64 = 200;
+const TREES: usize = 200;
 
 /// A skeleton of 1 to 60 joints with radii from 1 to 10, straight, crooked, folded or with joints away from
 /// their parents' tips; one bone in ten has no length, one joint in thirty is another root.
@@ -152,7 +152,7 @@ fn greatest_jump(mesh: &SkinnedMesh) -> f32 {
 
 #[test]
 fn skins_of_random_trees_are_closed_and_smooth_with_one_surface_for_each_tree() {
-    for seed in 0..TREES {
+    for seed in 0..cases(TREES) as u64 {
         let skeleton = any_skeleton(&mut Random(seed));
         let mesh = SkinnedMesh::from_bones(&skeleton, &coarse()).expect("skin");
         let case = format!("seed {seed}, {} joints", skeleton.joints().len());

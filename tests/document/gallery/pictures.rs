@@ -69,7 +69,7 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
 }
 
 /// In every hard case the rig covers a part of the picture, but not all of it.
-#[cfg(feature = "render")]
+#[cfg(feature = "app")]
 #[test]
 fn every_hard_case_is_drawn() {
     let gpu = ik_arm::render::Gpu::headless().expect("a graphics adapter");
