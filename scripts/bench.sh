@@ -15,7 +15,7 @@ main() {
     set_up
     require_tools "${tools[@]}"
     if [[ ${1:-} != --tables ]]; then
-        cargo bench --locked --no-default-features --features parallel \
+        cargo bench --locked --no-default-features \
             --bench two_bone --bench batch --bench curves --bench chain_ik --bench keying
         cargo build --locked --release
     fi

@@ -15,15 +15,13 @@ window_libraries=(
     libX11-xcb.so.1:libx11-xcb1
 )
 
-# set_up [virtual-display] [COMMAND:PACKAGE...]: with the word, also installs a virtual display; with
-# others, also these commands.
+# set_up [virtual-display]: with the argument, also installs a virtual display.
 set_up() {
     local tools=("${build_tools[@]}")
-    if [[ ${1-} == virtual-display ]]; then
-        ! is_linux || tools+=("${screen_tools[@]}")
-        shift
+    if [[ ${1-} == virtual-display ]] && is_linux; then
+        tools+=("${screen_tools[@]}")
     fi
-    require_tools "${tools[@]}" "$@"
+    require_tools "${tools[@]}"
     find_cargo || install_rust
     check_rust_version
 }

@@ -13,7 +13,7 @@ window_tests=
 
 main() {
     trap finish EXIT
-    step "Set-up" set_up virtual-display node:nodejs curl:curl
+    step "Set-up" set_up virtual-display
     step "Format" cargo fmt --all --check
     step "Tests" run_tests
     # Tests of the window wait more than they compute; they wait while the compiler works.
@@ -94,9 +94,8 @@ test_window() {
 }
 
 end_test_window() {
-    local tests
-    tests=$(jobs -p)
-    [[ -z $tests ]] || kill $tests 2>/dev/null || true
+    # shellcheck disable=SC2046 # none or one
+    kill $(jobs -p) 2>/dev/null || true
     stop_virtual_display
 }
 

@@ -14,7 +14,8 @@ target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 files=$target/gltf
 
 main() {
-    set_up "${tools[@]}"
+    set_up
+    require_tools "${tools[@]}"
     install_validator
     export_files
     validate_files

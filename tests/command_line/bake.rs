@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Target, TargetMotion, TargetPath};
@@ -11,6 +11,8 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::rig::{LimbSettings, TargetKind};
 use tempfile::TempDir;
+
+use crate::{program, stderr};
 
 /// A folder with a file in it.
 struct Desk {
@@ -59,13 +61,13 @@ impl Desk {
 }
 
 fn run(file: &Path, out: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+    let mut command = program();
     command.arg("bake").arg(file).arg("-o").arg(out).args(arguments);
     command.output().expect("the program runs")
 }
 
 fn complaint(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).trim_end().to_owned()
+    stderr(output).trim_end().to_owned()
 }
 
 /// A leg whose foot goes around a circle, stretched where the circle is out of reach.
@@ -197,7 +199,7 @@ fn ctrl_c_leaves_no_file() {
     document.timeline.end = 3600.0;
     document.timeline.frame_rate = 200.0;
     let desk = Desk::with(&document);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+    let mut command = program();
     command.arg("bake").arg(&desk.file).arg("-o").arg(desk.out());
     let child = command.stderr(Stdio::piped()).spawn().expect("the program runs");
     while !handles(child.id(), Signal::SIGINT as i32) {

@@ -2,16 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use ik_arm::io::{self, Example, OpenOptions};
 use serde_json::Value;
 use tempfile::TempDir;
 
-fn run(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-    command.args(arguments).output().expect("the program runs")
-}
+use crate::run;
 
 struct Desk(TempDir);
 

@@ -1,13 +1,14 @@
 //! `ik-arm examples`, as a person runs it.
 
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use ik_arm::io::{self, Example};
 
+use crate::run;
+
 fn examples(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-    command.arg("examples").args(arguments).output().expect("the program runs")
+    run(&[&["examples"], arguments].concat())
 }
 
 fn stdout(output: &Output) -> &str {

@@ -11,6 +11,8 @@ use ik_arm::export::{ExportError, ExportOptions, export};
 use ik_arm::io::{self, Example, FileBatch, Progress};
 use tempfile::TempDir;
 
+use crate::{program, stderr};
+
 /// A folder with a file in it.
 struct Desk {
     folder: TempDir,
@@ -35,7 +37,7 @@ impl Desk {
     }
 
     fn command(&self, out: &str, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+        let mut command = program();
         command.arg("export").arg(&self.file).arg("-o").arg(self.out(out)).args(arguments);
         command
     }
@@ -78,7 +80,7 @@ fn moving() -> Document {
 
 /// The program's own lines of standard error; drivers may write others.
 fn complaint(output: &Output) -> String {
-    let said = String::from_utf8_lossy(&output.stderr);
+    let said = stderr(output);
     let is_ours = |line: &&str| line.starts_with("ik-arm: ") || line.starts_with("error: invalid");
     said.lines().filter(is_ours).collect::<Vec<_>>().join("\n")
 }
@@ -146,7 +148,7 @@ fn bvh_round_trips_in_the_chosen_unit() {
 #[test]
 fn standard_input_is_exported() {
     let desk = Desk::new("");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+    let mut child = program()
         .args(["export", "-", "-o"])
         .arg(desk.out("a.csv"))
         .stdin(Stdio::piped())

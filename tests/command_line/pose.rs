@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use glam::{Mat4, Vec3};
 use ik_arm::document::Document;
@@ -13,6 +13,7 @@ use ik_arm::rig::{LimbSettings, Target as RigTarget, TargetKind, TargetPath, Tar
 use serde::Deserialize;
 
 use crate::common::Random;
+use crate::{program, stderr};
 
 /// A file in a folder of its own.
 struct Scene {
@@ -37,13 +38,13 @@ impl Scene {
     }
 
     fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+        let mut command = program();
         command.arg("pose").arg(&self.path).args(arguments).output().expect("the program runs")
     }
 
     fn pose(&self, arguments: &[&str]) -> Answer {
         let output = self.run(arguments);
-        assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         answer(&output)
     }
 
@@ -51,7 +52,7 @@ impl Scene {
     fn refusal(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{output:?}");
-        let complaint = complaint(&output);
+        let complaint = stderr(&output);
         let start = format!("ik-arm: {}", self.path.display());
         complaint.strip_prefix(&start).expect("the file is named").trim_end().to_owned()
     }
@@ -61,10 +62,6 @@ impl Answer {
     fn joint(&self, name: &str) -> &Joint {
         self.joints.iter().find(|joint| joint.name == name).expect("a joint")
     }
-}
-
-fn complaint(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 fn answer(output: &Output) -> Answer {
@@ -150,7 +147,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             "\n"
         )
     );
-    assert_eq!(complaint(&output), "");
+    assert_eq!(stderr(&output), "");
 }
 
 #[test]
@@ -189,7 +186,7 @@ fn a_transform_maps_the_joints_own_space_to_the_world() {
 
 #[test]
 fn a_document_comes_from_standard_input_as_well() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
+    let mut child = program()
         .args(["pose", "-"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -211,7 +208,7 @@ fn warnings_about_a_file_are_printed_beside_the_pose() {
     assert_eq!(output.status.code(), Some(0));
     let path = scene.path.display();
     let expected = "line 2, column 10: colour: unknown field, ignored";
-    assert_eq!(complaint(&output), format!("ik-arm: {path}, {expected}\n"));
+    assert_eq!(stderr(&output), format!("ik-arm: {path}, {expected}\n"));
     assert_eq!(answer(&output).joints.len(), 1);
 }
 
@@ -449,7 +446,7 @@ fn a_malformed_target_is_an_error_that_shows_a_right_one() {
             "error: invalid value '{given}' for '--target <JOINT=x,y,z>': must be a joint and a \
              point, like left_hand=0.3,1.2,0.4"
         );
-        assert!(complaint(&output).starts_with(&expected), "{}", complaint(&output));
+        assert!(stderr(&output).starts_with(&expected), "{}", stderr(&output));
     }
 }
 
@@ -528,7 +525,7 @@ fn a_usage_error_exits_with_2_and_prints_no_result() {
         let output = scene.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert_eq!(output.stdout.len(), 0);
-        assert!(complaint(&output).starts_with("error: "), "{output:?}");
+        assert!(stderr(&output).starts_with("error: "), "{output:?}");
     }
 }
 
@@ -605,7 +602,7 @@ fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
     for method in ["transpose", "ccd", "fabrik", "dls", "two-bone"] {
         let output = scene.run(&["--solver", method]);
         assert_eq!(output.status.code(), Some(0), "{method}: {output:?}");
-        assert!(complaint(&output).contains("no enabled target, so there is nothing to solve"));
+        assert!(stderr(&output).contains("no enabled target, so there is nothing to solve"));
         let solved: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         let fk = scene.run(&["--fk"]).stdout;
         assert_eq!(solved, serde_json::from_slice::<serde_json::Value>(&fk).expect("JSON"));

@@ -6,12 +6,14 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn ik_arm(arguments: &[&str]) -> Output {
+use crate::{program, stderr};
+
+fn run_without_display(arguments: &[&str]) -> Output {
     command(arguments).output().expect("the program runs")
 }
 
 fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+    let mut command = program();
     command.args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     command
 }
@@ -19,7 +21,7 @@ fn command(arguments: &[&str]) -> Command {
 fn render(out: &Path, arguments: &[&str]) -> Output {
     let out = out.to_str().expect("a path in UTF-8");
     let small: &[&str] = if arguments.contains(&"--size") { &[] } else { &["--size", "160x100"] };
-    ik_arm(&[&["render", "-o", out], small, arguments].concat())
+    run_without_display(&[&["render", "-o", out], small, arguments].concat())
 }
 
 fn picture(arguments: &[&str]) -> image::RgbaImage {
@@ -29,10 +31,6 @@ fn picture(arguments: &[&str]) -> image::RgbaImage {
     assert!(output.status.success(), "{arguments:?}: {output:?}");
     assert!(output.stdout.is_empty(), "a picture alone prints nothing");
     image::open(out).expect("a picture").into_rgba8()
-}
-
-fn complaint(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 #[test]
@@ -103,10 +101,10 @@ fn an_invalid_argument_is_a_usage_error_that_states_the_rule() {
         let folder = tempfile::tempdir().expect("a folder");
         let output = render(&folder.path().join("arm.png"), &arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(complaint(&output).contains(right), "{arguments:?}: {}", complaint(&output));
+        assert!(stderr(&output).contains(right), "{arguments:?}: {}", stderr(&output));
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "{arguments:?}");
     }
-    assert_eq!(ik_arm(&["render"]).status.code(), Some(2), "no output and no timings");
+    assert_eq!(run_without_display(&["render"]).status.code(), Some(2), "no output and no timings");
 }
 
 #[test]
@@ -116,7 +114,7 @@ fn a_picture_that_cannot_be_written_is_an_error_that_names_the_file() {
         let output = render(&out, &[]);
         assert_eq!(output.status.code(), Some(1));
         let named = out.to_str().expect("a path in UTF-8");
-        assert!(complaint(&output).contains(named), "{}", complaint(&output));
+        assert!(stderr(&output).contains(named), "{}", stderr(&output));
     }
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing half-written");
 }
@@ -140,8 +138,8 @@ fn a_picture_replaces_the_one_before_and_follows_a_link() {
 
 #[test]
 fn timings_are_one_line_of_json_and_need_no_picture() {
-    let output = ik_arm(&["render", "--size", "64x64", "--frames", "3", "--timings"]);
-    assert!(output.status.success(), "{}", complaint(&output));
+    let output = run_without_display(&["render", "--size", "64x64", "--frames", "3", "--timings"]);
+    assert!(output.status.success(), "{}", stderr(&output));
     let line: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(line["frames"], 3);
     let milliseconds = |name: &str| line[name].as_f64().expect("a number");
@@ -165,7 +163,7 @@ fn nothing_is_written_to_standard_error_when_all_is_well() {
             .output()
             .expect("the program runs");
         assert!(output.status.success(), "{arguments:?}");
-        assert_eq!(complaint(&output), "", "{arguments:?}");
+        assert_eq!(stderr(&output), "", "{arguments:?}");
     }
 }
 
@@ -180,7 +178,7 @@ fn without_a_graphics_adapter_it_says_what_to_install() {
         .output()
         .expect("the program runs");
     assert_eq!(output.status.code(), Some(1));
-    assert!(complaint(&output).contains("mesa-vulkan-drivers"), "{}", complaint(&output));
+    assert!(stderr(&output).contains("mesa-vulkan-drivers"), "{}", stderr(&output));
     assert!(!out.exists());
 }
 
@@ -191,19 +189,19 @@ fn without_a_display_it_points_to_render() {
     let bent = file(&folder, "bent.js3d", BONE);
     for arguments in [&[][..], &["gui"], &["gui", &bent], &[&bent], &[&bent, "--skeleton", "bent"]]
     {
-        let output = ik_arm(arguments);
+        let output = run_without_display(arguments);
         assert_eq!(output.status.code(), Some(1));
-        assert!(complaint(&output).contains("ik-arm render"), "{}", complaint(&output));
-        assert!(!complaint(&output).contains(".cargo"), "{}", complaint(&output));
+        assert!(stderr(&output).contains("ik-arm render"), "{}", stderr(&output));
+        assert!(!stderr(&output).contains(".cargo"), "{}", stderr(&output));
     }
 }
 
 #[test]
 fn a_file_in_place_of_a_command_must_be_there() {
-    let output = ik_arm(&["solv"]);
+    let output = run_without_display(&["solv"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(complaint(&output).contains("solv"), "{}", complaint(&output));
-    let output = ik_arm(&["render", "human.json", "solve"]);
+    assert!(stderr(&output).contains("solv"), "{}", stderr(&output));
+    let output = run_without_display(&["render", "human.json", "solve"]);
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -273,7 +271,7 @@ fn a_file_that_cannot_be_drawn_is_an_error_with_its_position() {
         let out = folder.path().join("out.png");
         let output = render(&out, &arguments);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-        assert!(complaint(&output).contains(said), "{}", complaint(&output));
+        assert!(stderr(&output).contains(said), "{}", stderr(&output));
         assert!(!out.exists());
     }
 }
@@ -344,7 +342,7 @@ fn a_crowd_is_timed_and_drawn_by_either_solver() {
         let folder = tempfile::tempdir().expect("a folder");
         let out = folder.path().join("crowd.png");
         let output = render(&out, &arguments);
-        assert!(output.status.success(), "{}", complaint(&output));
+        assert!(output.status.success(), "{}", stderr(&output));
         let line: Value = serde_json::from_slice(&output.stdout).expect("a line of JSON");
         let names: Vec<_> = line.as_object().expect("an object").keys().collect();
         assert_eq!(names, ["adapter", "arms", "frame_ms_median", "frames", "solve_ms_median"]);
@@ -352,7 +350,7 @@ fn a_crowd_is_timed_and_drawn_by_either_solver() {
         let [solve, frame] =
             ["solve_ms_median", "frame_ms_median"].map(|name| line[name].as_f64().expect("ms"));
         assert!(0.0 < solve && solve < frame, "{line}");
-        assert!(complaint(&output).contains("frame 3 of 3"), "progress is on stderr");
+        assert!(stderr(&output).contains("frame 3 of 3"), "progress is on stderr");
         let image = image::open(out).expect("a picture").into_rgba8();
         assert!(image != picture(&[]), "the crowd is drawn");
     }
@@ -366,8 +364,8 @@ fn an_invalid_crowd_is_refused() {
         (&["--crowd", "5", "--hand", "1,2,3"], "cannot be used with"),
         (&["--solve", "tpu", "--crowd", "5"], "invalid value 'tpu'"),
     ] {
-        let output = ik_arm(&[&["render", "--timings"], arguments].concat());
+        let output = run_without_display(&[&["render", "--timings"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(complaint(&output).contains(why), "{}", complaint(&output));
+        assert!(stderr(&output).contains(why), "{}", stderr(&output));
     }
 }

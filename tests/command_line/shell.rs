@@ -1,12 +1,9 @@
 //! `ik-arm completions` and `ik-arm manual`, as a packager runs them.
 
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
-fn run(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-    command.args(arguments).output().expect("the program runs")
-}
+use crate::run;
 
 fn help() -> String {
     String::from_utf8(run(&["--help"]).stdout).expect("UTF-8")

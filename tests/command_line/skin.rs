@@ -3,13 +3,15 @@
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use glam::Vec3;
 use ik_arm::io::{self, Example};
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
 use tempfile::TempDir;
+
+use crate::{program, stderr};
 
 struct Desk(TempDir);
 
@@ -33,12 +35,7 @@ impl Desk {
 }
 
 fn run(arguments: &[&str], paths: &[&Path]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-    command.args(arguments).args(paths).output().expect("it runs")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    program().args(arguments).args(paths).output().expect("it runs")
 }
 
 fn skin(file: &Path, out: &Path, arguments: &[&str]) -> Output {

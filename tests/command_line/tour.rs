@@ -1,13 +1,10 @@
 //! `ik-arm tour` and `ik-arm gui --tour`, as a person runs them.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use ik_arm::session::TourStep;
 
-fn run(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
-    command.args(arguments).output().expect("the program runs")
-}
+use crate::run;
 
 #[test]
 fn the_whole_text_of_the_tour_is_printed_with_the_numbers_of_its_scenes() {

@@ -19,13 +19,14 @@ use serde_json::Value;
 
 use crate::common::Random;
 use crate::common::strategies::config;
+use crate::{program, stderr};
 
 const POSE: &str = r#"{"hand":[250,120,60]}"#;
 
 // Running it
 
 fn command() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ik-arm"));
+    let mut command = program();
     command.arg("solve").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
@@ -56,10 +57,6 @@ fn answers(output: &Output) -> Vec<String> {
 
 fn errors(output: &Output) -> Vec<(u64, String)> {
     answers(output).iter().filter_map(|line| error_of(line)).collect()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 fn error_of(answer: &str) -> Option<(u64, String)> {
