@@ -1,7 +1,6 @@
 //! `ik-arm completions` and `ik-arm manual`, as a packager runs them.
 
 use std::fs;
-use std::process::Output;
 
 use crate::run;
 

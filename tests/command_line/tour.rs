@@ -1,7 +1,5 @@
 //! `ik-arm tour` and `ik-arm gui --tour`, as a person runs them.
 
-use std::process::Output;
-
 use ik_arm::session::TourStep;
 
 use crate::run;
