@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
+use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
@@ -360,4 +361,14 @@ fn a_ring_snap_that_overflows_is_clamped() {
         }
         assert!(session.skeleton().joints()[0].rotation.is_finite());
     }
+}
+
+#[test]
+fn a_remedy_that_allows_no_iterations_is_refused() {
+    let mut session = Session::default();
+    let before = session.document().clone();
+    let (target, remedy) = (JointId::new(0), Remedy::AllowIterations(0));
+    session.apply(EditAction::ApplyRemedy { target, remedy });
+    assert_eq!(session.message(), Some("The solver's iterations must be above 0, got 0"));
+    assert_eq!(session.document(), &before);
 }

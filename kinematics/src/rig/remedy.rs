@@ -20,6 +20,9 @@ pub enum RemedyError {
     /// It changes a target to an invalid one.
     #[error(transparent)]
     Target(#[from] SolveError),
+    /// It allows the solver no iterations.
+    #[error("the solver's iterations must be above 0, got 0")]
+    NoIterations,
 }
 
 impl SkeletonRig {
@@ -76,15 +79,16 @@ impl SkeletonRig {
     }
 }
 
-/// Checks the numbers of a remedy for a target.
-fn check(remedy: &Remedy) -> Result<(), SolveError> {
+/// Checks the numbers of a remedy for a target or the solver.
+fn check(remedy: &Remedy) -> Result<(), RemedyError> {
     match *remedy {
         Remedy::MoveTarget { joint, point } if !point.is_finite() => {
-            Err(SolveError::Point { joint, point })
+            Err(SolveError::Point { joint, point }.into())
         }
         Remedy::SetWeight { joint, weight } if !(weight.is_finite() && weight > 0.0) => {
-            Err(SolveError::Weight { joint, weight })
+            Err(SolveError::Weight { joint, weight }.into())
         }
+        Remedy::AllowIterations(0) => Err(RemedyError::NoIterations),
         _ => Ok(()),
     }
 }
