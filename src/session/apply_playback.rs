@@ -32,6 +32,11 @@ impl Session {
         self.playback.is_auto_key()
     }
 
+    /// Whether the document's first key has turned auto-key on and no edit has set a key since.
+    pub fn is_auto_key_news(&self) -> bool {
+        self.playback.is_auto_key_news()
+    }
+
     /// Whether the document has keys, or a target or the shown skeleton moves without keys.
     pub fn has_motion(&self) -> bool {
         self.document().is_moving()
@@ -63,11 +68,24 @@ impl Session {
     }
 
     fn set_time(&mut self, time: f64) {
+        let before = self.time();
         if self.playback.set_time(time) {
             self.with_camera_following(|session| {
-                session.discard_unkeyed_edits();
+                if session.editing.discard_overrides(before, session.time()) {
+                    session.say(format!(
+                        "The unkeyed change at {before:.2} s is discarded: Ctrl+Z brings it back"
+                    ));
+                }
                 session.refresh();
             });
+        }
+    }
+
+    /// Pauses at a time in seconds, without an update of what depends on it.
+    pub(super) fn pause_at(&mut self, time: f64) {
+        if self.playback.set_time(time) {
+            self.playback.set_playing(false);
+            self.playback.forget_last_frame();
         }
     }
 

@@ -110,7 +110,12 @@ impl Session {
 
     /// Replaces the shown document and updates all that depends on it.
     pub(super) fn commit(&mut self, after: Document) {
+        let had_keys = !self.document().keys.is_empty();
         let Some(change) = self.editing.write(after, &self.playback) else { return };
+        self.playback.follow_keys(had_keys, !self.document().keys.is_empty());
+        if change.has_auto_keyed {
+            self.playback.has_auto_keyed();
+        }
         if change.has_overridden {
             self.say("Unkeyed change: press K or it is lost when the time changes");
         }
@@ -122,8 +127,15 @@ impl Session {
         self.editing.clear_overrides();
     }
 
+    /// Restores a state. The playhead moves only to where unkeyed edits come back or go.
     fn restore(&mut self, state: &Snapshot) {
-        match self.editing.restore(state, self.time()) {
+        if !(state.overrides().is_empty() && self.editing.overrides().is_empty()) {
+            self.pause_at(state.time);
+        }
+        let had_keys = !self.document().keys.is_empty();
+        let change = self.editing.restore(state);
+        self.playback.follow_keys(had_keys, !self.document().keys.is_empty());
+        match change {
             TreeChange::Kept => {}
             TreeChange::Shortened { parent } => {
                 self.selection.shorten(self.document().skeleton().joints().len(), parent);
@@ -146,6 +158,8 @@ impl Session {
 
     fn cancel_edit(&mut self) {
         if let Some(before) = self.editing.take_transaction() {
+            // Playback goes on unless the transaction discarded earlier unkeyed edits.
+            self.editing.clear_overrides();
             self.restore(&before);
             self.say("Cancelled");
         }

@@ -6,6 +6,8 @@ use crate::kinematics::diagnosis::Remedy;
 
 /// Label of a transaction without edits.
 pub(super) const CHANGE: &str = "Change";
+/// Label of the undo step by which a move of the playhead discards unkeyed edits.
+pub(super) const DISCARD: &str = "Discard unkeyed change";
 
 impl EditAction {
     /// Label of the edit's undo step, as in "Undo Move hand".

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::drag::Drag;
-use super::edit_label::CHANGE;
+use super::edit_label::{CHANGE, DISCARD};
 use super::history::History;
 use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
@@ -29,10 +29,12 @@ pub(super) struct Editing {
 }
 
 /// Consequences of a change of the document.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct WriteOutcome {
     /// Whether the change made unkeyed edits of keyed channels.
     pub has_overridden: bool,
+    /// Whether auto-key set keys.
+    pub has_auto_keyed: bool,
 }
 
 impl Editing {
@@ -148,6 +150,20 @@ impl Editing {
         self.overrides.clear();
     }
 
+    /// Discards unkeyed edits that were made at `time`, in seconds, because the playhead moves to
+    /// `now`; adds an undo step unless a transaction is open. Returns whether there were any.
+    pub fn discard_overrides(&mut self, time: f64, now: f64) -> bool {
+        if self.overrides.is_empty() {
+            return false;
+        }
+        let before = self.state(time);
+        self.overrides.clear();
+        if !self.is_open() {
+            self.remember(DISCARD, before, now);
+        }
+        true
+    }
+
     /// Evaluates the document at `time`, in seconds, and applies the unkeyed edits.
     pub fn evaluate(&mut self, time: f64) {
         self.shown.clone_from(&self.document);
@@ -167,11 +183,11 @@ impl Editing {
         let change = TreeChange::between(self.shown.skeleton(), after.skeleton());
         let is_rebuilt = change != TreeChange::Kept;
         let has_other_joints = is_rebuilt || joints != joints_before;
-        let mut has_overridden = false;
+        let mut outcome = WriteOutcome::default();
         if is_rebuilt {
             self.overrides.clear();
         } else {
-            has_overridden = self.key_or_override(&mut after, playback);
+            outcome = self.key_or_override(&mut after, playback);
             self.keep_unkeyed_values(&mut after);
         }
         self.overrides.retain(|channel, _| {
@@ -185,7 +201,7 @@ impl Editing {
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
-        Some(WriteOutcome { has_overridden })
+        Some(outcome)
     }
 
     /// Adapts the open transaction to a change of the document. The drag ends if joints were added,
@@ -210,8 +226,8 @@ impl Editing {
     }
 
     /// Keys the channels that `after` changes, if auto-key is on; otherwise, records unkeyed edits
-    /// of the changed channels that have keys. Returns whether any unkeyed edit was recorded.
-    fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> bool {
+    /// of the changed channels that have keys.
+    fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> WriteOutcome {
         let changed = |channel: &Channel| {
             let value = channel.value(after);
             value.is_some() && value != channel.value(&self.shown)
@@ -230,18 +246,19 @@ impl Editing {
                 self.overrides.remove(&Channel::Twist);
             }
         }
-        let mut has_overridden = false;
+        let mut outcome = WriteOutcome::default();
         for channel in channels {
             if playback.is_auto_key() {
                 after.key_before_switch(channel, &self.shown, playback.time());
                 after.key(channel, playback.time());
                 self.overrides.remove(&channel);
+                outcome.has_auto_keyed = true;
             } else if let Some(value) = channel.value(after) {
                 self.overrides.insert(channel, value);
-                has_overridden = true;
+                outcome.has_overridden = true;
             }
         }
-        has_overridden
+        outcome
     }
 
     /// Channels that auto-key keys for a change of the shown document to `after`: changed channels
@@ -316,7 +333,7 @@ impl Editing {
             // Signs of zeros may have changed, but documents with equal revisions are equal bit for
             // bit.
             self.document = before.document(&self.document);
-            if before.overrides_at(time) == self.overrides {
+            if before.is_restored_in(&self.state(time)) {
                 return;
             }
         }
@@ -324,11 +341,11 @@ impl Editing {
     }
 
     /// Restores a state; returns how the tree of joints has changed.
-    pub fn restore(&mut self, state: &Snapshot, time: f64) -> TreeChange {
+    pub fn restore(&mut self, state: &Snapshot) -> TreeChange {
         let document = state.document(&self.document);
         let change = TreeChange::between(self.document.skeleton(), document.skeleton());
         self.document = document;
-        self.overrides = state.overrides_at(time);
+        self.overrides = state.overrides().clone();
         self.revision = state.revision;
         self.content = state.content;
         change

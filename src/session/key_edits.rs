@@ -96,6 +96,9 @@ impl Session {
         }
         self.say(match channels {
             [] => "There is nothing to key".to_owned(),
+            _ if self.is_auto_key_news() => {
+                format!("Keyed at {time:.2} s. Auto-key is on: every edit sets keys")
+            }
             _ => format!("Keyed at {time:.2} s"),
         });
     }

@@ -9,9 +9,21 @@ pub(super) struct Playback {
     looping: bool,
     /// Speed; 1 is real time.
     speed: f64,
-    auto_key: bool,
+    auto_key: AutoKey,
     /// Time of the previous frame on the window's clock, in seconds; `None` before the first frame.
     last_frame: Option<f64>,
+}
+
+/// Whether edits set keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum AutoKey {
+    /// Off until the document has its first key.
+    #[default]
+    Waiting,
+    /// On since the first key; `is_news` until the user knows.
+    SinceFirstKey { is_news: bool },
+    /// On or off, as the user chose.
+    Chosen(bool),
 }
 
 impl Default for Playback {
@@ -21,7 +33,7 @@ impl Default for Playback {
             playing: false,
             looping: true,
             speed: 1.0,
-            auto_key: false,
+            auto_key: AutoKey::default(),
             last_frame: None,
         }
     }
@@ -50,7 +62,12 @@ impl Playback {
     }
 
     pub fn is_auto_key(&self) -> bool {
-        self.auto_key
+        matches!(self.auto_key, AutoKey::SinceFirstKey { .. } | AutoKey::Chosen(true))
+    }
+
+    /// Whether the user is to be told that the first key has turned auto-key on.
+    pub fn is_auto_key_news(&self) -> bool {
+        self.auto_key == AutoKey::SinceFirstKey { is_news: true }
     }
 
     pub fn speed(&self) -> f64 {
@@ -78,7 +95,24 @@ impl Playback {
     }
 
     pub fn set_auto_key(&mut self, auto_key: bool) {
-        self.auto_key = auto_key;
+        self.auto_key = AutoKey::Chosen(auto_key);
+    }
+
+    /// Turns auto-key on when a document gets its first key, and off again when it has none left,
+    /// unless the user chose.
+    pub fn follow_keys(&mut self, had_keys: bool, has_keys: bool) {
+        self.auto_key = match self.auto_key {
+            AutoKey::Waiting if has_keys && !had_keys => AutoKey::SinceFirstKey { is_news: true },
+            AutoKey::SinceFirstKey { .. } if !has_keys => AutoKey::Waiting,
+            unchanged => unchanged,
+        };
+    }
+
+    /// Takes note that auto-key has set a key, so that the user knows that it is on.
+    pub fn has_auto_keyed(&mut self) {
+        if let AutoKey::SinceFirstKey { is_news } = &mut self.auto_key {
+            *is_news = false;
+        }
     }
 
     pub fn set_speed(&mut self, speed: f64) {

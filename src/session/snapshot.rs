@@ -16,8 +16,8 @@ pub(super) type Overrides = BTreeMap<Channel, Vec3>;
 pub(super) struct Snapshot {
     document: Document,
     overrides: Overrides,
-    /// Time at which the overrides were made, in seconds.
-    time: f64,
+    /// The playhead, in seconds: the time at which the overrides were made.
+    pub time: f64,
     /// Number of the document's state: equal numbers mean equal documents, except for their
     /// cameras.
     pub revision: u64,
@@ -68,15 +68,14 @@ impl Snapshot {
             || *metres_per_unit != other.metres_per_unit
     }
 
-    /// The overrides, if they were made at `time`; otherwise none.
-    pub fn overrides_at(&self, time: f64) -> Overrides {
-        if self.time == time { self.overrides.clone() } else { Overrides::default() }
+    pub fn overrides(&self) -> &Overrides {
+        &self.overrides
     }
 
-    /// Whether restoring this state from `now` would change nothing. Overrides made at another time
-    /// than that of `now` do not count, because restoring discards them.
+    /// Whether restoring this state from `now` would change nothing.
     pub fn is_restored_in(&self, now: &Self) -> bool {
-        self.revision == now.revision && self.overrides_at(now.time) == now.overrides
+        let is_same_time = self.overrides.is_empty() || self.time == now.time;
+        self.revision == now.revision && self.overrides == now.overrides && is_same_time
     }
 
     /// Approximate number of bytes that the snapshot does not share with `other`.

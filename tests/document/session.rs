@@ -362,6 +362,7 @@ fn halfway() -> Session {
         session.apply(EditAction::SetHand(hand));
         session.apply(EditAction::Key(vec![Channel::Hand]));
     }
+    session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
     session
@@ -411,9 +412,105 @@ fn an_unkeyed_edit_leaves_the_document_unchanged() {
     session.apply(PlaybackAction::SetTime(0.6));
     assert_eq!(session.document(), &document);
     assert!(!session.is_unsaved());
-    // It left no undo step; the next undo is of the step before.
+}
+
+#[test]
+fn an_unkeyed_edit_that_a_time_change_discards_comes_back_with_undo() {
+    let mut session = halfway();
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::Play(true));
+    session.apply(PlaybackAction::Advance(0.0));
+    session.apply(PlaybackAction::Advance(0.1));
+    assert_eq!(
+        session.message(),
+        Some("The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back")
+    );
+    let played = (session.time(), session.arm().cursor_in_root());
+    assert_ne!(played.0, 0.5);
+
     session.apply(TransactionAction::Undo);
-    assert_eq!(session.document().keys.count(), 1);
+    assert_eq!((session.time(), session.is_playing()), (0.5, false));
+    assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
+    session.apply(TransactionAction::Redo);
+    assert_eq!((session.time(), session.arm().cursor_in_root()), played);
+
+    session.apply(TransactionAction::Undo);
+    session.apply(TransactionAction::Undo);
+    assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
+    assert_eq!(session.document().keys.count(), 2, "both keys are still there");
+}
+
+#[test]
+fn the_playhead_stays_when_undo_brings_back_no_unkeyed_edit() {
+    let mut session = halfway();
+    session.apply(PlaybackAction::SetTime(0.7));
+    session.apply(TransactionAction::Undo);
+    assert_eq!((session.document().keys.count(), session.time()), (1, 0.7));
+}
+
+#[test]
+fn a_cancelled_drag_during_playback_leaves_the_playhead_alone() {
+    let mut session = halfway();
+    session.apply(PlaybackAction::Play(true));
+    session.apply(PlaybackAction::Advance(0.0));
+    session.apply(TransactionAction::Begin);
+    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(PlaybackAction::Advance(0.1));
+    session.apply(EditAction::SetHand(Vec3::Z * 51.0));
+    let time = session.time();
+    session.apply(TransactionAction::Cancel);
+    assert_eq!((session.time(), session.is_playing()), (time, true));
+    assert!(!session.is_overridden(Channel::Hand));
+}
+
+#[test]
+fn a_move_of_the_playhead_without_unkeyed_edits_is_no_undo_step() {
+    let mut session = halfway();
+    let label = session.undo_label();
+    session.apply(PlaybackAction::SetTime(0.7));
+    session.apply(PlaybackAction::SetTime(0.2));
+    assert_eq!(session.undo_label(), label);
+}
+
+#[test]
+fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
+    for name in [None, Some("human")] {
+        let mut session = Session::default();
+        if let Some(name) = name {
+            session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
+            session.apply(EditAction::ClearChannels(session.keyed_channels().collect()));
+        }
+        assert!(!session.is_auto_key() && !session.is_auto_key_news());
+        let channels = session.channels_to_key();
+        session.apply(EditAction::Key(channels.clone()));
+        assert!(session.is_auto_key() && session.is_auto_key_news());
+        assert_eq!(
+            session.message(),
+            Some("Keyed at 0.00 s. Auto-key is on: every edit sets keys")
+        );
+
+        session.apply(PlaybackAction::SetTime(2.0));
+        let at_2 = |session: &Session| session.document().keys.times().contains(&2.0);
+        match name {
+            None => session.apply(EditAction::SetHand(Vec3::X * 300.0)),
+            Some(_) => session
+                .apply(EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::X * 0.3 }),
+        };
+        assert!(at_2(&session), "{name:?}: the pose at 2 s is kept");
+        assert!(session.is_auto_key() && !session.is_auto_key_news(), "it is said once");
+
+        for _ in 0..2 {
+            session.apply(TransactionAction::Undo);
+        }
+        assert!(!session.is_auto_key(), "{name:?}: off without keys");
+        session.apply(TransactionAction::Redo);
+        assert!(session.is_auto_key());
+        session.apply(TransactionAction::Undo);
+        session.apply(PlaybackAction::SetAutoKey(false));
+        session.apply(EditAction::Key(channels));
+        assert!(!session.is_auto_key(), "{name:?}: the user's choice stays");
+        assert_eq!(session.message(), Some("Keyed at 2.00 s"));
+    }
 }
 
 #[test]
@@ -502,13 +599,13 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
 }
 
 #[test]
-fn a_cancelled_drag_restores_no_edit_that_the_time_has_discarded() {
+fn a_cancelled_drag_restores_the_unkeyed_edit_that_the_time_has_discarded() {
     let mut session = halfway();
     session.apply(EditAction::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Begin);
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(TransactionAction::Cancel);
-    assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0);
+    assert_eq!((session.time(), session.arm().cursor_in_root()), (0.5, Vec3::Z * 50.0));
 }
 
 #[test]

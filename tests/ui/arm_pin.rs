@@ -38,6 +38,7 @@ fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
     assert!(bench.shows(Role::Button, "Key of Pinned to world at 1.00 s"));
     assert_eq!(times(&bench, Channel::Hand), [1.0], "with the point that the Cursor has");
     assert!(times(&bench, Channel::Pin).is_empty());
+    bench.click(Role::Button, "Turn off");
     go_to(&mut bench, 2.0);
     assert!(!is_at_key(&bench));
     bench.click(Role::CheckBox, PIN);

@@ -25,6 +25,7 @@ pub const HAND: [(f64, Vec3); 3] = [
 /// A timeline in which the hand goes through three keys and the elbow has two.
 pub fn keyed() -> Bench {
     let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([PlaybackAction::SetAutoKey(false)]);
     for (time, hand) in HAND {
         let key = EditAction::Key(vec![Channel::Hand]).into();
         bench.apply([

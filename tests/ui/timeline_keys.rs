@@ -210,3 +210,28 @@ fn ctrl_a_selects_all_keys_and_esc_none() {
     bench.settle();
     assert!(bench.session().selected_keys().is_empty());
 }
+
+#[test]
+fn after_the_first_key_a_pose_at_another_time_is_kept_and_a_note_says_why() {
+    const NOTE: &str = "Auto-key is on: every edit sets keys at the playhead";
+    let mut bench = Bench::new();
+    bench.key(Key::K);
+    bench.settle();
+    assert!(bench.says(NOTE));
+    let note = bench.rect(Role::Button, "Turn off");
+    let ruler = bench.rect(Role::Slider, "Timeline ruler");
+    assert!(note.bottom() < ruler.top() && note.bottom() > ruler.top() - 30.0, "above the ruler");
+
+    bench.apply([PlaybackAction::SetTime(2.0)]);
+    let at = bench.cursor_on_screen();
+    bench.drag_and_drop(PointerButton::Primary, at, at + egui::vec2(-60.0, 20.0));
+    bench.settle();
+    assert_eq!(times(&bench, Channel::Hand), [0.0, 2.0]);
+    assert!(!bench.says(NOTE), "said once");
+
+    let mut bench = Bench::new();
+    bench.key(Key::K);
+    bench.settle();
+    bench.click(Role::Button, "Turn off");
+    assert!(!bench.session().is_auto_key() && !bench.says(NOTE));
+}

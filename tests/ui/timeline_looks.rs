@@ -23,7 +23,7 @@ pub fn animated() -> Vec<Action> {
             EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
         ]
     };
-    let mut actions = Vec::new();
+    let mut actions = vec![Action::from(PlaybackAction::SetAutoKey(false))];
     actions.extend(keyed(1.0, Vec3::new(250.0, 120.0, 60.0), 0.0));
     actions.extend(keyed(3.5, Vec3::new(-100.0, 300.0, 160.0), 90.0));
     actions.extend(keyed(6.0, Vec3::new(200.0, -50.0, -60.0), 30.0));

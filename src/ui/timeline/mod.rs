@@ -53,5 +53,6 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         dope_sheet::ui(ui, session, scale, &areas, &ruler, actions);
     }
     ruler::playhead(ui, session, scale, areas.ruler, areas.keys.bottom());
+    ruler::auto_key_note(ui, session, scale, areas.ruler, actions);
     keyboard::focused(ui, session, actions);
 }

@@ -1,15 +1,15 @@
 //! The ruler: seconds, frames and the playhead.
 
 use egui::{
-    Align2, Color32, CursorIcon, Event, Id, PointerButton, Rect, Response, Sense, Shape, Stroke,
-    TextStyle, Ui, WidgetInfo, accesskit, pos2,
+    Align2, Area, Color32, CursorIcon, Event, Frame, Id, Order, PointerButton, Rect, Response,
+    Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, accesskit, pos2,
 };
 
 use super::drag;
 use super::time_scale::TimeScale;
 use crate::document::Timeline;
 use crate::session::{Actions, PlaybackAction, Session};
-use crate::ui::style;
+use crate::ui::{style, widgets};
 
 /// Minimum distance in points between labels.
 const LABEL: f64 = 64.0;
@@ -145,6 +145,38 @@ pub(in crate::ui) fn playhead(
         .map(|(x, y)| place(x, y));
     let rim = Stroke::new(1.0, Color32::from_black_alpha(90));
     painter.add(Shape::convex_polygon(points.to_vec(), accent, rim));
+}
+
+/// Says above the playhead that the first key has turned auto-key on, until the user answers or an
+/// edit sets a key.
+pub(in crate::ui) fn auto_key_note(
+    ui: &Ui,
+    session: &Session,
+    scale: TimeScale,
+    ruler: Rect,
+    actions: &mut Actions,
+) {
+    /// Distance from the ruler, in points.
+    const GAP: f32 = 6.0;
+    if !session.is_auto_key_news() {
+        return;
+    }
+    let x = scale.x(session.time()).clamp(ruler.left(), ruler.right());
+    let area = Area::new(Id::unique("auto-key is on")).order(Order::Middle);
+    let area = area.pivot(Align2::CENTER_BOTTOM).fixed_pos(pos2(x, ruler.top() - GAP));
+    area.constrain_to(ui.ctx().content_rect()).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label("Auto-key is on: every edit sets keys at the playhead");
+                if widgets::button(ui, "Turn off", "Set keys by K alone", None) {
+                    actions.push(PlaybackAction::SetAutoKey(false));
+                }
+                if widgets::button(ui, "Keep on", "Hide this note", None) {
+                    actions.push(PlaybackAction::SetAutoKey(true));
+                }
+            });
+        });
+    });
 }
 
 /// Spacing of the ruler's lines.

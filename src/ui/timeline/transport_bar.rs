@@ -49,6 +49,7 @@ fn rail(ui: &mut Ui, session: &Session, rect: Rect, actions: &mut Actions) {
     ruler::ground(ui, scale, timeline, rect);
     ruler::ui(ui, session, scale, rect, actions);
     ruler::playhead(ui, session, scale, rect, rect.bottom());
+    ruler::auto_key_note(ui, session, scale, rect, actions);
     keyboard::focused(ui, session, actions);
 }
 

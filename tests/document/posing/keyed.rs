@@ -17,6 +17,7 @@ fn hand_keys_have_no_effect_while_the_hand_is_pinned() {
         session.apply(EditAction::SetHand(hand));
         session.apply(EditAction::Key(vec![Channel::Hand]));
     }
+    session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(EditAction::PinHand(true));
     session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Y * 200.0);
@@ -30,6 +31,7 @@ fn hand_keys_have_no_effect_while_the_hand_is_pinned() {
 fn k_keys_an_edit_that_would_be_lost_when_the_time_changes() {
     let mut session =
         session([EditAction::SetInfluence(0.0), EditAction::Key(vec![Channel::Influence])]);
+    session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(EditAction::SetInfluence(1.0));
     assert!(session.message().is_some_and(|message| message.contains("press K")));
@@ -90,6 +92,7 @@ fn transported_between_keys() -> Session {
         session.apply(EditAction::SetHand(hand));
         session.apply(EditAction::Key(vec![Channel::Hand]));
     }
+    session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(1.0));
     session
 }
