@@ -42,7 +42,7 @@
 //!   rule.
 //! - A pose is a function of document and time. All state that determines the pose is in the
 //!   document, except unkeyed edits of keyed channels, which last until the time changes.
-//! - Playback writes nothing to the document. Keys of a transported twist are measured from the
+//! - Playback writes nothing to the document, except keys while heads follow the mouse. Keys of a transported twist are measured from the
 //!   stereographic map, so that a pose does not depend on the poses before it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

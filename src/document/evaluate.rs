@@ -5,12 +5,12 @@ use super::channel::Channel;
 use super::document::Document;
 use super::rig_kind::RigKind;
 use crate::kinematics::angle;
-use crate::rig::{FollowPath, Target};
+use crate::rig::{FollowPath, PathKind, SkeletonRig, Target};
 
 /// Keys applied to the document.
 impl Document {
     /// The document at a time in seconds: every keyed channel has its interpolated value, and with
-    /// [`FollowPath::Head`] the rig has the head's keys. [`SkeletonRig::evaluate`](super::SkeletonRig::evaluate)
+    /// [`PathKind::Head`] the rig has the head's keys. [`SkeletonRig::evaluate`]
     /// poses the skeleton.
     #[must_use]
     pub fn evaluate(&self, time: f64) -> Self {
@@ -30,10 +30,16 @@ impl Document {
     pub(crate) fn apply_keys(&mut self, time: f64) {
         self.apply_keys_of(time, |_| true);
         let rig = &mut self.skeleton_rig;
-        rig.head_track = match (rig.follow_path, rig.head()) {
-            (Some(FollowPath::Head), Some(head)) => self.keys.shared_track(Channel::Offset(head)),
-            _ => None,
-        };
+        rig.head_tracks.clear();
+        for path in &rig.follow_paths {
+            let channel = match path.kind {
+                PathKind::Ring(_) => continue,
+                PathKind::Head => Channel::Offset(path.root),
+                PathKind::Target => Channel::Target(path.root),
+            };
+            let track = self.keys.shared_track(channel);
+            rig.head_tracks.extend(track.map(|track| (path.root, track)));
+        }
     }
 
     fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
@@ -50,13 +56,13 @@ impl Document {
         }
     }
 
-    /// Whether the skeleton follows a path at any time: a ring, or the keys of its head.
+    /// Whether a chain follows a path at any time: a ring, a target, or the keys of its head.
     pub fn follows_path(&self) -> bool {
-        match (self.skeleton_rig.follow_path, self.skeleton_rig.head()) {
-            (Some(FollowPath::Ring(_)), Some(_)) => true,
-            (Some(FollowPath::Head), Some(head)) => self.keys.has(Channel::Offset(head)),
-            _ => false,
-        }
+        self.skeleton_rig.follow_paths.iter().any(|path| match path.kind {
+            PathKind::Ring(_) => true,
+            PathKind::Head => self.keys.has(Channel::Offset(path.root)),
+            PathKind::Target => self.skeleton_rig.target(path.root).is_some(),
+        })
     }
 
     /// Whether something of the picture may change over time: there are keys, or a target or the shown
@@ -68,9 +74,11 @@ impl Document {
 
     /// Whether the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
+        let SkeletonRig { follow_paths, targets, .. } = &self.skeleton_rig;
+        let is_ring = |path: &FollowPath| matches!(path.kind, PathKind::Ring(_));
         let moves = self.rig == RigKind::Skeleton
-            && (matches!(self.skeleton_rig.follow_path, Some(FollowPath::Ring(_)))
-                || self.skeleton_rig.targets.iter().any(|it| it.is_moving() && self.can_pose(it)));
+            && (follow_paths.iter().any(is_ring)
+                || targets.iter().any(|it| it.is_moving() && self.can_pose(it)));
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }
 
@@ -89,7 +97,8 @@ impl Document {
             keyed.unwrap_or(value > 0.0)
         };
         let Target { joint, influence, enabled, .. } = *target;
-        is_ever(Channel::TargetInfluence(joint), influence)
+        let leads = self.skeleton_rig.leads_path(target);
+        (leads || is_ever(Channel::TargetInfluence(joint), influence))
             && is_ever(Channel::Enabled(joint), f32::from(u8::from(enabled)))
     }
 

@@ -34,7 +34,9 @@ mod timeline;
 mod turn;
 
 pub use crate::kinematics::twist::TwistReferenceKind;
-pub use crate::rig::{FollowPath, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing};
+pub use crate::rig::{
+    FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing,
+};
 pub use arm::Arm;
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};

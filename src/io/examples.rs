@@ -42,7 +42,7 @@ pub fn new_document() -> Document {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self {
             group: Group::Basics,
             name: "arm",
@@ -98,8 +98,16 @@ impl Example {
             group: Group::Basics,
             name: "snake",
             title: "Snake",
-            sentence: "24 joints that follow their head around in waves.",
+            sentence: "Drag the circle at the head across the floor: 24 joints follow its path.",
             text: include_str!("../../assets/snake.json"),
+        },
+        Self {
+            group: Group::Basics,
+            name: "tadpoles",
+            title: "Tadpoles",
+            sentence: "Five heads swim after moving targets, and their tails follow their paths; \
+                       switch on Follow the mouse.",
+            text: include_str!("../../assets/tadpoles.json"),
         },
         Self {
             group: Group::Basics,

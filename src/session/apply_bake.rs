@@ -70,7 +70,8 @@ impl Session {
         self.refresh();
         self.edit_keys(|document| {
             document.keys = baked.document.keys.clone();
-            document.skeleton_rig.follow_path = baked.document.skeleton_rig.follow_path;
+            let paths = &baked.document.skeleton_rig.follow_paths;
+            document.skeleton_rig.follow_paths.clone_from(paths);
         });
     }
 }

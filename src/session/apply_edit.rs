@@ -91,8 +91,8 @@ impl Session {
             EditAction::SetSkin(skin) => self.set_skin(skin),
             EditAction::SetTranslation(to) => self.set_translation(to),
             EditAction::TurnYUp => self.turn_y_up(),
-            EditAction::SetFollowPath(follow_path) => self.set_follow_path(follow_path),
-            EditAction::SetHead(to) => self.set_head(to),
+            EditAction::SetFollowPath { root, kind } => self.set_follow_path(root, kind),
+            EditAction::SetHead { root, to } => self.set_head(root, to),
 
             EditAction::AddTarget(joint) => self.add_target(joint),
             EditAction::RemoveTarget(joint) => self.remove_target(joint),

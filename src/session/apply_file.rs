@@ -8,6 +8,7 @@ use super::export::{Export, ExportJob};
 use super::file_action::FileAction;
 use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
+use super::playback_action::PlaybackAction;
 use super::session::{ASPECT, Session};
 use super::solver_action::SolverAction;
 use crate::document::{Document, RigKind};
@@ -240,7 +241,11 @@ impl Session {
     fn open_example(&mut self, example: Example) {
         match example.open() {
             Ok(opened) => {
+                let plays = opened.document.follows_path() && opened.document.is_animated();
                 self.replace_document(opened.document, None);
+                if plays {
+                    self.apply_playback(PlaybackAction::Play(true));
+                }
                 if example.group == Group::InsideSolver {
                     self.apply_solver(SolverAction::Step);
                     self.apply_solver(SolverAction::ShowPart { iteration: 1, part: Some(0) });

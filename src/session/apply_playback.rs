@@ -55,7 +55,7 @@ impl Session {
 
     /// Plays or pauses. Playing starts over if the playhead is at the end of the timeline; pausing
     /// moves the playhead to the nearest frame.
-    fn play(&mut self, playing: bool) {
+    pub(super) fn play(&mut self, playing: bool) {
         let timeline = self.document().timeline;
         let (time, was_playing) = (self.time(), self.is_playing());
         if playing && !was_playing && time >= timeline.end {
@@ -67,7 +67,7 @@ impl Session {
         self.playback.forget_last_frame();
     }
 
-    fn set_time(&mut self, time: f64) {
+    pub(super) fn set_time(&mut self, time: f64) {
         let before = self.time();
         if self.playback.set_time(time) {
             self.with_camera_following(|session| {
@@ -110,6 +110,9 @@ impl Session {
     fn advance_playhead(&mut self, passed: f64) {
         if !self.is_playing() || passed == 0.0 {
             return;
+        }
+        if self.follows_mouse() {
+            return self.advance_following(passed);
         }
         let (time, goes_on) = self.playback.played(passed, &self.document().timeline);
         self.set_time(time);

@@ -8,6 +8,7 @@ use super::pose_line;
 use super::preferences::Preferences;
 use super::session::Session;
 use super::shell_action::ShellAction;
+use crate::document::RigKind;
 
 /// Dialogs, messages and preferences.
 impl Session {
@@ -123,6 +124,9 @@ impl Session {
             ShellAction::Report(message) => self.say(message),
             ShellAction::Fail(why) => self.fail(why),
             ShellAction::ClearMessage => self.shell.clear_message(),
+            ShellAction::CopyPose if self.rig() == RigKind::Skeleton => {
+                self.say("Only the pose of the arm can be copied");
+            }
             ShellAction::CopyPose => {
                 self.say("Pose copied as a line for ik-arm solve");
                 return Some(Effect::CopyText(pose_line::of(self.arm())));

@@ -79,6 +79,8 @@ impl Session {
                     self.drag_by(|drag| drag.set_constraint(constraint));
                 }
             }
+            TransactionAction::FollowMouse(follows) => self.follow_mouse(follows),
+            TransactionAction::Lead(ray) => self.lead_heads(ray),
             TransactionAction::TypeOffset(typed) => self.drag_by(|drag| drag.set_typed(typed)),
         }
     }
@@ -153,10 +155,12 @@ impl Session {
     }
 
     pub(super) fn commit_edit(&mut self) {
+        self.follow_mouse = None;
         self.editing.commit(self.time());
     }
 
     fn cancel_edit(&mut self) {
+        self.follow_mouse = None;
         if let Some(before) = self.editing.take_transaction() {
             // Playback goes on unless the transaction discarded earlier unkeyed edits.
             self.editing.clear_overrides();
@@ -251,10 +255,10 @@ impl Session {
                 let twist = turn.angle();
                 self.set_twist(twist);
             }
-            (Grip::Head(..), DragKind::Point(_)) => {
+            (Grip::Head(root, _), DragKind::Point(_)) => {
                 drag.add_waypoint(spacing);
                 let waypoints = drag.waypoints.clone();
-                self.drag_head(&waypoints);
+                self.drag_head(root, &waypoints);
             }
             (_, DragKind::Point(point)) => {
                 let to = point.point();

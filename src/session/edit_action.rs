@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::key::Key;
 use super::pose_mode::PoseMode;
 use crate::document::{
-    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Skin, Target, Timeline,
+    Baked, Channel, HandSpace, Overlay, PathKind, RigKind, Skin, Target, Timeline,
     TwistReferenceKind,
 };
 use crate::kinematics::chain_ik::SolverOptions;
@@ -135,11 +135,21 @@ pub enum EditAction {
     PackSkin,
     /// Replaces the skin of the skeleton; `None` removes it.
     SetSkin(Option<Skin>),
-    /// Sets the path that the skeleton follows; `None` for no path.
-    SetFollowPath(Option<FollowPath>),
-    /// Moves the first root to a point of skeleton space. With
-    /// [`FollowPath::Head`](crate::document::FollowPath::Head), the chain below it follows.
-    SetHead(Vec3),
+    /// Sets the path that the chain of a root follows; `None` for no path.
+    SetFollowPath {
+        /// The root.
+        root: JointId,
+        /// What moves it.
+        kind: Option<PathKind>,
+    },
+    /// Moves a root to a point of skeleton space. With
+    /// [`PathKind::Head`](crate::document::PathKind::Head), the chain below it follows.
+    SetHead {
+        /// The root.
+        root: JointId,
+        /// Its new place.
+        to: Vec3,
+    },
     /// Moves the origin of the skeleton to a point in world space.
     SetTranslation(Vec3),
     /// Turns the skeleton, in which z points up, so that y does.

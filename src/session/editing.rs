@@ -7,7 +7,7 @@ use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
 use super::transaction::Transaction;
 use super::tree_change::TreeChange;
-use crate::document::{Arm, Camera, Channel, Document, FollowPath, TwistReferenceKind};
+use crate::document::{Arm, Camera, Channel, Document, PathKind, TwistReferenceKind};
 
 /// The document, its values at the playhead, the open transaction and the history.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,7 +194,7 @@ impl Editing {
             let is_transported = *channel == Channel::Twist && is_transported(&after);
             is_transported || after.keys.has(*channel)
         });
-        after.skeleton_rig.head_track = None;
+        after.skeleton_rig.head_tracks.clear();
         if !self.is_open() {
             after.skeleton_rig.refresh_skin();
         }
@@ -404,7 +404,7 @@ fn is_transported(document: &Document) -> bool {
 fn is_start_of_body(document: &Document, channel: Channel) -> bool {
     let rig = &document.skeleton_rig;
     let Channel::Rotation(joint) = channel else { return false };
-    rig.follow_path == Some(FollowPath::Head)
-        && !document.keys.has(channel)
-        && rig.path_joints().any(|of_chain| of_chain == joint)
+    let heads = rig.follow_paths.iter().filter(|path| path.kind == PathKind::Head);
+    !document.keys.has(channel)
+        && heads.flat_map(|path| rig.path_joints(path.root)).any(|of_chain| of_chain == joint)
 }

@@ -31,6 +31,7 @@ mod export;
 mod file_action;
 mod file_contents;
 mod files;
+mod follow_mouse;
 mod history;
 mod inside;
 mod inside_layer;

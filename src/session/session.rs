@@ -1,6 +1,7 @@
 use super::editing::Editing;
 use super::evaluated::Evaluated;
 use super::files::Files;
+use super::follow_mouse::FollowMouse;
 use super::playback::Playback;
 use super::pops::{CursorMove, Pops};
 use super::preferences::Preferences;
@@ -30,6 +31,8 @@ pub struct Session {
     pub(super) evaluated: Evaluated,
     pub(super) selection: Selection,
     pub(super) wiggle: Option<Wiggle>,
+    /// Heads that follow the mouse, in a transaction of their own.
+    pub(super) follow_mouse: Option<FollowMouse>,
     pub(super) playback: Playback,
     pub(super) solvers: Solvers,
     pub(super) view: View,
@@ -63,6 +66,7 @@ impl Session {
             editing,
             selection: Selection::default(),
             wiggle: None,
+            follow_mouse: None,
             playback: Playback::default(),
             solvers: Solvers::default(),
             view: View::default(),

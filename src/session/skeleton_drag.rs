@@ -1,13 +1,17 @@
 use glam::{Vec3, Vec3A};
 
 use super::drag::{Drag, DragKind, Grip};
-use super::point_drag::{PointDrag, PointHandle};
+use super::point_drag::{Constraint, PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{FollowPath, Overlay, Ray};
+use crate::document::{Channel, Overlay, PathKind, Ray};
 use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::EvaluatedSkeleton;
+
+/// Smallest slope of the view, as the height that it loses per length, for which a head is dragged on
+/// its level.
+const EDGE_ON: f32 = 0.1;
 
 /// Drags of the skeleton.
 impl Session {
@@ -43,7 +47,7 @@ impl Session {
         forward: Vec3,
     ) {
         if joint.index() < self.skeleton_pose().len()
-            && !self.skeleton_rig().is_on_path(self.time())
+            && !self.skeleton_rig().is_joint_on_path(joint, self.time())
         {
             let tip = self.skeleton_pose().tip(joint);
             self.grab_point(Grip::Tip(joint, handle), handle, tip, ray, forward);
@@ -58,9 +62,12 @@ impl Session {
         forward: Vec3,
     ) {
         let rig = self.skeleton_rig();
-        if rig.follow_path == Some(FollowPath::Head) && rig.head() == Some(joint) {
+        if rig.path_kind(joint) == Some(PathKind::Head) {
             let at = self.evaluated_skeleton().fk.base(joint);
             self.grab_point(Grip::Head(joint, handle), handle, at, ray, forward);
+            if handle == PointHandle::Free && forward.y.abs() > EDGE_ON {
+                self.keep_head_level();
+            }
         }
     }
 
@@ -131,13 +138,25 @@ impl Session {
         }
     }
 
-    /// Moves the head from where it was at the press through points in the world; back without points.
-    pub(super) fn drag_head(&mut self, waypoints: &[Vec3]) {
+    /// Keeps the dragged head at its height, unless the user constrains it otherwise.
+    fn keep_head_level(&mut self) {
+        if let Some((drag, _)) = self.editing.drag_mut() {
+            drag.set_constraint(Some(Constraint::Plane(1)));
+        }
+    }
+
+    /// Moves a head from where it was at the press through points in the world; back without points. A
+    /// head with keys gets one at the playhead.
+    pub(super) fn drag_head(&mut self, root: JointId, waypoints: &[Vec3]) {
         let before = self.editing.shown_before().skeleton_rig.clone();
         let to_skeleton = before.skeleton.transform().inverse();
         let points: Vec<Vec3> =
             waypoints.iter().map(|point| to_skeleton.transform_point3(*point)).collect();
-        self.move_head(before, &points);
+        let channel = Channel::Offset(root);
+        self.move_head(root, before, &points);
+        if !points.is_empty() && self.document().keys.has(channel) {
+            self.key(&[channel]);
+        }
     }
 
     pub(super) fn turn_joint(&mut self, joint: JointId, axis: usize, angle: f32) {

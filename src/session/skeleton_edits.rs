@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::session::{ASPECT, Session};
-use crate::document::{Channel, Document, FollowPath, RigKind, SkeletonRig, Target};
+use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Limit, Skeleton, SkeletonError};
 
@@ -209,10 +209,12 @@ impl Session {
         }
     }
 
-    pub(super) fn set_follow_path(&mut self, follow_path: Option<FollowPath>) {
-        if follow_path.as_ref().is_none_or(FollowPath::is_valid) {
+    pub(super) fn set_follow_path(&mut self, root: JointId, kind: Option<PathKind>) {
+        if self.skeleton_rig().root_of(root) != Some(root) {
+            self.fail(format!("The joint of a path must be a root, got joint {root}"));
+        } else if kind.as_ref().is_none_or(PathKind::is_valid) {
             self.edit_skeleton(|rig| {
-                rig.follow_path = follow_path;
+                rig.follow_paths = rig.with_path(root, kind);
                 Ok(())
             });
         } else {
@@ -220,19 +222,23 @@ impl Session {
         }
     }
 
-    pub(super) fn set_head(&mut self, to: Vec3) {
-        self.move_head(self.skeleton_rig().clone(), &[to]);
+    pub(super) fn set_head(&mut self, root: JointId, to: Vec3) {
+        if self.skeleton_rig().root_of(root) == Some(root) {
+            self.move_head(root, self.skeleton_rig().clone(), &[to]);
+        } else {
+            self.fail(format!("A head must be a root, got joint {root}"));
+        }
     }
 
-    /// Moves the head of `before` through points of skeleton space, and writes the joints that follow a
-    /// path to the shown skeleton.
-    pub(super) fn move_head(&mut self, mut before: SkeletonRig, points: &[Vec3]) {
+    /// Moves the head of a chain of `before` through points of skeleton space, and writes the joints
+    /// that follow a path to the shown skeleton.
+    pub(super) fn move_head(&mut self, root: JointId, mut before: SkeletonRig, points: &[Vec3]) {
         if let Some(wrong) = points.iter().find(|point| !point.is_finite()) {
             return self.fail(format!("The position of the head must be finite, got {wrong}"));
         }
-        let is_on_path = before.head_track.is_some();
-        before.pull_head(points);
-        let moved = before.path_joints().take(if is_on_path { 1 } else { usize::MAX });
+        let has_keys = before.head_tracks.contains_key(&root);
+        before.pull_head(root, points);
+        let moved = before.path_joints(root).take(if has_keys { 1 } else { usize::MAX });
         self.edit_skeleton(|rig| {
             let count = rig.skeleton.joints().len();
             for joint in moved.filter(|joint| joint.index() < count) {

@@ -22,10 +22,10 @@ impl SolverInputs {
         if shown.rig != RigKind::Skeleton {
             return Err("Show the skeleton to solve it");
         }
-        if rig.is_on_path(time) {
-            return Err("A skeleton that follows a path has nothing to solve");
-        }
         let targets = rig.targets_at(time);
+        if targets.iter().any(|target| rig.is_joint_on_path(target.joint, time)) {
+            return Err("A chain that follows a path has nothing to solve");
+        }
         if targets.is_empty() {
             return Err("There is no target to solve for; add one to a joint");
         }

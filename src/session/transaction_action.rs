@@ -30,6 +30,11 @@ pub enum TransactionAction {
     Drag(DragInput),
     /// Constrains the drag to an axis or a plane; `None` frees it.
     Constrain(Option<Constraint>),
+    /// Lets the heads that targets move follow the mouse, as a drag without a button that plays and
+    /// records keys; or ends it with an undo step.
+    FollowMouse(bool),
+    /// Moves the mouse that heads follow to a ray in world space.
+    Lead(Ray),
     /// Sets the typed offset, which replaces the offset by the mouse unless the text is empty.
     TypeOffset(String),
 }

@@ -54,7 +54,7 @@ impl Session {
         let selected = self.selected().and_then(|joint| rig.target_of_end(joint));
         let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
         let errors = rig.targets.iter().zip(&self.evaluated_skeleton().targets).enumerate();
-        let posing = errors.filter(|(_, (target, _))| target.is_posing());
+        let posing = errors.filter(|(_, (target, _))| rig.is_solved_for(target));
         let farthest =
             posing.max_by(|(_, (_, one)), (_, (_, other))| one.error.total_cmp(&other.error));
         selected.or(farthest.map(|(index, _)| index)).filter(is_missed)

@@ -1,6 +1,6 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
-use crate::document::{Channel, FollowPath, Overlay, RigKind, TwistReferenceKind};
+use crate::document::{Channel, Overlay, PathKind, RigKind, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
 use crate::session::Session;
@@ -134,14 +134,15 @@ pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
     }
 }
 
-/// The reason why the joints' own angles do not pose the skeleton; `None` if they do.
-pub fn why_on_path(session: &Session) -> Option<&'static str> {
+/// The reason why a joint's own angles do not pose it; `None` if they do.
+pub fn why_on_path(session: &Session, joint: JointId) -> Option<&'static str> {
     let rig = session.skeleton_rig();
-    let reason = match rig.follow_path? {
-        FollowPath::Ring(_) => "The joints follow a ring; set Path → Follow to None",
-        FollowPath::Head => {
+    let reason = match rig.path_kind(rig.root_of(joint)?)? {
+        PathKind::Ring(_) => "The joints follow a ring; set Path → Follow to None",
+        PathKind::Head => {
             "The joints follow the head; go to its first key, or set Path → Follow to None"
         }
+        PathKind::Target => "The joints follow a target; set Path → Follow to None",
     };
-    rig.is_on_path(session.time()).then_some(reason)
+    rig.is_joint_on_path(joint, session.time()).then_some(reason)
 }

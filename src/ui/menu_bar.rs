@@ -128,7 +128,9 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         actions.push(EditAction::TurnYUp);
     }
     ui.separator();
-    if item(ui, "Copy pose as JSON line", "Ctrl+C") {
+    let copy = Button::new("Copy pose as JSON line").shortcut_text("Ctrl+C");
+    let copy = ui.add_enabled(!is_skeleton, copy);
+    if copy.on_disabled_hover_text("Only the pose of the arm can be copied").clicked() {
         actions.push(ShellAction::CopyPose);
     }
     ui.separator();

@@ -1,6 +1,6 @@
 //! Sentences about the current pose.
 
-use crate::document::{Arm, FollowPath, RigKind};
+use crate::document::{Arm, PathKind, RigKind};
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
@@ -61,7 +61,7 @@ fn describe_skeleton(session: &Session) -> String {
     line.extend(describe_solver(session));
     match session.selected().and_then(|joint| joints.get(joint.index())) {
         Some(joint) => line.insert(0, joint.name.clone()),
-        None if rig.follow_path == Some(FollowPath::Head) => {
+        None if rig.follow_paths.iter().any(|path| path.kind == PathKind::Head) => {
             line.push("drag the circle at the head: the body follows".to_owned());
         }
         None => line.push("click a joint to select it, drag its tip to pose".to_owned()),

@@ -139,7 +139,7 @@ fn a_path_is_baked() {
     let text = Example::find("snake").expect("there").text;
     let (said, baked) = Desk::new(text).bake(&["--fps", "5", "--tolerance", "0.01"]);
     assert!(said.starts_with("ik-arm: 91 frames baked: "), "{said}");
-    assert_eq!(baked.skeleton_rig.follow_path, None);
+    assert_eq!(baked.skeleton_rig.follow_paths, []);
 }
 
 #[test]

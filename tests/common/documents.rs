@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Channel, Cursor, Display, Document, FollowPath, HandOrientation, HandSpace, Keys,
-    Overlay, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
+    Arm, Camera, Channel, Cursor, Display, Document, HandOrientation, HandSpace, Keys, Overlay,
+    PathKind, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
     TwistReferenceKind, WavyRing,
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
@@ -54,13 +54,18 @@ pub fn document(random: &mut Random) -> Document {
     rig.solver.step = random.positive();
     rig.solver.root = random.one_of(&Root::ALL);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
-    let ring = FollowPath::Ring(WavyRing {
+    let ring = PathKind::Ring(WavyRing {
         radius: random.finite(),
         amplitude: random.finite(),
         waves: random.below(1 << 32) as u32,
         period: random.positive(),
     });
-    rig.follow_path = random.one_of(&[None, None, Some(ring), Some(FollowPath::Head)]);
+    let roots = rig.skeleton.ids().filter(|joint| rig.skeleton[*joint].parent.is_none());
+    for root in roots.collect::<Vec<_>>() {
+        let kinds = [ring, PathKind::Head, PathKind::Target].map(Some);
+        rig.follow_paths =
+            rig.with_path(root, random.one_of(&[None, kinds[0], kinds[1], kinds[2]]));
+    }
     let keys = keys(random, &rig);
     let start = f64::from(random.within(-100.0..100.0));
     let timeline = Timeline {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Bake, BakeError, Baked, Channel, Document, FollowPath, RigKind, SkeletonRig, Target,
+    Bake, BakeError, Baked, Channel, Document, FollowPath, PathKind, RigKind, SkeletonRig, Target,
     TargetMotion, TargetPath, Timeline, WavyRing,
 };
 use ik_arm::io::Example;
@@ -35,8 +35,10 @@ fn random_document(random: &mut Random) -> Document {
         }
     }
     let ring = WavyRing { radius: 1.0, amplitude: 0.2, waves: 5, period: 1.5 };
-    let paths = [FollowPath::Ring(ring), FollowPath::Head].map(Some);
-    rig.follow_path = random.one_of(&[None, None, None, None, None, None, paths[0], paths[1]]);
+    if random.chance(0.3) {
+        let kind = random.one_of(&[PathKind::Ring(ring), PathKind::Head, PathKind::Target]);
+        rig.follow_paths = vec![FollowPath { root: JointId::new(0), kind }];
+    }
     let mut document = shown(rig);
     for joint in document.skeleton().ids() {
         for channel in [
@@ -313,10 +315,14 @@ fn a_stretched_bone_is_reported_and_what_hangs_on_it_is_kept() {
 
 #[test]
 fn a_path_is_replaced_by_keys() {
-    let document = Example::find("snake").expect("there").open().expect("it opens").document;
+    let mut document = Example::find("snake").expect("there").open().expect("it opens").document;
+    let head = document.skeleton()[JointId::new(0)].offset;
+    for (time, to) in [(0.0, Vec3::ZERO), (2.0, Vec3::X), (5.0, Vec3::new(1.5, 0.0, 1.0))] {
+        document.keys.insert(Channel::Offset(JointId::new(0)), time, head + to);
+    }
     let frames = Timeline { frame_rate: 10.0, ..document.timeline };
     let baked = bake(&document, &Bake { frames, tolerance: 1e-2 });
-    assert_eq!(baked.document.skeleton_rig.follow_path, None);
+    assert_eq!(baked.document.skeleton_rig.follow_paths, []);
     let root = Channel::Offset(JointId::new(0));
     assert!(baked.document.keys.track(root).is_some_and(|track| !Spline::is_empty(track)));
 }

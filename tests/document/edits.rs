@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Baked, Channel, FollowPath, HandSpace, Overlay, RigKind, Target, Timeline, TwistReferenceKind,
+    Baked, Channel, HandSpace, Overlay, PathKind, RigKind, Target, Timeline, TwistReferenceKind,
     WavyRing,
 };
 use ik_arm::io::to_json;
@@ -102,13 +102,11 @@ examples! {
     ShowSkin: [EditAction::ShowSkin { skin: false, bones: true }];
     PackSkin: [EditAction::PackSkin];
     SetSkin: [EditAction::SetSkin(Some(Skin::from_bones(&Shared::default())))];
-    SetFollowPath: [EditAction::SetFollowPath(Some(FollowPath::Ring(WavyRing {
-        radius: 1.0,
-        amplitude: 0.2,
-        waves: 3,
-        period: 5.0,
-    })))];
-    SetHead: [EditAction::SetHead(Vec3::X)];
+    SetFollowPath: [EditAction::SetFollowPath {
+        root: JointId::new(0),
+        kind: Some(PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 })),
+    }];
+    SetHead: [EditAction::SetHead { root: JointId::new(0), to: Vec3::X }];
     SetTranslation: [EditAction::SetTranslation(Vec3::X)];
     TurnYUp: [EditAction::TurnYUp];
     AddTarget: [EditAction::AddTarget(JointId::new(INNER))];

@@ -21,6 +21,7 @@ mod snake_head;
 mod soak;
 mod solver_runs;
 mod straight_legs;
+mod tadpoles;
 mod target_spaces;
 mod tour;
 mod up_axis;

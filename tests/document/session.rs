@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Display, Document, FollowPath, HandSpace, Overlay, Ray, RigKind,
+    Arm, Camera, Channel, Display, Document, HandSpace, Overlay, PathKind, Ray, RigKind,
     SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::{Example, OpenOptions};
@@ -62,9 +62,10 @@ fn grips() -> impl Strategy<Value = Grip> {
     ]
 }
 
-fn followed_paths() -> impl Strategy<Value = Option<FollowPath>> {
+fn followed_paths() -> impl Strategy<Value = Option<PathKind>> {
     let ring = WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 };
-    prop_oneof![Just(None), Just(Some(FollowPath::Head)), Just(Some(FollowPath::Ring(ring)))]
+    let kinds = [PathKind::Head, PathKind::Target, PathKind::Ring(ring)];
+    prop_oneof![Just(None), prop::sample::select(kinds.map(Some).to_vec())]
 }
 
 fn building() -> impl Strategy<Value = Action> {
@@ -113,8 +114,8 @@ fn posing() -> impl Strategy<Value = Action> {
                 SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
             ))
         }),
-        2 => followed_paths().prop_map(EditAction::SetFollowPath).prop_map(Action::from),
-        1 => points().prop_map(EditAction::SetHead).prop_map(Action::from),
+        2 => (joints(), followed_paths()).prop_map(|(root, kind)| EditAction::SetFollowPath { root, kind }).prop_map(Action::from),
+        1 => (joints(), points()).prop_map(|(root, to)| EditAction::SetHead { root, to }).prop_map(Action::from),
         1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
         2 => Just(Action::from(SolverAction::Step)),
         1 => Just(Action::from(SolverAction::Reset)),

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use glam::Vec3;
-use ik_arm::document::{FollowPath, SkeletonRig, WavyRing};
+use ik_arm::document::{FollowPath, PathKind, SkeletonRig, WavyRing};
 use ik_arm::kinematics::follow;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
@@ -29,7 +29,7 @@ fn snake() -> Skeleton {
 /// A skeleton at a time in seconds, on the ring.
 fn on_ring(skeleton: &Skeleton, time: f64) -> Skeleton {
     let mut rig = SkeletonRig::new(skeleton.clone());
-    rig.follow_path = Some(FollowPath::Ring(PATH));
+    rig.follow_paths = vec![FollowPath { root: JointId::new(0), kind: PathKind::Ring(PATH) }];
     Skeleton::clone(&rig.skeleton_at(time))
 }
 

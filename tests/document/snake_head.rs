@@ -1,7 +1,7 @@
 //! A snake's head is dragged and keyed, and its body follows the path that the head has travelled.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, FollowPath, Ray, RigKind, SkeletonRig};
+use ik_arm::document::{Channel, Document, FollowPath, PathKind, Ray, RigKind, SkeletonRig};
 use ik_arm::io::{OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::spline::Spline;
@@ -28,7 +28,7 @@ fn snake(random: &mut Random) -> Document {
         offset = axis;
     }
     let mut rig = SkeletonRig::new(skeleton);
-    rig.follow_path = Some(FollowPath::Head);
+    rig.follow_paths = vec![FollowPath { root: HEAD, kind: PathKind::Head }];
     Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
 }
 
@@ -250,7 +250,7 @@ fn auto_key_keys_a_dragged_head_alone() {
         session.document().keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(keyed, [Channel::Offset(HEAD)]);
     let document = session.document();
-    assert!(document.skeleton_rig.head_track.is_none(), "the keys are in the document once");
+    assert!(document.skeleton_rig.head_tracks.is_empty(), "the keys are in the document once");
     for (second, end) in ends.iter().enumerate().skip(1).take(2) {
         let path = travelled(document, second as f64);
         let beside = end.iter().map(|point| distance(&path, *point)).fold(0.0, f32::max);
@@ -265,8 +265,9 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
     let mut session = Session::with_document(Preferences::default(), keyed_snake(&mut random));
     session.apply(PlaybackAction::SetTime(1.0));
     let before = points(&session.evaluated_skeleton().solved);
+    session.apply(PlaybackAction::SetAutoKey(false));
     let to = before[0] + Vec3::new(0.3, 0.4, 0.0);
-    drag(&mut session, &[to]);
+    session.apply(EditAction::SetHead { root: HEAD, to });
     let after = points(&session.evaluated_skeleton().solved);
     assert!(after[0].distance(to) < 1e-5);
     let between: Vec<Vec3> =
@@ -281,10 +282,10 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
 fn the_head_can_be_moved_by_numbers_and_refuses_what_is_not_finite() {
     let mut random = Random(1509);
     let mut session = Session::with_document(Preferences::default(), snake(&mut random));
-    session.apply(EditAction::SetHead(Vec3::new(1.0, 2.0, 3.0)));
+    session.apply(EditAction::SetHead { root: HEAD, to: Vec3::new(1.0, 2.0, 3.0) });
     assert!(session.skeleton_pose().base(HEAD).distance(Vec3::new(1.0, 2.0, 3.0)) < 1e-5);
     let before = session.document().clone();
-    session.apply(EditAction::SetHead(Vec3::new(f32::NAN, 0.0, 0.0)));
+    session.apply(EditAction::SetHead { root: HEAD, to: Vec3::new(f32::NAN, 0.0, 0.0) });
     assert_eq!(*session.document(), before);
     let message = session.message().unwrap_or_default();
     assert!(message.starts_with("The position of the head must be finite, got"), "{message}");
@@ -295,14 +296,17 @@ fn following_the_head_is_saved_without_its_keys_a_second_time() {
     let mut random = Random(1510);
     let document = keyed_snake(&mut random);
     let text = to_json(&document).expect("JSON");
-    assert!(text.contains("\"follow_path\": {\n    \"path\": \"head\"\n  }"), "{text}");
+    assert!(
+        text.contains("\"follow_path\": [{\n    \"root\": 0,\n    \"path\": \"head\"\n  }]"),
+        "{text}"
+    );
     let read = parse("a.json", &text, &OpenOptions::default()).expect("a document").document;
     assert_eq!(read, document);
     let cut = text.replace("\"path\": \"head\"", "\"path\": \"ring\", \"radius\": 1");
     let error = parse("a.json", &cut, &OpenOptions::default())
         .expect_err("a ring needs numbers")
         .to_string();
-    assert!(error.contains("follow_path: must have `amplitude` for a ring"), "{error}");
+    assert!(error.contains("follow_path[0]: must have `amplitude` for a ring"), "{error}");
 }
 
 #[test]

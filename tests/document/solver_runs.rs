@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, FollowPath, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
+    Channel, Document, PathKind, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
     WavyRing,
 };
 use ik_arm::io::{Example, to_json};
@@ -320,12 +320,13 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
 
 #[test]
 fn a_run_ends_when_there_is_nothing_to_solve() {
-    let path = FollowPath::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 });
+    let path = PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 });
     let joint = example("ten-joints").skeleton_rig().targets[0].joint;
+    let follow = EditAction::SetFollowPath { root: JointId::new(0), kind: Some(path) };
     for (begin, end) in [
         (SolverAction::Step, EditAction::RemoveTarget(joint)),
         (SolverAction::Compare, EditAction::RemoveTarget(joint)),
-        (SolverAction::Run(true), EditAction::SetFollowPath(Some(path))),
+        (SolverAction::Run(true), follow),
         (SolverAction::Compare, EditAction::ShowRig(RigKind::Arm)),
         (SolverAction::Run(true), EditAction::ShowRig(RigKind::Arm)),
     ] {

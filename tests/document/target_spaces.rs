@@ -277,3 +277,17 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
         }
     }
 }
+
+#[test]
+fn a_pole_on_a_missing_joint_is_refused_for_every_reference() {
+    let missing = JointId::new(99);
+    for reference in [ElbowReference::Fk, ElbowReference::Pole(Vec3::X)] {
+        let mut driver = Driver::new();
+        let [left, _] = driver.forearms;
+        let target = driver.add_target(left, Vec3::ONE);
+        let limb = target.limb_mut().expect("a limb");
+        (limb.reference, limb.pole_space) = (reference, TargetSpace::Joint(missing));
+        let expected = TargetSpaceError::NoJoint { target: left, joint: missing };
+        assert_eq!(driver.rig.check_target_spaces(), Err(expected));
+    }
+}

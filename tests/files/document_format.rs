@@ -547,7 +547,7 @@ fn the_examples_hold_what_their_names_say() {
     assert_eq!(count("ten-joints"), (10, 1));
     assert_eq!(count("degenerate"), (17, 5));
     let snake = rig("snake");
-    assert!(snake.follow_path.is_some() && snake.solver.root == Root::Free);
+    assert!(!snake.follow_paths.is_empty() && snake.solver.root == Root::Free);
     let degenerate = rig("degenerate").skeleton;
     assert!(degenerate.transform().matrix3.determinant() < 0.0);
     assert!(degenerate.joints().iter().any(|joint| joint.axis == Vec3::ZERO));

@@ -76,7 +76,7 @@ fn skeletons_of_older_files_have_the_pose_of_their_joint_angles() {
             let rig = document.evaluate(time).skeleton_rig;
             let evaluated = rig.evaluate(time);
             assert_eq!(evaluated.solved, evaluated.fk, "{}", path.display());
-            if rig.follow_path.is_none() {
+            if rig.follow_paths.is_empty() {
                 assert_eq!(evaluated.fk, rig.skeleton, "{}", path.display());
             }
             skeletons += rig.targets.len();

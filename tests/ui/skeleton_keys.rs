@@ -265,7 +265,7 @@ fn follow_path_can_be_switched_off_as_its_tooltip_says() {
     bench.settle();
     bench.click(Role::ComboBox, "Follow path");
     bench.click(Role::Button, "None");
-    assert_eq!(bench.session().skeleton_rig().follow_path, None);
+    assert_eq!(bench.session().skeleton_rig().follow_paths, []);
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.enter("Rotation x", "10");
     let angle = bench.session().skeleton().joints()[1].rotation.x;

@@ -4,7 +4,7 @@ use egui::PointerButton::Primary as LEFT;
 use egui::accesskit::Role;
 use egui::vec2;
 use glam::Vec3;
-use ik_arm::document::{Channel, FollowPath};
+use ik_arm::document::{Channel, PathKind};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{EditAction, FileAction, Grip, PlaybackAction, SelectAction};
@@ -56,15 +56,15 @@ fn the_mouse_drags_the_head_and_the_body_follows_in_one_undo_step() {
 #[test]
 fn the_panel_chooses_what_the_body_follows() {
     let mut bench = snake();
-    let follows = |bench: &Bench| bench.session().skeleton_rig().follow_path;
-    assert_eq!(follows(&bench), Some(FollowPath::Head));
+    let follows = |bench: &Bench| bench.session().skeleton_rig().path_kind(HEAD);
+    assert_eq!(follows(&bench), Some(PathKind::Head));
     for (name, slider) in [("Wavy ring", "Radius"), ("Head", "Head x")] {
         bench.reveal(Role::ComboBox, "Follow path");
         bench.click(Role::ComboBox, "Follow path");
         bench.click(Role::Button, name);
         bench.settle();
         bench.reveal(Role::Slider, slider);
-        assert_eq!(follows(&bench) == Some(FollowPath::Head), name == "Head");
+        assert_eq!(follows(&bench) == Some(PathKind::Head), name == "Head");
     }
 }
 

@@ -27,7 +27,8 @@ pub struct TargetReport {
     pub position: Vec3,
     /// Position of the limb's pole, in the world; `None` for another elbow reference.
     pub pole: Option<Vec3>,
-    /// Distance from the tip to the target in the evaluated pose, in the world.
+    /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a head
+    /// that the target leads.
     pub error: f32,
     /// What the solver reports.
     pub outcome: TargetOutcome,
@@ -38,6 +39,8 @@ pub struct TargetReport {
 pub enum TargetOutcome {
     /// The target is disabled or has no influence.
     Off,
+    /// The target moves the head of a chain, which follows its path.
+    Leads,
     /// The report of the solver of all whole-body targets.
     WholeBody(Report),
     /// The report of the limb.
@@ -60,9 +63,13 @@ impl SkeletonRig {
         let outcomes = self.solve_targets(&mut solved, time);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
+            let end = |joint| match outcome {
+                TargetOutcome::Leads => solved.base(joint),
+                _ => solved.tip(joint),
+            };
             let error = solved
                 .joint(target.joint)
-                .map_or(0.0, |_| solved.tip(target.joint).distance(position).min(f32::MAX));
+                .map_or(0.0, |_| end(target.joint).distance(position).min(f32::MAX));
             let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
             TargetReport { position, pole, error, outcome }
         };
@@ -80,7 +87,10 @@ impl SkeletonRig {
 
     /// Poses `solved`, the FK pose, by the targets; returns the outcome for each.
     fn solve_targets(&self, solved: &mut Shared<Skeleton>, time: f64) -> Vec<TargetOutcome> {
-        let mut outcomes = vec![TargetOutcome::Off; self.targets.len()];
+        let leads = |target: &Target| target.enabled && self.leads_path(target);
+        let outcome =
+            |target| if leads(target) { TargetOutcome::Leads } else { TargetOutcome::Off };
+        let mut outcomes: Vec<_> = self.targets.iter().map(outcome).collect();
         self.solve_whole_body(solved, time, &mut outcomes);
         self.solve_limbs(solved, time, &mut outcomes);
         outcomes
@@ -93,7 +103,7 @@ impl SkeletonRig {
         outcomes: &mut [TargetOutcome],
     ) {
         let is_active =
-            |target: &&Target| target.is_posing() && target.kind == TargetKind::WholeBody;
+            |target: &&Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
         let active: Vec<&Target> = self.targets.iter().filter(is_active).collect();
         if active.is_empty() {
             return;
@@ -124,7 +134,7 @@ impl SkeletonRig {
     ) {
         let is_limb = |index: &usize| {
             let target = &self.targets[*index];
-            target.is_posing() && target.limb().is_some()
+            self.is_solved_for(target) && target.limb().is_some()
         };
         let limbs = (0..self.targets.len()).filter(is_limb).collect();
         for index in LimbOrder::new(self, limbs).indices {

@@ -36,7 +36,7 @@ pub use bone_skin::BoneSkin;
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
 pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 pub use file_mesh::FileMesh;
-pub use follow_path::FollowPath;
+pub use follow_path::{FollowPath, PathKind};
 pub use limb_settings::LimbSettings;
 pub use mesh_skin::{MeshSkin, SkinFile, SkinFileError};
 pub use remedy::RemedyError;

@@ -1,12 +1,13 @@
-use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+use glam::{Mat3A, Vec3, Vec3A};
 
 use super::head_path;
+use super::target::Target;
 use super::wavy_ring::WavyRing;
-use crate::skeleton::{JointId, Skeleton, SkeletonPose};
+use crate::skeleton::{JointId, Skeleton};
 use crate::spline::Spline;
 use crate::{follow, rotation_between};
 
-/// The first chain of a skeleton, to be laid along a path behind its head. Locked joints follow, too.
+/// The chain of a root, to be laid along a path behind its head. Locked joints follow, too.
 pub(super) struct PathChain<'a> {
     skeleton: &'a Skeleton,
     /// The joints, the head first, each with the vector to the next joint in its own space; the last
@@ -22,27 +23,51 @@ pub(super) struct PathChain<'a> {
 }
 
 impl<'a> PathChain<'a> {
-    /// The chain on a ring, at the height of its head, at a time in seconds; `None` without joints.
-    pub fn on_ring(skeleton: &'a Skeleton, ring: WavyRing, time: f64) -> Option<Self> {
-        let height = Vec3::Y * skeleton[head(skeleton)?].offset.y;
-        let bones = bones(skeleton);
+    /// The chain on a ring, at the height of its head, at a time in seconds.
+    pub fn on_ring(skeleton: &'a Skeleton, root: JointId, ring: WavyRing, time: f64) -> Self {
+        let height = Vec3::Y * skeleton[root].offset.y;
+        let bones = bones(skeleton, root);
         let (point, turns) = (|turns| ring.point(turns) + height, ring.turns_at(time));
         let lengths = bones.iter().map(|(_, bone)| bone.length());
         let tips = follow::behind(point, turns, ring.stride(), lengths).collect();
-        Some(Self { skeleton, bones, head: point(turns), tips, keeps_roll: false })
+        Self { skeleton, bones, head: point(turns), tips, keeps_roll: false }
     }
 
     /// The chain behind a head with keys at a time in seconds; `None` if its own angles pose it because
     /// the head has not left its first key yet, or if a point of the body is not finite.
-    pub fn behind_keys(skeleton: &'a Skeleton, keys: &Spline<Vec3>, time: f64) -> Option<Self> {
-        let at = skeleton[head(skeleton)?].offset;
+    pub fn behind_keys(
+        skeleton: &'a Skeleton,
+        root: JointId,
+        keys: &Spline<Vec3>,
+        time: f64,
+    ) -> Option<Self> {
+        let at = skeleton[root].offset;
         if !Self::has_left_first_key(keys, time, at) {
             return None;
         }
-        let bones = bones(skeleton);
+        let bones = bones(skeleton, root);
         let body = posed(skeleton, &bones)?;
         let path = head_path::points(at, keys, time, &body);
         Some(Self::behind(skeleton, bones, path))
+    }
+
+    /// The chain behind a target of its head at a time in seconds; `keys` are those of the target's
+    /// home. `None` if a point of the body is not finite, or if the target's space is singular.
+    pub fn behind_target(
+        skeleton: &'a Skeleton,
+        target: &Target,
+        keys: Option<&Spline<Vec3>>,
+        time: f64,
+    ) -> Option<Self> {
+        let bones = bones(skeleton, target.joint);
+        let body = posed(skeleton, &bones)?;
+        let to_skeleton = skeleton.transform().inverse() * target.space.to_world(skeleton);
+        let to_target = to_skeleton.inverse();
+        let body = body.into_iter().map(|bone| to_target.transform_vector3(bone)).collect();
+        let path = head_path::of_target(target, keys, time, body);
+        let path = path.map(|point| to_skeleton.transform_point3(point));
+        (to_skeleton.is_finite() && to_target.is_finite())
+            .then(|| Self::behind(skeleton, bones, path))
     }
 
     /// Whether a head with keys, which is at `head` at a time in seconds, has left its first key.
@@ -50,12 +75,12 @@ impl<'a> PathChain<'a> {
         keys.knots().first().is_some_and(|first| time > first.time || head != first.value)
     }
 
-    /// The chain after its head has moved through `points` of skeleton space; `None` without joints or
-    /// points, or if a point of the body is not finite.
-    pub fn pulled_through(skeleton: &'a Skeleton, points: &[Vec3]) -> Option<Self> {
-        let start = skeleton[head(skeleton)?].offset;
+    /// The chain after its head has moved through `points` of skeleton space; `None` without points, or
+    /// if a point of the body is not finite.
+    pub fn pulled_through(skeleton: &'a Skeleton, root: JointId, points: &[Vec3]) -> Option<Self> {
+        let start = skeleton[root].offset;
         points.first()?;
-        let bones = bones(skeleton);
+        let bones = bones(skeleton, root);
         let body = posed(skeleton, &bones)?;
         let path = points.iter().rev().copied().chain(head_path::behind(start, &body));
         Some(Self::behind(skeleton, bones, path))
@@ -74,30 +99,16 @@ impl<'a> PathChain<'a> {
         Self { skeleton, bones, head, tips, keeps_roll: true }
     }
 
-    /// The skeleton with the chain on the path.
-    pub fn posed(&self) -> Skeleton {
-        let mut posed = self.skeleton.clone();
+    /// Lays the chain of a skeleton with the same bones along the path.
+    pub fn write(&self, skeleton: &mut Skeleton) {
         for (joint, offset, rotation) in self.joints() {
-            posed.write_local(joint, |joint| (joint.offset, joint.rotation) = (offset, rotation));
+            skeleton
+                .write_local(joint, |joint| (joint.offset, joint.rotation) = (offset, rotation));
         }
-        posed
-    }
-
-    /// Writes the pose of [`PathChain::posed`].
-    pub fn write(&self, pose: &mut SkeletonPose) {
-        let mut chain = self.joints().peekable();
-        self.skeleton.write_pose_with(pose, |index, joint| {
-            match chain.next_if(|(followed, ..)| *followed == JointId::new(index)) {
-                Some((_, offset, rotation)) => {
-                    Affine3A { matrix3: joint.rotation_by(rotation), translation: offset.into() }
-                }
-                None => joint.local(),
-            }
-        });
     }
 
     /// Each joint on the path, parents first, with its offset and Euler angles (radians).
-    fn joints(&self) -> impl Iterator<Item = (JointId, Vec3, Vec3)> + '_ {
+    pub fn joints(&self) -> impl Iterator<Item = (JointId, Vec3, Vec3)> + '_ {
         let mut base = self.head;
         let mut above = Mat3A::IDENTITY;
         self.bones.iter().zip(&self.tips).map(move |(&(index, bone), &tip)| {
@@ -124,25 +135,18 @@ impl<'a> PathChain<'a> {
     }
 }
 
-/// The first root, the head of the chain that follows a path; `None` without joints.
-pub(super) fn head(skeleton: &Skeleton) -> Option<JointId> {
-    skeleton.ids().find(|joint| skeleton[*joint].parent.is_none())
-}
-
-/// The joints of the first chain, the head first, each with the vector to the next joint in its own
+/// The joints of the chain of a root, the head first, each with the vector to the next joint in its own
 /// space; the last with its bone.
-pub(super) fn bones(skeleton: &Skeleton) -> Vec<(JointId, Vec3)> {
-    let mut bones: Vec<(JointId, Vec3)> = Vec::new();
-    for (index, joint) in skeleton.iter() {
-        let last = bones.last_mut();
-        // Children come after their parents, the first child first.
-        if joint.parent == last.as_ref().map(|(last, _)| *last) {
-            if let Some((_, bone)) = last {
-                *bone = joint.offset;
-            }
-            bones.push((index, joint.axis));
+pub(super) fn bones(skeleton: &Skeleton, root: JointId) -> Vec<(JointId, Vec3)> {
+    let (mut bones, mut last, mut bone) = (Vec::new(), root, skeleton[root].axis);
+    // Children come after their parents, the first child first.
+    for (index, joint) in skeleton.iter().skip(root.index() + 1) {
+        if joint.parent == Some(last) {
+            bones.push((last, joint.offset));
+            (last, bone) = (index, joint.axis);
         }
     }
+    bones.push((last, bone));
     bones
 }
 

@@ -1,6 +1,8 @@
+use std::collections::BTreeMap;
+
 use glam::{Vec3, Vec3A};
 
-use super::follow_path::FollowPath;
+use super::follow_path::{FollowPath, PathKind};
 use super::limb_settings::LimbSettings;
 use super::moved_joints::MovedJoints;
 use super::skin::Skin;
@@ -22,11 +24,13 @@ pub struct SkeletonRig {
     pub solver: SolverOptions,
     /// Number of solver iterations per displayed frame during a solver run.
     pub iterations_per_frame: u32,
-    /// Path that the chain of the first root follows over time, instead of its own angles.
-    pub follow_path: Option<FollowPath>,
-    /// The keys of the head's offset, with [`FollowPath::Head`]. The evaluation of a document sets them; they
-    /// are `None` in a document that is not evaluated, and never saved.
-    pub head_track: Option<Shared<Spline<Vec3>>>,
+    /// Paths that the chains of roots follow over time, instead of their own angles; at most one per
+    /// root.
+    pub follow_paths: Vec<FollowPath>,
+    /// By root, the keys of a head's offset with [`PathKind::Head`], of the target's home with
+    /// [`PathKind::Target`]. The evaluation of a document sets them; there are none in a document that
+    /// is not evaluated, and they are never saved.
+    pub head_tracks: BTreeMap<JointId, Shared<Spline<Vec3>>>,
     /// The mesh that follows the joints; `None` for bones alone.
     pub skin: Option<Skin>,
 }
@@ -42,8 +46,8 @@ impl SkeletonRig {
             targets: Vec::new(),
             solver: SolverOptions::default(),
             iterations_per_frame: 1,
-            follow_path: None,
-            head_track: None,
+            follow_paths: Vec::new(),
+            head_tracks: BTreeMap::new(),
             skin: None,
         }
     }
@@ -75,7 +79,7 @@ impl SkeletonRig {
     pub fn write_influences(&self, influences: &mut Vec<f32>) {
         influences.clear();
         influences.resize(self.skeleton.joints().len(), 0.0);
-        for target in self.targets.iter().filter(|target| target.is_posing()) {
+        for target in self.targets.iter().filter(|target| self.is_solved_for(target)) {
             for joint in self.moved_by(target).turned {
                 let influence = &mut influences[joint.index()];
                 *influence = influence.max(target.influence);
@@ -86,8 +90,9 @@ impl SkeletonRig {
     /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the
     /// joint has its FK angles.
     pub fn target_that_turns(&self, joint: JointId) -> Option<&Target> {
-        let turns =
-            |target: &&Target| target.is_posing() && self.moved_by(target).turned.contains(&joint);
+        let turns = |target: &&Target| {
+            self.is_solved_for(target) && self.moved_by(target).turned.contains(&joint)
+        };
         let posing = self.targets.iter().filter(turns);
         posing.max_by(|one, other| one.influence.total_cmp(&other.influence))
     }
@@ -125,17 +130,17 @@ impl SkeletonRig {
         self.target(joint).is_none().then_some(Target { kind, influence: 1.0, ..target })
     }
 
-    /// The enabled targets at a time in seconds, for a solver; those on joints are where the FK pose
+    /// The enabled targets at a time in seconds, for a solver, without those that lead a path; those on joints are where the FK pose
     /// has them.
     pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
         let fk = self.fk_at(time);
-        let enabled = self.targets.iter().filter(|target| target.enabled);
+        let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
         enabled.map(|target| target.tip_target(&fk, time)).collect()
     }
 
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
-        if self.targets.iter().any(Target::is_posing) {
+        if self.targets.iter().any(|target| self.is_solved_for(target)) {
             self.skeleton_at(time).write_pose(pose);
         } else {
             self.write_fk(time, pose);
@@ -145,7 +150,8 @@ impl SkeletonRig {
     /// Whether an enabled target or the skeleton moves over time without keys.
     pub fn is_moving(&self) -> bool {
         let moves = |target: &Target| target.enabled && target.is_moving();
-        matches!(self.follow_path, Some(FollowPath::Ring(_))) || self.targets.iter().any(moves)
+        let mut paths = self.follow_paths.iter();
+        paths.any(|path| matches!(path.kind, PathKind::Ring(_))) || self.targets.iter().any(moves)
     }
 
     /// Whether any joint has a bone, that is, an axis of non-zero length.
@@ -153,11 +159,20 @@ impl SkeletonRig {
         self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
     }
 
-    /// Renumbers the joints of the targets and of the skin after an edit of the skeleton; drops the targets
-    /// of removed joints.
+    /// Renumbers the joints of targets, paths and the skin after an edit of the skeleton; drops the
+    /// targets of removed joints, and the paths of joints that are no roots any more.
     pub fn remap(&mut self, remap: &JointRemap) {
         self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
         self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap, &self.skeleton));
+        let is_root =
+            |root: &JointId| self.skeleton.joint(*root).is_some_and(|it| it.parent.is_none());
+        self.follow_paths = self
+            .follow_paths
+            .iter()
+            .filter_map(|path| {
+                Some(FollowPath { root: remap.get(path.root).filter(is_root)?, ..*path })
+            })
+            .collect();
     }
 
     /// Makes a skin from bones again if the bind pose or its shape have changed since it was made, and

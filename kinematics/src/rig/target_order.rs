@@ -63,6 +63,13 @@ impl SkeletonRig {
     ///
     /// [`TargetSpaceError`] for the first target that cannot.
     pub fn check_target_spaces(&self) -> Result<(), TargetSpaceError> {
+        for target in &self.targets {
+            // Of any limb, since a change of its reference brings its pole into use.
+            let pole = target.limb().and_then(|limb| limb.pole_space.joint());
+            if let Some(joint) = pole.filter(|joint| self.skeleton.joint(*joint).is_none()) {
+                return Err(TargetSpaceError::NoJoint { target: target.joint, joint });
+            }
+        }
         if !self.targets.iter().any(is_on_joint) {
             return Ok(());
         }

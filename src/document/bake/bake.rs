@@ -102,6 +102,6 @@ fn baked(document: &Document, frames: &BakedFrames, motion: &Motion, tracks: &[T
         }
         baked.keys.set_track(channel, track);
     }
-    baked.skeleton_rig.follow_path = None;
+    baked.skeleton_rig.follow_paths.clear();
     baked
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::arm::ArmFields;
 use super::camera::CameraFields;
 use super::check::above_0;
-use super::follow_path::FollowPathFields;
+use super::follow_path::FollowPathList;
 use super::header::{FORMAT, VERSION};
 use super::keys::{ChannelFields, TimelineFields, keys};
 use super::skeleton::SkeletonFields;
@@ -27,7 +27,7 @@ pub struct DocumentFields {
     skin: Option<JsonObject<SkinFields>>,
     targets: Option<Vec<JsonObject<TargetFields>>>,
     solver: Option<JsonObject<SolverFields>>,
-    follow_path: Option<JsonObject<FollowPathFields>>,
+    follow_path: Option<FollowPathList>,
     #[serde(skip_serializing_if = "Option::is_none")]
     channels: Option<Vec<JsonObject<ChannelFields>>>,
     timeline: Option<JsonObject<TimelineFields>>,
@@ -43,7 +43,7 @@ pub struct DocumentFields {
 
 impl DocumentFields {
     pub fn new(document: &Document) -> Self {
-        let SkeletonRig { skeleton, skin, targets, follow_path, .. } = &document.skeleton_rig;
+        let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
             format: FORMAT.to_owned(),
@@ -54,7 +54,7 @@ impl DocumentFields {
             skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
             targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
             solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
-            follow_path: follow_path.as_ref().map(FollowPathFields::new).map(JsonObject),
+            follow_path: Some(FollowPathList::new(follow_paths)),
             channels,
             timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
             metres_per_unit: document.metres_per_unit.map(JsonNumber),
@@ -79,8 +79,8 @@ impl DocumentFields {
         if let Some(JsonObject(fields)) = self.solver {
             fields.set(&mut skeleton_rig, &at("solver"))?;
         }
-        if let Some(JsonObject(fields)) = self.follow_path {
-            skeleton_rig.follow_path = Some(fields.follow_path(&at("follow_path"))?);
+        if let Some(paths) = self.follow_path {
+            paths.add_to(&mut skeleton_rig, &at("follow_path"))?;
         }
         let camera = self.camera.map(|JsonObject(fields)| fields.camera(&at("camera")));
         let camera = camera.transpose()?;

@@ -6,7 +6,7 @@ use super::scratch::Scratch;
 use super::skin::ShownSkin;
 use super::targets;
 use super::wiggle;
-use crate::document::{Display, FollowPath, Overlay, SkeletonRig, Target};
+use crate::document::{Display, FollowPath, Overlay, PathKind, SkeletonRig, Target};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::scene::{Line, Scene};
@@ -98,7 +98,7 @@ pub(super) fn add(
         rig.targets.iter().for_each(|target| drawn.add_elbow_circle(scene, target));
     }
     if display.shows(Overlay::Pointer) {
-        add_path(scene, rig, overlays.time);
+        rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, overlays.time));
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled);
@@ -121,27 +121,29 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
     }
 }
 
-/// Adds the path that the skeleton follows: one revolution of a ring, or the head's path through its keys.
-fn add_path(scene: &mut Scene, rig: &SkeletonRig, time: f64) {
+/// Adds a path that a chain follows: one revolution of a ring, or the head's path through its keys. The
+/// path of a target is drawn with the target.
+fn add_path(scene: &mut Scene, rig: &SkeletonRig, path: &FollowPath, time: f64) {
     let to_world = rig.skeleton.transform();
-    match rig.follow_path {
-        Some(FollowPath::Ring(ring)) => {
-            let height = rig.head().map_or(0.0, |head| rig.skeleton[head].offset.y);
+    match path.kind {
+        PathKind::Ring(ring) => {
+            let height = rig.skeleton.joint(path.root).map_or(0.0, |head| head.offset.y);
             let head = ring.turns_at(time);
             add_curve(scene, || ring.trail(to_world, height, head, head + 1.0));
         }
-        Some(FollowPath::Head) => {
-            let knots = rig.head_track.as_ref().map_or(&[][..], |track| track.knots());
+        PathKind::Head => {
+            let Some(track) = rig.head_tracks.get(&path.root) else { return };
+            let knots = track.knots();
             let steps = (LINES / knots.len().max(1)).clamp(1, MOST_STEPS);
             for pair in knots.windows(2) {
                 let (from, to) = (pair[0].time, pair[1].time);
                 let time = move |step: usize| from + (to - from) * step as f64 / steps as f64;
-                let at = |step| rig.head_track.as_ref()?.at(time(step));
+                let at = |step| track.at(time(step));
                 let points = || (0..=steps).filter_map(at);
                 add_curve(scene, || points().map(|point| to_world.transform_point3(point)));
             }
         }
-        None => {}
+        PathKind::Target => {}
     }
 }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::rotate::RotateRing;
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
-use crate::document::{FollowPath, Target};
+use crate::document::{PathKind, Target};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
@@ -63,7 +63,7 @@ impl SkeletonGizmo {
     pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
         Self {
             bones: bones(screen, session),
-            marks: targets(screen, session).into_iter().chain(head(screen, session)).collect(),
+            marks: targets(screen, session).into_iter().chain(heads(screen, session)).collect(),
             handles: handles(screen, session),
             rings: rings(screen, session),
         }
@@ -166,7 +166,6 @@ impl JointHandles {
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
-    let is_on_path = is_on_path(session);
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
         let is_root_point =
@@ -176,15 +175,12 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
-            can_be_posed: !is_on_path && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
+            can_be_posed: !rig.is_joint_on_path(joint, session.time())
+                && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
             is_selected: session.selection().contains(&joint),
         }
     };
     pose.ids().map(bone).collect()
-}
-
-fn is_on_path(session: &Session) -> bool {
-    session.skeleton_rig().is_on_path(session.time())
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
@@ -197,16 +193,18 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
 }
 
-/// The circle of the head that can be dragged; `None` without one.
-fn head(screen: &ScreenProjection, session: &Session) -> Option<Mark> {
-    let head = draggable_head(session)?;
-    let at = screen.place(session.evaluated_skeleton().fk.base(head))?;
-    Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
+/// The circles of heads that can be dragged.
+fn heads(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
+    let mark = |head: JointId| {
+        let at = screen.place(session.evaluated_skeleton().fk.base(head))?;
+        Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
+    };
+    draggable_heads(session).filter_map(mark).collect()
 }
 
-fn draggable_head(session: &Session) -> Option<JointId> {
-    let rig = session.skeleton_rig();
-    rig.head().filter(|_| rig.follow_path == Some(FollowPath::Head))
+fn draggable_heads(session: &Session) -> impl Iterator<Item = JointId> {
+    let paths = session.skeleton_rig().follow_paths.iter();
+    paths.filter(|path| path.kind == PathKind::Head).map(|path| path.root)
 }
 
 fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
@@ -214,7 +212,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let Some(selected) = session.selected() else { return Vec::new() };
     let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
     let report = target.and_then(|joint| session.target_report(joint));
-    let head = draggable_head(session).filter(|head| *head == selected);
+    let head = draggable_heads(session).find(|head| *head == selected);
     let points: [(JointId, GripOfJoint, Option<Vec3>); 3] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
@@ -227,11 +225,11 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     points.into_iter().filter_map(handles).collect()
 }
 
-/// The rings of the selected joint; empty if no joint is selected or the skeleton follows a path.
+/// The rings of the selected joint; empty if no joint is selected or it follows a path.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let Some(joint) = session.selected().filter(|_| !is_on_path(session)) else {
-        return Vec::new();
-    };
+    let is_free =
+        |joint: &JointId| !session.skeleton_rig().is_joint_on_path(*joint, session.time());
+    let Some(joint) = session.selected().filter(is_free) else { return Vec::new() };
     let ring = |axis| RotateRing::new(screen, Grip::Ring(joint, axis), session.ring(joint, axis)?);
     (0..3).filter_map(ring).collect()
 }

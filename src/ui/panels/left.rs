@@ -52,7 +52,7 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn guides(session: &Session) -> &'static [Overlay] {
     match session.rig() {
         RigKind::Arm => &Overlay::GUIDES,
-        RigKind::Skeleton if session.skeleton_rig().follow_path.is_some() => {
+        RigKind::Skeleton if !session.skeleton_rig().follow_paths.is_empty() => {
             &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose, Overlay::ElbowCircle]
         }
         RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle],

@@ -1,6 +1,7 @@
 //! The viewport: gizmos, selection, orbit, pan and zoom.
 
 mod drag_hint;
+mod follow_mouse;
 mod navigation;
 pub(in crate::ui) mod projection;
 mod why_note;
@@ -53,6 +54,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
     why_note::ui(ui, session, &screen, actions);
+    follow_mouse::ui(ui, session, rect, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {
         invite(ui, rect);
     }
@@ -62,6 +64,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         keys(ui, &response, session, actions);
         return rect;
     };
+    if over && session.follows_mouse() {
+        actions.push(TransactionAction::Lead(screen.ray(mouse)));
+    }
     let drag = press(ui, &response, session, &screen, &gizmo, actions);
     follow(ui, drag, &screen, mouse, actions);
     if response.contains_pointer() {
@@ -257,6 +262,9 @@ fn press(
             continue;
         }
         response.request_focus();
+        if session.follows_mouse() && button == PointerButton::Primary {
+            actions.push(TransactionAction::FollowMouse(false));
+        }
         if session.is_editing() || !matches!(drag, ViewportDrag::Nothing) {
             continue;
         }

@@ -122,8 +122,8 @@ kinds! {
         ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
         PackSkin: Build 1, |_| EditAction::PackSkin;
         SetSkin: Build 2, |v| EditAction::SetSkin(v.skin());
-        SetFollowPath: Solve 1, |v| EditAction::SetFollowPath(v.follow_path());
-        SetHead: Solve 2, |v| EditAction::SetHead(v.small_point());
+        SetFollowPath: Solve 1, |v| EditAction::SetFollowPath { root: v.joint(), kind: v.path_kind() };
+        SetHead: Solve 2, |v| EditAction::SetHead { root: v.joint(), to: v.small_point() };
         SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());
         TurnYUp: Build 1, |_| EditAction::TurnYUp;
         AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
@@ -158,6 +158,8 @@ kinds! {
         Drag: Drag 10, |v| TransactionAction::Drag(v.drag_input());
         Constrain: Drag 2, |v| TransactionAction::Constrain(v.constraint());
         TypeOffset: Drag 2, |v| TransactionAction::TypeOffset(v.typed());
+        FollowMouse: Drag 1, |v| TransactionAction::FollowMouse(v.chance(0.7));
+        Lead: Drag 1, |v| TransactionAction::Lead(v.ray());
     }
     Select(SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());

@@ -20,7 +20,7 @@ pub fn document(document: &Document) -> Result<(), Broken> {
         document;
     self::arm(arm)?;
     skeleton(skeleton_rig)?;
-    hold!(skeleton_rig.head_track.is_none(), "the head's keys are in the document once");
+    hold!(skeleton_rig.head_tracks.is_empty(), "the head's keys are in the document once");
     self::camera(camera)?;
     other_rig_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
@@ -95,8 +95,8 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         targets,
         solver,
         iterations_per_frame,
-        follow_path,
-        head_track: _,
+        follow_paths,
+        head_tracks: _,
         skin,
     } = rig;
     let joints = skeleton.joints();
@@ -120,7 +120,13 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
     let per_frame = 1..=SkeletonRig::MAX_ITERATIONS_PER_FRAME;
     hold!(per_frame.contains(iterations_per_frame), "{iterations_per_frame} iterations a frame");
-    hold!(follow_path.is_none_or(|it| it.is_valid()), "the snake has a way: {follow_path:?}");
+    let mut heads = HashSet::new();
+    for path in follow_paths {
+        hold!(path.kind.is_valid(), "the snake has a way: {path:?}");
+        let head = skeleton.joint(path.root);
+        hold!(head.is_some_and(|it| it.parent.is_none()), "a head is a root: {path:?}");
+        hold!(heads.insert(path.root), "a root has one path: {path:?}");
+    }
     Ok(())
 }
 

@@ -187,7 +187,7 @@ impl Watch {
         let is_left = is_same(document, &before.document);
         let is_view = matches!(action, Action::Solver(_))
             || matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time);
-        hold!(!is_view || is_left, "it leaves the document alone");
+        hold!(!is_view || is_left || before.follows_mouse, "it leaves the document alone");
         if *action == Action::Edit(EditAction::ApplyPose) {
             let [was, is] = [&before.document, document].map(ik_arm::document::Document::skeleton);
             posed::locked(was, is)?;
@@ -306,6 +306,7 @@ struct Before {
     dialog: Option<Dialog>,
     revision: u64,
     time: f64,
+    follows_mouse: bool,
 }
 
 impl Before {
@@ -316,6 +317,7 @@ impl Before {
             dialog: session.dialog().cloned(),
             revision: session.revision(),
             time: session.time(),
+            follows_mouse: session.follows_mouse(),
         }
     }
 }

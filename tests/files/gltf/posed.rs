@@ -5,8 +5,8 @@ use std::process::Command;
 
 use glam::{Mat4, Quat, Vec3};
 use ik_arm::document::{
-    Channel, Document, FollowPath, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
-    Timeline,
+    Channel, Document, FollowPath, PathKind, RigKind, SkeletonRig, Target, TargetMotion,
+    TargetPath, Theme, Timeline,
 };
 use ik_arm::io::{self, Progress};
 use ik_arm::kinematics::chain_ik::Method;
@@ -51,7 +51,10 @@ fn document(random: &mut Random) -> Document {
             rig.targets[index].space = TargetSpace::World;
         }
     }
-    rig.follow_path = random.one_of(&[None, None, Some(FollowPath::Head)]);
+    if random.chance(0.4) {
+        let kind = random.one_of(&[PathKind::Head, PathKind::Target]);
+        rig.follow_paths = vec![FollowPath { root: JointId::new(0), kind }];
+    }
     let mut document =
         Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
     document.timeline = Timeline { start: 0.0, end: 1.0, frame_rate: f64::from(FRAMES) };

@@ -87,7 +87,7 @@ impl SkeletonRig {
         if missed.is_empty() {
             return Vec::new();
         }
-        let active = self.targets.iter().filter(|it| it.is_posing()).filter(is_whole_body);
+        let active = self.targets.iter().filter(|it| self.is_solved_for(it)).filter(is_whole_body);
         let tips: Vec<TipTarget> = active.map(|it| it.tip_target(&evaluated.fk, time)).collect();
         chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
     }

@@ -1,43 +1,57 @@
-//! The path that the first chain follows: a wavy ring, or the path of its head.
+//! The path that the chain of a root follows: a wavy ring, or the path of its head or of the head's
+//! target.
 
 use egui::Ui;
 use glam::Vec3;
 
 use super::choice::Choice;
-use crate::document::{Channel, FollowPath, WavyRing};
+use crate::document::{Channel, PathKind, WavyRing};
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{AXES, PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    choice(ui, session, actions);
-    match session.skeleton_rig().follow_path {
-        Some(FollowPath::Ring(ring)) => sliders(ui, session, ring, actions),
-        Some(FollowPath::Head) => head(ui, session, actions),
-        None => {}
+    let rig = session.skeleton_rig();
+    let Some(root) = shown_root(session) else { return };
+    choice(ui, session, root, actions);
+    match rig.path_kind(root) {
+        Some(PathKind::Ring(ring)) => sliders(ui, session, root, ring, actions),
+        Some(PathKind::Head) => head(ui, session, root, actions),
+        Some(PathKind::Target) if rig.target(root).is_none() => {
+            ui.weak("Add a target to the head: the body follows its path.");
+        }
+        Some(PathKind::Target) | None => {}
     }
 }
 
-fn choice(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let now = session.skeleton_rig().follow_path;
-    let (is_ring, is_head) =
-        (matches!(now, Some(FollowPath::Ring(_))), now == Some(FollowPath::Head));
-    let ring = FollowPath::Ring(default_ring(session.skeleton_rig().reach()));
+/// The root above the selected joint; without a selection the first with a path, else the first root.
+fn shown_root(session: &Session) -> Option<JointId> {
+    let rig = session.skeleton_rig();
+    let selected = session.selected().and_then(|joint| rig.root_of(joint));
+    let with_path = rig.follow_paths.first().map(|path| path.root);
+    selected.or(with_path).or_else(|| rig.skeleton.ids().next())
+}
+
+fn choice(ui: &mut Ui, session: &Session, root: JointId, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let now = rig.path_kind(root);
+    let is_ring = matches!(now, Some(PathKind::Ring(_)));
+    let ring = PathKind::Ring(default_ring(rig.reach()));
+    let by_head = "Drag and key the head; the body follows its path";
+    let by_target = "Move the head's target; the body follows its path";
     let choices = [
         (now.is_none(), "None", "Pose all joints by their own angles", None),
-        (
-            is_head,
-            "Head",
-            "Drag and key the head; the body follows its path",
-            Some(FollowPath::Head),
-        ),
+        (now == Some(PathKind::Head), "Head", by_head, Some(PathKind::Head)),
+        (now == Some(PathKind::Target), "Target", by_target, Some(PathKind::Target)),
         (is_ring, "Wavy ring", "Move along a wavy ring without keys", Some(ring)),
     ];
     let shown = choices.iter().find(|(is_now, ..)| *is_now).map_or("", |(_, name, ..)| name);
-    let tooltip = "Let the first chain of joints follow a path, like a snake";
+    let name = &rig.skeleton[root].name;
+    let tooltip = &format!("Let the chain of {name} follow a path, like a snake");
     Choice { label: "Follow", name: "Follow path", tooltip, shown }.show(ui, |list| {
-        for (is_now, name, tooltip, path) in choices {
+        for (is_now, name, tooltip, kind) in choices {
             if list.item(is_now, name, tooltip, None) {
-                actions.push(EditAction::SetFollowPath(path));
+                actions.push(EditAction::SetFollowPath { root, kind });
             }
         }
     });
@@ -48,9 +62,8 @@ fn default_ring(reach: f32) -> WavyRing {
     WavyRing { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
 }
 
-fn head(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+fn head(ui: &mut Ui, session: &Session, head: JointId, actions: &mut Actions) {
     let rig = session.skeleton_rig();
-    let Some(head) = rig.head() else { return };
     let place = PointSliders {
         name: "Head",
         labels: AXES,
@@ -62,17 +75,17 @@ fn head(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         disabled: None,
         channel: Some(Channel::Offset(head)),
     };
-    place.show(ui, session, actions, EditAction::SetHead);
-    if rig.head_track.is_none() {
+    place.show(ui, session, actions, |to| EditAction::SetHead { root: head, to });
+    if !rig.head_tracks.contains_key(&head) {
         ui.weak("Drag the circle at the head, or key the head: the body follows.");
     }
 }
 
-fn sliders(ui: &mut Ui, session: &Session, ring: WavyRing, actions: &mut Actions) {
+fn sliders(ui: &mut Ui, session: &Session, root: JointId, ring: WavyRing, actions: &mut Actions) {
     let reach = session.skeleton_rig().reach();
     let default = default_ring(reach);
     let step = session.shown().grid_cell() * 0.1;
-    let set = |ring| EditAction::SetFollowPath(Some(FollowPath::Ring(ring)));
+    let set = |ring| EditAction::SetFollowPath { root, kind: Some(PathKind::Ring(ring)) };
     let slider = |name, tooltip, value, range, default| Slider {
         name,
         label: name,

@@ -34,7 +34,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
 
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let colours = style::palette(ui).axes;
-    let follows_path = labels::why_on_path(session);
+    let follows_path = labels::why_on_path(session, index);
     let shown = match follows_path {
         Some(_) => session.evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,

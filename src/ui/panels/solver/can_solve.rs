@@ -6,7 +6,8 @@ use crate::ui::labels;
 /// The reason why solvers are disabled; `None` if they can run.
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
     let rig = session.skeleton_rig();
-    if let Some(reason) = labels::why_on_path(session) {
+    let enabled = rig.targets.iter().filter(|target| target.enabled);
+    if let Some(reason) = enabled.filter_map(|it| labels::why_on_path(session, it.joint)).next() {
         Some(reason)
     } else if rig.targets.is_empty() {
         Some("Add a target to a joint first")

@@ -1,7 +1,7 @@
 //! Joints, targets, solver options and path following.
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{FollowPath, Target, TargetMotion, TargetPath, WavyRing};
+use ik_arm::document::{PathKind, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
 use ik_arm::kinematics::limb_ik::ElbowReference;
@@ -200,12 +200,12 @@ impl Values<'_> {
         if self.chance(0.6) { TargetSpace::World } else { TargetSpace::Joint(self.joint()) }
     }
 
-    pub fn follow_path(&mut self) -> Option<FollowPath> {
-        if self.chance(0.4) {
-            return Some(FollowPath::Head);
+    pub fn path_kind(&mut self) -> Option<PathKind> {
+        if self.chance(0.5) {
+            return Some(self.one_of(&[PathKind::Head, PathKind::Target]));
         }
         self.chance(0.6).then(|| {
-            FollowPath::Ring(WavyRing {
+            PathKind::Ring(WavyRing {
                 radius: self.number(3.0),
                 amplitude: self.number(0.5),
                 waves: self.one_of(&[0, 1, 3, 6, 40]),

@@ -150,8 +150,8 @@ fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Action
             actions.push(EditAction::MatchTargetToFk(target.joint));
         }
         let tooltip = "Write the shown pose to the joint angles; nothing moves";
-        let disabled =
-            labels::why_on_path(session).or((!target.is_posing()).then_some(NO_INFLUENCE));
+        let disabled = labels::why_on_path(session, target.joint)
+            .or((!target.is_posing()).then_some(NO_INFLUENCE));
         if widgets::button(ui, "FK to pose", tooltip, disabled) {
             actions.push(EditAction::MatchFkToPose(target.joint));
         }

@@ -38,7 +38,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut 
 fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport) {
     let text = text(session, target, report);
     let is_reached = match &report.outcome {
-        TargetOutcome::Off => true,
+        TargetOutcome::Off | TargetOutcome::Leads => true,
         _ if target.influence < 1.0 => true,
         TargetOutcome::WholeBody(report) => report.converged(),
         TargetOutcome::Limb(limb) => limb.reach == LimbReach::Reached,
@@ -70,6 +70,7 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
     match &report.outcome {
         TargetOutcome::Off if !target.enabled => "Disabled: the joint angles alone pose it".into(),
         TargetOutcome::Off => "Influence 0: the joint angles alone pose it".into(),
+        TargetOutcome::Leads => "Leads the head: the body follows its path".into(),
         TargetOutcome::WholeBody(_) | TargetOutcome::Limb(_) if is_blended => {
             format!("Blended with the FK pose, {gap} from the target")
         }
