@@ -131,9 +131,9 @@ fn a_solver_comparison_allocates_nothing() {
 
 #[test]
 fn a_snake_that_follows_its_path_allocates_nothing() {
-    let opened = Example::find("snake").expect("an example").open().expect("it opens");
+    let document = crate::common::documents::keyed_snake();
     let times = [0.1, 0.4, 1.7, 2.3].map(|time| PlaybackAction::SetTime(time).into());
-    Bench::new(opened.document).assert_takes_nothing(&times);
+    Bench::new(document).assert_takes_nothing(&times);
 }
 
 #[test]

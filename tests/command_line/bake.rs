@@ -136,7 +136,7 @@ fn the_frame_rate_and_the_tolerance_can_be_chosen() {
 
 #[test]
 fn a_path_is_baked() {
-    let text = Example::find("snake").expect("there").text;
+    let text = crate::common::documents::KEYED_SNAKE;
     let (said, baked) = Desk::new(text).bake(&["--fps", "5", "--tolerance", "0.01"]);
     assert!(said.starts_with("ik-arm: 91 frames baked: "), "{said}");
     assert_eq!(baked.skeleton_rig.follow_paths, []);

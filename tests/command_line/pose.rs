@@ -563,8 +563,8 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 
 #[test]
 fn a_time_moves_path_followers_and_targets() {
-    let snake = Scene::example("snake");
-    let document = Example::find("snake").expect("there").open().expect("opens").document;
+    let document = crate::common::documents::keyed_snake();
+    let snake = Scene::new(&io::to_json(&document).expect("written"));
     let pose = document.evaluate(2.5).skeleton_rig.skeleton_at(2.5).pose();
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 

@@ -324,8 +324,7 @@ fn a_time_moves_keyed_channels() {
 #[test]
 fn a_time_moves_a_path_follower_within_the_view() {
     let folder = tempfile::tempdir().expect("a folder");
-    let snake = ik_arm::io::Example::find("snake").expect("there").text;
-    let snake = file(&folder, "snake.json", snake);
+    let snake = file(&folder, "snake.json", crate::common::documents::KEYED_SNAKE);
     assert_ne!(picture(&[&snake]), picture(&[&snake, "--time", "3"]));
     assert_ne!(
         picture(&[&snake, "--view", "top"]),

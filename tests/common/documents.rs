@@ -1,4 +1,4 @@
-//! Random documents.
+//! Random documents, and a snake with keys.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
@@ -6,6 +6,7 @@ use ik_arm::document::{
     PathKind, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
     TwistReferenceKind, WavyRing,
 };
+use ik_arm::io::{OpenOptions, parse};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
@@ -229,4 +230,12 @@ fn skeleton(random: &mut Random) -> Skeleton {
     let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.finite()));
     skeleton.set_transform(transform).expect("finite");
     skeleton
+}
+
+/// A file of a snake whose head has keys.
+pub const KEYED_SNAKE: &str = include_str!("../data/keyed-snake.json");
+
+/// The document of [`KEYED_SNAKE`].
+pub fn keyed_snake() -> Document {
+    parse("snake.json", KEYED_SNAKE, &OpenOptions::default()).expect("it opens").document
 }

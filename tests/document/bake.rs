@@ -315,11 +315,7 @@ fn a_stretched_bone_is_reported_and_what_hangs_on_it_is_kept() {
 
 #[test]
 fn a_path_is_replaced_by_keys() {
-    let mut document = Example::find("snake").expect("there").open().expect("it opens").document;
-    let head = document.skeleton()[JointId::new(0)].offset;
-    for (time, to) in [(0.0, Vec3::ZERO), (2.0, Vec3::X), (5.0, Vec3::new(1.5, 0.0, 1.0))] {
-        document.keys.insert(Channel::Offset(JointId::new(0)), time, head + to);
-    }
+    let document = crate::common::documents::keyed_snake();
     let frames = Timeline { frame_rate: 10.0, ..document.timeline };
     let baked = bake(&document, &Bake { frames, tolerance: 1e-2 });
     assert_eq!(baked.document.skeleton_rig.follow_paths, []);

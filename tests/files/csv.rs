@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
-use ik_arm::io::{self, Example, MotionError, Progress};
+use ik_arm::io::{self, MotionError, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 fn table(document: &Document, fps: Option<f64>) -> String {
@@ -64,7 +64,7 @@ fn the_arm_is_shoulder_elbow_and_hand() {
 
 #[test]
 fn a_path_follower_moves_in_the_table() {
-    let document = Example::find("snake").expect("there").open().expect("it opens").document;
+    let document = crate::common::documents::keyed_snake();
     let table = table(&document, None);
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     for (frame, row) in rows.records().enumerate().step_by(60) {

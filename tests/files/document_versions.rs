@@ -60,9 +60,21 @@ fn a_saved_document_of_version_2_is_saved_as_the_same_text() {
         if path.parent().is_some_and(|folder| folder.ends_with("version-2")) {
             let text = fs::read_to_string(&path).expect("text");
             let json = io::to_json(&open(&path).document).expect("finite numbers");
-            assert_eq!(json, text, "{}", path.display());
+            assert_eq!(without_paths(&json), without_paths(&text), "{}", path.display());
         }
     }
+}
+
+/// The lines of a document but those of `follow_path`, which became a list.
+fn without_paths(text: &str) -> Vec<&str> {
+    let mut is_path = false;
+    let is_other = |line: &&str| {
+        if line.starts_with("  \"") {
+            is_path = line.starts_with("  \"follow_path\"");
+        }
+        !is_path
+    };
+    text.lines().filter(is_other).collect()
 }
 
 /// The targets of older files posed nothing by themselves: their influence is 0 unless a file says

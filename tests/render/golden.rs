@@ -171,7 +171,15 @@ fn a_guide_that_is_missing_is_noticed() {
 /// An example scene, seen from nearer.
 fn example(name: &str) -> Document {
     let example = Example::find(name).expect("an example");
-    let mut document = example.open().expect("it opens").document;
+    nearer(example.open().expect("it opens").document)
+}
+
+/// The snake whose head has keys.
+fn snake() -> Document {
+    nearer(crate::common::documents::keyed_snake())
+}
+
+fn nearer(mut document: Document) -> Document {
     document.camera.distance *= 0.9;
     document
 }
@@ -192,12 +200,19 @@ fn figures_and_an_arm_whose_hands_and_feet_stay() {
 
 #[test]
 fn the_snake_along_its_path() {
-    check("snake", &example("snake").evaluate(0.0), Theme::Dark);
+    check("snake", &snake().evaluate(0.0), Theme::Dark);
+}
+
+#[test]
+fn tadpoles_on_the_paths_of_their_targets() {
+    let document = example("tadpoles").evaluate(1.3);
+    let later = Overlays { time: 1.3, ..Overlays::default() };
+    pictures::check("tadpoles", &Scene::new(&document, &later, Theme::Light));
 }
 
 #[test]
 fn the_snake_some_seconds_later_is_another_picture() {
-    let document = example("snake");
+    let document = snake();
     let later = Overlays { time: 1.5, ..Overlays::default() };
     let drawn = draw(&Scene::new(&document.evaluate(1.5), &later, Theme::Dark));
     assert!(compare(&drawn, &kept("snake")).is_err());

@@ -17,7 +17,8 @@ fn opened(example: &str) -> Bench {
 
 /// The snake, which follows a path, with the bake dialog open.
 fn asked() -> Bench {
-    let mut bench = opened("snake");
+    let document = Box::new(crate::common::documents::keyed_snake());
+    let mut bench = Bench::after([FileAction::Opened { document, file: None, contents: None }]);
     bench.choose(&["Edit", "Bake to keys…"]);
     bench.settle();
     bench

@@ -9,7 +9,9 @@ use egui_kittest::Node;
 use egui_kittest::kittest::NodeT as _;
 use ik_arm::document::{Channel, RigKind};
 use ik_arm::io::Example;
-use ik_arm::session::{Action, EditAction, FileAction, PanelTab, SelectAction, ViewAction};
+use ik_arm::session::{
+    Action, EditAction, FileAction, PanelTab, PlaybackAction, SelectAction, ViewAction,
+};
 
 use crate::bench::Bench;
 
@@ -91,6 +93,8 @@ fn arms() -> Vec<Bench> {
         bench.apply([
             Action::from(EditAction::SetInfluence(0.5)),
             EditAction::Key(vec![Channel::Hand]).into(),
+            // Hides the note about auto-key, which is over the view.
+            PlaybackAction::SetAutoKey(true).into(),
         ]);
         bench.show_tab(*page);
         bench

@@ -11,7 +11,7 @@ use ik_arm::io::{Example, FileAnimation, Group, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, FileContents, Iterate, PanelTab, PathDialog,
-    SelectAction, ShellAction, SolverAction, ViewAction,
+    PlaybackAction, SelectAction, ShellAction, SolverAction, ViewAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -427,7 +427,8 @@ fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
 
 #[test]
 fn a_snake_moves_when_it_is_played_and_its_joints_can_be_turned_only_at_its_first_key() {
-    let mut bench = example("snake");
+    let document = Box::new(crate::common::documents::keyed_snake());
+    let mut bench = Bench::after([FileAction::Opened { document, file: None, contents: None }]);
     bench.apply([ViewAction::ShowTimeline(true)]);
     let before = bench.session().skeleton_pose().clone();
     bench.click_at(bench.rect(Role::Button, "Play").center());
@@ -658,6 +659,7 @@ fn every_example_of_the_tour_opens_from_its_menu() {
         let opened = example.open().expect("it opens").document;
         assert_eq!(bench.session().document(), &opened, "{}", example.title);
         assert!(bench.says(example.sentence));
+        bench.apply_moving([PlaybackAction::Play(false)]);
     }
 }
 

@@ -17,23 +17,13 @@ fn snake() -> Bench {
     Bench::after([FileAction::OpenExample(Example::find("snake").expect("an example"))])
 }
 
-/// The snake without keys.
-fn unkeyed() -> Bench {
-    let mut bench = snake();
-    let keys = bench.session().document().keys.track(Channel::Offset(HEAD)).expect("keys").clone();
-    let keys = keys.knots().iter().map(|knot| (Channel::Offset(HEAD), knot.time)).collect();
-    bench.apply([EditAction::DeleteKeys(keys)]);
-    bench.settle();
-    bench
-}
-
 fn head(bench: &Bench) -> Vec3 {
     bench.session().skeleton_pose().base(HEAD)
 }
 
 #[test]
 fn the_mouse_drags_the_head_and_the_body_follows_in_one_undo_step() {
-    let mut bench = unkeyed();
+    let mut bench = snake();
     let before = bench.session().skeleton_pose().clone();
     let at = bench.on_screen(head(&bench));
     bench.drag(LEFT, at, at + vec2(60.0, -20.0));
@@ -70,7 +60,7 @@ fn the_panel_chooses_what_the_body_follows() {
 
 #[test]
 fn a_head_is_keyed_at_two_times_and_the_body_is_on_its_path() {
-    let mut bench = unkeyed();
+    let mut bench = snake();
     assert!(!bench.session().document().is_animated());
     bench.apply([SelectAction::Joints(vec![HEAD])]);
     bench.reveal(Role::Slider, "Head x");

@@ -44,6 +44,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let wheeled = Rect::from_min_max(areas.ruler.min, areas.keys.max);
     scale.follow_input(ui, session, wheeled, is_panning);
 
+    // First, so that Tab goes through it before the keys below it.
+    ruler::auto_key_note(ui, session, scale, areas.ruler, actions);
     ruler::ground(ui, scale, timeline, wheeled);
     ruler::grid(ui, scale, timeline, areas.keys);
     let ruler = ruler::ui(ui, session, scale, areas.ruler, actions);
@@ -53,6 +55,5 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         dope_sheet::ui(ui, session, scale, &areas, &ruler, actions);
     }
     ruler::playhead(ui, session, scale, areas.ruler, areas.keys.bottom());
-    ruler::auto_key_note(ui, session, scale, areas.ruler, actions);
     keyboard::focused(ui, session, actions);
 }
