@@ -89,7 +89,7 @@ pub(super) fn add(
             if target.enabled && target.is_moving() {
                 targets::add_trail(scene, target, &evaluated.solved, overlays.time);
             }
-            if target.enabled && overlays.ghosts.is_empty() {
+            if target.enabled && overlays.ghosts.is_empty() && !rig.leads_path(target) {
                 drawn.add_gap(scene, target.joint, report.position, scene.palette.accent);
             }
         }
