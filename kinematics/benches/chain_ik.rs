@@ -12,12 +12,13 @@ use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_ma
 use ik_arm_kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget, solve};
 use ik_arm_kinematics::skeleton::{JointId, Skeleton};
 
-const METHODS: [Method; 5] = [
+const METHODS: [Method; 6] = [
     Method::TransposeFixed,
     Method::Transpose,
     Method::DampedLeastSquares,
     Method::Ccd,
     Method::Fabrik,
+    Method::Relaxation,
 ];
 
 /// Chains in their bind pose, each with a target from a random one.

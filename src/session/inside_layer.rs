@@ -9,7 +9,7 @@ pub enum InsideLayer {
     Step,
     /// CCD: the rays from the joint to tip and target, and the arc between them.
     Rays,
-    /// FABRIK: the chain of points of a pass.
+    /// FABRIK and relaxation: the chain of points of a pass.
     Passes,
     /// Two-bone: the triangle and the circle of all elbows.
     Triangle,

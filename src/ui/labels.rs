@@ -130,6 +130,7 @@ pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
         }
         Method::Ccd => "Rotate one joint at a time, tip to root: cheap, bends tips",
         Method::Fabrik => "Move joint positions along the chain: very cheap, may stall at limits",
+        Method::Relaxation => "Move both ends of each bone in turn: smooth, many iterations",
         Method::TwoBone => "Solve the target's joint and its parent in closed form",
     }
 }

@@ -217,7 +217,7 @@ fn warnings_about_a_file_are_printed_beside_the_pose() {
 #[test]
 fn every_solver_reports_its_error() {
     let scene = Scene::example("ten-joints");
-    for solver in ["transpose", "transpose-fixed", "dls", "ccd", "fabrik"] {
+    for solver in ["transpose", "transpose-fixed", "dls", "ccd", "fabrik", "relaxation"] {
         let Answer { targets, report, .. } = scene.pose(&["--solver", solver]);
         let report = report.expect("it solved");
         assert_eq!(report.solver, solver);
@@ -255,7 +255,7 @@ fn iterations_and_tolerance_limit_a_solver_run() {
 #[test]
 fn an_unreachable_target_is_a_result_and_not_an_error() {
     let scene = Scene::example("degenerate");
-    for solver in ["dls", "fabrik"] {
+    for solver in ["dls", "fabrik", "relaxation"] {
         let report = scene.pose(&["--solver", solver]).report.expect("it solved");
         assert!(!report.converged && report.error > 0.5, "{report:?}");
     }
@@ -599,7 +599,7 @@ fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
     let mut document = Example::find("human").expect("there").open().expect("opens").document;
     document.skeleton_rig.targets.clear();
     let scene = Scene::document(&document);
-    for method in ["transpose", "ccd", "fabrik", "dls", "two-bone"] {
+    for method in ["transpose", "ccd", "fabrik", "relaxation", "dls", "two-bone"] {
         let output = scene.run(&["--solver", method]);
         assert_eq!(output.status.code(), Some(0), "{method}: {output:?}");
         assert!(stderr(&output).contains("no enabled target, so there is nothing to solve"));
@@ -646,7 +646,7 @@ fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
         "lower cannot reach that far: the target is 3 from root, the bones are 2 long"
     );
     assert!(why.residual_with_remedy.expect("a remedy") < 1e-3);
-    for solver in ["fabrik", "ccd", "transpose", "transpose-fixed", "two-bone"] {
+    for solver in ["fabrik", "relaxation", "ccd", "transpose", "transpose-fixed", "two-bone"] {
         assert_eq!(first_why(&scene, &["--solver", solver]).cause, "out_of_reach", "{solver}");
     }
 }

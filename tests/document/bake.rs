@@ -25,7 +25,7 @@ fn random_document(random: &mut Random) -> Document {
     let mut skeleton = forest(random, 10);
     skeleton.set_transform(transform(random)).expect("finite");
     let mut rig = SkeletonRig::new(skeleton);
-    let methods = [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares];
+    let methods = [Method::Fabrik, Method::Relaxation, Method::Ccd, Method::DampedLeastSquares];
     let solver = rig.solver.with_method(random.one_of(&methods)).with_iterations(30);
     rig.solver = solver.with_root(random.one_of(&Root::ALL));
     for joint in rig.skeleton.ids() {

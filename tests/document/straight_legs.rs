@@ -99,6 +99,7 @@ fn a_straight_leg_bends_its_knee_to_bring_the_ankle_to_every_target() {
         Method::Transpose,
         Method::TransposeFixed,
         Method::Fabrik,
+        Method::Relaxation,
     ] {
         assert_eq!(reached(&SolverOptions::new(method), "left_shin"), CASES, "{method:?}");
     }
@@ -117,6 +118,7 @@ fn a_straight_leg_leaves_its_limits_to_bring_the_toes_to_their_target() {
         (Method::Transpose, 1_000),
         (Method::Ccd, 990),
         (Method::Fabrik, 990),
+        (Method::Relaxation, 990),
     ] {
         let count = reached(&SolverOptions::new(method), "left_foot");
         assert!(count >= least, "{method:?}: {count} of {CASES}");

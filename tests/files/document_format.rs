@@ -349,7 +349,7 @@ fn an_invalid_value_is_named_with_the_rule() {
         (
             "\"solver\":{\"method\":\"newton\"}".to_owned(),
             "line 2, column 20: solver.method: must be one of transpose-fixed, transpose, dls, \
-             ccd, fabrik, two-bone, got \"newton\"",
+             ccd, fabrik, relaxation, two-bone, got \"newton\"",
         ),
         (
             "\"solver\":{\"iterations\":0}".to_owned(),

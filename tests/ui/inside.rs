@@ -79,7 +79,13 @@ fn shift_period_without_a_run_begins_one() {
 
 #[test]
 fn the_last_part_has_the_pose_of_the_iteration() {
-    for method in [Method::DampedLeastSquares, Method::Ccd, Method::Fabrik, Method::Transpose] {
+    for method in [
+        Method::DampedLeastSquares,
+        Method::Ccd,
+        Method::Fabrik,
+        Method::Relaxation,
+        Method::Transpose,
+    ] {
         let mut bench = after_a_step(method);
         let whole = run(&bench).skeleton().clone();
         let last = run(&bench).parts().len() - 1;

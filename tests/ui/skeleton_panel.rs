@@ -201,6 +201,7 @@ fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
 fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
     for (method, name) in [
         (Method::Fabrik, "FABRIK"),
+        (Method::Relaxation, "Constraint relaxation"),
         (Method::DampedLeastSquares, "Damped least squares"),
         (Method::Ccd, "Cyclic coordinate descent"),
     ] {

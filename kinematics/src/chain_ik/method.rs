@@ -22,18 +22,21 @@ pub enum Method {
     /// Forward and backward reaching (FABRIK).
     #[default]
     Fabrik,
+    /// Constraint relaxation: the length of each bone is restored in turn by moving both of its ends.
+    Relaxation,
     /// Closed form for two joints: a target's joint and its parent.
     TwoBone,
 }
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::TransposeFixed,
         Self::Transpose,
         Self::DampedLeastSquares,
         Self::Ccd,
         Self::Fabrik,
+        Self::Relaxation,
         Self::TwoBone,
     ];
 
@@ -45,6 +48,7 @@ impl Method {
             Self::DampedLeastSquares => "Damped least squares",
             Self::Ccd => "Cyclic coordinate descent",
             Self::Fabrik => "FABRIK",
+            Self::Relaxation => "Constraint relaxation",
             Self::TwoBone => "Two-bone",
         }
     }
@@ -57,6 +61,7 @@ impl Method {
             Self::DampedLeastSquares => "dls",
             Self::Ccd => "ccd",
             Self::Fabrik => "fabrik",
+            Self::Relaxation => "relaxation",
             Self::TwoBone => "two-bone",
         }
     }
@@ -64,7 +69,7 @@ impl Method {
     /// Default maximum number of iterations of [`ChainSolver::run`](super::ChainSolver::run).
     pub fn budget(self) -> u32 {
         match self {
-            Self::Fabrik | Self::Ccd => 2_000,
+            Self::Fabrik | Self::Relaxation | Self::Ccd => 2_000,
             Self::Transpose | Self::DampedLeastSquares => 500,
             Self::TransposeFixed => 4_000,
             Self::TwoBone => 1,

@@ -5,6 +5,7 @@ use super::damped_least_squares::DampedLeastSquares;
 use super::fabrik::Fabrik;
 use super::inside::Recorder;
 use super::problem::Problem;
+use super::relaxation::Relaxation;
 use super::transpose::Transpose;
 use super::two_bone::TwoBones;
 use super::{Method, SolveError, SolverOptions};
@@ -18,6 +19,7 @@ pub(super) enum MethodState {
     DampedLeastSquares(DampedLeastSquares),
     Ccd(Ccd),
     Fabrik(Fabrik),
+    Relaxation(Relaxation),
     TwoBone(TwoBones),
 }
 
@@ -35,17 +37,31 @@ impl MethodState {
             }
             Method::Ccd => Self::Ccd(Ccd::new(problem)),
             Method::Fabrik => Self::Fabrik(Fabrik::new(problem)),
+            Method::Relaxation => Self::Relaxation(Relaxation::new(problem)),
             Method::TwoBone => Self::TwoBone(TwoBones::new(problem, skeleton)?),
         })
     }
 
     /// Whether the method works on orientations instead of angles.
     pub fn uses_orientations(&self) -> bool {
-        matches!(self, Self::Ccd(_) | Self::Fabrik(_))
+        matches!(self, Self::Ccd(_) | Self::Fabrik(_) | Self::Relaxation(_))
     }
 
-    /// Resets what the method has learnt about step lengths. Returns whether the method learns step
-    /// lengths at all.
+    /// Updates orientations that iterations leave behind the points that they move.
+    pub fn update_orientations(&self, config: &mut Configuration) {
+        match self {
+            Self::Fabrik(fabrik) => fabrik.points().update_orientations(config),
+            Self::Relaxation(relaxation) => relaxation.points().update_orientations(config),
+            Self::Transpose(_)
+            | Self::BarzilaiBorwein(_)
+            | Self::DampedLeastSquares(_)
+            | Self::Ccd(_)
+            | Self::TwoBone(_) => {}
+        }
+    }
+
+    /// Forgets what the method has kept from earlier iterations: step lengths that it has learnt, and
+    /// points. Returns whether it keeps anything.
     pub fn restart(&mut self) -> bool {
         match self {
             Self::BarzilaiBorwein(descent) => {
@@ -56,6 +72,7 @@ impl MethodState {
                 damped.restart();
                 true
             }
+            Self::Relaxation(relaxation) => relaxation.restart(),
             Self::Transpose(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
         }
     }
@@ -80,6 +97,10 @@ impl MethodState {
             }
             Self::Fabrik(fabrik) => {
                 fabrik.iterate(problem, config, recorder);
+                true
+            }
+            Self::Relaxation(relaxation) => {
+                relaxation.iterate(problem, config, recorder);
                 true
             }
             Self::TwoBone(limbs) => {

@@ -18,6 +18,7 @@
 //! | [`Method::DampedLeastSquares`] | all angles, to the minimum of a quadratic model of f | solves for the other angles |
 //! | [`Method::Ccd`] | one joint after the other | best angle within the limits |
 //! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short |
+//! | [`Method::Relaxation`] | points: each bone in turn moves both of its ends | as FABRIK |
 //! | [`Method::TwoBone`] | two joints, at once | stops short |
 //!
 //! A straight chain that must shorten is bent before the first iteration if no method can bend it:
@@ -33,8 +34,8 @@
 //!   There the angles at limits, then all limited angles, are moved inside their limits and the
 //!   method starts again, up to six times; the best pose counts. That is no guarantee.
 //! - Near y = ±90° (gimbal lock) two of a joint's angles rotate about the same axis; methods that
-//!   move angles cannot rotate the joint in one direction there. CCD and FABRIK can, at joints
-//!   without limits.
+//!   move angles cannot rotate the joint in one direction there. CCD, FABRIK and relaxation
+//!   can, at joints without limits.
 //! - The offset of a free root has single precision, seven digits: a root that moves far from its
 //!   start loses precision.
 
@@ -50,11 +51,13 @@ mod escape;
 mod fabrik;
 mod inside;
 mod jacobian;
+mod link_points;
 mod method;
 mod method_state;
 mod options;
 mod perturb;
 mod problem;
+mod relaxation;
 mod report;
 mod solver;
 mod stall;

@@ -200,9 +200,7 @@ impl ChainSolver {
             return;
         }
         let mut config = config.clone();
-        if let MethodState::Fabrik(fabrik) = &self.state {
-            fabrik.update_orientations(&mut config);
-        }
+        self.state.update_orientations(&mut config);
         for (index, link) in self.problem.links.iter().enumerate() {
             skeleton.write_local(link.joint, |joint| {
                 joint.rotation = config.angles_near(&self.problem, index, joint.rotation);
@@ -268,9 +266,7 @@ impl ChainSolver {
             return false;
         }
         let config = &mut self.config;
-        if let MethodState::Fabrik(fabrik) = &self.state {
-            fabrik.update_orientations(config);
-        }
+        self.state.update_orientations(config);
         let uses_orientations = self.state.uses_orientations();
         if uses_orientations {
             config.update_angles(&self.problem);
@@ -306,9 +302,9 @@ impl ChainSolver {
             self.config.copy_from(&self.escape.best);
             let attempt = self.escape.attempts;
             self.escape.attempts += 1;
-            let learns = self.state.restart();
+            let forgets = self.state.restart();
             let goes_on = match attempt {
-                0 => self.bend() || learns,
+                0 => self.bend() || forgets,
                 1..=perturb::STARTS_INSIDE => self.change_angles(|problem, config| {
                     perturb::leave_limits(problem, config, attempt - 1)
                 }),

@@ -27,8 +27,12 @@ pub(super) struct StallDetector {
 
 impl StallDetector {
     pub fn new(method: Method, tolerance: f64, config: &Configuration) -> Self {
-        // The fixed step overshoots for longer before it settles.
-        let patience = if method == Method::TransposeFixed { 100 } else { 20 };
+        let patience = match method {
+            // The fixed step overshoots for longer before it settles, and the poses that points of
+            // relaxation give are not nearer after every pass.
+            Method::TransposeFixed | Method::Relaxation => 100,
+            _ => 20,
+        };
         // At this rate of improvement, 500 iterations together improve by less than one tolerance.
         let fraction = f64::from(patience) / 500.0;
         let rounding = f64::from(f32::EPSILON);
@@ -39,6 +43,7 @@ impl StallDetector {
             Method::Ccd => (2.0 * rounding, -rounding),
             // With conflicting targets, FABRIK converges near the minimum, not at it.
             Method::Fabrik => (2.0 * rounding, -1e-5),
+            Method::Relaxation => (2.0 * rounding, f64::INFINITY),
             // From the same angles these methods repeat the same steps.
             _ => ((fraction * tolerance).max(rounding), f64::INFINITY),
         };

@@ -7,12 +7,13 @@ use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use super::Random;
 
 /// All methods but the closed form, which needs two bones.
-pub const ITERATIVE: [Method; 5] = [
+pub const ITERATIVE: [Method; 6] = [
     Method::TransposeFixed,
     Method::Transpose,
     Method::DampedLeastSquares,
     Method::Ccd,
     Method::Fabrik,
+    Method::Relaxation,
 ];
 
 /// A target of weight 1.

@@ -7,10 +7,10 @@ use ik_arm_kinematics::chain_ik::{
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
-use crate::common::Random;
 use crate::common::skeletons::{
     ITERATIVE, chain, forest, length, limit, reachable, shake, space_f64, target, transform, tree,
 };
+use crate::common::{Random, cases};
 
 const CASES: usize = 1_000;
 
@@ -77,7 +77,7 @@ fn trees_reached(method: Method, targets: usize) -> usize {
 
 #[test]
 fn chains_of_2_and_3_reach_every_reachable_target() {
-    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
+    for method in [Method::Fabrik, Method::Relaxation, Method::Ccd, Method::DampedLeastSquares] {
         for joints in [2, 3] {
             assert_eq!(chains_reached(method, joints, 1e-3), CASES, "{method:?}, {joints} joints");
         }
@@ -86,7 +86,7 @@ fn chains_of_2_and_3_reach_every_reachable_target() {
 
 #[test]
 fn chains_of_10_reach_every_reachable_target() {
-    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
+    for method in [Method::Fabrik, Method::Relaxation, Method::Ccd, Method::DampedLeastSquares] {
         assert_eq!(chains_reached(method, 10, 1e-3), CASES, "{method:?}");
     }
 }
@@ -95,6 +95,34 @@ fn chains_of_10_reach_every_reachable_target() {
 fn chains_of_30_reach_every_reachable_target() {
     for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares] {
         assert_eq!(chains_reached(method, 30, 1e-3), CASES, "{method:?}");
+    }
+}
+
+#[test]
+fn constraint_relaxation_reaches_98_percent_of_reachable_targets_with_2_to_30_joints() {
+    for joints in 2..=30 {
+        let mut random = Random(20);
+        let all = cases(1_000);
+        let mut iterations = Vec::new();
+        let reached = (0..all).filter(|index| {
+            let mut skeleton = chain(&mut random, joints, [1.0, 500.0][index % 2]);
+            let targets = reachable(&mut random, &skeleton, &[JointId::new(joints)]);
+            if index % 4 > 1 {
+                shake(&mut random, &mut skeleton);
+            }
+            let options = SolverOptions::new(Method::Relaxation).with_iterations(2_000);
+            let report = solve(&mut skeleton, &targets, &options).expect("solve");
+            iterations.push(report.iterations);
+            error(&skeleton, &targets) <= 1e-3 * length(&skeleton, &[JointId::new(joints)])
+        });
+        let reached = reached.count();
+        iterations.sort_unstable();
+        println!(
+            "{joints} joints: {reached} of {all}, {} iterations (median), {} most",
+            iterations[all / 2],
+            iterations[all - 1]
+        );
+        assert!(reached * 100 >= all * 98, "{reached} of {all} with {joints} joints");
     }
 }
 
@@ -115,6 +143,7 @@ fn the_closed_form_reaches_every_reachable_target() {
 fn trees_bring_several_tips_to_their_targets() {
     for (method, least) in [
         (Method::Fabrik, 99),
+        (Method::Relaxation, 99),
         (Method::DampedLeastSquares, 99),
         (Method::Ccd, 99),
         (Method::Transpose, 99),
@@ -253,9 +282,12 @@ fn every_step_keeps_limits_locked_joints_joints_off_the_path_and_roots() {
 #[test]
 fn targets_within_the_limits_are_reached() {
     // Random limits, and a target from a pose within them; from the bind pose or a random one.
-    for (method, least) in
-        [(Method::DampedLeastSquares, 90), (Method::Ccd, 90), (Method::Fabrik, 90)]
-    {
+    for (method, least) in [
+        (Method::DampedLeastSquares, 90),
+        (Method::Ccd, 90),
+        (Method::Fabrik, 90),
+        (Method::Relaxation, 90),
+    ] {
         let mut random = Random(5);
         let mut count = 0;
         for _ in 0..300 {
@@ -294,7 +326,13 @@ fn reported_errors_are_in_world_space_under_any_mirroring_and_scale() {
 
 #[test]
 fn mirrored_and_scaled_skeletons_reach_their_targets() {
-    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares, Method::TwoBone] {
+    for method in [
+        Method::Fabrik,
+        Method::Relaxation,
+        Method::Ccd,
+        Method::DampedLeastSquares,
+        Method::TwoBone,
+    ] {
         let mut random = Random(23);
         for _ in 0..200 {
             let joints = if method == Method::TwoBone { 2 } else { 6 };
@@ -338,7 +376,8 @@ fn an_unreachable_target_straightens_the_chain_and_stalls_the_solver() {
             let targets = [target(JointId::new(joints), random.direction() * distance)];
             // Half a step: at the gimbal a whole one goes back and forth.
             let mut options = SolverOptions::new(method).with_step(0.4);
-            if ![Method::Fabrik, Method::Ccd, Method::TwoBone].contains(&method) {
+            if ![Method::Fabrik, Method::Relaxation, Method::Ccd, Method::TwoBone].contains(&method)
+            {
                 options.iterations = Some(20_000);
             }
             let report = solve(&mut skeleton, &targets, &options).expect("solve");
@@ -580,7 +619,7 @@ fn a_solver_follows_moving_targets() {
 
 #[test]
 fn a_solver_that_returns_to_its_start_writes_the_start_pose() {
-    for method in [Method::Ccd, Method::Fabrik] {
+    for method in [Method::Ccd, Method::Fabrik, Method::Relaxation] {
         let mut skeleton = straight(1);
         let mut solve = ChainSolver::new(
             &skeleton,
@@ -695,7 +734,13 @@ fn poses_stay_finite_at_every_edge() {
 
 #[test]
 fn huge_and_tiny_skeletons_solve_like_others() {
-    for method in [Method::Fabrik, Method::Ccd, Method::DampedLeastSquares, Method::TwoBone] {
+    for method in [
+        Method::Fabrik,
+        Method::Relaxation,
+        Method::Ccd,
+        Method::DampedLeastSquares,
+        Method::TwoBone,
+    ] {
         for scale in [1e-30, 1e30] {
             let mut random = Random(53);
             for _ in 0..20 {
@@ -854,6 +899,7 @@ fn an_unreachable_target_does_not_stop_another_chain_from_reaching_its_own() {
         (Method::DampedLeastSquares, 1e-3),
         (Method::Ccd, 1e-3),
         (Method::Fabrik, 1e-3),
+        (Method::Relaxation, 1e-3),
     ] {
         let mut skeleton = Skeleton::default();
         let mut tips = Vec::new();

@@ -5,7 +5,7 @@ use glam::{Affine3A, DVec3, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{
     ChainSolver, Column, Method, Root, SolverOptions, SubStep, SubStepKind, TipTarget,
 };
-use ik_arm_kinematics::skeleton::{JointId, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
 use nalgebra::Matrix3xX;
 
 use crate::common::Random;
@@ -302,6 +302,142 @@ fn the_passes_of_fabrik_keep_the_bones_and_meet_targets_and_roots() {
                     }
                 }
                 SubStepKind::Forward(segments) if !case.is_limited => {
+                    let pose = step.pose.pose();
+                    for [base, _] in segments {
+                        let bases = pose.ids().map(|joint| pose.base(joint).distance(*base));
+                        assert!(bases.fold(f32::MAX, f32::min) < rounding, "{base}");
+                    }
+                }
+                _ => {}
+            }
+        }
+    });
+}
+
+/// The points after the pass of relaxation in an iteration: one segment for each bone, from the root on.
+fn relaxed(steps: &[SubStep]) -> Option<&[[Vec3; 2]]> {
+    steps.iter().find_map(|step| match &step.kind {
+        SubStepKind::Relaxed(segments) => Some(&segments[..]),
+        _ => None,
+    })
+}
+
+/// One pass by Juckett's *Resolving Constraints*: for a bone from b1 to b2 of length l, with weights w1
+/// and w2, v = b2 − b1, d = |v|, m = v (d − l)/d; b1 += m w1/(w1 + w2), b2 −= m w2/(w1 + w2). The root
+/// and the target have weight 0, all other joints 1, and the last bone comes first.
+///
+/// Three bones of length 1 stand up from the root (0, 0), with joints at (0, 1) and (0, 2); the target
+/// is (2, 2).
+///
+/// - Bone 3, from (0, 2) to the target: v = (2, 0), d = 2, m = (1, 0). The target has weight 0, so the
+///   joint moves alone, to (1, 2).
+/// - Bone 2, from (0, 1) to (1, 2): v = (1, 1), d = √2, m = (1 − 1/√2) (1, 1) = 0.292893 (1, 1). Both
+///   ends move by half of it, to (0.146447, 1.146447) and (0.853553, 1.853553).
+/// - Bone 1, from (0, 0) to (0.146447, 1.146447): d = √(0.021447 + 1.314340) = 1.155762. The root has
+///   weight 0, so the joint moves alone, to (0.146447, 1.146447)/d = (0.126710, 0.991940).
+///
+/// Bone 2 is now √(0.726843² + 0.861614²) = 1.127253 long: the next pass goes on.
+#[test]
+fn a_pass_of_relaxation_over_unit_bones_is_the_one_worked_out_by_hand() {
+    let mut skeleton = Skeleton::with_root("root");
+    for index in 0..3_usize {
+        let offset = if index == 0 { Vec3::ZERO } else { Vec3::Y };
+        let name = format!("bone {}", index + 1);
+        let joint = Joint { offset, ..Joint::new(&name, Some(index.into()), Vec3::Y) };
+        skeleton.add(joint).expect("joint");
+    }
+    let target = TipTarget { joint: JointId::new(3), point: Vec3::new(2.0, 2.0, 0.0), weight: 1.0 };
+    let options = SolverOptions::new(Method::Relaxation);
+    let mut solver = ChainSolver::new(&skeleton, &[target], &options).expect("a solver");
+    let (_, steps) = solver.step_inside(&skeleton);
+
+    let [root, target] = [Vec3::ZERO, target.point];
+    let first = Vec3::new(0.126_710, 0.991_940, 0.0);
+    let second = Vec3::new(0.853_553, 1.853_553, 0.0);
+    let expected = [[root, first], [first, second], [second, target]];
+    let segments = relaxed(&steps).expect("a pass");
+    assert_eq!(segments.len(), expected.len());
+    for (segment, expected) in segments.iter().zip(expected) {
+        for (end, expected) in segment.iter().zip(expected) {
+            assert!(end.distance(expected) < 1e-6, "{segment:?}, {expected}");
+        }
+    }
+    // The bones laid out from the root: (0, 0) towards the first point, then towards the second, each
+    // from where the bone before it ends.
+    let pose = &steps.last().expect("the pose").pose;
+    assert!(pose.tip(JointId::new(1)).distance(first) < 1e-6);
+    let towards = (second - first).normalize();
+    assert!(pose.tip(JointId::new(2)).distance(first + towards) < 1e-6);
+}
+
+/// One pass over a chain in f64; `points` are the joints from the root on, then the target.
+fn relax(points: &mut [DVec3], lengths: &[f64]) {
+    let last = lengths.len() - 1;
+    for bone in (0..=last).rev() {
+        let weights = [bone > 0, bone < last].map(|moves| if moves { 1.0 } else { 0.0 });
+        let v = points[bone + 1] - points[bone];
+        let m = v * (1.0 - lengths[bone] / v.length()) / (weights[0] + weights[1]);
+        points[bone] += weights[0] * m;
+        points[bone + 1] -= weights[1] * m;
+    }
+}
+
+#[test]
+fn the_points_of_relaxation_are_those_of_the_article_pass_after_pass() {
+    let mut random = Random(191);
+    let mut passes = 0;
+    for joints in 2..=30 {
+        let mut skeleton = chain(&mut random, joints, [1.0, 300.0][joints % 2]);
+        let target = reachable(&mut random, &skeleton, &[JointId::new(joints)])[0];
+        shake(&mut random, &mut skeleton);
+        let pose = skeleton.pose();
+        let mut points: Vec<DVec3> =
+            (1..=joints).map(|joint| pose.base(JointId::new(joint)).as_dvec3()).collect();
+        points.push(target.point.as_dvec3());
+        let lengths: Vec<f64> = (1..=joints)
+            .map(|joint| skeleton[JointId::new(joint)].axis.as_dvec3().length())
+            .collect();
+        let length: f64 = lengths.iter().sum();
+        let options = SolverOptions::new(Method::Relaxation);
+        let mut solver = ChainSolver::new(&skeleton, &[target], &options).expect("a solver");
+        for _ in 0..8 {
+            let (report, steps) = solver.step_inside(&skeleton);
+            // The pass after a new start begins with other points.
+            if steps
+                .iter()
+                .any(|step| matches!(step.kind, SubStepKind::Bend | SubStepKind::Restart))
+            {
+                break;
+            }
+            relax(&mut points, &lengths);
+            let segments = relaxed(&steps).expect("a pass");
+            for (bone, segment) in segments.iter().enumerate() {
+                for (end, expected) in segment.iter().zip(&points[bone..]) {
+                    let error = end.as_dvec3().distance(*expected);
+                    assert!(error < 1e-5 * length, "{joints} joints, bone {bone}: {error}");
+                }
+            }
+            passes += 1;
+            if report.converged() {
+                break;
+            }
+        }
+    }
+    assert!(passes > 100, "{passes}");
+}
+
+#[test]
+fn a_pass_of_relaxation_leaves_roots_in_place_and_lays_out_bones_of_their_lengths() {
+    iterations(Method::Relaxation, |case, _, steps| {
+        let rounding = 1e-4 * size(case) + 1e-5 * case.targets[0].point.length();
+        for step in steps {
+            match &step.kind {
+                SubStepKind::Relaxed(segments) if case.targets.len() == 1 => {
+                    let target = case.targets[0].point;
+                    let nearest = segments.iter().map(|[_, end]| end.distance(target));
+                    assert!(nearest.fold(f32::MAX, f32::min) < rounding);
+                }
+                SubStepKind::LaidOut(segments) if !case.is_limited => {
                     let pose = step.pose.pose();
                     for [base, _] in segments {
                         let bases = pose.ids().map(|joint| pose.base(joint).distance(*base));

@@ -51,12 +51,18 @@ impl InsideDrawing<'_> {
                 self.add_before(scene);
                 self.add_turn(scene, turn);
             }
-            SubStepKind::Backward(chain) if shows(InsideLayer::Passes) => {
+            SubStepKind::Backward(chain) | SubStepKind::Relaxed(chain)
+                if shows(InsideLayer::Passes) =>
+            {
                 self.add_chain(scene, chain, scene.palette.accent);
             }
-            SubStepKind::Forward(chain) if shows(InsideLayer::Passes) => {
-                if let Some(SubStepKind::Backward(backward)) = self.previous() {
-                    self.add_chain(scene, backward, scene.palette.accent);
+            SubStepKind::Forward(chain) | SubStepKind::LaidOut(chain)
+                if shows(InsideLayer::Passes) =>
+            {
+                if let Some(SubStepKind::Backward(points) | SubStepKind::Relaxed(points)) =
+                    self.previous()
+                {
+                    self.add_chain(scene, points, scene.palette.accent);
                 }
                 self.add_chain(scene, chain, scene.palette.guide);
             }

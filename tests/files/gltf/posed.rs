@@ -33,6 +33,7 @@ fn document(random: &mut Random) -> Document {
     let mut rig = SkeletonRig::new(skeleton);
     rig.solver = rig.solver.with_method(random.one_of(&[
         Method::Fabrik,
+        Method::Relaxation,
         Method::Ccd,
         Method::DampedLeastSquares,
         Method::Transpose,

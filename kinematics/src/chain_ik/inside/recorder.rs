@@ -29,6 +29,10 @@ pub(in crate::chain_ik) enum Event {
     Backward(Vec<LinkSegment>),
     /// Points were moved back from the roots.
     Forward(Vec<LinkSegment>),
+    /// The length of each bone was restored in turn, from the targets to the roots.
+    Relaxed(Vec<LinkSegment>),
+    /// Bones were laid out from the roots towards the points.
+    LaidOut(Vec<LinkSegment>),
     /// The passes were undone, because they raised the cost.
     Undo,
     /// The elbow of the limb that ends with this link was placed.

@@ -33,7 +33,14 @@ pub enum SubStepKind {
     Backward(Vec<[Vec3; 2]>),
     /// FABRIK: the pass back from the roots, as segments from joints to points.
     Forward(Vec<[Vec3; 2]>),
-    /// FABRIK: the passes raised the error and are undone; a sweep of CCD follows.
+    /// Relaxation: the length of each bone is restored in turn, from the targets to the roots, by moving
+    /// both of its ends, as segments from joints to points. Bones beside it stretch or shorten. The
+    /// pose is unchanged.
+    Relaxed(Vec<[Vec3; 2]>),
+    /// Relaxation: bones of their own length are laid out from the roots towards the points, as
+    /// segments from joints to points.
+    LaidOut(Vec<[Vec3; 2]>),
+    /// FABRIK and relaxation: the passes raised the error and are undone; a sweep of CCD follows.
     Undo,
     /// Two-bone: the upper joint of the limb that ends with this joint is turned, so that the elbow is
     /// at its place.
@@ -141,6 +148,8 @@ impl SubStepKind {
             Self::MoveRoots => "Move the roots",
             Self::Backward(_) => "Pass backward, from the target to the root",
             Self::Forward(_) => "Pass forward, from the root to the tip",
+            Self::Relaxed(_) => "Restore each bone's length, from the target to the root",
+            Self::LaidOut(_) => "Lay the bones out, from the root to the tip",
             Self::Undo => "Undo the passes",
             Self::PlaceElbow(_) => "Place the elbow",
             Self::Aim(_) => "Turn to the target",

@@ -73,6 +73,8 @@ impl World<'_> {
             Event::MoveRoots => SubStepKind::MoveRoots,
             Event::Backward(chain) => SubStepKind::Backward(self.chain(chain)),
             Event::Forward(chain) => SubStepKind::Forward(self.chain(chain)),
+            Event::Relaxed(chain) => SubStepKind::Relaxed(self.chain(chain)),
+            Event::LaidOut(chain) => SubStepKind::LaidOut(self.chain(chain)),
             Event::Undo => SubStepKind::Undo,
             Event::PlaceElbow(link) => SubStepKind::PlaceElbow(joint(*link)),
             Event::Aim(link) => SubStepKind::Aim(joint(*link)),

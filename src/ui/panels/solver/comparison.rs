@@ -106,6 +106,7 @@ fn short_name(method: Method) -> &'static str {
         Method::DampedLeastSquares => "Damped l. s.",
         Method::Ccd => "CCD",
         Method::Fabrik => "FABRIK",
+        Method::Relaxation => "Relaxation",
         Method::TwoBone => "Two-bone",
     }
 }

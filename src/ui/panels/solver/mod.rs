@@ -135,7 +135,8 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 .show(ui, session, actions, |step| set(SolverOptions { step, ..options }));
             });
         }
-        Method::Transpose | Method::Ccd | Method::Fabrik | Method::TwoBone => {}
+        Method::Transpose | Method::Ccd | Method::Fabrik | Method::Relaxation | Method::TwoBone => {
+        }
     }
     roots(ui, options, actions);
 }

@@ -79,6 +79,18 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
             "Forward pass",
             "after the backward pass, the root back in its place and each joint pushed after it, at its distance",
         )],
+        SubStepKind::Relaxed(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent],
+            "Points of the joints",
+            "each joint where the bones at its ends have moved it: the root in its place, the last bone at its target, and other bones stretched or shortened until the points settle",
+        )],
+        SubStepKind::LaidOut(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent, guide],
+            "Bones laid out",
+            "from the root, each bone at its own length towards its point: the pose",
+        )],
         SubStepKind::PlaceElbow(_) | SubStepKind::Aim(_) => vec![entry(
             InsideLayer::Triangle,
             vec![accent, guide],

@@ -1,0 +1,343 @@
+//! Points of links: what FABRIK and relaxation move instead of angles.
+//!
+//! Both methods set a destination for each point, then lay the links out from the roots: each link
+//! keeps the distance of its points from its joint and points at their destinations. A link with
+//! several points (a bone with children away from its tip, or a locked fork) rotates as a whole, to
+//! the best fit. If any link has limits, every link rotates as a whole, and limited links angle by
+//! angle within their limits.
+//!
+//! Orientations of links with one point and no limits are computed on demand, by the smallest
+//! rotation.
+
+use core::ops::Range;
+
+use glam::{Mat3A, Quat, Vec3A};
+
+use super::align::{PointPair, ROTATIONS, align, align_within};
+use super::configuration::Configuration;
+use super::inside::LinkSegment;
+use super::problem::{Link, Problem};
+use crate::skeleton::JointAngles;
+use crate::{normalize, rotation_between};
+
+/// A point fixed to a link, with the child joints and tips that are at this point.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LinkPoint {
+    /// Position in the link's space.
+    pub position: Vec3A,
+    /// Distance from the link's joint.
+    pub radius: f32,
+    /// Sum of the weights of `members`.
+    pub weight: f32,
+    pub members: Vec<PointMember>,
+}
+
+/// A child joint or a tip at a point of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PointMember {
+    pub kind: MemberKind,
+    /// Sum of the weights of the tip, or of all end effectors at the child joint and below.
+    pub weight: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum MemberKind {
+    /// Joint of the link with this index.
+    Base(usize),
+    /// Tip of the end effector with this index.
+    Tip(usize),
+}
+
+/// Points of all links, with their destinations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct LinkPoints {
+    all: Vec<LinkPoint>,
+    /// Range of each link's points in `all`.
+    ranges: Vec<(usize, usize)>,
+    /// Joints and tips that are fixed to the root, for each tree.
+    grounds: Vec<Vec<PointMember>>,
+    mounts: Vec<Quat>,
+    limited: bool,
+    /// Destination of each point.
+    pub destinations: Vec<Vec3A>,
+    /// Destination of each link's joint.
+    pub base_destinations: Vec<Vec3A>,
+    /// Vector to each point from the joint of the point's link.
+    arms: Vec<Vec3A>,
+    pairs: Vec<PointPair>,
+}
+
+impl LinkPoints {
+    pub fn new(problem: &Problem) -> Self {
+        let mut points = Self {
+            grounds: vec![Vec::new(); problem.trees.len()],
+            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            limited: problem.links.iter().any(Link::is_limited),
+            base_destinations: vec![Vec3A::ZERO; problem.links.len()],
+            ..Self::default()
+        };
+        for list in points.list(problem) {
+            let from = points.all.len();
+            points.all.extend(list);
+            points.ranges.push((from, points.all.len()));
+        }
+        points.destinations = vec![Vec3A::ZERO; points.all.len()];
+        points.arms = vec![Vec3A::ZERO; points.all.len()];
+        points.pairs.reserve(points.all.len());
+        points
+    }
+
+    fn list(&mut self, problem: &Problem) -> Vec<Vec<LinkPoint>> {
+        let mut lists: Vec<Vec<LinkPoint>> = vec![Vec::new(); problem.links.len()];
+        let mut add =
+            |link: Option<usize>, tree: usize, position: Vec3A, member: PointMember| match link {
+                Some(link) => add_member(&mut lists[link], position, member),
+                None => self.grounds[tree].push(member),
+            };
+        for (index, link) in problem.links.iter().enumerate() {
+            let weights =
+                problem.below(link).iter().map(|effector| problem.effectors[*effector].weight);
+            let member = PointMember { kind: MemberKind::Base(index), weight: weights.sum() };
+            add(link.parent, link.tree, link.pivot, member);
+        }
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let member = PointMember { kind: MemberKind::Tip(index), weight: effector.weight };
+            add(effector.link, effector.tree, effector.tip, member);
+        }
+        lists
+    }
+
+    /// Whether any link has limits.
+    pub fn are_limited(&self) -> bool {
+        self.limited
+    }
+
+    /// Number of points of all links.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Indices of the points of a link.
+    pub fn of_link(&self, link: usize) -> Range<usize> {
+        let (from, to) = self.ranges[link];
+        from..to
+    }
+
+    pub fn point(&self, index: usize) -> &LinkPoint {
+        &self.all[index]
+    }
+
+    /// Vector from a link's joint to one of its points.
+    pub fn arm(&self, config: &Configuration, link: usize, index: usize) -> Vec3A {
+        self.all[index].position_in(config) - config.bases[link]
+    }
+
+    /// Whether the problem is a chain without limits, with a fixed root, whose one target is out of
+    /// reach.
+    pub fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
+        let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
+        else {
+            return false;
+        };
+        let length: f32 = self.all.iter().map(|point| point.radius).sum();
+        effector.link.is_some() && effector.target.distance(config.bases[0]) >= length
+    }
+
+    /// Weighted mean of the destinations of a point's members.
+    pub fn destination_of(&self, problem: &Problem, index: usize) -> Vec3A {
+        let point = &self.all[index];
+        if let [member] = point.members[..] {
+            return self.member_destination(problem, member.kind);
+        }
+        let destinations = point.members.iter();
+        let sum: Vec3A = destinations
+            .map(|member| member.weight * self.member_destination(problem, member.kind))
+            .sum();
+        sum / point.weight
+    }
+
+    fn member_destination(&self, problem: &Problem, member: MemberKind) -> Vec3A {
+        match member {
+            MemberKind::Base(link) => self.base_destinations[link],
+            MemberKind::Tip(effector) => problem.effectors[effector].target,
+        }
+    }
+
+    /// Sets the destination of a point and of the joints at it.
+    pub fn move_point(&mut self, index: usize, to: Vec3A) {
+        self.destinations[index] = to;
+        for member in &self.all[index].members {
+            if let MemberKind::Base(child) = member.kind {
+                self.base_destinations[child] = to;
+            }
+        }
+    }
+
+    /// Lays the links out from the roots towards the destinations of their points.
+    pub fn lay_out(&mut self, problem: &Problem, config: &mut Configuration) {
+        if problem.free_roots {
+            self.move_roots(problem, config);
+        }
+        for (index, link) in problem.links.iter().enumerate() {
+            if link.parent.is_none() {
+                config.bases[index] = config.shifts[link.tree] + link.pivot;
+            }
+            self.lay_link(problem, config, index);
+        }
+    }
+
+    /// Shifts each tree by the weighted mean vector from the joints and tips fixed to its root to
+    /// their destinations, unless that overflows.
+    fn move_roots(&self, problem: &Problem, config: &mut Configuration) {
+        for (tree, ground) in self.grounds.iter().enumerate() {
+            let weights: f32 = ground.iter().map(|member| member.weight).sum();
+            let residual = |member: &PointMember| {
+                self.member_destination(problem, member.kind) - member.kind.position_in(config)
+            };
+            let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
+            let shift = config.shifts[tree] + sum / weights;
+            if problem.can_shift(tree, shift) {
+                config.shifts[tree] = shift;
+            }
+            for member in ground {
+                if let MemberKind::Tip(effector) = member.kind {
+                    config.tips[effector] = config.shifts[tree] + problem.effectors[effector].tip;
+                }
+            }
+        }
+    }
+
+    /// Moves the points of a link towards their destinations, at their distances from the link's joint.
+    fn lay_link(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
+        let (from, to) = self.ranges[link];
+        let base = config.bases[link];
+        if self.limited || to - from > 1 {
+            self.rotate(problem, config, link);
+        } else if let Some(towards) = normalize(self.destinations[from] - base) {
+            self.arms[from] = self.all[from].radius * towards;
+        }
+        for index in from..to {
+            let position = base + self.arms[index];
+            for member in &self.all[index].members {
+                match member.kind {
+                    MemberKind::Base(child) => config.bases[child] = position,
+                    MemberKind::Tip(effector) => config.tips[effector] = position,
+                }
+            }
+        }
+    }
+
+    /// Rotates a link as a whole, so that its points come near their destinations.
+    fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
+        let (from, to) = self.ranges[index];
+        let link = &problem.links[index];
+        let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+        let mounted = parent * self.mounts[index];
+        let own =
+            |config: &Configuration| Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+        if link.is_limited() {
+            config.orientations[index] = (mounted * own(config)).normalize();
+        }
+        self.pairs.clear();
+        for point in from..to {
+            let LinkPoint { position, weight, .. } = self.all[point];
+            self.pairs.push(PointPair {
+                from: config.orientations[index] * position,
+                to: self.destinations[point] - config.bases[index],
+                weight,
+            });
+        }
+        for _ in 0..if to - from > 1 || link.is_limited() { ROTATIONS } else { 1 } {
+            if link.is_limited() {
+                let axes = Mat3A::from_quat(mounted) * JointAngles(config.angles[index]).axes();
+                let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+                align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs);
+            } else {
+                let rotation = align(&self.pairs);
+                self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+                config.orientations[index] = (rotation * config.orientations[index]).normalize();
+            }
+        }
+        if link.is_limited() {
+            config.orientations[index] = (mounted * own(config)).normalize();
+        }
+        for point in from..to {
+            self.arms[point] = config.orientations[index] * self.all[point].position;
+        }
+    }
+
+    /// Updates the orientations of links with one point, which iterations move only: turns each, by
+    /// the smallest angle, until the link points at its point.
+    pub fn update_orientations(&self, config: &mut Configuration) {
+        if self.limited {
+            return;
+        }
+        for (link, (from, to)) in self.ranges.iter().enumerate() {
+            if let [point] = &self.all[*from..*to] {
+                let arm = point.position_in(config) - config.bases[link];
+                let orientation = &mut config.orientations[link];
+                let rotation = rotation_between(*orientation * point.position, arm);
+                *orientation = (rotation * *orientation).normalize();
+            }
+        }
+    }
+
+    /// Each link as the pairs of its joint and its points, where their destinations are.
+    pub fn destination_segments(&self) -> Vec<LinkSegment> {
+        let links = self.ranges.iter().zip(&self.base_destinations).enumerate();
+        let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
+            let base = *base;
+            let points = &self.destinations[range.0..range.1];
+            points.iter().map(move |point| LinkSegment { link, ends: [base, *point] })
+        };
+        links.flat_map(segments).collect()
+    }
+
+    /// Each link as the pairs of its joint and its points.
+    pub fn segments(&self, config: &Configuration) -> Vec<LinkSegment> {
+        let links = self.ranges.iter().zip(&config.bases).enumerate();
+        let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
+            let ends = |point: &LinkPoint| [*base, point.position_in(config)];
+            let points = self.all[range.0..range.1].iter();
+            points.map(|point| LinkSegment { link, ends: ends(point) }).collect::<Vec<_>>()
+        };
+        links.flat_map(segments).collect()
+    }
+}
+
+fn add_member(points: &mut Vec<LinkPoint>, position: Vec3A, member: PointMember) {
+    match points.iter_mut().find(|point| point.position == position) {
+        Some(point) => {
+            point.weight += member.weight;
+            point.members.push(member);
+        }
+        None => points.push(LinkPoint {
+            position,
+            radius: position.length(),
+            weight: member.weight,
+            members: vec![member],
+        }),
+    }
+}
+
+impl LinkPoint {
+    /// Whether only tips are at the point, which have targets.
+    pub fn is_target(&self) -> bool {
+        self.members.iter().all(|member| matches!(member.kind, MemberKind::Tip(_)))
+    }
+
+    /// Position in problem space.
+    pub fn position_in(&self, config: &Configuration) -> Vec3A {
+        self.members[0].kind.position_in(config)
+    }
+}
+
+impl MemberKind {
+    /// Position in problem space.
+    fn position_in(self, config: &Configuration) -> Vec3A {
+        match self {
+            Self::Base(link) => config.bases[link],
+            Self::Tip(effector) => config.tips[effector],
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Constraint relaxation: joints are points that bones hold at a distance. One pass restores the
+//! length r of each bone in turn, from the targets to the roots, by moving both ends of the bone;
+//! this stretches or shortens the bones beside it, so that all lengths hold only once the passes
+//! have settled.
+//!
+//! ```text
+//! v = end − base,   e = v · (1 − r/|v|)
+//! base' = base + e · w_base/(w_base + w_end)       end' = end − e · w_end/(w_base + w_end)
+//! ```
+//!
+//! All joints have the same weight w, fixed roots and targets have the weight 0: the last bone
+//! moves its joint alone, so that its tip is at the target, and the first bone its end alone. Points
+//! stay where a pass has moved them; the next pass goes on from there. After each pass the links are
+//! laid out from the roots towards the points by [`LinkPoints`]: that is the pose.
+//!
+//! A point that several children share moves to the weighted mean of where their bones bring it. A
+//! link with several points is restored as a whole, at the rotation that fits them best.
+//!
+//! Passes ignore limits. If any link has limits, each pass starts from the pose, and
+//! [`SweepAfterPasses`] goes on where it does not help, as with FABRIK. A chain whose only target is
+//! out of reach is laid out straight towards the target.
+//!
+//! # Source
+//!
+//! R. Juckett, *Constraint Relaxation IK in 2D*, 2009.
+
+use glam::Vec3A;
+
+use super::align::{PointPair, ROTATIONS, align};
+use super::ccd::SweepAfterPasses;
+use super::configuration::Configuration;
+use super::inside::{Event, Recorder};
+use super::link_points::LinkPoints;
+use super::problem::Problem;
+use crate::normalize;
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Relaxation {
+    /// The destinations are the points as the last pass left them.
+    points: LinkPoints,
+    sweep: SweepAfterPasses,
+    /// Vector to each point from the joint of the point's link, at the distance of the bone.
+    arms: Vec<Vec3A>,
+    pairs: Vec<PointPair>,
+    /// Whether the next pass goes on from the points of the last one, not from the pose.
+    goes_on: bool,
+}
+
+impl Relaxation {
+    pub fn new(problem: &Problem) -> Self {
+        let points = LinkPoints::new(problem);
+        Self {
+            sweep: SweepAfterPasses::new(problem),
+            arms: vec![Vec3A::ZERO; points.len()],
+            pairs: Vec::with_capacity(points.len()),
+            points,
+            goes_on: false,
+        }
+    }
+
+    pub fn points(&self) -> &LinkPoints {
+        &self.points
+    }
+
+    /// Makes the next pass start from the pose. Returns whether it would not have.
+    pub fn restart(&mut self) -> bool {
+        std::mem::take(&mut self.goes_on)
+    }
+
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) {
+        if !self.points.are_limited() {
+            self.relax(problem, config, recorder);
+            self.goes_on = true;
+            return;
+        }
+        self.sweep.start(config);
+        self.relax(problem, config, recorder);
+        self.sweep.finish(problem, config, recorder);
+    }
+
+    /// Makes one pass over all bones, then lays the links out.
+    fn relax(&mut self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
+        if self.points.is_out_of_reach(problem, config) {
+            self.points.destinations.fill(problem.effectors[0].target);
+        } else {
+            self.start_pass(problem, config);
+            for link in (0..problem.links.len()).rev() {
+                self.restore(problem, config, link);
+            }
+            recorder.record(config, || Event::Relaxed(self.points.destination_segments()));
+        }
+        self.points.lay_out(problem, config);
+        recorder.record(config, || Event::LaidOut(self.points.segments(config)));
+    }
+
+    /// Takes the joints from the pose: all of them, or those at fixed roots only.
+    fn start_pass(&mut self, problem: &Problem, config: &Configuration) {
+        for link in 0..problem.links.len() {
+            if !self.goes_on || is_fixed(problem, link) {
+                self.points.base_destinations[link] = config.bases[link];
+            }
+        }
+    }
+
+    /// Restores the distances of a link's points from its joint.
+    fn restore(&mut self, problem: &Problem, config: &Configuration, link: usize) {
+        let base = self.points.base_destinations[link];
+        self.aim(problem, config, link);
+        let is_fixed = is_fixed(problem, link);
+        let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
+        for index in self.points.of_link(link) {
+            let error = self.points.destinations[index] - (base + self.arms[index]);
+            // Joints have even weights; fixed roots and targets have the weight 0.
+            let fraction = match (is_fixed, self.points.point(index).is_target()) {
+                (true, _) => 0.0,
+                (false, true) => 1.0,
+                (false, false) => 0.5,
+            };
+            let weight = self.points.point(index).weight;
+            sum += weight * fraction * error;
+            weights += weight;
+        }
+        let base = base + sum / weights;
+        self.points.base_destinations[link] = base;
+        for index in self.points.of_link(link) {
+            if !self.points.point(index).is_target() {
+                self.points.move_point(index, base + self.arms[index]);
+            }
+        }
+    }
+
+    /// Points a link from its joint at its points: sets their destinations and the vectors to where
+    /// the link has them.
+    fn aim(&mut self, problem: &Problem, config: &Configuration, link: usize) {
+        let base = self.points.base_destinations[link];
+        self.pairs.clear();
+        for index in self.points.of_link(link) {
+            let destination = self.points.destination_of(problem, index);
+            self.points.destinations[index] = destination;
+            self.pairs.push(PointPair {
+                from: self.points.arm(config, link, index),
+                to: destination - base,
+                weight: self.points.point(index).weight,
+            });
+        }
+        if let [pair] = self.pairs[..] {
+            let index = self.points.of_link(link).start;
+            let along = normalize(pair.to).or_else(|| normalize(pair.from));
+            self.arms[index] = self.points.point(index).radius * along.unwrap_or(Vec3A::ZERO);
+            return;
+        }
+        for _ in 0..ROTATIONS {
+            let rotation = align(&self.pairs);
+            self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+        }
+        for (index, pair) in self.points.of_link(link).zip(&self.pairs) {
+            self.arms[index] = pair.from;
+        }
+    }
+}
+
+/// Whether the joint of a link is fixed to a root that cannot move.
+fn is_fixed(problem: &Problem, link: usize) -> bool {
+    problem.links[link].parent.is_none() && !problem.free_roots
+}
