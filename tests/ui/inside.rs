@@ -95,6 +95,20 @@ fn the_last_part_has_the_pose_of_the_iteration() {
 }
 
 #[test]
+fn relaxation_shows_its_pass_and_then_the_bones_laid_out() {
+    let mut bench = after_a_step(Method::Relaxation);
+    look_inside(&mut bench);
+    assert!(bench.says("Restore each bone's length") && bench.says("Points of the joints"));
+    let lines = |bench: &Bench| bench.session().overlays().inside.expect("a part").part.clone();
+    assert!(matches!(lines(&bench).kind, SubStepKind::Relaxed(_)));
+    bench.key_with(Modifiers::SHIFT, Key::Period);
+    bench.settle();
+    assert_eq!(shown(&bench), (1, Some(1)));
+    assert!(bench.says("Lay the bones out") && bench.says("Bones laid out"));
+    assert!(matches!(lines(&bench).kind, SubStepKind::LaidOut(_)));
+}
+
+#[test]
 fn the_slider_and_the_buttons_choose_the_part() {
     let mut bench = after_a_step(Method::Ccd);
     look_inside(&mut bench);
