@@ -20,9 +20,10 @@ pub struct SolverStatus {
 /// State of a solver run, or of the evaluated pose in relation to its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverState {
-    /// All tips of the evaluated pose are within the tolerance of their targets.
+    /// All tips of the evaluated pose are within the tolerance of their targets, and all hands are
+    /// turned as these ask.
     Reached,
-    /// A tip of the evaluated pose is farther from its target.
+    /// A tip of the evaluated pose is farther from its target, or a hand is turned otherwise.
     NotReached,
     /// The solver runs.
     Running,
@@ -85,7 +86,9 @@ impl Session {
             return Some(SolverStatus::of_run(run));
         }
         let (_, error) = self.farthest_target()?;
-        let state = match error <= self.solver_tolerance() {
+        let rig = self.skeleton_rig();
+        let mut targets = rig.targets.iter().zip(&self.evaluated_skeleton().targets);
+        let state = match targets.all(|(target, it)| !target.enabled || rig.is_reached(it)) {
             true => SolverState::Reached,
             false => SolverState::NotReached,
         };

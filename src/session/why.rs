@@ -44,20 +44,26 @@ impl Session {
     }
 
     /// The selected joint's target if it is not reached, or else the posing one farthest from its
-    /// tip.
+    /// tip; if all tips are at their targets, the one whose hand misses most of its rotation.
     fn examined_target(&self) -> Option<usize> {
         let rig = self.skeleton_rig();
         let is_missed = |index: &usize| {
             let report = self.evaluated_skeleton().targets.get(*index);
-            report.is_some_and(|report| report.error > rig.tolerance())
+            report.is_some_and(|report| !rig.is_reached(report))
         };
         let selected = self.selected().and_then(|joint| rig.target_of_end(joint));
         let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
         let errors = rig.targets.iter().zip(&self.evaluated_skeleton().targets).enumerate();
         let posing = errors.filter(|(_, (target, _))| rig.is_solved_for(target));
-        let farthest =
-            posing.max_by(|(_, (_, one)), (_, (_, other))| one.error.total_cmp(&other.error));
-        selected.or(farthest.map(|(index, _)| index)).filter(is_missed)
+        let missed = posing.filter(|(_, (_, report))| !rig.is_reached(report));
+        let most = missed.max_by(|(_, (_, one)), (_, (_, other))| {
+            let [one, other] = [one, other].map(|report| {
+                let distance = if report.error > rig.tolerance() { report.error } else { 0.0 };
+                (distance, report.rotation_error.unwrap_or_default())
+            });
+            one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
+        });
+        selected.or(most.map(|(index, _)| index))
     }
 
     /// Applies a remedy for a target that is not reached, and says what it did.
@@ -82,9 +88,13 @@ impl Session {
             return String::new();
         };
         let name = &rig.skeleton[rig.end_of(&rig.targets[index])].name;
-        match report.error <= rig.tolerance() {
-            true => format!(": {name} is at its target now"),
-            false => format!(": {name} is {} from its target now", significant(report.error)),
+        let missing = significant(report.rotation_error.unwrap_or_default().to_degrees());
+        if rig.is_reached(report) {
+            format!(": {name} is at its target now")
+        } else if report.error > rig.tolerance() {
+            format!(": {name} is {} from its target now", significant(report.error))
+        } else {
+            format!(": {name} is {missing}° short of its target's rotation now")
         }
     }
 }

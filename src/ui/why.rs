@@ -2,7 +2,8 @@
 
 use egui::{Label, RichText, Ui};
 
-use crate::kinematics::diagnosis::{Diagnosis, TriedRemedy};
+use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
+use crate::rig::SkeletonRig;
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{self, format};
 
@@ -30,16 +31,28 @@ pub(in crate::ui) fn remedies(
     most: usize,
     actions: &mut Actions,
 ) {
-    for TriedRemedy { remedy, residual } in found.remedies.iter().take(most) {
-        let rig = session.skeleton_rig();
-        let name = rig.remedy_sentence(remedy);
-        let tooltip = match *residual <= rig.tolerance() {
-            true => "Apply this; the tip is then at its target".to_owned(),
-            false => format!("Apply this; the tip is then {} away", format::short(*residual)),
-        };
+    for tried in found.remedies.iter().take(most) {
+        let remedy = &tried.remedy;
+        let name = session.skeleton_rig().remedy_sentence(remedy);
+        let tooltip = format!("Apply this; {}", left(session, found, tried));
         if widgets::button(ui, &name, &tooltip, None) {
             let (target, remedy) = (found.target, remedy.clone());
             actions.push(EditAction::ApplyRemedy { target, remedy });
         }
+    }
+}
+
+/// What a remedy of a diagnosis leaves between the tip or the hand and its target.
+fn left(session: &Session, found: &Diagnosis, tried: &TriedRemedy) -> String {
+    let TriedRemedy { residual, rotation_residual, .. } = *tried;
+    if let Cause::RotationLimits { .. } = found.cause {
+        return match rotation_residual <= SkeletonRig::ROTATION_TOLERANCE {
+            true => "it is then turned as its target asks".to_owned(),
+            false => format!("{} are then missing", format::degrees(rotation_residual)),
+        };
+    }
+    match residual <= session.skeleton_rig().tolerance() {
+        true => "the tip is then at its target".to_owned(),
+        false => format!("the tip is then {} away", format::short(residual)),
     }
 }

@@ -88,6 +88,7 @@ struct Why {
     sentence: String,
     remedy: Option<String>,
     residual_with_remedy: Option<f32>,
+    rotation_error_with_remedy_deg: Option<f32>,
 }
 
 #[derive(Debug, Deserialize, PartialEq)]
@@ -111,6 +112,7 @@ struct Target {
     target: Vec3,
     tip: Vec3,
     error: f32,
+    rotation_error_deg: Option<f32>,
 }
 
 #[derive(Debug, Deserialize, PartialEq)]
@@ -142,7 +144,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
             r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
             r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,5.0],"#,
-            r#""tip":[0.0,1.0,5.0],"error":0.0}],"#,
+            r#""tip":[0.0,1.0,5.0],"error":0.0,"rotation_error_deg":null}],"#,
             r#""report":null,"why":[]}"#,
             "\n"
         )
@@ -649,6 +651,49 @@ fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
     for solver in ["fabrik", "relaxation", "ccd", "transpose", "transpose-fixed", "two-bone"] {
         assert_eq!(first_why(&scene, &["--solver", solver]).cause, "out_of_reach", "{solver}");
     }
+}
+
+/// The Human with its left foot asked to turn about x by so many degrees.
+fn foot_turned_by(degrees: f32) -> Scene {
+    let mut document = Example::find("human").expect("there").open().expect("opens").document;
+    let rig = &mut document.skeleton_rig;
+    let shin = rig.skeleton.find("left_shin").expect("a shin");
+    let index = rig.target(shin).expect("a target");
+    let limb = rig.targets[index].limb_mut().expect("a limb");
+    limb.orientation = Some(Vec3::X * degrees.to_radians());
+    Scene::document(&document)
+}
+
+#[test]
+fn a_foot_that_cannot_turn_that_far_tells_the_missing_angle_and_the_limit() {
+    let missing = [80.0, 120.0].map(|degrees| {
+        let answer = foot_turned_by(degrees).pose(&[]);
+        let foot = answer.joint("left_foot");
+        let target = &answer.targets[2];
+        assert!(target.error < 1e-3, "{target:?}");
+        let missing = target.rotation_error_deg.expect("a rotation");
+
+        // An independent computation from the printed transform and the angle about x.
+        let axes = Mat4::from_cols_array(&foot.transform).as_dmat4();
+        let wanted = glam::DMat3::from_rotation_x(f64::from(degrees).to_radians());
+        let turn = glam::DMat3::from_mat4(axes).transpose() * wanted;
+        let trace = turn.x_axis.x + turn.y_axis.y + turn.z_axis.z;
+        let expected = ((trace - 1.0) / 2.0).acos().to_degrees();
+        assert!((f64::from(missing) - expected).abs() < 1e-2, "{missing}, {expected}");
+
+        let why = &answer.why[0];
+        assert_eq!((why.cause.as_str(), why.target.as_str()), ("rotation_limits", "left_shin"));
+        assert_eq!(why.joints, ["left_foot"]);
+        assert!(why.sentence.starts_with("left_foot is ") && why.sentence.contains("about x"));
+        assert!(why.remedy.as_ref().expect("a remedy").starts_with("Widen "), "{why:?}");
+        assert!(why.rotation_error_with_remedy_deg.expect("tried") < 0.06, "{why:?}");
+        missing
+    });
+    assert!((missing[1] - missing[0] - 40.0).abs() < 5.0, "{missing:?}");
+    let reached = foot_turned_by(20.0).pose(&[]);
+    assert!(reached.targets[2].rotation_error_deg.expect("a rotation") < 0.01);
+    assert_eq!(reached.why, []);
+    assert_eq!(reached.targets[0].rotation_error_deg, None);
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Legs that are straight at the limits of their knees, by every iterative method.
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec3A};
+use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::rig::{EvaluatedSkeleton, SkeletonRig};
 use serde_json::Value;
 
 use crate::common::Random;
@@ -103,6 +105,46 @@ fn a_straight_leg_bends_its_knee_to_bring_the_ankle_to_every_target() {
     ] {
         assert_eq!(reached(&SolverOptions::new(method), "left_shin"), CASES, "{method:?}");
     }
+}
+
+/// The example figure with its pelvis down by so much, posed by its targets.
+fn squat(down: f32) -> (SkeletonRig, EvaluatedSkeleton) {
+    let opened = Example::find("human").expect("an example").open().expect("opens");
+    let mut rig = opened.document.skeleton_rig;
+    let pelvis = joint(&rig.skeleton, "pelvis");
+    rig.skeleton_mut().change(pelvis, |pelvis| pelvis.offset.y -= down).expect("a joint");
+    let evaluated = rig.evaluate(0.0);
+    (rig, evaluated)
+}
+
+#[test]
+fn the_human_squats_with_flat_feet_and_no_toe_below_the_floor() {
+    for down in [0.0, 0.1, 0.2, 0.3, 0.4] {
+        let (rig, evaluated) = squat(down);
+        for (shin, foot) in [("left_shin", "left_foot"), ("right_shin", "right_foot")] {
+            let report = &evaluated.targets[rig.target(joint(&rig.skeleton, shin)).expect("one")];
+            assert!(rig.is_reached(report), "{foot}, {down} down: {report:?}");
+            let foot = joint(&rig.skeleton, foot);
+            let pose = evaluated.solved.full_transform(foot);
+            // The sole's normal, and the lowest point of the toes' skin in the foot's space.
+            assert!(pose.matrix3.y_axis.distance(Vec3A::Y) < 1e-4, "{foot}, {down} down: {pose}");
+            let toe = pose.transform_point3(Vec3::new(0.0, -0.075, 0.2));
+            assert!(toe.y >= 0.0, "{foot}, {down} down: the toes are at {toe}");
+        }
+    }
+}
+
+#[test]
+fn feet_whose_ankles_bend_too_little_are_said_to_miss_their_rotation() {
+    let (mut rig, _) = squat(0.2);
+    let foot = joint(&rig.skeleton, "right_foot");
+    let stiff = Some(Limit { min: -0.6, max: 0.8 });
+    rig.skeleton_mut().change(foot, |foot| foot.limits[0] = stiff).expect("a joint");
+    let found = rig.diagnose(0.0);
+    assert_eq!(found.len(), 1, "{found:?}");
+    let sentence = rig.sentence(&found[0]);
+    let end = "° short of its target's rotation: its limit about x is in the way";
+    assert!(sentence.starts_with("right_foot is ") && sentence.ends_with(end), "{sentence}");
 }
 
 #[test]

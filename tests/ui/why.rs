@@ -136,3 +136,55 @@ fn a_cancelled_drag_says_why_again() {
     bench.settle();
     assert!(bench.shows(Role::Button, MOVE));
 }
+
+/// The Human with its left foot asked to turn about x by so many degrees, the foot selected.
+fn foot_turned_by(degrees: &str) -> Bench {
+    let mut bench =
+        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    let foot = joint(&bench, "left_foot");
+    bench.apply([SelectAction::Joints(vec![foot])]);
+    bench.settle();
+    bench.reveal(Role::SpinButton, "Target rotation x value");
+    bench.enter("Target rotation x", degrees);
+    bench.settle();
+    bench
+}
+
+fn missing_degrees(bench: &Bench) -> f32 {
+    let shin = joint(bench, "left_shin");
+    let report = bench.session().target_report(shin).expect("a report");
+    report.rotation_error.expect("a rotation").to_degrees()
+}
+
+#[test]
+fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
+    let [some, more] = ["80", "120"].map(|degrees| {
+        let bench = foot_turned_by(degrees);
+        let missing = missing_degrees(&bench);
+        let sentence = bench.session().skeleton_rig().sentence(&bench.session().why()[0]);
+        assert!(sentence.starts_with("left_foot is "), "{sentence}");
+        assert!(sentence.contains("its limit about x is in the way"), "{sentence}");
+        assert_eq!(labels(&bench, &sentence), 4, "as many as for a place that is not reached");
+        assert_eq!(
+            bench.session().solver_status().expect("targets").state.to_string(),
+            "not reached"
+        );
+        assert!(bench.count("Not turned as asked: ") == 1, "{missing}");
+        missing
+    });
+    assert!(some > 20.0 && more > some + 30.0, "{some} {more}");
+}
+
+#[test]
+fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
+    let mut bench = foot_turned_by("80");
+    let tried = bench.session().why()[0].remedies[0].clone();
+    let name = bench.session().skeleton_rig().remedy_sentence(&tried.remedy);
+    assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
+    let target = joint(&bench, "left_shin");
+    bench.apply([EditAction::ApplyRemedy { target, remedy: tried.remedy }]);
+    bench.settle();
+    assert!(missing_degrees(&bench) < 0.05);
+    assert!(bench.session().why().is_empty());
+    assert!(bench.says("left_foot is at its target now"), "{:?}", bench.session().message());
+}

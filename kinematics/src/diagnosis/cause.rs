@@ -2,7 +2,8 @@ use core::fmt;
 
 use crate::skeleton::JointId;
 
-/// The reason why a tip is not at its target, with its evidence. Lengths are in world units.
+/// The reason why a tip is not at its target, or a hand not turned as its target asks, with its
+/// evidence. Lengths are in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
@@ -21,6 +22,13 @@ pub enum Cause {
     },
     /// The joints are at limits, and the target pulls them outwards.
     Limits,
+    /// The limits of a hand's joint keep it from the rotation that the target asks for.
+    RotationLimits {
+        /// Angle in radians that is missing.
+        missing: f32,
+        /// The angles of the joint, x, y and z, whose limits are in the way.
+        axes: [bool; 3],
+    },
     /// The target pulls joints that are locked.
     Locked,
     /// The tip reaches its target alone, but not together with the tip of another joint.
@@ -65,6 +73,7 @@ impl Cause {
         match self {
             Self::OutOfReach { .. } => "out_of_reach",
             Self::Limits => "limits",
+            Self::RotationLimits { .. } => "rotation_limits",
             Self::Locked => "locked",
             Self::Conflict { .. } => "conflict",
             Self::Stalled => "stalled",

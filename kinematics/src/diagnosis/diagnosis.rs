@@ -1,7 +1,7 @@
 use super::{Cause, Remedy};
 use crate::skeleton::JointId;
 
-/// A cause for which a tip is not at its target.
+/// A cause for which a tip is not at its target, or a hand not turned as its target asks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
     /// The joint whose tip is not at its target.
@@ -23,6 +23,9 @@ pub struct TriedRemedy {
     pub remedy: Remedy,
     /// Distance from the tip to the target after the change, in world units.
     pub residual: f32,
+    /// Angle in radians from the rotation of the hand to that which its target asks for, after the
+    /// change; 0 for a target that asks for no rotation.
+    pub rotation_residual: f32,
 }
 
 impl Diagnosis {

@@ -2,7 +2,7 @@
 
 use super::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
 use crate::chain_ik::Root;
-use crate::skeleton::JointId;
+use crate::skeleton::{JointId, RotationAxis};
 
 /// Names for sentences.
 #[derive(Clone, Copy)]
@@ -30,6 +30,12 @@ impl Diagnosis {
                 format!(
                     "The limits of {} keep {target} away from its target",
                     listed(&self.joints, names)
+                )
+            }
+            Cause::RotationLimits { missing, axes } => {
+                let (degrees, limits) = (significant(missing.to_degrees()), limits_about(axes));
+                format!(
+                    "{target} is {degrees}° short of its target's rotation: {limits} in the way"
                 )
             }
             Cause::Locked => {
@@ -191,6 +197,21 @@ fn listed(joints: &[JointId], names: Names<'_>) -> String {
         [one, two] => format!("{one} and {two}"),
         [one, two, three] => format!("{one}, {two} and {three}"),
         [one, two, rest @ ..] => format!("{one}, {two} and {} more joints", rest.len()),
+    }
+}
+
+/// Limits of a joint with their verb, such as "its limits about x and z are".
+fn limits_about(axes: [bool; 3]) -> String {
+    let named: Vec<String> = RotationAxis::ALL
+        .into_iter()
+        .zip(axes)
+        .filter(|(_, is_in_the_way)| *is_in_the_way)
+        .map(|(axis, _)| axis.to_string())
+        .collect();
+    match &named[..] {
+        [] => "its limits are".to_owned(),
+        [one] => format!("its limit about {one} is"),
+        [first @ .., last] => format!("its limits about {} and {last} are", first.join(", ")),
     }
 }
 

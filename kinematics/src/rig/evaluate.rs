@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{DQuat, DVec3, Vec3};
 
 use super::limb_settings::LimbSettings;
 use super::skeleton_rig::SkeletonRig;
@@ -30,6 +30,9 @@ pub struct TargetReport {
     /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a head
     /// that the target leads.
     pub error: f32,
+    /// Angle in radians from the rotation of the hand to that which the target asks for, in the
+    /// evaluated pose; `None` for a hand that follows its bone and for a target without a hand.
+    pub rotation_error: Option<f32>,
     /// What the solver reports.
     pub outcome: TargetOutcome,
 }
@@ -51,7 +54,18 @@ pub enum TargetOutcome {
     NoLimb(NoLimb),
 }
 
+impl TargetReport {
+    /// Whether the hand is farther from the rotation that its target asks for than
+    /// [`SkeletonRig::ROTATION_TOLERANCE`].
+    pub fn misses_rotation(&self) -> bool {
+        self.rotation_error.is_some_and(|angle| angle > SkeletonRig::ROTATION_TOLERANCE)
+    }
+}
+
 impl SkeletonRig {
+    /// Angle in radians within which a hand has the rotation that its target asks for.
+    pub const ROTATION_TOLERANCE: f32 = 1e-3;
+
     /// The skeleton at a time in seconds, as a function of the rig and the time alone.
     ///
     /// The whole-body targets are solved together, from the FK pose; the limb targets then one after
@@ -71,10 +85,27 @@ impl SkeletonRig {
                 .joint(target.joint)
                 .map_or(0.0, |_| end(target.joint).distance(position).min(f32::MAX));
             let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
-            TargetReport { position, pole, error, outcome }
+            let rotation_error = self.rotation_error(target, &solved);
+            TargetReport { position, pole, error, rotation_error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
         EvaluatedSkeleton { fk, solved, targets }
+    }
+
+    /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a pose;
+    /// `None` for a hand that follows its bone and for a target without a hand.
+    pub fn rotation_error(&self, target: &Target, pose: &Skeleton) -> Option<f32> {
+        let wanted = target.limb()?.hand_in_world(pose, target.space)?.as_dquat();
+        let hand = Limb::ending_at(pose, target.joint).ok()?.hand?;
+        let DQuat { x, y, z, w } = pose.rotation_in_world(hand).inverse() * wanted;
+        // Exact for small angles, too, where the arc cosine of w loses half of the digits.
+        Some((2.0 * DVec3::new(x, y, z).length().atan2(w.abs())) as f32)
+    }
+
+    /// Whether the tip of a target's joint, and the rotation of its hand, are as the target asks, within
+    /// [`SkeletonRig::tolerance`] and [`SkeletonRig::ROTATION_TOLERANCE`].
+    pub fn is_reached(&self, report: &TargetReport) -> bool {
+        report.error <= self.tolerance() && !report.misses_rotation()
     }
 
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without the

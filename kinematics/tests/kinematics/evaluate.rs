@@ -1,16 +1,16 @@
 //! Skeletons posed by their targets, as a function of rig and time.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DMat3, DVec3, Quat, Vec3};
 use ik_arm_kinematics::limb_ik::{ElbowReference, Limb, LimbReach};
 use ik_arm_kinematics::rig::{
     EvaluatedSkeleton, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetOutcome,
-    TargetPath,
+    TargetPath, TargetSpace,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
 
 use crate::common::Random;
-use crate::common::skeletons::{forest, transform};
+use crate::common::skeletons::{forest, space_f64, transform};
 
 /// A figure in its bind pose: pelvis, chest, two arms and two legs with hinged elbows and knees.
 struct Figure {
@@ -298,4 +298,73 @@ fn a_foot_keeps_its_rotation_in_the_world_while_the_pelvis_turns() {
     let evaluated = figure.rig.evaluate(0.0);
     let axes = evaluated.solved.full_transform(foot).matrix3;
     assert!(axes.abs_diff_eq(glam::Mat3A::IDENTITY, 1e-5), "{axes}");
+}
+
+/// Angle of a rotation in radians, from its matrix.
+fn angle(rotation: DMat3) -> f64 {
+    let [x, y, z] = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+    let axis = DVec3::new(y.z - z.y, z.x - x.z, x.y - y.x);
+    axis.length().atan2(x.x + y.y + z.z - 1.0)
+}
+
+/// R_z · R_y · R_x.
+fn turned(angles: Vec3) -> DMat3 {
+    let DVec3 { x, y, z } = angles.as_dvec3();
+    DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x)
+}
+
+/// The rotation of a joint in the world, by the formula in f64.
+fn rotation_f64(skeleton: &Skeleton, joint: JointId, to_world: DMat3) -> DMat3 {
+    let angles: Vec<_> = skeleton.iter().map(|(_, it)| it.rotation.as_dvec3()).collect();
+    to_world * DMat3::from_mat4(space_f64(skeleton, joint, &angles))
+}
+
+#[test]
+fn the_missing_angle_of_a_foot_is_the_one_computed_in_f64_and_0_within_its_limits() {
+    let mut random = Random(159);
+    let figure = Figure::new();
+    let (mut missed, mut reached) = (0, 0);
+    for case in 0..400 {
+        let mut rig = figure.rig.clone();
+        let to_world = random.rotation();
+        let transform = Affine3A::from_scale_rotation_translation(
+            Vec3::splat(random.within(0.1..10.0)),
+            Quat::from_mat3(&to_world),
+            random.vector(5.0),
+        );
+        let skeleton = rig.skeleton_mut();
+        skeleton.set_transform(transform).expect("finite");
+        skeleton.change(figure.pelvis, |pelvis| pelvis.offset.y -= 0.2).expect("a joint");
+        let foot = skeleton.find("left_leg_end").expect("a foot");
+        let is_limited = case % 2 == 0;
+        let limits = [-0.6..0.8, -0.4..0.4, -0.4..0.4_f32];
+        let limits = limits.map(|it| is_limited.then_some(Limit { min: it.start, max: it.end }));
+        skeleton.change(foot, |joint| joint.limits = limits).expect("limits");
+        let space =
+            if case % 4 < 2 { TargetSpace::World } else { TargetSpace::Joint(figure.pelvis) };
+        let angles = random.vector(2.5);
+        let settings = LimbSettings { orientation: Some(angles), ..Default::default() };
+        let influence = if case % 5 == 0 { random.within(0.1..1.0) } else { 1.0 };
+        let target = Target { kind: TargetKind::Limb(settings), influence, ..rig.targets[1] };
+        rig.targets[1] = target.in_space(space, &rig.skeleton, 0.0, None);
+        rig.targets[1].limb_mut().expect("a limb").orientation = Some(angles);
+        let evaluated = rig.evaluate(0.0);
+
+        let to_world = to_world.as_dmat3();
+        let frame = match space.joint() {
+            Some(joint) => rotation_f64(&evaluated.solved, joint, to_world),
+            None => DMat3::IDENTITY,
+        };
+        let hand = rotation_f64(&evaluated.solved, foot, to_world);
+        let expected = angle(hand.transpose() * frame * turned(angles));
+        let report = &evaluated.targets[1];
+        let told = report.rotation_error.expect("an angle");
+        assert!((f64::from(told) - expected).abs() < 1e-4, "{case}: {told}, {expected}");
+        missed += usize::from(report.misses_rotation());
+        let must_reach = !is_limited && influence == 1.0;
+        assert!(!must_reach || told < 1e-4, "{case}: {told}");
+        reached += usize::from(!report.misses_rotation());
+        assert_eq!(evaluated.targets[0].rotation_error, None, "a hand that follows its bone");
+    }
+    assert!(missed > 150 && reached > 150, "{missed} {reached}");
 }

@@ -34,17 +34,19 @@ The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
    "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
-    "error":E}, …],
+    "error":E,"rotation_error_deg":A}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false},
    "why":[{"cause":"…","target":"JOINT","joints":["…"],"sentence":"…","remedy":"…",
-    "residual_with_remedy":E}, …]}
+    "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
-tip to target in the printed pose. The report is that of --solver, or of the solver of the
-whole-body targets, else null, also if there is nothing to solve. Why lists the causes for which targets are not
-reached, the most likely first, each with the remedy that helps most and the distance from tip to
-target that it leaves, or null if no remedy was found; it is empty if all targets are reached, and
-with --fk. Causes: out_of_reach, limits, locked, conflict, stalled, singular, out_of_iterations,
-influence. A solve that does not converge is not an error. For documents that
+tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
+foot to that which the target asks for, null if it asks for none. The report is that of --solver, or
+of the solver of the whole-body targets, else null, also if there is nothing to solve. Why lists the
+causes for which targets are not reached, the most likely first, each with the remedy that helps
+most and the distance from tip to target and the angle that it leaves, or null if no remedy was
+found; it is empty if all targets are reached, and with --fk. Causes: out_of_reach, limits,
+rotation_limits, locked, conflict, stalled, singular, out_of_iterations, influence. A solve that
+does not converge is not an error. For documents that
 show the arm use `ik-arm solve`.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#

@@ -36,6 +36,7 @@ struct TargetLine {
     target: Vec3,
     tip: Vec3,
     error: f32,
+    rotation_error_deg: Option<f32>,
 }
 
 #[derive(Serialize)]
@@ -96,6 +97,7 @@ impl<'a> PoseLine<'a> {
                 target: point,
                 tip,
                 error: (error as f32).min(f32::MAX),
+                rotation_error_deg: rig.rotation_error(target, skeleton).map(f32::to_degrees),
             }
         });
         let targets = targets.collect();

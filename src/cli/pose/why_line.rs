@@ -13,6 +13,7 @@ pub struct WhyLine<'a> {
     sentence: String,
     remedy: Option<String>,
     residual_with_remedy: Option<f32>,
+    rotation_error_with_remedy_deg: Option<f32>,
 }
 
 impl<'a> WhyLine<'a> {
@@ -27,6 +28,7 @@ impl<'a> WhyLine<'a> {
             sentence: rig.sentence(found),
             remedy: best.map(|tried| rig.remedy_sentence(&tried.remedy)),
             residual_with_remedy: best.map(|tried| tried.residual),
+            rotation_error_with_remedy_deg: best.map(|tried| tried.rotation_residual.to_degrees()),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Numbers as text.
 
+use crate::kinematics::diagnosis::significant;
+
 /// Formats a number in about six characters: with at most three decimals, or in scientific notation
 /// below 0.001 and from 100,000.
 pub(in crate::ui) fn short(value: f32) -> String {
@@ -11,6 +13,11 @@ pub(in crate::ui) fn short(value: f32) -> String {
         ..100_000.0 => format!("{value:.0}"),
         _ => format!("{value:.1e}"),
     }
+}
+
+/// Formats an angle in radians as degrees, with three significant digits: "34.2°".
+pub(in crate::ui) fn degrees(radians: f32) -> String {
+    format!("{}°", significant(radians.to_degrees()))
 }
 
 /// Formats a whole number with thousands separators: "1,000,000".

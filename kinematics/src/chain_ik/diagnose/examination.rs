@@ -104,7 +104,7 @@ impl<'a> Case<'a> {
             return None;
         }
         let remedy = Remedy::AllowIterations(pose.report.iterations);
-        let tried = vec![TriedRemedy { remedy, residual }];
+        let tried = vec![TriedRemedy { remedy, residual, rotation_residual: 0.0 }];
         Some(self.diagnosis(Cause::OutOfIterations { iterations }, self.path(), tried))
     }
 
@@ -239,7 +239,7 @@ impl<'a> Case<'a> {
             None => settled,
             Some(_) => inputs.with(&remedy).map_or(settled, |with| with.residual_of(self.joint)),
         };
-        TriedRemedy { remedy, residual }
+        TriedRemedy { remedy, residual, rotation_residual: 0.0 }
     }
 
     /// The residual with a remedy; `None` if another tip that is at its target leaves it.

@@ -41,7 +41,8 @@ impl LimbSpan {
 }
 
 impl RigCase<'_> {
-    /// The causes for which a limb misses its target; none for a whole-body target.
+    /// The causes for which a limb misses its target, its place or its rotation; none for a whole-body
+    /// target.
     pub fn limb(&self, report: &TargetReport) -> Vec<Diagnosis> {
         let (Some(settings), TargetOutcome::Limb(outcome)) = (self.target.limb(), &report.outcome)
         else {
@@ -49,14 +50,32 @@ impl RigCase<'_> {
         };
         let fk = self.full.fk_at(self.time);
         let Ok(limb) = Limb::ending_at(&fk, self.target.joint) else { return Vec::new() };
-        let span = LimbSpan::new(&fk, limb, report.position);
+        let turned = self.rotation_limits(limb, report);
+        if report.error <= self.tolerance {
+            return Vec::from_iter(turned);
+        }
+        let mut found = self.limb_place(limb, settings, outcome.reach, report.position, &fk);
+        found.extend(turned);
+        found
+    }
+
+    /// The causes for which the tip of a limb is not at its target.
+    fn limb_place(
+        &self,
+        limb: Limb,
+        settings: &LimbSettings,
+        reach: LimbReach,
+        target: Vec3,
+        fk: &Skeleton,
+    ) -> Vec<Diagnosis> {
+        let span = LimbSpan::new(fk, limb, target);
         let found = self
-            .limb_out_of_reach(limb, &span, report.position)
+            .limb_out_of_reach(limb, &span, target)
             .or_else(|| self.soft_limit(limb, &span, settings));
         if let Some(found) = found {
             return vec![found];
         }
-        let limits = self.limb_limits(limb, outcome.reach);
+        let limits = self.limb_limits(limb, reach);
         let mut found: Vec<_> = limits.into_iter().chain(self.limb_locked(limb)).collect();
         if found.is_empty() {
             found.push(self.diagnosis(Cause::Limits, limb.joints().collect(), Vec::new()));
@@ -129,11 +148,29 @@ impl RigCase<'_> {
         Some(self.diagnosis(Cause::Limits, joints, vec![tried]))
     }
 
+    /// The limits that keep the hand from the rotation that its target asks for.
+    fn rotation_limits(&self, limb: Limb, report: &TargetReport) -> Option<Diagnosis> {
+        let missing = report.rotation_error.filter(|_| report.misses_rotation())?;
+        let hand = limb.hand?;
+        let angles = limited_angles(&self.full.skeleton, [hand].into_iter());
+        let remedy = self.widened(&angles)?;
+        let Remedy::WidenLimits(widened) = &remedy else { return None };
+        let mut axes = [false; 3];
+        widened.iter().for_each(|it| axes[it.axis as usize] = true);
+        let tried = Vec::from_iter(self.try_rotation_remedy(remedy));
+        Some(self.diagnosis(Cause::RotationLimits { missing, axes }, vec![hand], tried))
+    }
+
     fn widen(&self, angles: &[(JointId, RotationAxis)]) -> Option<TriedRemedy> {
+        self.try_remedy(self.widened(angles)?)
+    }
+
+    /// The limits of angles, widened to contain the pose that the rig has without them.
+    fn widened(&self, angles: &[Angle]) -> Option<Remedy> {
         let mut free = self.full.clone();
         remove_limits(free.skeleton_mut(), angles);
         let pose = free.skeleton_at(self.time);
-        self.try_remedy(widen_to_contain(&self.full.skeleton, &pose, angles)?)
+        widen_to_contain(&self.full.skeleton, &pose, angles)
     }
 
     fn limb_locked(&self, limb: Limb) -> Option<Diagnosis> {

@@ -1,4 +1,4 @@
-//! Why the tips of a rig are not at their targets.
+//! Why the tips of a rig are not at their targets, and its hands not turned as these ask.
 
 mod limb;
 mod rig_case;
@@ -12,8 +12,8 @@ use crate::diagnosis::{Diagnosis, in_turn};
 use crate::skeleton::JointId;
 
 impl SkeletonRig {
-    /// The causes for which the tips are not at their enabled targets at a time in seconds, the most
-    /// likely first; empty if all are reached.
+    /// The causes for which the tips are not at their enabled targets at a time in seconds, or hands not
+    /// turned as these ask, the most likely first; empty if all are reached.
     ///
     /// Every remedy was tried: its residual is that of [`SkeletonRig::evaluate`] after
     /// [`SkeletonRig::apply_remedy`].
@@ -52,6 +52,7 @@ impl SkeletonRig {
                 tolerance: self.tolerance(),
                 target: &self.targets[index],
                 residual: evaluated.targets[index].error,
+                rotation_residual: evaluated.targets[index].rotation_error.unwrap_or_default(),
             };
             let mut found: Vec<Diagnosis> = case.influence().into_iter().collect();
             if still_missed.contains(&index) {
@@ -64,14 +65,14 @@ impl SkeletonRig {
         in_turn(missed.into_iter().map(examine).collect())
     }
 
-    /// Whether an enabled target is not reached in the evaluated pose.
+    /// Whether the place or the rotation of an enabled target is not reached in the evaluated pose.
     fn is_missed(&self, index: usize, evaluated: &EvaluatedSkeleton) -> bool {
         let (target, report) = (&self.targets[index], &evaluated.targets[index]);
         let has_converged = match &report.outcome {
             TargetOutcome::WholeBody(report) => target.influence == 1.0 && report.converged(),
             _ => false,
         };
-        target.enabled && !has_converged && report.error > self.tolerance()
+        target.enabled && !has_converged && !self.is_reached(report)
     }
 
     /// The causes for the whole-body targets among those with the indices `missed`.

@@ -1,4 +1,5 @@
 use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy};
+use crate::rig::evaluate::TargetReport;
 use crate::rig::skeleton_rig::SkeletonRig;
 use crate::rig::target::Target;
 use crate::skeleton::JointId;
@@ -12,7 +13,21 @@ pub(super) struct RigCase<'a> {
     pub tolerance: f32,
     pub target: &'a Target,
     pub residual: f32,
+    /// Angle in radians that the hand's rotation misses; 0 for a target that asks for none.
+    pub rotation_residual: f32,
 }
+
+/// What a pose leaves between a target and what it moves.
+struct Left {
+    /// In the world.
+    distance: f32,
+    /// In radians.
+    angle: f32,
+}
+
+/// Fraction of a residual that a remedy may leave: one that is left nearly as it was is not worth an
+/// edit.
+const WORTH: f32 = 0.9;
 
 impl RigCase<'_> {
     /// The mix with the FK pose.
@@ -21,7 +36,9 @@ impl RigCase<'_> {
         if influence == 1.0 {
             return None;
         }
-        let remedies = Vec::from_iter(self.try_remedy(Remedy::FullInfluence(joint)));
+        let full = Remedy::FullInfluence(joint);
+        let tried = self.try_remedy(full.clone()).or_else(|| self.try_rotation_remedy(full));
+        let remedies = Vec::from_iter(tried);
         (!remedies.is_empty())
             .then(|| self.diagnosis(Cause::Influence { influence }, vec![joint], remedies))
     }
@@ -35,22 +52,29 @@ impl RigCase<'_> {
 
     /// Tries a remedy; `None` if it does not bring the tip nearer.
     pub fn try_remedy(&self, remedy: Remedy) -> Option<TriedRemedy> {
-        // A residual that is left nearly as it was is not worth an edit.
-        const WORTH: f32 = 0.9;
-        let residual = self.residual_with(self.rig, &remedy)?;
-        (residual <= WORTH * self.residual).then_some(TriedRemedy { remedy, residual })
+        let left = self.left_by(self.rig, &remedy)?;
+        (left.distance <= WORTH * self.residual).then(|| left.by(remedy))
+    }
+
+    /// Tries a remedy; `None` if it does not bring the hand nearer to the rotation that its target asks
+    /// for, or takes the tip away from the target.
+    pub fn try_rotation_remedy(&self, remedy: Remedy) -> Option<TriedRemedy> {
+        let left = self.left_by(self.rig, &remedy)?;
+        let stays = left.distance <= self.residual.max(self.tolerance);
+        (stays && left.angle <= WORTH * self.rotation_residual).then(|| left.by(remedy))
     }
 
     /// Whether a remedy brings the tip to its target at full influence.
     pub fn reaches(&self, remedy: &Remedy) -> bool {
-        self.residual_with(self.full, remedy).is_some_and(|residual| self.is_reached(residual))
+        self.left_by(self.full, remedy).is_some_and(|left| self.is_reached(left.distance))
     }
 
-    fn residual_with(&self, rig: &SkeletonRig, remedy: &Remedy) -> Option<f32> {
+    fn left_by(&self, rig: &SkeletonRig, remedy: &Remedy) -> Option<Left> {
         let mut changed = rig.clone();
         changed.apply_remedy(remedy, self.time).ok()?;
         let index = changed.target(self.target.joint)?;
-        Some(changed.evaluate(self.time).targets[index].error)
+        let TargetReport { error, rotation_error, .. } = changed.evaluate(self.time).targets[index];
+        Some(Left { distance: error, angle: rotation_error.unwrap_or_default() })
     }
 
     pub fn diagnosis(
@@ -78,5 +102,11 @@ impl RigCase<'_> {
         // A solve from a rounded position ends at another point within the tolerance.
         const ROUNDING: f32 = 1.01;
         residual <= ROUNDING * self.tolerance
+    }
+}
+
+impl Left {
+    fn by(self, remedy: Remedy) -> TriedRemedy {
+        TriedRemedy { remedy, residual: self.distance, rotation_residual: self.angle }
     }
 }

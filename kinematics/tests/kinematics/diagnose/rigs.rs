@@ -209,6 +209,77 @@ fn a_locked_elbow_that_keeps_a_limb_from_its_target_is_named() {
     );
 }
 
+const HAND: JointId = JointId::new(3);
+/// Limits of a hand about x, y and z: ± so many radians.
+const HAND_LIMITS: [f32; 3] = [0.5, 0.4, 0.3];
+
+/// A limb that reaches its target, with a hand that the target asks to turn about one axis by so many
+/// radians.
+fn turned_hand(random: &mut Random, axis: usize, angle: f32) -> SkeletonRig {
+    let mut rig = limb(random, inside);
+    rig.skeleton_mut().set_rotation(HAND, Vec3::ZERO).expect("angles");
+    let limits = HAND_LIMITS.map(|most| Some(Limit { min: -most, max: most }));
+    rig.skeleton_mut().change(HAND, |joint| joint.limits = limits).expect("limits");
+    let pose = rig.skeleton_at(0.0);
+    let turn = Quat::from_axis_angle(Vec3::AXES[axis], angle);
+    let wanted = pose.rotation_in_world(LOWER).as_quat() * turn;
+    let angles = TargetSpace::World.angles_from_world(&pose, wanted, Vec3::ZERO);
+    rig.targets[0].limb_mut().expect("a limb").orientation = Some(angles);
+    rig
+}
+
+#[test]
+fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_widens_it() {
+    let mut random = Random(80);
+    for case in 0..CASES {
+        let (axis, beyond) = (case % 3, random.within(0.05..0.8));
+        let side = if random.coin() { 1.0 } else { -1.0 };
+        let angle = side * (HAND_LIMITS[axis] + beyond);
+        let mut rig = turned_hand(&mut random, axis, angle);
+        let report = &rig.evaluate(0.0).targets[0];
+        assert!(report.error <= rig.tolerance() && !rig.is_reached(report), "{case}: {report:?}");
+
+        let found = rig.diagnose(0.0);
+        let [Diagnosis { cause, joints, remedies, .. }] = &found[..] else { panic!("{found:?}") };
+        let Cause::RotationLimits { missing, axes } = *cause else { panic!("{case}: {cause}") };
+        assert!((missing - beyond).abs() < 1e-4, "{case}: {missing}, {beyond}");
+        assert_eq!(axes, [0, 1, 2].map(|it| it == axis), "{case}");
+        assert_eq!(joints, &[HAND], "{case}");
+        let sentence = rig.sentence(&found[0]);
+        let about = ["x", "y", "z"][axis];
+        let end =
+            format!("° short of its target's rotation: its limit about {about} is in the way");
+        assert!(sentence.starts_with("hand is ") && sentence.ends_with(&end), "{sentence}");
+
+        let tried = remedies.first().expect("a remedy");
+        let Remedy::WidenLimits(widened) = &tried.remedy else { panic!("{tried:?}") };
+        assert!(matches!(&widened[..], [one] if one.joint == HAND && one.axis as usize == axis));
+        assert!(widened[0].by >= beyond - 1e-4 && widened[0].by < beyond + 0.02, "{widened:?}");
+        rig.apply_remedy(&tried.remedy, 0.0).expect("limits");
+        let report = &rig.evaluate(0.0).targets[0];
+        assert!(rig.is_reached(report), "{case}: {report:?}");
+        let left = report.rotation_error.expect("a rotation");
+        assert!((left - tried.rotation_residual).abs() < 1e-5, "{left} {tried:?}");
+        assert_eq!(rig.diagnose(0.0), []);
+    }
+}
+
+#[test]
+fn a_hand_within_its_limits_has_no_cause_and_one_that_is_out_of_reach_has_both() {
+    let mut random = Random(81);
+    for case in 0..CASES {
+        let axis = case % 3;
+        let rig = turned_hand(&mut random, axis, 0.9 * HAND_LIMITS[axis]);
+        assert_eq!(rig.diagnose(0.0), [], "{case}");
+
+        let mut rig = turned_hand(&mut random, axis, HAND_LIMITS[axis] + 1.0);
+        let away = rig.targets[0].home - rig.skeleton.base(UPPER);
+        rig.targets[0].home += 10.0 * away;
+        let causes: Vec<_> = rig.diagnose(0.0).iter().map(|found| found.cause.name()).collect();
+        assert_eq!(causes[0], "out_of_reach", "{case}");
+    }
+}
+
 #[test]
 fn a_target_with_little_influence_is_missed_because_of_it() {
     first_causes(is("influence"), |random| {

@@ -27,7 +27,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut 
         });
         match why.is_empty() {
             true => status(ui, session, target, report),
-            false => explain(ui, session, report.error, why, actions),
+            false => explain(ui, session, report, why, actions),
         }
     });
     if !is_held {
@@ -40,6 +40,7 @@ fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport
     let is_reached = match &report.outcome {
         TargetOutcome::Off | TargetOutcome::Leads => true,
         _ if target.influence < 1.0 => true,
+        _ if report.misses_rotation() => false,
         TargetOutcome::WholeBody(report) => report.converged(),
         TargetOutcome::Limb(limb) => limb.reach == LimbReach::Reached,
         TargetOutcome::Refused(_) | TargetOutcome::NoLimb(_) => false,
@@ -52,12 +53,15 @@ fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport
 fn explain(
     ui: &mut Ui,
     session: &Session,
-    error: f32,
+    report: &TargetReport,
     causes: &[Diagnosis],
     actions: &mut Actions,
 ) {
-    let gap = format::short(error);
-    ui.label(RichText::new(format!("Not reached: {gap} away")).color(style::accent(ui)));
+    let text = match missing_rotation(report) {
+        Some(missing) if report.error <= session.solver_tolerance() => missing,
+        _ => format!("Not reached: {} away", format::short(report.error)),
+    };
+    ui.label(RichText::new(text).color(style::accent(ui)));
     for found in causes {
         why::cause(ui, session, found);
         ui.horizontal_wrapped(|ui| why::remedies(ui, session, found, usize::MAX, actions));
@@ -81,6 +85,7 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
             }
         },
         TargetOutcome::Limb(limb) => match limb.reach {
+            LimbReach::Reached if let Some(missing) = missing_rotation(report) => missing,
             LimbReach::Reached if limb.stretch > 1.0 => {
                 format!("Reached, stretched to {:.0} %", 100.0 * limb.stretch)
             }
@@ -95,4 +100,10 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
         TargetOutcome::Refused(error) => format!("Not solved: {error}"),
         TargetOutcome::NoLimb(error) => format!("No limb: {error}"),
     }
+}
+
+/// The rotation that is missing, in words; `None` for a hand that is turned as its target asks.
+fn missing_rotation(report: &TargetReport) -> Option<String> {
+    let angle = report.rotation_error.filter(|_| report.misses_rotation())?;
+    Some(format!("Not turned as asked: {} are missing", format::degrees(angle)))
 }
