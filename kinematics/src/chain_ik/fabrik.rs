@@ -83,7 +83,8 @@ impl Fabrik {
         for index in self.points.of_link(link) {
             let destination = self.points.destination_of(problem, index);
             self.points.destinations[index] = destination;
-            let arm = self.points.arm(config, link, index);
+            let arm = self.points.posed_arm(config, link, index);
+            self.points.arms[index] = arm;
             let back = normalize(base - destination).or_else(|| normalize(-arm));
             let point = self.points.point(index);
             sum += point.weight * (destination + point.radius * back.unwrap_or(Vec3A::ZERO));

@@ -62,8 +62,9 @@ pub(super) struct LinkPoints {
     pub destinations: Vec<Vec3A>,
     /// Destination of each link's joint.
     pub base_destinations: Vec<Vec3A>,
-    /// Vector to each point from the joint of the point's link.
-    arms: Vec<Vec3A>,
+    /// Vector to each point from the joint of the point's link: as a pass leaves it, then as the link is
+    /// laid out. A link keeps it whose point has no other direction.
+    pub arms: Vec<Vec3A>,
     pairs: Vec<PointPair>,
 }
 
@@ -127,8 +128,8 @@ impl LinkPoints {
         &self.all[index]
     }
 
-    /// Vector from a link's joint to one of its points.
-    pub fn arm(&self, config: &Configuration, link: usize, index: usize) -> Vec3A {
+    /// Vector from a link's joint to one of its points in a pose.
+    pub fn posed_arm(&self, config: &Configuration, link: usize, index: usize) -> Vec3A {
         self.all[index].position_in(config) - config.bases[link]
     }
 

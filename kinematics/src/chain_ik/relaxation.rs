@@ -39,8 +39,6 @@ pub(super) struct Relaxation {
     /// The destinations are the points as the last pass left them.
     points: LinkPoints,
     sweep: SweepAfterPasses,
-    /// Vector to each point from the joint of the point's link, at the distance of the bone.
-    arms: Vec<Vec3A>,
     pairs: Vec<PointPair>,
     /// Whether the next pass goes on from the points of the last one, not from the pose.
     goes_on: bool,
@@ -51,7 +49,6 @@ impl Relaxation {
         let points = LinkPoints::new(problem);
         Self {
             sweep: SweepAfterPasses::new(problem),
-            arms: vec![Vec3A::ZERO; points.len()],
             pairs: Vec::with_capacity(points.len()),
             points,
             goes_on: false,
@@ -74,9 +71,7 @@ impl Relaxation {
         recorder: &mut Recorder,
     ) {
         if !self.points.are_limited() {
-            self.relax(problem, config, recorder);
-            self.goes_on = true;
-            return;
+            return self.relax(problem, config, recorder);
         }
         self.sweep.start(config);
         self.relax(problem, config, recorder);
@@ -92,6 +87,7 @@ impl Relaxation {
             for link in (0..problem.links.len()).rev() {
                 self.restore(problem, config, link);
             }
+            self.goes_on = !self.points.are_limited();
             recorder.record(config, || Event::Relaxed(self.points.destination_segments()));
         }
         self.points.lay_out(problem, config);
@@ -114,7 +110,7 @@ impl Relaxation {
         let is_fixed = is_fixed(problem, link);
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
         for index in self.points.of_link(link) {
-            let error = self.points.destinations[index] - (base + self.arms[index]);
+            let error = self.points.destinations[index] - (base + self.points.arms[index]);
             // Joints have even weights; fixed roots and targets have the weight 0.
             let fraction = match (is_fixed, self.points.point(index).is_target()) {
                 (true, _) => 0.0,
@@ -129,7 +125,7 @@ impl Relaxation {
         self.points.base_destinations[link] = base;
         for index in self.points.of_link(link) {
             if !self.points.point(index).is_target() {
-                self.points.move_point(index, base + self.arms[index]);
+                self.points.move_point(index, base + self.points.arms[index]);
             }
         }
     }
@@ -143,7 +139,7 @@ impl Relaxation {
             let destination = self.points.destination_of(problem, index);
             self.points.destinations[index] = destination;
             self.pairs.push(PointPair {
-                from: self.points.arm(config, link, index),
+                from: self.points.posed_arm(config, link, index),
                 to: destination - base,
                 weight: self.points.point(index).weight,
             });
@@ -151,7 +147,8 @@ impl Relaxation {
         if let [pair] = self.pairs[..] {
             let index = self.points.of_link(link).start;
             let along = normalize(pair.to).or_else(|| normalize(pair.from));
-            self.arms[index] = self.points.point(index).radius * along.unwrap_or(Vec3A::ZERO);
+            self.points.arms[index] =
+                self.points.point(index).radius * along.unwrap_or(Vec3A::ZERO);
             return;
         }
         for _ in 0..ROTATIONS {
@@ -159,7 +156,7 @@ impl Relaxation {
             self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
         }
         for (index, pair) in self.points.of_link(link).zip(&self.pairs) {
-            self.arms[index] = pair.from;
+            self.points.arms[index] = pair.from;
         }
     }
 }
