@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::diagnosis::Remedy;
+use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
@@ -186,7 +187,7 @@ fn a_comparison_is_made_anew_when_the_joints_change() {
         session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
         session.apply(SolverAction::Compare);
         session.apply(PlaybackAction::Advance(1.0));
-        assert_eq!(session.overlays().ghosts.len(), 6);
+        assert_eq!(session.overlays().ghosts.len(), Method::ALL.len());
         session.apply(change);
         for ghost in session.overlays().ghosts {
             assert_eq!(ghost.pose.len(), session.skeleton_pose().len());
