@@ -109,7 +109,7 @@ impl Palette {
             Method::DampedLeastSquares => [0x3fb8a5, 0x0b7466],
             Method::Ccd => [0x8fd460, 0x3f7a15],
             Method::Fabrik => [0xb397f5, 0x6a42c4],
-            Method::Relaxation => [0x74aef2, 0x2466b0],
+            Method::Relaxation => [0x5ccbe8, 0x0d7896],
             Method::TwoBone => [0xf08fb4, 0xb02a63],
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })

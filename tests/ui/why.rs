@@ -5,7 +5,7 @@ use egui::{PointerButton, vec2};
 use glam::Vec3;
 use ik_arm::document::Target;
 use ik_arm::io::Example;
-use ik_arm::kinematics::diagnosis::Remedy;
+use ik_arm::kinematics::diagnosis::{Remedy, significant};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
     EditAction, FileAction, PlaybackAction, SelectAction, SolverAction, TransactionAction,
@@ -170,6 +170,12 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
             "not reached"
         );
         assert!(bench.count("Not turned as asked: ") == 1, "{missing}");
+        let short = significant(missing);
+        assert_eq!(
+            bench.count(&format!("{short}°")),
+            6,
+            "these, the panel's and the list's: {short}"
+        );
         missing
     });
     assert!(some > 20.0 && more > some + 30.0, "{some} {more}");

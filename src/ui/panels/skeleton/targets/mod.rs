@@ -37,8 +37,13 @@ fn row(
 ) {
     let Some((end, end_name)) = end(session.skeleton_rig(), target) else { return };
     widgets::pair(ui, "", |ui| {
-        ui.label(RichText::new(format::short(report.error)).monospace())
-            .on_hover_text("Distance from tip to target");
+        let misses_only_rotation =
+            report.misses_rotation() && report.error <= session.solver_tolerance();
+        let (missing, tooltip) = match report.rotation_error.filter(|_| misses_only_rotation) {
+            Some(angle) => (format::degrees(angle), "Rotation that is missing"),
+            None => (format::short(report.error), "Distance from tip to target"),
+        };
+        ui.label(RichText::new(missing).monospace()).on_hover_text(tooltip);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let mut enabled = target.enabled;
             let name = format!("Target of {end_name}");
