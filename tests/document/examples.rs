@@ -320,6 +320,31 @@ fn both_hands_stay_on_the_turning_wheel() {
     }
 }
 
+// Hands and feet
+
+#[test]
+fn hands_and_feet_of_all_examples_turn_as_their_targets_ask() {
+    let mut checked = 0;
+    for example in Example::ALL {
+        let document = opened(example.name);
+        let (from, to) = (document.timeline.start, document.timeline.end);
+        for step in 0..=24 {
+            let time = from + (to - from) * f64::from(step) / 24.0;
+            let rig = document.evaluate(time).skeleton_rig;
+            for (target, report) in rig.targets.iter().zip(&rig.evaluate(time).targets) {
+                let is_posed = target.is_posing() && !target.is_blended();
+                assert!(
+                    !is_posed || !report.misses_rotation(),
+                    "{} at {time} s: {report:?}",
+                    example.name
+                );
+                checked += usize::from(report.rotation_error.is_some());
+            }
+        }
+    }
+    assert!(checked > 200, "{checked}");
+}
+
 // Table
 
 #[test]
