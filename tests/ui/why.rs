@@ -169,7 +169,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
             bench.session().solver_status().expect("targets").state.to_string(),
             "not reached"
         );
-        assert!(bench.count("Not turned as asked: ") == 1, "{missing}");
+        assert!(bench.count("° of its rotation missing") == 1, "{missing}");
         let short = significant(missing);
         assert_eq!(
             bench.count(&format!("{short}°")),

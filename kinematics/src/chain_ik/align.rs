@@ -13,8 +13,8 @@ pub(super) struct PointPair {
     pub weight: f32,
 }
 
-/// Number of rotations by [`align`]: for several pairs, one is the best about one axis only; a few come
-/// near the best of all.
+/// Number of rotations by [`align`]: for several pairs, one is the best about one axis only; a few
+/// come near the best of all.
 pub(super) const ROTATIONS: usize = 3;
 
 /// Rotation by the best angle about the axis of the total moment Σ w from × to; exact for a single

@@ -62,8 +62,8 @@ pub(super) struct LinkPoints {
     pub destinations: Vec<Vec3A>,
     /// Destination of each link's joint.
     pub base_destinations: Vec<Vec3A>,
-    /// Vector to each point from the joint of the point's link: as a pass leaves it, then as the link is
-    /// laid out. A link keeps it whose point has no other direction.
+    /// Vector to each point from the joint of the point's link: as a pass leaves it, then as the
+    /// link is laid out. A link keeps it whose point has no other direction.
     pub arms: Vec<Vec3A>,
     pairs: Vec<PointPair>,
 }
@@ -208,7 +208,8 @@ impl LinkPoints {
         }
     }
 
-    /// Moves the points of a link towards their destinations, at their distances from the link's joint.
+    /// Moves the points of a link towards their destinations, at their distances from the link's
+    /// joint.
     fn lay_link(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];

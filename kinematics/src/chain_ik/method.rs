@@ -22,7 +22,8 @@ pub enum Method {
     /// Forward and backward reaching (FABRIK).
     #[default]
     Fabrik,
-    /// Constraint relaxation: the length of each bone is restored in turn by moving both of its ends.
+    /// Constraint relaxation: the length of each bone is restored in turn by moving both of its
+    /// ends.
     Relaxation,
     /// Closed form for two joints: a target's joint and its parent.
     TwoBone,

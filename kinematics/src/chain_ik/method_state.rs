@@ -60,8 +60,8 @@ impl MethodState {
         }
     }
 
-    /// Forgets what the method has kept from earlier iterations: step lengths that it has learnt, and
-    /// points. Returns whether it keeps anything.
+    /// Forgets what the method has kept from earlier iterations: step lengths that it has learnt,
+    /// and points. Returns whether it keeps anything.
     pub fn restart(&mut self) -> bool {
         match self {
             Self::BarzilaiBorwein(descent) => {

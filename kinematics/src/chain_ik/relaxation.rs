@@ -9,16 +9,16 @@
 //! ```
 //!
 //! All joints have the same weight w, fixed roots and targets have the weight 0: the last bone
-//! moves its joint alone, so that its tip is at the target, and the first bone its end alone. Points
-//! stay where a pass has moved them; the next pass goes on from there. After each pass the links are
-//! laid out from the roots towards the points by [`LinkPoints`]: that is the pose.
+//! moves its joint alone, so that its tip is at the target, and the first bone its end alone.
+//! Points stay where a pass has moved them; the next pass goes on from there. After each pass the
+//! links are laid out from the roots towards the points by [`LinkPoints`]: that is the pose.
 //!
 //! A point that several children share moves to the weighted mean of where their bones bring it. A
 //! link with several points is restored as a whole, at the rotation that fits them best.
 //!
 //! Passes ignore limits. If any link has limits, each pass starts from the pose, and
-//! [`SweepAfterPasses`] goes on where it does not help, as with FABRIK. A chain whose only target is
-//! out of reach is laid out straight towards the target.
+//! [`SweepAfterPasses`] goes on where it does not help, as with FABRIK. A chain whose only target
+//! is out of reach is laid out straight towards the target.
 //!
 //! # Source
 //!

@@ -92,8 +92,8 @@ impl SkeletonRig {
         EvaluatedSkeleton { fk, solved, targets }
     }
 
-    /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a pose;
-    /// `None` for a hand that follows its bone and for a target without a hand.
+    /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a
+    /// pose; `None` for a hand that follows its bone and for a target without a hand.
     pub fn rotation_error(&self, target: &Target, pose: &Skeleton) -> Option<f32> {
         let wanted = target.limb()?.hand_in_world(pose, target.space)?.as_dquat();
         let hand = Limb::ending_at(pose, target.joint).ok()?.hand?;
@@ -102,8 +102,8 @@ impl SkeletonRig {
         Some((2.0 * DVec3::new(x, y, z).length().atan2(w.abs())) as f32)
     }
 
-    /// Whether the tip of a target's joint, and the rotation of its hand, are as the target asks, within
-    /// [`SkeletonRig::tolerance`] and [`SkeletonRig::ROTATION_TOLERANCE`].
+    /// Whether the tip of a target's joint, and the rotation of its hand, are as the target asks,
+    /// within [`SkeletonRig::tolerance`] and [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn is_reached(&self, report: &TargetReport) -> bool {
         report.error <= self.tolerance() && !report.misses_rotation()
     }

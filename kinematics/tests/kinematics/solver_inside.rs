@@ -314,7 +314,8 @@ fn the_passes_of_fabrik_keep_the_bones_and_meet_targets_and_roots() {
     });
 }
 
-/// The points after the pass of relaxation in an iteration: one segment for each bone, from the root on.
+/// The points after the pass of relaxation in an iteration: one segment for each bone, from the
+/// root on.
 fn relaxed(steps: &[SubStep]) -> Option<&[[Vec3; 2]]> {
     steps.iter().find_map(|step| match &step.kind {
         SubStepKind::Relaxed(segments) => Some(&segments[..]),
@@ -322,19 +323,19 @@ fn relaxed(steps: &[SubStep]) -> Option<&[[Vec3; 2]]> {
     })
 }
 
-/// One pass by Juckett's *Resolving Constraints*: for a bone from b1 to b2 of length l, with weights w1
-/// and w2, v = b2 − b1, d = |v|, m = v (d − l)/d; b1 += m w1/(w1 + w2), b2 −= m w2/(w1 + w2). The root
-/// and the target have weight 0, all other joints 1, and the last bone comes first.
+/// One pass by Juckett's *Resolving Constraints*: for a bone from b1 to b2 of length l, with
+/// weights w1 and w2, v = b2 − b1, d = |v|, m = v (d − l)/d; b1 += m w1/(w1 + w2), b2 −= m w2/(w1 +
+/// w2). The root and the target have weight 0, all other joints 1, and the last bone comes first.
 ///
-/// Three bones of length 1 stand up from the root (0, 0), with joints at (0, 1) and (0, 2); the target
-/// is (2, 2).
+/// Three bones of length 1 stand up from the root (0, 0), with joints at (0, 1) and (0, 2); the
+/// target is (2, 2).
 ///
-/// - Bone 3, from (0, 2) to the target: v = (2, 0), d = 2, m = (1, 0). The target has weight 0, so the
-///   joint moves alone, to (1, 2).
-/// - Bone 2, from (0, 1) to (1, 2): v = (1, 1), d = √2, m = (1 − 1/√2) (1, 1) = 0.292893 (1, 1). Both
-///   ends move by half of it, to (0.146447, 1.146447) and (0.853553, 1.853553).
-/// - Bone 1, from (0, 0) to (0.146447, 1.146447): d = √(0.021447 + 1.314340) = 1.155762. The root has
-///   weight 0, so the joint moves alone, to (0.146447, 1.146447)/d = (0.126710, 0.991940).
+/// - Bone 3, from (0, 2) to the target: v = (2, 0), d = 2, m = (1, 0). The target has weight 0, so
+///   the joint moves alone, to (1, 2).
+/// - Bone 2, from (0, 1) to (1, 2): v = (1, 1), d = √2, m = (1 − 1/√2) (1, 1) = 0.292893 (1, 1).
+///   Both ends move by half of it, to (0.146447, 1.146447) and (0.853553, 1.853553).
+/// - Bone 1, from (0, 0) to (0.146447, 1.146447): d = √(0.021447 + 1.314340) = 1.155762. The root
+///   has weight 0, so the joint moves alone, to (0.146447, 1.146447)/d = (0.126710, 0.991940).
 ///
 /// Bone 2 is now √(0.726843² + 0.861614²) = 1.127253 long: the next pass goes on.
 #[test]
@@ -362,8 +363,8 @@ fn a_pass_of_relaxation_over_unit_bones_is_the_one_worked_out_by_hand() {
             assert!(end.distance(expected) < 1e-6, "{segment:?}, {expected}");
         }
     }
-    // The bones laid out from the root: (0, 0) towards the first point, then towards the second, each
-    // from where the bone before it ends.
+    // The bones laid out from the root: (0, 0) towards the first point, then towards the second,
+    // each from where the bone before it ends.
     let pose = &steps.last().expect("the pose").pose;
     assert!(pose.tip(JointId::new(1)).distance(first) < 1e-6);
     let towards = (second - first).normalize();

@@ -33,9 +33,9 @@ pub enum SubStepKind {
     Backward(Vec<[Vec3; 2]>),
     /// FABRIK: the pass back from the roots, as segments from joints to points.
     Forward(Vec<[Vec3; 2]>),
-    /// Relaxation: the length of each bone is restored in turn, from the targets to the roots, by moving
-    /// both of its ends, as segments from joints to points. Bones beside it stretch or shorten. The
-    /// pose is unchanged.
+    /// Relaxation: the length of each bone is restored in turn, from the targets to the roots, by
+    /// moving both of its ends, as segments from joints to points. Bones beside it stretch or
+    /// shorten. The pose is unchanged.
     Relaxed(Vec<[Vec3; 2]>),
     /// Relaxation: bones of their own length are laid out from the roots towards the points, as
     /// segments from joints to points.

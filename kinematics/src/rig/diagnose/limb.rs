@@ -41,8 +41,8 @@ impl LimbSpan {
 }
 
 impl RigCase<'_> {
-    /// The causes for which a limb misses its target, its place or its rotation; none for a whole-body
-    /// target.
+    /// The causes for which a limb misses its target, its place or its rotation; none for a
+    /// whole-body target.
     pub fn limb(&self, report: &TargetReport) -> Vec<Diagnosis> {
         let (Some(settings), TargetOutcome::Limb(outcome)) = (self.target.limb(), &report.outcome)
         else {

@@ -12,8 +12,8 @@ use crate::diagnosis::{Diagnosis, in_turn};
 use crate::skeleton::JointId;
 
 impl SkeletonRig {
-    /// The causes for which the tips are not at their enabled targets at a time in seconds, or hands not
-    /// turned as these ask, the most likely first; empty if all are reached.
+    /// The causes for which the tips are not at their enabled targets at a time in seconds, or
+    /// hands not turned as these ask, the most likely first; empty if all are reached.
     ///
     /// Every remedy was tried: its residual is that of [`SkeletonRig::evaluate`] after
     /// [`SkeletonRig::apply_remedy`].

@@ -25,8 +25,8 @@ struct Left {
     angle: f32,
 }
 
-/// Fraction of a residual that a remedy may leave: one that is left nearly as it was is not worth an
-/// edit.
+/// Fraction of a residual that a remedy may leave: one that is left nearly as it was is not worth
+/// an edit.
 const WORTH: f32 = 0.9;
 
 impl RigCase<'_> {
@@ -56,8 +56,8 @@ impl RigCase<'_> {
         (left.distance <= WORTH * self.residual).then(|| left.by(remedy))
     }
 
-    /// Tries a remedy; `None` if it does not bring the hand nearer to the rotation that its target asks
-    /// for, or takes the tip away from the target.
+    /// Tries a remedy; `None` if it does not bring the hand nearer to the rotation that its target
+    /// asks for, or takes the tip away from the target.
     pub fn try_rotation_remedy(&self, remedy: Remedy) -> Option<TriedRemedy> {
         let left = self.left_by(self.rig, &remedy)?;
         let stays = left.distance <= self.residual.max(self.tolerance);

@@ -213,8 +213,8 @@ const HAND: JointId = JointId::new(3);
 /// Limits of a hand about x, y and z: ± so many radians.
 const HAND_LIMITS: [f32; 3] = [0.5, 0.4, 0.3];
 
-/// A limb that reaches its target, with a hand that the target asks to turn about one axis by so many
-/// radians.
+/// A limb that reaches its target, with a hand that the target asks to turn about one axis by so
+/// many radians.
 fn turned_hand(random: &mut Random, axis: usize, angle: f32) -> SkeletonRig {
     let mut rig = limb(random, inside);
     rig.skeleton_mut().set_rotation(HAND, Vec3::ZERO).expect("angles");

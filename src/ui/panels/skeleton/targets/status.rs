@@ -105,5 +105,5 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
 /// The rotation that is missing, in words; `None` for a hand that is turned as its target asks.
 fn missing_rotation(report: &TargetReport) -> Option<String> {
     let angle = report.rotation_error.filter(|_| report.misses_rotation())?;
-    Some(format!("Not turned as asked: {} are missing", format::degrees(angle)))
+    Some(format!("Not reached: {} of its rotation missing", format::degrees(angle)))
 }
