@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
-use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::chain_ik::Method;
+use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::Scene;
 use ik_arm::session::{
