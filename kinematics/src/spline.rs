@@ -1,31 +1,69 @@
 //! Cubic splines through unevenly spaced knots in time.
 //!
-//! Between two knots the curve is the cubic Hermite polynomial with Catmull–Rom tangents:
+//! Between two knots, a smooth curve is the cubic Hermite polynomial with Catmull–Rom tangents:
 //!
 //! ```text
 //! m₁ = (p₂ − p₀)/(t₂ − t₀)        m₂ = (p₃ − p₁)/(t₃ − t₁)        h = t₂ − t₁,  s = (t − t₁)/h
 //! p(t) = (2s³ − 3s² + 1) p₁ + (s³ − 2s² + s) h m₁ + (3s² − 2s³) p₂ + (s³ − s²) h m₂
 //! ```
 //!
+//! An automatic curve is the same polynomial with slopes that keep it between its knots. With the
+//! secants a before a knot and b after it, each component has there
+//!
+//! ```text
+//! a = (p₁ − p₀)/(t₁ − t₀)         b = (p₂ − p₁)/(t₂ − t₁)
+//! m₁ = 0 if a·b ≤ 0, else the Catmull–Rom slope, clamped to ±3·min(|a|, |b|)
+//! ```
+//!
+//! and at the first and last knot the only secant. So no component has an extremum between two knots,
+//! and equal knots hold their value. At a knot between an automatic and a smooth curve, both have the
+//! automatic slope.
+//!
 //! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can be a
 //! straight line or a step instead. Whoever knows that the values are the angles of a rotation can turn
 //! the shortest way instead: see [`Spline::segment`].
 //!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
-//! first knot and after the last, the curve is constant. It is C¹ at interior knots.
+//! first knot and after the last, the curve is constant. Between smooth and automatic curves it is C¹.
 //!
 //! # What breaks
 //!
-//! A spline overshoots: the values 1000, 10, 10, 1000 at equal intervals give −114 between the two
-//! in the middle. The caller clamps values that have a valid range. Angles must be unwrapped: from
-//! 350° to 10° the curve passes through 180°, from 350° to 370° through 360°.
+//! A smooth curve overshoots: the values 1000, 10, 10, 1000 at equal intervals give −114 between the
+//! two in the middle. So does an automatic one whose knots have slopes of their own. The caller clamps
+//! values that have a valid range. Angles must be unwrapped: from 350° to 10° the curve passes through
+//! 180°, from 350° to 370° through 360°.
 //!
 //! # Source
 //!
 //! E. Catmull, R. Rom, *A Class of Local Interpolating Splines*, 1974; the tangents over uneven
-//! times as in *Animation: Spline Interpolation*, wiki of Scotty3D (CMU 15-462).
+//! times as in *Animation: Spline Interpolation*, wiki of Scotty3D (CMU 15-462). The bound of
+//! automatic slopes: F. Fritsch, R. Carlson, *Monotone Piecewise Cubic Interpolation*, 1980.
 
 use core::ops::{Add, Mul, RangeInclusive, Sub};
+
+use glam::Vec3;
+
+/// A number, or a vector of numbers that a spline interpolates each on its own.
+pub trait SplineValue:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
+{
+    /// The value whose components are `function` of the components of `values`.
+    #[must_use]
+    fn combine<const N: usize>(values: [Self; N], function: impl Fn([f64; N]) -> f64) -> Self;
+}
+
+impl SplineValue for f32 {
+    fn combine<const N: usize>(values: [Self; N], function: impl Fn([f64; N]) -> f64) -> Self {
+        function(values.map(f64::from)) as Self
+    }
+}
+
+impl SplineValue for Vec3 {
+    fn combine<const N: usize>(values: [Self; N], function: impl Fn([f64; N]) -> f64) -> Self {
+        let component = |axis: usize| f32::combine(values.map(|value| value[axis]), &function);
+        Self::new(component(0), component(1), component(2))
+    }
+}
 
 /// A value at a time, with the shape of the curve there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +74,7 @@ pub struct Knot<V> {
     pub value: V,
     /// Curve from this knot to the next one.
     pub interpolation: Interpolation,
-    /// Slopes of smooth curves at this knot; `None` for the Catmull–Rom tangent on both sides.
+    /// Slopes of cubic curves at this knot; `None` for the tangent that the neighbours give.
     pub slopes: Option<Slopes<V>>,
 }
 
@@ -48,7 +86,9 @@ pub struct Knot<V> {
     serde(rename_all = "snake_case")
 )]
 pub enum Interpolation {
-    /// A cubic polynomial with the slopes of both knots.
+    /// A cubic polynomial with slopes of both knots that keep it between them.
+    Auto,
+    /// A cubic polynomial with the Catmull–Rom tangents of both knots.
     #[default]
     Smooth,
     /// A straight line.
@@ -82,12 +122,21 @@ pub struct Slopes<V> {
 
 impl Interpolation {
     /// All kinds, in the order of menus.
-    pub const ALL: [Self; 4] = [Self::Smooth, Self::Linear, Self::Step, Self::Slerp];
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Smooth, Self::Linear, Self::Step, Self::Slerp];
+
+    /// Whether the curve is a cubic polynomial with the slopes of both knots.
+    pub fn is_cubic(self) -> bool {
+        match self {
+            Self::Auto | Self::Smooth => true,
+            Self::Linear | Self::Step | Self::Slerp => false,
+        }
+    }
 
     /// Name on screen.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Smooth => "Smooth",
+            Self::Auto => "Auto",
+            Self::Smooth => "Catmull–Rom",
             Self::Linear => "Linear",
             Self::Step => "Step",
             Self::Slerp => "Slerp",
@@ -210,22 +259,19 @@ impl<V: Copy> Spline<V> {
     }
 }
 
-impl<V> Spline<V>
-where
-    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
-{
+impl<V: SplineValue> Spline<V> {
     /// Interpolated value at a time (see the module); `None` without knots.
     pub fn at(&self, time: f64) -> Option<V> {
         interpolated(&self.knots, time)
     }
 
-    /// Slopes of smooth curves at the knot at exactly this time, per second: its own, or else the
-    /// Catmull–Rom tangent. `None` if there is no such knot.
+    /// Slopes of cubic curves at the knot at exactly this time, per second: its own, or else the
+    /// tangent that the neighbours give. `None` if there is no such knot.
     pub fn slopes(&self, time: f64) -> Option<Slopes<V>> {
         let index = self.search(time).ok()?;
-        let automatic = tangent(&self.knots, index, 1.0);
-        let automatic = Slopes { arriving: automatic, leaving: automatic };
-        Some(self.knots[index].slopes.unwrap_or(automatic))
+        let given = tangent(&self.knots, index, 1.0);
+        let given = Slopes { arriving: given, leaving: given };
+        Some(self.knots[index].slopes.unwrap_or(given))
     }
 
     /// Value at a time of the spline through only those knots whose times are in a range; `None` if
@@ -238,10 +284,7 @@ where
 }
 
 /// Interpolated value of the spline through `knots`; `None` without knots.
-fn interpolated<V>(knots: &[Knot<V>], time: f64) -> Option<V>
-where
-    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
-{
+fn interpolated<V: SplineValue>(knots: &[Knot<V>], time: f64) -> Option<V> {
     let (first, last) = (knots.first()?, knots.last()?);
     if time.is_nan() || time <= first.time {
         return Some(first.value);
@@ -256,6 +299,14 @@ where
     }
     let span = to.time - from.time;
     let s = (time - from.time) / span;
+    let tangents = || {
+        let leaving = from.slopes.map(|slopes| slopes.leaving * span as f32);
+        let arriving = to.slopes.map(|slopes| slopes.arriving * span as f32);
+        (
+            leaving.unwrap_or_else(|| tangent(knots, after - 1, span)),
+            arriving.unwrap_or_else(|| tangent(knots, after, span)),
+        )
+    };
     Some(match from.interpolation {
         Interpolation::Step => from.value,
         Interpolation::Linear | Interpolation::Slerp => {
@@ -263,27 +314,60 @@ where
         }
         Interpolation::Smooth => {
             let [a, b, c, d] = hermite(s).map(|weight| weight as f32);
-            let leaving = from.slopes.map(|slopes| slopes.leaving * span as f32);
-            let leaving = leaving.unwrap_or_else(|| tangent(knots, after - 1, span));
-            let arriving = to.slopes.map(|slopes| slopes.arriving * span as f32);
-            let arriving = arriving.unwrap_or_else(|| tangent(knots, after, span));
+            let (leaving, arriving) = tangents();
             from.value * a + leaving * b + to.value * c + arriving * d
+        }
+        Interpolation::Auto => {
+            let (leaving, arriving) = tangents();
+            let [_, b, c, d] = hermite(s);
+            // From the rise, so that equal values are held without rounding.
+            V::combine(
+                [from.value, to.value, leaving, arriving],
+                |[from, to, leaving, arriving]| {
+                    from + ((to - from) * c + leaving * b + arriving * d)
+                },
+            )
         }
     })
 }
 
-/// h·m at a knot: the Catmull–Rom tangent m there, times the time span h.
-fn tangent<V>(knots: &[Knot<V>], knot: usize, span: f64) -> V
-where
-    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f32, Output = V>,
-{
-    let here = knots[knot];
+/// h·m at a knot: the tangent m that its neighbours give, times the time span h.
+fn tangent<V: SplineValue>(knots: &[Knot<V>], knot: usize, span: f64) -> V {
+    let before = knot.checked_sub(1).map(|before| knots[before]);
+    let after = knots.get(knot + 1).copied();
+    let is_auto = |from: Knot<V>| from.interpolation == Interpolation::Auto;
+    match (before, after) {
+        (Some(before), Some(after)) if is_auto(before) || is_auto(knots[knot]) => {
+            bounded_tangent([before, knots[knot], after], span)
+        }
+        _ => catmull_rom_tangent(before, knots[knot], after, span),
+    }
+}
+
+/// h·m with the automatic slope m at the second of three knots.
+fn bounded_tangent<V: SplineValue>(knots: [Knot<V>; 3], span: f64) -> V {
+    let (before, after) = (knots[1].time - knots[0].time, knots[2].time - knots[1].time);
+    V::combine(knots.map(|knot| knot.value), |[p0, p1, p2]| {
+        let (a, b) = ((p1 - p0) / before, (p2 - p1) / after);
+        if a.signum() != b.signum() || a == 0.0 || b == 0.0 {
+            return 0.0;
+        }
+        let most = 3.0 * a.abs().min(b.abs());
+        span * ((p2 - p0) / (before + after)).clamp(-most, most)
+    })
+}
+
+/// h·m with the Catmull–Rom tangent m at a knot.
+fn catmull_rom_tangent<V: SplineValue>(
+    before: Option<Knot<V>>,
+    here: Knot<V>,
+    after: Option<Knot<V>>,
+    span: f64,
+) -> V {
     let mirrored = |of: Knot<V>| {
         let time = here.time - (of.time - here.time);
         Knot::new(time, here.value - (of.value - here.value))
     };
-    let before = knot.checked_sub(1).map(|before| knots[before]);
-    let after = knots.get(knot + 1).copied();
     let (before, after) = match (before, after) {
         (Some(before), Some(after)) => (before, after),
         (None, Some(after)) => (mirrored(after), after),

@@ -4,6 +4,7 @@ use super::channel::Channel;
 use super::document::Document;
 use super::keys::Keys;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
+use crate::kinematics::spline::{Interpolation, Knot, Spline};
 
 /// A joint that stays while its parent is dissolved.
 struct Orphan {
@@ -54,9 +55,13 @@ impl Document {
                     orphan.parent,
                     *angles,
                 );
-                after.keys.insert(Channel::Rotation(joint), time, *angles);
+                let mut key = |channel: fn(JointId) -> Channel, value| {
+                    let key = orphan.key(&self.keys, channel, time);
+                    after.keys.insert_key(channel(joint), Knot { time, value, ..key });
+                };
+                key(Channel::Rotation, *angles);
                 if orphan.needs_offset_keys(&self.keys) {
-                    after.keys.insert(Channel::Offset(joint), time, offset);
+                    key(Channel::Offset, offset);
                 }
                 after.skeleton_mut().change(joint, |joint| joint.widen_limits(*angles))?;
             }
@@ -86,6 +91,21 @@ impl Orphan {
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
+    }
+
+    /// The orphan's own key at a time; or else a key with the curve that is in force there, of the orphan
+    /// or of the nearest dissolved joint with keys.
+    fn key(&self, keys: &Keys, channel: fn(JointId) -> Channel, time: f64) -> Knot<Vec3> {
+        let joints = [self.joint].into_iter().chain(self.dissolved.iter().copied());
+        let mut tracks = joints.filter_map(|joint| keys.track(channel(joint)));
+        let before = |track: &Spline<Vec3>| {
+            let after = track.knots().partition_point(|knot| knot.time <= time);
+            track.knots().get(after.saturating_sub(1)).map(|knot| knot.interpolation)
+        };
+        keys.key(channel(self.joint), time).unwrap_or_else(|| {
+            let interpolation = tracks.find_map(before).unwrap_or(Interpolation::Auto);
+            Knot { interpolation, ..Knot::new(time, Vec3::ZERO) }
+        })
     }
 
     /// Whether keys move the orphan's base relative to its new parent.

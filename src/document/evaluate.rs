@@ -102,7 +102,8 @@ impl Document {
             && is_ever(Channel::Enabled(joint), f32::from(u8::from(enabled)))
     }
 
-    /// Adds a key with the present value of a channel at a time in seconds. A twist is first
+    /// Adds a key with the present value of a channel at a time in seconds, with an automatic curve;
+    /// a key that is there keeps its curve. A twist is first
     /// unwrapped to be nearest to the value that its existing keys have at that time. The hand is
     /// first keyed where the last plant before that time begins, so that it arrives there as
     /// before. Does nothing if the channel has no value.
@@ -118,6 +119,6 @@ impl Document {
         if channel == Channel::Hand {
             self.key_hand_at_plant(time);
         }
-        self.keys.insert(channel, time, value);
+        self.keys.insert_auto(channel, time, value);
     }
 }

@@ -62,12 +62,21 @@ impl Keys {
         self.tracks.values().map(|track| track.knots().len()).sum()
     }
 
-    /// Adds a key at a time in seconds, or replaces the channel's key at that time. Does nothing if
-    /// the time or the value is not finite.
+    /// Adds a key at a time in seconds with a Catmull–Rom curve, or sets the value of the channel's key
+    /// at that time, which keeps its curve. Does nothing if the time or the value is not finite.
     pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
         if time.is_finite() && value.is_finite() {
             self.tracks.make_mut().entry(channel).or_default().make_mut().insert(time, value);
         }
+    }
+
+    /// Adds a key as the user interface does, with an automatic curve, or sets the value of the channel's
+    /// key at that time, which keeps its curve. Switches are not interpolated and keep the default. Does
+    /// nothing if the time or the value is not finite.
+    pub fn insert_auto(&mut self, channel: Channel, time: f64, value: Vec3) {
+        let new = || Knot { interpolation: new_interpolation(channel), ..Knot::new(time, value) };
+        let key = self.key(channel, time).unwrap_or_else(new);
+        self.insert_key(channel, Knot { value, ..key });
     }
 
     /// Adds a key with its interpolation and slopes, or replaces the channel's key at its time. Does
@@ -154,6 +163,11 @@ impl Keys {
         };
         self.tracks = Shared::from(self.tracks.iter().filter_map(remapped).collect::<Tracks>());
     }
+}
+
+/// The curve of new keys.
+fn new_interpolation(channel: Channel) -> Interpolation {
+    if channel.is_switch() { Interpolation::default() } else { Interpolation::Auto }
 }
 
 /// Interpolated angles of a joint; `None` without keys.

@@ -48,7 +48,7 @@ impl Document {
         let start = self.timeline.start;
         if is_of_pin && is_switched && start < time && !self.keys.has(channel) {
             let value = channel.value(former).unwrap_or_default();
-            self.keys.insert(channel, start, value);
+            self.keys.insert_auto(channel, start, value);
         }
     }
 
@@ -61,7 +61,7 @@ impl Document {
         if let Some(value) = self.keys.hand(start)
             && !hand.knots().iter().any(is_since)
         {
-            self.keys.insert(Channel::Hand, start, value);
+            self.keys.insert_auto(Channel::Hand, start, value);
         }
     }
 }

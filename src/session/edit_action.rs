@@ -212,7 +212,7 @@ pub enum EditAction {
     },
     /// Sets the curve from each key to the next one of its channel.
     SetInterpolation(Vec<Key>, Interpolation),
-    /// Sets the slopes of smooth curves at keys, per second; `None` for Catmull–Rom tangents.
+    /// Sets the slopes of curves at keys, per second; `None` for those that the neighbours give.
     SetSlopes(Vec<Key>, Option<Slopes<Vec3>>),
     /// Pastes the copied keys at the playhead.
     PasteKeys,

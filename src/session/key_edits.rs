@@ -159,7 +159,7 @@ impl Session {
         self.change_keys(keys, |_, key| Knot { interpolation, ..key });
     }
 
-    /// Sets the slopes of `keys`, per second; `None` for Catmull–Rom tangents.
+    /// Sets the slopes of `keys`, per second; `None` for those that the neighbours give.
     pub(super) fn set_slopes(&mut self, keys: &[Key], slopes: Option<Slopes<Vec3>>) {
         self.change_keys(keys, |channel, key| {
             let slopes = slopes.map(|Slopes { arriving, leaving }| Slopes {

@@ -688,6 +688,25 @@ fn a_key_with_a_curve_of_its_own_is_an_object_and_is_saved_as_one() {
 }
 
 #[test]
+fn automatic_keys_keep_their_word_and_keys_without_one_are_catmull_rom() {
+    let opened = open(&with(
+        r#""channels":[{"channel":"twist","keys":[
+               {"key":[0,1],"interpolation":"auto"},[1,2],{"key":[2,2],"interpolation":"smooth"}]}]"#,
+    ));
+    assert_eq!(opened.warnings, []);
+    let kinds = |document: &Document| -> Vec<Interpolation> {
+        let track = document.keys.track(Channel::Twist).expect("keys");
+        track.knots().iter().map(|knot| knot.interpolation).collect()
+    };
+    let (auto, smooth) = (Interpolation::Auto, Interpolation::Smooth);
+    assert_eq!(kinds(&opened.document), [auto, smooth, smooth]);
+    let text = io::to_json(&opened.document).expect("it can be saved");
+    assert_eq!(text.matches("\"auto\"").count(), 1, "{text}");
+    let again = io::parse("again.json", &text, &io::OpenOptions::default()).expect("it opens");
+    assert_eq!(again.document.keys, opened.document.keys);
+}
+
+#[test]
 fn invalid_keys_are_named() {
     let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"channels":"#;
     for (keys, reason) in [

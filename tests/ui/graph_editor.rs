@@ -155,7 +155,7 @@ fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
         let expected = if interpolation == Interpolation::Linear { 30.0 } else { 60.0 };
         assert!((degrees - expected).abs() < 1e-3, "{interpolation:?}: {degrees}");
         bench.apply([TransactionAction::Undo]);
-        assert_eq!(keys(&bench)[1].interpolation, Interpolation::Smooth);
+        assert_eq!(keys(&bench)[1].interpolation, Interpolation::Auto);
     }
 }
 
@@ -193,6 +193,53 @@ fn copied_and_moved_keys_keep_their_shape() {
     bench.apply([Action::from(PlaybackAction::SetTime(7.0)), EditAction::PasteKeys.into()]);
     bench.apply([EditAction::MoveKeys { keys: vec![key], by: 0.5, raise: Vec3::ZERO }]);
     let shapes: Vec<_> = keys(&bench).iter().map(|key| (key.time, key.interpolation)).collect();
-    let (smooth, step) = (Interpolation::Smooth, Interpolation::Step);
-    assert_eq!(shapes, [(1.0, smooth), (3.5, step), (5.0, smooth), (7.0, step)]);
+    let (auto, step) = (Interpolation::Auto, Interpolation::Step);
+    assert_eq!(shapes, [(1.0, auto), (3.5, step), (5.0, auto), (7.0, step)]);
+}
+
+#[test]
+fn a_hold_between_two_equal_keys_holds_and_catmull_rom_is_one_choice_away() {
+    let mut bench = graph();
+    for (time, degrees) in [(1.0, 90.0_f32), (3.0, 177.0), (5.0, 177.0), (7.0, 90.0)] {
+        bench.apply([
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::SetTwist(degrees.to_radians()).into(),
+            EditAction::Key(vec![Channel::Twist]).into(),
+        ]);
+    }
+    let between = |bench: &mut Bench| {
+        bench.apply([PlaybackAction::SetTime(4.0)]);
+        bench.session().arm().twist.to_degrees()
+    };
+    assert!((between(&mut bench) - 177.0).abs() < 1e-3);
+    bench.apply([SelectAction::Keys(
+        keys(&bench).iter().map(|it| (Channel::Twist, it.time)).collect(),
+    )]);
+    let area = bench.rect(Role::Image, "Curves of Socket twist");
+    bench.move_to(area.center());
+    bench.press(RIGHT);
+    bench.release(RIGHT);
+    bench.settle();
+    bench.click(Role::Button, "Catmull–Rom");
+    assert!(keys(&bench).iter().all(|key| key.interpolation == Interpolation::Smooth));
+    assert!(between(&mut bench) > 187.0, "the seed's spline swings beyond its keys");
+}
+
+#[test]
+fn switches_have_no_curve_to_choose() {
+    let mut bench = graph();
+    let key = (Channel::Pinned, 1.0);
+    bench.apply([
+        Action::from(PlaybackAction::SetTime(1.0)),
+        EditAction::Key(vec![key.0]).into(),
+        SelectAction::Keys(vec![key]).into(),
+    ]);
+    let set = bench.session().document().keys.key(key.0, key.1).expect("a key");
+    assert_eq!(set.interpolation, Interpolation::default());
+    let area = bench.rect(Role::Image, "Curves of Socket twist, Pinned to world");
+    bench.move_to(area.center());
+    bench.press(RIGHT);
+    bench.release(RIGHT);
+    bench.settle();
+    assert!(bench.node(Role::Button, "Auto").accesskit_node().is_disabled());
 }

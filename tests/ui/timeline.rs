@@ -9,7 +9,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
-use ik_arm::kinematics::spline::{Knot, Spline};
+use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{
     Action, EditAction, FileAction, PlaybackAction, TransactionAction, ViewAction,
 };
@@ -222,7 +222,8 @@ fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
 }
 
 fn spline() -> Spline<Vec3> {
-    HAND.into_iter().map(|(time, value)| Knot::new(time, value)).collect()
+    let interpolation = Interpolation::Auto;
+    HAND.into_iter().map(|(time, value)| Knot { interpolation, ..Knot::new(time, value) }).collect()
 }
 
 #[test]

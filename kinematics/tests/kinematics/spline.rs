@@ -1,11 +1,14 @@
 //! Splines through knots at uneven times.
 
+use core::ops::{Add, Mul, Sub};
+
 use glam::Vec3;
-use ik_arm_kinematics::spline::{Interpolation, Knot, Slopes, Spline};
+use ik_arm_kinematics::spline::{Interpolation, Knot, Slopes, Spline, SplineValue};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
 use crate::common::strategies::config;
+use crate::common::{Random, cases};
 
 fn spline(knots: &[(f64, f32)]) -> Spline<f32> {
     knots.iter().map(|&(time, value)| Knot::new(time, value)).collect()
@@ -240,7 +243,14 @@ proptest! {
             let time = from.time + part * (to.time - from.time);
             let found = f64::from(spline.at(time).unwrap());
             let [a, b] = [from, to].map(|knot| (knot.time, f64::from(knot.value)));
+            let has_auto = |at: f64| {
+                let beside = [at - 1e-9, at + 1e-9].map(|time| spline.segment(time));
+                beside.iter().flatten().any(|it| it.from.interpolation == Interpolation::Auto)
+            };
             let automatic = |at: f64| {
+                if has_auto(at) {
+                    return auto_slope(&plain, at);
+                }
                 let step = 1e-4 * (to.time - from.time);
                 let inwards = if at == from.time { step } else { -step };
                 (twin(&plain, at + inwards) - twin(&plain, at)) / inwards
@@ -248,7 +258,7 @@ proptest! {
             let expected = match from.interpolation {
                 Interpolation::Step => a.1,
                 Interpolation::Linear | Interpolation::Slerp => a.1 + (b.1 - a.1) * part,
-                Interpolation::Smooth => {
+                Interpolation::Smooth | Interpolation::Auto => {
                     let leaving = from.slopes.map(|it| f64::from(it.leaving));
                     let arriving = to.slopes.map(|it| f64::from(it.arriving));
                     let leaving = leaving.unwrap_or_else(|| automatic(from.time));
@@ -274,4 +284,171 @@ fn a_new_value_at_a_knot_keeps_its_shape() {
     assert_eq!(spline.slopes(1.0), slopes);
     assert_eq!(spline.slopes(2.0), Some(Slopes { arriving: -7.0, leaving: -7.0 }));
     assert_eq!(spline.slopes(1.5), None);
+}
+
+/// The automatic slope at the knot at a time, in f64, as a mean of the secants weighted by their times.
+fn auto_slope(knots: &[(f64, f32)], time: f64) -> f64 {
+    let secant = |pair: &[(f64, f32)]| {
+        let rise = f64::from(pair[1].1) - f64::from(pair[0].1);
+        (rise / (pair[1].0 - pair[0].0), pair[1].0 - pair[0].0)
+    };
+    let beside = knots.windows(2).filter(|pair| pair.iter().any(|knot| knot.0 == time));
+    match beside.map(secant).collect::<Vec<_>>()[..] {
+        [(only, _)] => only,
+        [(a, before), (b, after)] => {
+            let mean = (a * before + b * after) / (before + after);
+            if a * b <= 0.0 {
+                0.0
+            } else {
+                mean.signum() * mean.abs().min(3.0 * a.abs()).min(3.0 * b.abs())
+            }
+        }
+        _ => panic!("one or two secants meet at {time}"),
+    }
+}
+
+/// Keys at uneven times, some of them equal to the one before in some components.
+fn auto_keys(random: &mut Random, count: usize) -> Vec<Knot<Vec3>> {
+    let (mut time, mut value) = (-3.0, Vec3::ZERO);
+    let key = |_| {
+        time += 10_f64.powf(f64::from(random.within(-2.0..0.5)));
+        let size = 10_f32.powf(random.within(-2.0..3.0));
+        let next = random.vector(size);
+        let holds = [0; 3].map(|_| random.chance(0.3));
+        value = Vec3::from_array(
+            [0, 1, 2].map(|axis| if holds[axis] { value[axis] } else { next[axis] }),
+        );
+        Knot { interpolation: Interpolation::Auto, ..Knot::new(time, value) }
+    };
+    (0..count).map(key).collect()
+}
+
+#[test]
+fn automatic_curves_have_no_extremum_between_two_keys_in_any_component() {
+    const KEYS: usize = 20;
+    const STEPS: usize = 64;
+    let mut random = Random(0xa070);
+    for _ in 0..cases(10_000) / KEYS {
+        let keys = auto_keys(&mut random, KEYS);
+        let spline: Spline<Vec3> = keys.iter().copied().collect();
+        for pair in keys.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let at = |step: usize| {
+                let part = step as f64 / STEPS as f64;
+                spline.at(from.time + part * (to.time - from.time)).expect("keys")
+            };
+            for step in 0..STEPS {
+                let (here, next) = (at(step), at(step + 1));
+                for axis in 0..3 {
+                    let (low, high) = (
+                        from.value[axis].min(to.value[axis]),
+                        from.value[axis].max(to.value[axis]),
+                    );
+                    let value = here[axis];
+                    assert!((low..=high).contains(&value), "{value} not in {low} to {high}");
+                    let rises = to.value[axis] - from.value[axis];
+                    let onwards = (next[axis] - value) * rises.signum();
+                    assert!(onwards >= 0.0, "goes back by {onwards}");
+                    assert!(rises != 0.0 || next[axis] == from.value[axis], "a hold holds");
+                }
+            }
+        }
+    }
+}
+
+/// A number in double precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Double(f64);
+
+impl Add for Double {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Double {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl Mul<f32> for Double {
+    type Output = Self;
+
+    fn mul(self, factor: f32) -> Self {
+        Self(self.0 * f64::from(factor))
+    }
+}
+
+impl SplineValue for Double {
+    fn combine<const N: usize>(values: [Self; N], function: impl Fn([f64; N]) -> f64) -> Self {
+        Self(function(values.map(|it| it.0)))
+    }
+}
+
+#[test]
+fn automatic_curves_have_one_slope_at_each_key_by_finite_differences() {
+    let mut random = Random(0xc1);
+    for _ in 0..cases(500) {
+        let keys = auto_keys(&mut random, 8);
+        let double = |key: &Knot<Vec3>| Knot {
+            interpolation: key.interpolation,
+            ..Knot::new(key.time, Double(f64::from(key.value.x)))
+        };
+        let spline: Spline<Double> = keys.iter().map(double).collect();
+        let plain: Vec<_> = keys.iter().map(|key| (key.time, key.value.x)).collect();
+        for three in keys.windows(3) {
+            let [before, here, after] = [three[0].time, three[1].time, three[2].time];
+            // Four points tell a cubic's slope at its end exactly.
+            let slope = |step: f64| {
+                let [p0, p1, p2, p3] =
+                    [0.0, 1.0, 2.0, 3.0].map(|n| spline.at(here + n * step).expect("keys").0);
+                (-11.0 * p0 + 18.0 * p1 - 9.0 * p2 + 2.0 * p3) / (6.0 * step)
+            };
+            let (arriving, leaving) = (slope(-0.3 * (here - before)), slope(0.3 * (after - here)));
+            let expected = auto_slope(&plain, here);
+            let size = [before, after].map(|time| {
+                (spline.at(time).expect("keys").0 - spline.at(here).expect("keys").0).abs()
+                    / (time - here).abs()
+            });
+            let near = 1e-9 * (1.0 + size[0].max(size[1]));
+            assert!((arriving - expected).abs() < near, "{arriving}, not {expected}");
+            assert!((leaving - expected).abs() < near, "{leaving}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn two_equal_automatic_keys_hold_where_catmull_rom_overshoots() {
+    let keys = [(0.0, 90.0), (1.0, 177.0), (2.0, 177.0), (3.0, 90.0)];
+    let highest = |interpolation| {
+        let knot = |(time, value)| Knot { interpolation, ..Knot::new(time, value) };
+        let spline: Spline<f32> = keys.map(knot).into_iter().collect();
+        (0..=300).map(|step| at(&spline, f64::from(step) / 100.0)).fold(0.0, f32::max)
+    };
+    assert!(highest(Interpolation::Smooth) > 187.0);
+    assert_eq!(highest(Interpolation::Auto), 177.0);
+}
+
+#[test]
+fn an_automatic_curve_beside_a_smooth_one_gives_both_its_slope() {
+    let (auto, smooth) = (Interpolation::Auto, Interpolation::Smooth);
+    let spline = |kinds: [Interpolation; 4]| -> Spline<f32> {
+        let keys = [(0.0, 0.0), (1.0, 10.0), (2.0, 10.0), (3.0, 0.0)];
+        let knot =
+            |((time, value), interpolation)| Knot { interpolation, ..Knot::new(time, value) };
+        keys.into_iter().zip(kinds).map(knot).collect()
+    };
+    let slopes = |kinds, time| spline(kinds).slopes(time).expect("a knot").leaving;
+    assert_eq!(slopes([smooth; 4], 1.0), 5.0);
+    assert_eq!(slopes([smooth, auto, smooth, smooth], 1.0), 0.0);
+    assert_eq!(slopes([smooth, auto, smooth, smooth], 2.0), 0.0);
+    assert_eq!(slopes([auto, smooth, smooth, smooth], 1.0), 0.0);
+    assert_eq!(slopes([auto, smooth, smooth, smooth], 2.0), -5.0);
+    assert_eq!(slopes([auto; 4], 0.0), 10.0);
+    assert_eq!(slopes([auto; 4], 3.0), -10.0);
 }

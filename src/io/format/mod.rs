@@ -22,5 +22,6 @@ mod soft_reach;
 mod targets;
 mod version_1;
 
+pub use key::KeyFields;
 pub use read::read;
 pub use save::{save, to_json};

@@ -41,6 +41,7 @@
 pub(super) mod chunks;
 mod colour;
 mod export;
+mod extras;
 mod frame;
 mod generator;
 mod import;

@@ -88,9 +88,12 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     let no_angles = keys.iter().any(|(channel, _)| !channel.is_rotation());
     let no_angles = no_angles.then_some("Only angles of joints turn the shortest way");
+    let switches = keys.iter().all(|(channel, _)| channel.is_switch());
+    let none = none.or(switches.then_some("Switches keep their value until the next key"));
     for (interpolation, tooltip) in [
-        (Interpolation::Smooth, "Let the values follow a smooth curve to the next key"),
-        (Interpolation::Linear, "Let the values follow a straight line to the next key"),
+        (Interpolation::Auto, "Follow a smooth curve that stays between the two keys"),
+        (Interpolation::Smooth, "Follow a smooth curve that may swing beyond the keys"),
+        (Interpolation::Linear, "Follow a straight line to the next key"),
         (Interpolation::Step, "Keep the value until the next key"),
         (Interpolation::Slerp, "Turn the shortest way to the next key, at constant speed"),
     ] {

@@ -7,7 +7,7 @@ use super::channel_curve::ChannelCurve;
 use super::drag::{self, PointsDrag, TangentDrag, TimelineDrag};
 use super::time_scale::TimeScale;
 use crate::document::{Channel, Quantity};
-use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
+use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::session::{
     Actions, EditAction, Key, SelectAction, Session, ShellAction, TransactionAction,
 };
@@ -77,8 +77,8 @@ impl GraphView<'_> {
         nearest.map(|(curve, key, _)| (curve, key))
     }
 
-    /// The handles of the selected keys: one before each key with a smooth curve before it, and one
-    /// after each key with a smooth curve after it.
+    /// The handles of the selected keys: one before each key with a cubic curve before it, and one
+    /// after each key with a cubic curve after it.
     fn handles(&self) -> Vec<Handle<'_>> {
         let selected = self.session.selected_keys();
         let has_tangents = |curve: &&ChannelCurve| curve.channel.quantity() != Quantity::Switch;
@@ -101,12 +101,12 @@ impl GraphView<'_> {
         let Some(track) = self.track(curve.channel) else { return Vec::new() };
         let Some(slopes) = track.slopes(knot.time) else { return Vec::new() };
         let index = track.knots().partition_point(|other| other.time < knot.time);
-        let is_smooth = |knot: &Knot<Vec3>| knot.interpolation == Interpolation::Smooth;
+        let is_cubic = |knot: &Knot<Vec3>| knot.interpolation.is_cubic();
         let before = index.checked_sub(1).map(|before| &track.knots()[before]);
         let is_last = index + 1 == track.knots().len();
         let sides = [
-            (false, before.is_some_and(is_smooth), slopes.arriving),
-            (true, is_smooth(knot) && !is_last, slopes.leaving),
+            (false, before.is_some_and(is_cubic), slopes.arriving),
+            (true, is_cubic(knot) && !is_last, slopes.leaving),
         ];
         let shown = sides.into_iter().filter(|(_, is_shown, _)| *is_shown);
         let handle = |(is_leaving, _, slope): (bool, bool, Vec3)| {

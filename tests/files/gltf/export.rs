@@ -41,6 +41,7 @@ struct Moving {
     node: usize,
     path: String,
     times: Vec<Vec<f32>>,
+    /// The values at these times, without the slopes of cubic splines.
     values: Vec<Vec<f32>>,
 }
 
@@ -48,7 +49,10 @@ fn channels(glb: &Glb) -> Vec<Moving> {
     let animation = &glb.json["animations"][0];
     let read = |channel: &Value| {
         let sampler = &animation["samplers"][index(&channel["sampler"])];
-        let [times, values] = ["input", "output"].map(|key| glb.rows(&sampler[key]));
+        let [times, mut values] = ["input", "output"].map(|key| glb.rows(&sampler[key]));
+        if sampler["interpolation"] == "CUBICSPLINE" {
+            values = values.into_iter().skip(1).step_by(3).collect();
+        }
         let target = &channel["target"];
         let path = target["path"].as_str().expect("a path").to_owned();
         Moving { node: index(&target["node"]), path, times, values }

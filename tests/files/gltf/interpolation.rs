@@ -3,11 +3,12 @@
 use glam::{DAffine3, DQuat, DVec3, DVec4, Quat, Vec3};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io;
-use ik_arm::kinematics::spline::Interpolation;
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 use serde_json::{Value, json};
 
 use crate::common::Random;
-use crate::gltf::documents::glb;
+use crate::gltf::documents::{example, glb};
 use crate::gltf::glb::{Glb, index};
 use crate::gltf::text::Text;
 
@@ -290,4 +291,219 @@ fn uneven_scales_above_a_joint_give_keys_at_every_frame_at_the_same_places() {
         let found = evaluated.skeleton().pose().base(joint);
         assert!(found.distance(expected) < 1e-4, "{found}, not {expected}: {}", Vec3::ZERO);
     }
+}
+
+/// A skeleton with keys of random curves, some with slopes of their own, at whole frames. `kinds` has the
+/// curves of the angles and of the offsets.
+fn keyed(random: &mut Random, kinds: [&[Interpolation]; 2]) -> Document {
+    let mut document = example("human");
+    document.skeleton_rig.targets.clear();
+    document.keys = Default::default();
+    document.timeline = ik_arm::document::Timeline { start: 0.5, end: 4.5, frame_rate: 24.0 };
+    let joints = document.skeleton().joints().len();
+    for joint in (0..joints).map(JointId::new) {
+        let unlimited = document.skeleton_mut().change(joint, |joint| joint.limits = [None; 3]);
+        unlimited.expect("limits may go");
+        let offset = document.skeleton()[joint].offset;
+        let channels = [Channel::Rotation(joint), Channel::Offset(joint)];
+        for (channel, kinds) in channels.into_iter().zip(kinds) {
+            if random.chance(0.4) {
+                continue;
+            }
+            let mut frame = random.below(30);
+            for _ in 0..2 + random.below(5) {
+                let time = document.timeline.time(frame);
+                let value = match channel {
+                    Channel::Rotation(_) => random.vector(3.0),
+                    _ => offset + random.vector(0.2 * offset.length().max(0.1)),
+                };
+                let slope = |random: &mut Random| random.vector(1.0);
+                let slopes = random
+                    .chance(0.2)
+                    .then(|| Slopes { arriving: slope(random), leaving: slope(random) });
+                let interpolation = kinds[random.below(kinds.len())];
+                document.keys.insert_key(channel, Knot { time, value, interpolation, slopes });
+                frame += 1 + random.below(12);
+            }
+        }
+    }
+    document
+}
+
+/// The curves of an exported file.
+fn curves(glb: &Glb) -> Vec<Curve> {
+    let animation = &glb.json["animations"][0];
+    let channels = animation["channels"].as_array().into_iter().flatten();
+    let curve = |channel: &Value| {
+        let sampler = &animation["samplers"][index(&channel["sampler"])];
+        let kind = match sampler["interpolation"].as_str() {
+            Some("CUBICSPLINE") => "CUBICSPLINE",
+            Some("STEP") => "STEP",
+            _ => "LINEAR",
+        };
+        let rows = glb.rows(&sampler["output"]).into_iter();
+        let row = |row: Vec<f32>| std::array::from_fn(|at| row.get(at).copied().unwrap_or(0.0));
+        Curve {
+            node: index(&channel["target"]["node"]),
+            path: if channel["target"]["path"] == "rotation" { "rotation" } else { "translation" },
+            kind,
+            times: glb.rows(&sampler["input"]).into_iter().map(|row| row[0]).collect(),
+            rows: rows.map(row).collect(),
+        }
+    };
+    channels.map(curve).collect()
+}
+
+const CURVES: [Interpolation; 4] =
+    [Interpolation::Auto, Interpolation::Smooth, Interpolation::Linear, Interpolation::Slerp];
+
+#[test]
+fn curves_of_keys_are_cubic_splines_of_the_file_and_its_joints_are_where_the_documents_are() {
+    let mut random = Random(41);
+    for case in 0..12 {
+        let before = keyed(&mut random, [&CURVES, &CURVES[..3]]);
+        let (glb, skeleton) = (Glb::new(&glb(&before)), before.skeleton());
+        let curves = curves(&glb);
+        assert!(curves.iter().filter(|curve| curve.kind == "CUBICSPLINE").count() > 10);
+        let parent =
+            |node: usize| (0..glb.nodes().len()).find(|it| glb.children(*it).contains(&node));
+        let between = (0..60).map(|_| f64::from(random.within(0.5..4.5)));
+        for time in between.collect::<Vec<_>>() {
+            let evaluated = before.evaluate(time);
+            let pose = evaluated.skeleton().pose();
+            let world = |mut node: usize| {
+                let mut world = DAffine3::IDENTITY;
+                loop {
+                    let of = |path| curves.iter().find(|it| it.node == node && it.path == path);
+                    let (_, turn, at) = glb.local(node).to_scale_rotation_translation();
+                    let at = of("translation").map_or(at.as_dvec3(), |it| it.at(time).truncate());
+                    let turn =
+                        of("rotation").map_or(turn.as_dquat(), |it| DQuat::from_vec4(it.at(time)));
+                    world = DAffine3::from_rotation_translation(turn.normalize(), at) * world;
+                    match parent(node) {
+                        Some(above) => node = above,
+                        None => break world,
+                    }
+                }
+            };
+            for joint in skeleton.ids() {
+                let found = world(glb.node(&skeleton[joint].name));
+                let was = pose.base(joint).as_dvec3() * f64::from(before.metres_per_unit());
+                // Each joint above turns by at most 1e-4 too far, about 2 m away.
+                let far = found.translation.distance(was);
+                assert!(far < 6e-4, "case {case}, {} at {time}: {far:e}", skeleton[joint].name);
+            }
+        }
+    }
+}
+
+#[test]
+fn offsets_are_the_cubic_splines_of_the_file_exactly_and_angles_to_a_ten_thousandth() {
+    let mut random = Random(43);
+    for _ in 0..12 {
+        let document = keyed(&mut random, [&CURVES[..2], &CURVES[..2]]);
+        let glb = Glb::new(&glb(&document));
+        let skeleton = document.skeleton();
+        let metres = f64::from(document.metres_per_unit());
+        for curve in curves(&glb) {
+            let joint = skeleton.find(glb.name(curve.node)).expect("a joint");
+            let bind = glb.local(curve.node).to_scale_rotation_translation();
+            let channel = match curve.path {
+                "rotation" => Channel::Rotation(joint),
+                _ => Channel::Offset(joint),
+            };
+            // Rounding turns some joints without keys.
+            let Some(track) = document.keys.track(channel) else { continue };
+            assert_eq!(curve.kind, "CUBICSPLINE", "{channel:?}");
+            let start = track.knots()[0].value;
+            for _ in 0..40 {
+                let time = f64::from(random.within(0.5..4.5));
+                let value = document.keys.value(channel, time).expect("keyed").as_dvec3();
+                if curve.path == "translation" {
+                    // A rotation keeps lengths; the first row is the first key.
+                    let moved = (curve.at(time) - curve.at(0.0)).truncate().length();
+                    let expected = (value - start.as_dvec3()).length() * metres;
+                    assert!((moved - expected).abs() < 2e-6, "{channel:?} at {time}");
+                    continue;
+                }
+                // The angle of a rotation is the same in every frame.
+                let found = DQuat::from_vec4(curve.at(time)).normalize();
+                let turned = bind.1.as_dquat().normalize().inverse() * found;
+                let angle = 2.0 * turned.xyz().length().atan2(turned.w.abs());
+                let turn = DQuat::from_rotation_z(value.z)
+                    * DQuat::from_rotation_y(value.y)
+                    * DQuat::from_rotation_x(value.x);
+                let expected = 2.0 * turn.xyz().length().atan2(turn.w.abs());
+                assert!((angle - expected).abs() < 1e-4, "{channel:?} at {time}: {angle}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_names_of_curves_and_the_keys_return_from_the_programs_own_files() {
+    let mut random = Random(47);
+    let mut angles = 0;
+    for case in 0..12 {
+        let before = keyed(&mut random, [&CURVES, &CURVES[..3]]);
+        let opened = io::read("x.glb", &glb(&before)[..], &io::OpenOptions::default());
+        let after = opened.unwrap_or_else(|error| panic!("{error}")).document;
+        assert_eq!(after.timeline.frame_rate, before.timeline.frame_rate);
+        for (channel, track) in before.keys.tracks() {
+            let name = &before.skeleton()[channel.joint().expect("a joint's")].name;
+            let joint = after.skeleton().find(name).expect("a joint");
+            let (is_angle, other) = match channel {
+                Channel::Rotation(_) => (true, Channel::Rotation(joint)),
+                _ => (false, Channel::Offset(joint)),
+            };
+            // Slerps and lines alone are those of glTF.
+            let kinds = |knots: &[Knot<Vec3>]| -> Vec<_> {
+                knots.iter().map(|knot| knot.interpolation).collect()
+            };
+            let (_, inner) = track.knots().split_last().expect("keys");
+            let is_plain = inner.iter().all(|it| !it.interpolation.is_cubic())
+                && inner.windows(2).all(|pair| pair[0].interpolation == pair[1].interpolation);
+            if is_plain {
+                continue;
+            }
+            let found = after.keys.track(other).unwrap_or_else(|| panic!("{case} {channel:?}"));
+            assert_eq!(kinds(found.knots()), kinds(track.knots()), "case {case}, {channel:?}");
+            for (is, was) in found.knots().iter().zip(track.knots()) {
+                assert!((is.time - was.time).abs() < 1e-6);
+                assert_eq!(is.slopes.is_some(), was.slopes.is_some());
+                if is_angle {
+                    assert_eq!((is.value, is.slopes), (was.value, was.slopes), "unwrapped");
+                    angles += 1;
+                }
+            }
+        }
+    }
+    assert!(angles > 300, "{angles}");
+}
+
+#[test]
+fn keys_beside_a_curve_that_was_changed_since_are_not_taken() {
+    let mut random = Random(53);
+    let before = keyed(&mut random, [&CURVES[..1], &CURVES[..1]]);
+    let mut changed = before.clone();
+    for (channel, track) in before.keys.tracks() {
+        let moved = track.knots().iter().map(|knot| Knot { value: knot.value + 0.1, ..*knot });
+        moved.for_each(|knot| changed.keys.insert_key(channel, knot));
+    }
+    let [mut bytes, other] = [glb(&before), glb(&changed)];
+    // The JSON with the keys of one file, the binary curves of the other.
+    let length = |bytes: &[u8]| u32::from_le_bytes(bytes[12..16].try_into().expect("4")) as usize;
+    let (own, theirs) = (20 + length(&bytes), 20 + length(&other));
+    bytes.truncate(own);
+    bytes.extend(&other[theirs..]);
+    let total = (bytes.len() as u32).to_le_bytes();
+    bytes[8..12].copy_from_slice(&total);
+    let Ok(opened) = io::read("x.glb", &bytes[..], &io::OpenOptions::default()) else {
+        panic!("the file opens")
+    };
+    let mut kept = 0;
+    for (_, track) in opened.document.keys.tracks() {
+        kept += track.knots().iter().filter(|it| it.interpolation == Interpolation::Auto).count();
+    }
+    assert_eq!(kept, 0);
 }

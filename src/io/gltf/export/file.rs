@@ -13,6 +13,7 @@ use ::gltf::json::{
     Texture, buffer, texture,
 };
 use glam::{DAffine3, DMat4};
+use serde_json::value::to_raw_value;
 
 use super::error::GlbError;
 use super::joint_track::JointTrack;
@@ -21,6 +22,7 @@ use super::motion::JointAnimation;
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
 use crate::io::gltf::colour::linear;
+use crate::io::gltf::extras::{AnimationExtras, NodeExtras, SamplerExtras};
 use crate::io::gltf::generator;
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
@@ -34,12 +36,15 @@ pub fn write(
     let mut writer = GltfWriter::default();
     writer.root.asset = Asset { generator: Some(generator::this_program()), ..Asset::default() };
     let [armature, mesh_node] = add_nodes(&mut writer, bones);
+    for (node, frame) in &motion.frames {
+        writer.root.nodes[*node].extras = Some(to_raw_value(&NodeExtras::new(*frame))?);
+    }
     let skin = add_skin(&mut writer, bones, &mesh.attached, armature);
     let mesh = add_mesh(&mut writer, mesh);
     if let Some(node) = writer.root.nodes.get_mut(mesh_node.value()) {
         (node.mesh, node.skin) = (Some(mesh), Some(skin));
     }
-    add_animation(&mut writer, motion, name);
+    add_animation(&mut writer, motion, name)?;
     writer.root.scenes = vec![Scene {
         name: None,
         nodes: vec![armature, mesh_node],
@@ -228,9 +233,13 @@ fn add_skin(
 }
 
 /// Adds the animation, unless it is empty.
-fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation, name: Option<&str>) {
+fn add_animation(
+    writer: &mut GltfWriter,
+    motion: &JointAnimation,
+    name: Option<&str>,
+) -> Result<(), GlbError> {
     if motion.is_empty() {
-        return;
+        return Ok(());
     }
     let lists = TimeLists::new(writer, motion);
     let start = writer.bytes.len();
@@ -240,17 +249,18 @@ fn add_animation(writer: &mut GltfWriter, motion: &JointAnimation, name: Option<
         samplers: Vec::new(),
         name: name.map(str::to_owned),
         extensions: None,
-        extras: Extras::default(),
+        extras: Some(to_raw_value(&AnimationExtras::new(motion.timeline))?),
     };
     let mut tracks = AnimationWriter { writer, animation: &mut animation, lists, view, start };
     for track in &motion.rotations {
-        tracks.add(track, Property::Rotation, AccessorKind::QUATERNION);
+        tracks.add(track, Property::Rotation, AccessorKind::QUATERNION)?;
     }
     for track in &motion.translations {
-        tracks.add(track, Property::Translation, AccessorKind::POINT);
+        tracks.add(track, Property::Translation, AccessorKind::POINT)?;
     }
     writer.view(start, None);
     writer.root.push(animation);
+    Ok(())
 }
 
 /// The accessors of the times of keys. Tracks with the same times share one.
@@ -290,7 +300,12 @@ struct AnimationWriter<'a> {
 }
 
 impl AnimationWriter<'_> {
-    fn add<const N: usize>(&mut self, track: &JointTrack<N>, path: Property, kind: AccessorKind) {
+    fn add<const N: usize>(
+        &mut self,
+        track: &JointTrack<N>,
+        path: Property,
+        kind: AccessorKind,
+    ) -> Result<(), GlbError> {
         let offset = self.writer.bytes.len() - self.start;
         self.writer.bytes.extend(floats(&track.values));
         let output = self.writer.accessor(self.view, offset, track.values.len(), kind);
@@ -301,7 +316,10 @@ impl AnimationWriter<'_> {
                 output,
                 interpolation: Valid(track.curve),
                 extensions: None,
-                extras: Extras::default(),
+                extras: match track.keys.is_empty() {
+                    true => None,
+                    false => Some(to_raw_value(&SamplerExtras::new(&track.keys))?),
+                },
             },
         );
         let target = Target {
@@ -316,5 +334,6 @@ impl AnimationWriter<'_> {
             extensions: None,
             extras: Extras::default(),
         });
+        Ok(())
     }
 }

@@ -8,6 +8,7 @@ mod limbs;
 mod mesh_part;
 mod motion;
 mod nodes;
+mod quaternion_spline;
 mod rig;
 mod skin_mesh;
 mod track_recorder;

@@ -3,7 +3,7 @@ use std::rc::Rc;
 use glam::DQuat;
 
 use super::error::GlbError;
-use super::joint_track::{JointTrack, same_side};
+use super::joint_track::{ClipTimes, JointTrack, same_side};
 use super::kept_tracks::KeptTracks;
 use super::nodes::JointNodes;
 use super::rig::GltfRig;
@@ -18,6 +18,9 @@ pub struct JointAnimation {
     pub rotations: Vec<JointTrack<4>>,
     /// Translations relative to the parents, in metres.
     pub translations: Vec<JointTrack<3>>,
+    /// Nodes with the frames of their joints' angles, relative to the nodes.
+    pub frames: Vec<(usize, DQuat)>,
+    pub timeline: Timeline,
 }
 
 impl JointAnimation {
@@ -36,10 +39,11 @@ impl JointAnimation {
         if frames > GlbError::MAX_FRAMES {
             return Err(too_long());
         }
-        let first = first_time(timeline);
-        let in_file = |time: f64| (first + (time - timeline.start)).max(0.0) as f32;
+        let clip = ClipTimes::new(timeline);
+        let in_file = |time: f64| clip.of(time) as f32;
         let times = Rc::new((0..frames).map(|frame| in_file(timeline.time(frame))).collect());
-        let mut recorder = TrackRecorder::new(kept, joints, &times, in_file);
+        let KeptTracks { rotations, translations, turns, frames: angle_frames } = kept;
+        let mut recorder = TrackRecorder::new(rotations, translations, joints, &times, in_file);
         let moments = recorder.moments((0..frames).map(|frame| timeline.time(frame)));
         let count = moments.len();
         if count.saturating_mul(joints) > GlbError::MAX_SAMPLES {
@@ -57,20 +61,16 @@ impl JointAnimation {
             recorder.record(time, is_frame, &locals);
         }
         let (mut rotations, mut translations) = recorder.tracks();
+        for turn in turns {
+            let node = turn.node;
+            rotations[node] = turn;
+        }
         rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
         translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
-        Ok(Self { rotations, translations })
+        Ok(Self { rotations, translations, frames: angle_frames, timeline })
     }
 
     pub fn is_empty(&self) -> bool {
         self.rotations.is_empty() && self.translations.is_empty()
     }
-}
-
-/// Time of the first frame in the file: that of the document, unless it is below 0, which glTF does
-/// not allow, or so late that single precision cannot tell the frames apart.
-fn first_time(timeline: Timeline) -> f64 {
-    let rounding = timeline.end * f64::from(f32::EPSILON);
-    let is_exact = timeline.start >= 0.0 && rounding < 0.1 / timeline.frame_rate;
-    if is_exact { timeline.start } else { 0.0 }
 }

@@ -3,7 +3,7 @@ use std::rc::Rc;
 use ::gltf::json::animation::Interpolation as Curve;
 
 use super::joint_track::JointTrack;
-use super::kept_tracks::{KeptTrack, KeptTracks};
+use super::kept_tracks::KeptTrack;
 use super::nodes::RigidTransform;
 
 /// A time at which the rig is posed.
@@ -30,14 +30,15 @@ impl TrackRecorder {
     /// A recorder of `nodes` nodes. `times` has the times of the frames in the file, and `in_file` turns a
     /// time of the document into one of the file.
     pub fn new(
-        kept: KeptTracks,
+        rotations: Vec<KeptTrack>,
+        translations: Vec<KeptTrack>,
         nodes: usize,
         times: &Rc<Vec<f32>>,
         in_file: impl Fn(f64) -> f32,
     ) -> Self {
         Self {
-            rotations: records(kept.rotations, nodes, times, &in_file),
-            translations: records(kept.translations, nodes, times, &in_file),
+            rotations: records(rotations, nodes, times, &in_file),
+            translations: records(translations, nodes, times, &in_file),
         }
     }
 
@@ -80,15 +81,22 @@ fn records<const N: usize>(
     in_file: impl Fn(f64) -> f32,
 ) -> Vec<NodeRecord<N>> {
     let at_frames = |node| NodeRecord {
-        track: JointTrack { node, times: times.clone(), curve: Curve::Linear, values: Vec::new() },
+        track: JointTrack {
+            node,
+            times: times.clone(),
+            curve: Curve::Linear,
+            values: Vec::new(),
+            keys: Vec::new(),
+        },
         kept: None,
         keys: 0,
     };
     let mut records: Vec<NodeRecord<N>> = (0..nodes).map(at_frames).collect();
-    for kept in kept {
+    for mut kept in kept {
         let record = &mut records[kept.node];
         record.track.times = Rc::new(kept.times.iter().map(|time| in_file(*time)).collect());
         record.track.curve = kept.curve;
+        record.track.keys = std::mem::take(&mut kept.keys);
         record.kept = Some(kept);
     }
     records

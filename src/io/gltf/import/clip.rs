@@ -9,9 +9,14 @@ use crate::io::json_path::JsonPath;
 const FALLBACK_RATE: f64 = 60.0;
 
 /// Returns the timeline from the first key to the last. Its frame rate is the one that
-/// [`frame_rate::of_times`] finds with as little tolerance as possible, or else [`FALLBACK_RATE`].
-/// Returns `None` if all keys are at the same time. `at` is the path of the animation.
-pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timeline>, FieldError> {
+/// [`frame_rate::of_times`] finds with as little tolerance as possible, or else [`FALLBACK_RATE`];
+/// `own_rate`, if the file tells it. Returns `None` if all keys are at the same time. `at` is the path of
+/// the animation.
+pub fn timeline(
+    tracks: &NodeTracks<'_>,
+    own_rate: Option<f64>,
+    at: &JsonPath,
+) -> Result<Option<Timeline>, FieldError> {
     let Some((start, end)) = time_range(tracks) else { return Ok(None) };
     if start == end {
         return Ok(None);
@@ -20,7 +25,7 @@ pub fn timeline(tracks: &NodeTracks<'_>, at: &JsonPath) -> Result<Option<Timelin
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     let rounded = |time: f64| ((time + start) * f64::from(f32::EPSILON)).max(1e-7);
-    let found = frame_rate::of_times(&times, rounded);
+    let found = own_rate.or_else(|| frame_rate::of_times(&times, rounded));
     let found = found.or_else(|| frame_rate::of_times(&times, |_| 2e-6));
     let found = found.or_else(|| frame_rate::of_times(&times, |time| tolerance(time + start)));
     let frame_rate = found.unwrap_or(FALLBACK_RATE);

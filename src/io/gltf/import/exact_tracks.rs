@@ -13,12 +13,16 @@
 //! Slerp commutes with constant factors, and W is affine. So every key of the node becomes a key of
 //! the joint with the same interpolation. Only the quaternion splines of rotations are no splines of
 //! angles: they get keys in between, until the angles are as exact as f32.
+//!
+//! Files of this program have the keys of cubic splines beside them, see [`extras`](crate::io::gltf::extras).
+//! They are taken if their curve is that of the file.
 
 use core::cell::Cell;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::clip;
+use super::file::GltfFile;
 use super::joint_tracks::JointTracks;
 use super::node_poser::JointPlacement;
 use super::nodes::{NodeTransform, NodeTree};
@@ -26,9 +30,9 @@ use super::part::AnimatedPart;
 use super::sampler::{self, KeySampler};
 use super::skins::SkinJoints;
 use super::tracks::NodeTracks;
-use crate::document::Timeline;
+use crate::document::{Channel, Keys, Timeline};
 use crate::io::gltf::frame::frame;
-use crate::kinematics::skeleton::exact_angles;
+use crate::kinematics::skeleton::{JointId, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
 /// Maximum number of pieces of curves that are tried in one file.
@@ -42,6 +46,8 @@ pub struct ExactTracks<'a> {
     bind_pose: &'a [JointPlacement],
     /// The timeline whose frames have the keys, as far as they are there; `None` if nothing moves.
     timeline: Option<Timeline>,
+    /// The file, if this program has written it.
+    own: Option<&'a GltfFile>,
     worlds: Vec<DAffine3>,
     /// For each node, whether it and all nodes above it scale evenly and constantly.
     is_even: Vec<bool>,
@@ -56,6 +62,7 @@ impl<'a> ExactTracks<'a> {
         tracks: &'a NodeTracks<'a>,
         bind_pose: &'a [JointPlacement],
         timeline: Option<Timeline>,
+        own: Option<&'a GltfFile>,
     ) -> Self {
         let mut is_even = vec![false; nodes.parents.len()];
         for &node in &nodes.order {
@@ -70,6 +77,7 @@ impl<'a> ExactTracks<'a> {
             tracks,
             bind_pose,
             timeline,
+            own,
             worlds: nodes.worlds(),
             is_even,
             left: Cell::new(MOST_PIECES),
@@ -84,10 +92,65 @@ impl<'a> ExactTracks<'a> {
         if scales || above.is_some_and(|above| !self.is_even[above]) {
             return None;
         }
+        let (rotation, frame) = match self.own_rotation(node) {
+            Some((keys, frame)) => (keys, Some(frame.as_mat3())),
+            None => (self.rotation(node), None),
+        };
+        let offset = self.offset(joint, node);
+        let offset = self.own_offset(node, &offset).unwrap_or(offset);
         Some(JointTracks {
-            rotation: self.on_frames(&self.rotation(node)),
-            offset: self.on_frames(&self.offset(joint, node)),
+            rotation: self.on_frames(&rotation),
+            offset: self.on_frames(&offset),
+            frame,
         })
+    }
+
+    /// The keys of angles that this program has written beside a rotation, and the frame of the angles
+    /// relative to the node; `None` without them, or if the file's curve is another one.
+    fn own_rotation(&self, node: usize) -> Option<(Spline<Vec3>, DMat3)> {
+        /// Largest difference in radians, twice that of the export.
+        const NEAR: f64 = 1e-4;
+        let frame = self.own?.nodes.0.get(node)?.extras.as_ref()?.own()?.frame()?;
+        let keys = self.tracks.own_keys(node, AnimatedPart::Rotation)?;
+        let sampler = self.tracks.track(node, AnimatedPart::Rotation)?;
+        if sampler.interpolation() != sampler::Interpolation::CubicSpline {
+            return None;
+        }
+        let NodeTransform::TransformParts(parts) = self.nodes.locals[node] else { return None };
+        let bind = parts.rotation.inverse();
+        let channel = Channel::Rotation(JointId::default());
+        let mut evaluated = Keys::default();
+        evaluated.set_track(channel, keys.clone());
+        let is_near = |time: f64, rotation: DQuat| {
+            let angles = evaluated.value(channel, time).unwrap_or_default().as_dvec3();
+            let own = frame * DQuat::from_mat3(&exact_angles::matrix(angles)) * frame.inverse();
+            let turn = own.inverse() * (bind * rotation);
+            2.0 * turn.xyz().length() < NEAR
+        };
+        let times = (0..sampler.len()).map(|key| (sampler.time(key), sampler.key_rotation(key)));
+        let between = (1..sampler.len()).map(|key| {
+            let middle = 0.5 * (sampler.time(key - 1) + sampler.time(key));
+            (middle, sampler.spline_rotation(key - 1, 0.5))
+        });
+        let is_same = times.chain(between).all(|(time, rotation)| is_near(time, rotation));
+        is_same.then(|| (keys, DMat3::from_quat(frame)))
+    }
+
+    /// The keys of an offset that this program has written beside a translation; `None` without them, or if
+    /// the curve of the file, `read`, is another one.
+    fn own_offset(&self, node: usize, read: &Spline<Vec3>) -> Option<Spline<Vec3>> {
+        /// Largest difference of single-precision numbers from each other, relative to the largest.
+        const NEAR: f32 = 1e-5;
+        self.own?;
+        let keys = self.tracks.own_keys(node, AnimatedPart::Translation)?;
+        let largest = |track: &Spline<Vec3>| {
+            track.knots().iter().map(|knot| knot.value.abs().max_element()).fold(0.0, f32::max)
+        };
+        let near = NEAR * largest(&keys).max(largest(read));
+        let middles = read.knots().windows(2).map(|pair| 0.5 * (pair[0].time + pair[1].time));
+        let times = read.knots().iter().map(|knot| knot.time).chain(middles);
+        let is_near = |time: f64| Some(keys.at(time)?.distance(read.at(time)?) <= near);
+        times.map(is_near).all(|it| it == Some(true)).then_some(keys)
     }
 
     /// The track with its keys at the frames that they mean, because files have times in single

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
 use crate::io::field_error::FieldError;
+use crate::io::gltf::extras::{AnimationExtras, NodeExtras, ReadExtras, SamplerExtras};
 use crate::io::gltf::generator::is_this_program;
 use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
@@ -96,6 +97,7 @@ pub struct GltfNode {
     pub mesh: Option<Whole>,
     pub camera: Option<Whole>,
     pub skin: Option<Whole>,
+    pub extras: Option<ReadExtras<NodeExtras>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -177,6 +179,7 @@ pub struct GltfAnimation {
     pub name: Option<String>,
     pub channels: List<GltfChannel>,
     pub samplers: List<GltfSampler>,
+    pub extras: Option<ReadExtras<AnimationExtras>>,
 }
 
 #[derive(Deserialize)]
@@ -196,6 +199,7 @@ pub struct GltfSampler {
     pub input: Whole,
     pub output: Whole,
     pub interpolation: Option<String>,
+    pub extras: Option<ReadExtras<SamplerExtras>>,
 }
 
 #[derive(Deserialize)]

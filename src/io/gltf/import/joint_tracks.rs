@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use crate::kinematics::spline::{Knot, Spline};
 
@@ -8,6 +8,8 @@ pub struct JointTracks {
     /// Angles about x, y and z in radians.
     pub rotation: Spline<Vec3>,
     pub offset: Spline<Vec3>,
+    /// The frame of the angles relative to the node; `None` for the node's axes.
+    pub frame: Option<Mat3>,
 }
 
 /// Changes below this count as rounding errors: in radians for an angle, relative to its length for

@@ -27,6 +27,7 @@ use crate::io::error::OpenError;
 use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::file_animation::FileAnimation;
 use crate::io::foreign::ForeignFormat;
+use crate::io::gltf::extras::ReadExtras;
 use crate::io::json_path::JsonPath;
 use crate::io::open_options::OpenOptions;
 use crate::io::opened::Opened;
@@ -229,8 +230,12 @@ impl GltfImport<'_> {
         let Some((start, _)) = clip::time_range(&tracks) else {
             return Ok((Vec::new(), None));
         };
-        let timeline = clip::timeline(&tracks, &at)?;
-        let exact = ExactTracks::new(self.nodes, self.joints, &tracks, bind_pose, timeline);
+        let is_own = self.file.asset.0.is_of_this_program();
+        let extras = animation.extras.as_ref().and_then(ReadExtras::own).filter(|_| is_own);
+        let own_rate = extras.and_then(|extras| extras.frame_rate());
+        let timeline = clip::timeline(&tracks, own_rate, &at)?;
+        let own = is_own.then_some(self.file);
+        let exact = ExactTracks::new(self.nodes, self.joints, &tracks, bind_pose, timeline, own);
         let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
         if exact.iter().all(Option::is_some) {
             return Ok((exact.into_iter().flatten().collect(), timeline));

@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 use super::file::{GltfFile, GltfNode};
 use super::joint_tracks::JointTracks;
@@ -113,6 +113,9 @@ pub fn build(
     let bones = bones(&joints, &are_tips, &moves, ends);
     bones::give_bones(&mut joints, &bones);
     bones::connect(&mut joints, &bones, |joint| moves[joint]);
+    for (joint, motion) in joints.iter_mut().zip(motions) {
+        joint.frame *= motion.frame.unwrap_or(Mat3::IDENTITY);
+    }
     let mut kept = Vec::with_capacity(joints.len());
     let mut next = 0;
     for is_tip in &are_tips {

@@ -1,5 +1,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use glam::Vec3;
+
 use super::buffers::GltfBuffers;
 use super::file::{GltfAnimation, GltfChannel, GltfFile, index_rule};
 use super::nodes::{NodeTransform, NodeTree, TransformParts, at_node};
@@ -7,9 +9,11 @@ use super::part::AnimatedPart;
 use super::rows::at_accessor;
 use super::sampler::{Interpolation, KeySampler};
 use crate::io::field_error::{FieldError, FieldWarnings};
+use crate::io::gltf::extras::{ReadExtras, SamplerExtras};
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
+use crate::kinematics::spline::Spline;
 
 /// The animated values of all nodes.
 pub struct NodeTracks<'a> {
@@ -22,6 +26,7 @@ struct NodeTrack<'a> {
     node: usize,
     part: AnimatedPart,
     sampler: KeySampler<'a>,
+    own: Option<&'a SamplerExtras>,
 }
 
 /// An animation channel that moves a joint or an ancestor of a joint. `input` and `output` are the
@@ -32,12 +37,14 @@ pub struct UsedChannel<'a> {
     interpolation: Interpolation,
     input: usize,
     output: usize,
+    /// The keys that this program has written beside the sampler.
+    own: Option<&'a SamplerExtras>,
     at: &'a JsonPath,
 }
 
 /// Returns those channels of an animation that move a node for which `is_needed` is true.
 pub fn used_channels<'a>(
-    animation: &GltfAnimation,
+    animation: &'a GltfAnimation,
     at: &'a JsonPath,
     nodes: &NodeTree,
     is_needed: &[bool],
@@ -74,7 +81,8 @@ pub fn used_channels<'a>(
             FieldError::new(at_sampler().key("interpolation"), reason)
         })?;
         let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
-        all.push(UsedChannel { node, part, interpolation, input, output, at });
+        let own = sampler.extras.as_ref().and_then(ReadExtras::own);
+        all.push(UsedChannel { node, part, interpolation, input, output, own, at });
     }
     Ok(all)
 }
@@ -111,7 +119,7 @@ impl<'a> NodeTracks<'a> {
     pub fn new(
         file: &GltfFile,
         buffers: &'a GltfBuffers<'_>,
-        channels: &[UsedChannel<'_>],
+        channels: &[UsedChannel<'a>],
         warnings: &mut FieldWarnings,
     ) -> Result<Self, FieldError> {
         /// Maximum number of keys in all channels together. Bounds the time, because many channels
@@ -120,7 +128,7 @@ impl<'a> NodeTracks<'a> {
         let mut tracks = Vec::with_capacity(channels.len());
         let mut keys = 0_usize;
         let mut unsorted: Option<usize> = None;
-        for UsedChannel { node, part, interpolation, input, output, at } in channels {
+        for UsedChannel { node, part, interpolation, input, output, own, at } in channels {
             let (node, part, accessors) = (*node, *part, [*input, *output]);
             let sampler = KeySampler::new(file, buffers, accessors, part, *interpolation)?;
             keys = keys.saturating_add(sampler.len());
@@ -128,7 +136,7 @@ impl<'a> NodeTracks<'a> {
                 let reason = format!("must have at most {MOST_KEYS} keys");
                 return Err(FieldError::new((*at).clone(), reason));
             }
-            tracks.push(NodeTrack { node, part, sampler });
+            tracks.push(NodeTrack { node, part, sampler, own: *own });
         }
         for (track, UsedChannel { input, output, .. }) in tracks.iter_mut().zip(channels) {
             if track.sampler.sort(*input)? {
@@ -151,6 +159,11 @@ impl<'a> NodeTracks<'a> {
         Some(&self.tracks[*self.places.get(&(node, part))?].sampler)
     }
 
+    /// The keys that this program has written beside a track; `None` if there are none.
+    pub fn own_keys(&self, node: usize, part: AnimatedPart) -> Option<Spline<Vec3>> {
+        self.tracks[*self.places.get(&(node, part))?].own?.spline()
+    }
+
     /// The nodes that some track moves, unsorted and with repetitions.
     pub fn moving(&self) -> impl Iterator<Item = usize> + '_ {
         self.tracks.iter().filter(|track| track.sampler.varies()).map(|track| track.node)
@@ -165,7 +178,7 @@ impl<'a> NodeTracks<'a> {
 
     /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.
     pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
-        for NodeTrack { node, part, sampler } in &self.tracks {
+        for NodeTrack { node, part, sampler, .. } in &self.tracks {
             if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(*node) {
                 let TransformParts { translation, rotation, scale } = parts;
                 match part {
