@@ -8,13 +8,26 @@ use crate::session::Session;
 /// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of the
 /// joint that the target is named after.
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
-    let of_joint = |joint: JointId, what: &str| {
-        let rig = session.skeleton_rig();
-        let target = channel.target().and_then(|joint| rig.target(joint));
-        let end = target.map_or(joint, |index| rig.end_of(&rig.targets[index]));
-        let name = rig.skeleton.joint(end).map_or("–", |joint| &joint.name);
-        format!("{name} · {what}")
-    };
+    let name = channel_of_joint(session, channel);
+    match joint_of_channel(session, channel) {
+        Some(joint) => {
+            let joint = session.skeleton_rig().skeleton.joint(joint);
+            format!("{} · {name}", joint.map_or("–", |joint| &joint.name))
+        }
+        None => name,
+    }
+}
+
+/// The joint that the name of a channel begins with; `None` if it belongs to no joint.
+pub(in crate::ui) fn joint_of_channel(session: &Session, channel: Channel) -> Option<JointId> {
+    let rig = session.skeleton_rig();
+    let target = channel.target().and_then(|joint| rig.target(joint));
+    let end = target.map(|index| rig.end_of(&rig.targets[index]));
+    end.or(channel.joint())
+}
+
+/// Name of a channel beside that of its joint, such as "rotation".
+pub(in crate::ui) fn channel_of_joint(session: &Session, channel: Channel) -> String {
     match channel {
         Channel::Hand => "Hand".to_owned(),
         Channel::Twist => "Socket twist".to_owned(),
@@ -30,14 +43,14 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         Channel::Upper => "Upper length".to_owned(),
         Channel::Lower => "Lower length".to_owned(),
         Channel::Translation => "Skeleton translation".to_owned(),
-        Channel::Rotation(joint) => of_joint(joint, "rotation"),
-        Channel::Offset(joint) => of_joint(joint, "offset"),
-        Channel::Target(joint) => of_joint(joint, "target"),
-        Channel::TargetInfluence(joint) => of_joint(joint, "target influence"),
-        Channel::TargetOrientation(joint) => of_joint(joint, "target orientation"),
-        Channel::TargetTwist(joint) => of_joint(joint, "target twist"),
-        Channel::TargetPole(joint) => of_joint(joint, "target pole"),
-        Channel::Enabled(joint) => of_joint(joint, "target enabled"),
+        Channel::Rotation(_) => "rotation".to_owned(),
+        Channel::Offset(_) => "offset".to_owned(),
+        Channel::Target(_) => "target".to_owned(),
+        Channel::TargetInfluence(_) => "target influence".to_owned(),
+        Channel::TargetOrientation(_) => "target orientation".to_owned(),
+        Channel::TargetTwist(_) => "target twist".to_owned(),
+        Channel::TargetPole(_) => "target pole".to_owned(),
+        Channel::Enabled(_) => "target enabled".to_owned(),
         Channel::Overlay(shown) => {
             format!("{} shown", overlay(session.rig(), shown).0)
         }

@@ -243,3 +243,138 @@ fn switches_have_no_curve_to_choose() {
     bench.settle();
     assert!(bench.node(Role::Button, "Auto").accesskit_node().is_disabled());
 }
+
+/// A figure with keys of two joints' angles and of one offset, in the graph editor. Returns the names of the
+/// two joints.
+fn figure() -> (Bench, [String; 2]) {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([Action::from(EditAction::ShowRig(RigKind::Skeleton))]);
+    let [one, other] = [0, 1].map(JointId::new);
+    for time in [1.0, 3.0] {
+        bench.apply([
+            Action::from(PlaybackAction::SetTime(time)),
+            EditAction::Key(vec![
+                Channel::Rotation(one),
+                Channel::Rotation(other),
+                Channel::Offset(other),
+            ])
+            .into(),
+        ]);
+    }
+    bench.apply([
+        Action::from(ViewAction::ShowGraphEditor(true)),
+        SelectAction::Joints(Vec::new()).into(),
+        SelectAction::Channels(Vec::new()).into(),
+    ]);
+    let skeleton = &bench.session().skeleton_rig().skeleton;
+    let names = [one, other].map(|joint| skeleton[joint].name.clone());
+    (bench, names)
+}
+
+#[test]
+fn a_figure_shows_the_curves_of_the_selected_joints_and_of_all_without_a_selection() {
+    let (mut bench, [one, other]) = figure();
+    let all = format!("Curves of {one} · rotation, {other} · rotation, {other} · offset");
+    assert!(bench.shows(Role::Image, &all));
+    bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
+    let own = format!("Curves of {other} · rotation, {other} · offset");
+    assert!(bench.shows(Role::Image, &own));
+    assert!(!bench.shows(Role::Button, &format!("Curve of {one} · rotation")));
+    bench.apply([SelectAction::Joints(vec![JointId::new(2)])]);
+    assert!(bench.says(
+        "No curves of the selected joints. Press K to key them, or select no joint to see all"
+    ));
+}
+
+#[test]
+fn names_of_joints_and_channels_are_clicked_and_clicked_again() {
+    let (mut bench, [one, other]) = figure();
+    bench.click(Role::Button, &format!("Curves of joint {one}"));
+    assert_eq!(bench.session().selection(), [JointId::new(0)]);
+    assert!(bench.shows(Role::Image, &format!("Curves of {one} · rotation")));
+    bench.click(Role::Button, &format!("Curves of joint {one}"));
+    assert_eq!(bench.session().selection(), []);
+    bench.click(Role::Button, &format!("Curve of {other} · offset"));
+    assert!(bench.shows(Role::Image, &format!("Curves of {other} · offset")));
+    assert!(bench.shows(Role::Button, &format!("Curve of {one} · rotation")), "it stays listed");
+    bench.hold(Modifiers::SHIFT);
+    bench.click(Role::Button, &format!("Curve of {one} · rotation"));
+    bench.hold(Modifiers::NONE);
+    assert!(bench.shows(Role::Image, &format!("Curves of {one} · rotation, {other} · offset")));
+    for name in [format!("{one} · rotation"), format!("{other} · offset")] {
+        bench.hold(Modifiers::SHIFT);
+        bench.click(Role::Button, &format!("Curve of {name}"));
+        bench.hold(Modifiers::NONE);
+    }
+    assert!(bench.session().selected_channels().is_empty());
+}
+
+#[test]
+fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
+    let (mut bench, [_, other]) = figure();
+    let is_beside = |bench: &Bench, image: &str| {
+        let plot = bench.rect(Role::Image, image);
+        let degrees = bench.rect(Role::Label, "Axis in degrees (°)");
+        let metres = bench.rect(Role::Label, "Axis in metres (m)");
+        degrees.right() <= plot.left() + 0.5 && metres.left() >= plot.right() - 0.5
+    };
+    bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
+    let both = format!("Curves of {other} · rotation, {other} · offset");
+    assert!(is_beside(&bench, &both));
+    bench.apply([SelectAction::Channels(vec![Channel::Rotation(JointId::new(1))])]);
+    assert!(bench.shows(Role::Label, "Axis in degrees (°)"));
+    assert!(!bench.shows(Role::Label, "Axis in metres (m)"));
+    let mut arm = graph();
+    arm.apply([Action::from(EditAction::Key(vec![Channel::Hand]))]);
+    assert!(
+        arm.shows(Role::Label, "Axis in millimetres (mm)"),
+        "a unit of the arm is a millimetre"
+    );
+}
+
+/// Degrees by which the key at 3 s moves when it is dragged up by 20 points.
+fn raised(bench: &mut Bench) -> f32 {
+    let at = place(bench, 3.0, 60.0);
+    bench.drag_and_drop(LEFT, at, at - vec2(0.0, 20.0));
+    bench.settle();
+    let degrees = keys(bench)[1].value.x.to_degrees() - 60.0;
+    bench.apply([TransactionAction::Undo]);
+    degrees
+}
+
+#[test]
+fn ctrl_and_the_wheel_zoom_values_about_the_mouse_and_a_double_click_on_the_axis_shows_all() {
+    let mut bench = graph();
+    let before = raised(&mut bench);
+    let at = place(&bench, 3.0, 60.0);
+    bench.move_to(at);
+    bench.hold(Modifiers::COMMAND);
+    bench.wheel(2.0);
+    bench.hold(Modifiers::NONE);
+    bench.settle();
+    // The key under the mouse stays there.
+    let zoomed = raised(&mut bench);
+    assert!((zoomed - before / 1.44).abs() < 0.05 * before, "{zoomed}, {before} before");
+    let axis = bench.rect(Role::Label, "Axis in degrees (°)").center();
+    bench.double_click_at(axis);
+    bench.settle();
+    assert!((raised(&mut bench) - before).abs() < 0.01 * before);
+}
+
+#[test]
+fn the_wheel_alone_zooms_the_time_and_keeps_the_values() {
+    let mut bench = graph();
+    let before = raised(&mut bench);
+    bench.move_to(place(&bench, 3.0, 60.0));
+    bench.wheel(2.0);
+    bench.settle();
+    assert!((raised(&mut bench) - before).abs() < 0.02 * before);
+    // The key at 5 s is farther away from the one under the mouse.
+    let far =
+        place(&bench, 3.0, 60.0) + 1.44 * (place(&bench, 5.0, 60.0) - place(&bench, 3.0, 60.0));
+    let plot = bench.rect(Role::Image, "Curves of Socket twist");
+    let low = place(&bench, 5.0, 0.0).y;
+    assert!(plot.contains(pos2(far.x, low)), "on screen");
+    bench.click_at(pos2(far.x, low));
+    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 5.0)]);
+}

@@ -11,7 +11,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{
-    Action, EditAction, FileAction, PlaybackAction, TransactionAction, ViewAction,
+    Action, EditAction, FileAction, PlaybackAction, SelectAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
@@ -467,8 +467,10 @@ fn dragging_in_the_graph_editor_scrubs() {
     let mut bench = keyed();
     let (from, to) = (ruler_position(&bench, 1.5), ruler_position(&bench, 4.0));
     bench.click(Role::Button, "Graph editor");
+    // With one axis of values the times are where the dope sheet has them.
+    bench.apply([SelectAction::Channels(vec![Channel::Hand])]);
     assert!(bench.session().preferences().curves);
-    let middle = bench.rect(Role::Image, "Curves of Hand, Socket twist").center().y;
+    let middle = bench.rect(Role::Image, "Curves of Hand").center().y;
     bench.drag_and_drop(PointerButton::Primary, pos2(from.x, middle), pos2(to.x, middle));
     assert_eq!(bench.session().time(), 4.0);
     bench.click(Role::Button, "Graph editor");
@@ -536,4 +538,17 @@ fn ten_thousand_channels_scroll_quickly() {
     // In a build without optimisation.
     assert!(with < without + Duration::from_millis(400), "{with:?}, without it {without:?}");
     println!("{with:?}, without the timeline {without:?}");
+}
+
+#[test]
+fn zooming_out_ends_at_four_times_the_timeline() {
+    let mut bench = keyed();
+    let second = |bench: &Bench| key_of_hand(bench, 2.0).x - key_of_hand(bench, 1.0).x;
+    let before = second(&bench);
+    bench.move_to(ruler_position(&bench, 1.0));
+    for _ in 0..40 {
+        bench.wheel(-3.0);
+    }
+    bench.settle();
+    assert!((second(&bench) - 0.25 * before).abs() < 0.02 * before, "{}", second(&bench));
 }

@@ -6,6 +6,8 @@ use egui::{Rect, Response, Ui, pos2};
 pub(super) const NAMES: f32 = 180.0;
 /// Height of the ruler in points.
 pub(super) const RULER: f32 = 24.0;
+/// Width in points of an axis of values beside the curves.
+pub(super) const VALUES: f32 = 42.0;
 /// Height of a row in points.
 pub(super) const ROW: f32 = 20.0;
 
@@ -28,14 +30,16 @@ pub(super) struct TimelineAreas {
 }
 
 impl TimelineAreas {
-    pub fn new(whole: Rect) -> Self {
+    /// The areas in `whole`, with `beside` points free at the right of the keys.
+    pub fn new(whole: Rect, beside: f32) -> Self {
         let split = (whole.left() + NAMES).min(whole.right());
         let top = (whole.top() + RULER).min(whole.bottom());
+        let right = (whole.right() - beside).max(split);
         Self {
             whole,
             names: Rect::from_min_max(pos2(whole.left(), top), pos2(split, whole.bottom())),
-            ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(whole.right(), top)),
-            keys: Rect::from_min_max(pos2(split, top), whole.max),
+            ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(right, top)),
+            keys: Rect::from_min_max(pos2(split, top), pos2(right, whole.bottom())),
         }
     }
 }

@@ -1,6 +1,7 @@
 use egui::Color32;
 use egui_plot::LineStyle;
 
+use super::value_scale::ValueKind;
 use crate::document::Channel;
 
 /// The curve of one component of a channel.
@@ -8,8 +9,7 @@ pub(super) struct ChannelCurve {
     pub channel: Channel,
     /// Component of the channel's values: 0, 1 or 2.
     pub axis: usize,
-    /// Displayed values per value: degrees per radian for angles.
-    pub unit: f64,
+    pub kind: ValueKind,
     pub name: String,
     pub colour: Color32,
     pub style: LineStyle,

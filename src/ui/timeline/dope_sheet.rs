@@ -10,7 +10,7 @@ use super::areas::{ROW, TimelineAreas};
 use super::mouse::{self, DopeSheetView};
 use super::row::{DopeSheetRow, SelectedKeys, channels};
 use super::time_scale::TimeScale;
-use super::{context_menu, text};
+use super::{context_menu, row, text};
 use crate::document::Channel;
 use crate::session::{Actions, SelectAction, Session};
 use crate::ui::widgets::diamond;
@@ -139,19 +139,7 @@ impl DopeSheet<'_> {
         text::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();
-            let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            let mut channels = match several {
-                true => session.selected_channels().clone(),
-                false => Default::default(),
-            };
-            if !(several && channels.remove(&channel)) {
-                channels.insert(channel);
-            }
-            let alone = selected && session.selected_channels().len() == 1;
-            if alone && !several {
-                channels.clear();
-            }
-            actions.push(SelectAction::Channels(channels.into_iter().collect()));
+            actions.push(row::clicked(ui, session, channel));
         }
         context_menu::of_channel(&response, session, channel, actions);
         response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));

@@ -2,7 +2,8 @@
 
 use egui::{Id, Key, Pos2, Ui};
 
-use super::time_scale::TimeScale;
+use super::time_scale::{TimeScale, span};
+use super::value_scale::{ValueKind, ValueScales};
 use crate::document::Timeline;
 use crate::session::{Actions, Key as KeyOf, PlaybackAction, Session};
 
@@ -41,8 +42,7 @@ pub(in crate::ui) struct PointsDrag {
     pub keys: Vec<KeyOf>,
     /// Component of the values that is dragged: 0, 1 or 2.
     pub axis: usize,
-    /// Displayed values per value: degrees per radian for angles.
-    pub unit: f64,
+    pub kind: ValueKind,
     /// Time of the pressed key before the drag, in seconds.
     pub time: f64,
     pub pressed: Pos2,
@@ -50,8 +50,8 @@ pub(in crate::ui) struct PointsDrag {
     pub moved: bool,
     /// Keys to select if the press turns out to be a click.
     pub clicked: Vec<KeyOf>,
-    /// The displayed values at the top and the bottom of the plot, kept during the drag.
-    pub values: (f64, f64),
+    /// The scales of the plot, kept during the drag.
+    pub scales: ValueScales,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -59,14 +59,13 @@ pub(in crate::ui) struct TangentDrag {
     pub key: KeyOf,
     /// Component of the value: 0, 1 or 2.
     pub axis: usize,
-    /// Displayed values per value.
-    pub unit: f64,
+    pub kind: ValueKind,
     /// Whether the handle is on the side after the key.
     pub is_leaving: bool,
     /// True once the transaction is open.
     pub moved: bool,
-    /// The displayed values at the top and the bottom of the plot, kept during the drag.
-    pub values: (f64, f64),
+    /// The scales of the plot, kept during the drag.
+    pub scales: ValueScales,
 }
 
 #[derive(Clone, Debug)]
@@ -129,7 +128,7 @@ pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Act
 }
 
 /// The time under the mouse in seconds, snapped to frames unless Ctrl is held, and clamped to
-/// [`span`].
+/// the timeline and all keys.
 pub(in crate::ui) fn pointed_time(
     ui: &Ui,
     session: &Session,
@@ -144,16 +143,6 @@ pub(in crate::ui) fn pointed_time(
 /// The time in seconds, snapped to frames unless Ctrl is held.
 pub(in crate::ui) fn snapped(ui: &Ui, timeline: Timeline, time: f64) -> f64 {
     if ui.input(|input| input.modifiers.command) { time } else { timeline.snapped(time) }
-}
-
-/// Start and end, in seconds, of the range that contains the timeline and all keys.
-pub(in crate::ui) fn span(session: &Session) -> (f64, f64) {
-    let Timeline { start, end, .. } = session.document().timeline;
-    session.document().keys.tracks().fold((start, end), |(start, end), (_, track)| {
-        let knots = track.knots();
-        let first = knots.first().map_or(start, |knot| knot.time.min(start));
-        (first, knots.last().map_or(end, |knot| knot.time.max(end)))
-    })
 }
 
 fn id() -> Id {

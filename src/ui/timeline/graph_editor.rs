@@ -1,32 +1,29 @@
 //! The graph editor: keyed values over time.
 
-use egui::{
-    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
-};
-use egui::{Rangef, Vec2b, pos2, vec2};
-use egui_plot::{AxisHints, Line, LineStyle, PlotBounds, PlotPoints, Points};
+use egui::{Color32, Id, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo};
+use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
 
-use super::areas::{ROW, TimelineAreas, take_keyboard};
+use super::areas::{TimelineAreas, VALUES, take_keyboard};
 use super::channel_curve::ChannelCurve;
 use super::drag::{self, TimelineDrag};
+use super::graph_axes::{self, AxisSides};
+use super::graph_legend::{self, LegendEntry};
 use super::graph_mouse::{self, GraphView};
 use super::time_scale::TimeScale;
+use super::value_scale::{ValueKind, ValueScales};
 use super::{context_menu, row, ruler, text};
-use crate::document::{Channel, Quantity};
+use crate::document::{Channel, RigKind};
 use crate::kinematics::chain_ik::Method;
 use crate::session::{Actions, Session};
-use crate::ui::widgets::{format, plot};
+use crate::ui::widgets::plot;
 use crate::ui::{labels, style};
 
-/// Maximum number of channels shown.
-const MOST: usize = 24;
+/// Maximum number of channels listed.
+const MOST: usize = 96;
+/// Maximum number of channels drawn.
+const MOST_DRAWN: usize = 48;
 /// Distance in points between samples of a curve.
 const GRAIN: f32 = 2.0;
-/// Width of the value axis in points.
-const VALUES: f32 = 42.0;
-
-/// Minimum distance in points between labels of the value axis.
-const BETWEEN_VALUES: f32 = 15.0;
 
 pub(in crate::ui) fn ui(
     ui: &mut Ui,
@@ -36,24 +33,34 @@ pub(in crate::ui) fn ui(
     ruler: &Response,
     actions: &mut Actions,
 ) {
-    let channels = shown(session);
-    if channels.is_empty() {
-        text::hint(ui, areas, "No curves. Add keys (K) or select a channel that has keys");
+    let listed = listed(session);
+    if listed.is_empty() {
+        text::hint(ui, areas, hint(session));
         return;
     }
-    let curves: Vec<ChannelCurve> = channels
-        .iter()
-        .enumerate()
-        .flat_map(|(index, channel)| curves(ui, session, scale, *channel, index))
-        .collect();
-    legend(ui, session, areas, &channels);
-    let values = graph_mouse::held_values(ui).unwrap_or_else(|| values(&curves));
-    plot(ui, scale, areas, &curves, values);
-    let graph = GraphView { session, scale, area: areas.keys, values, curves: &curves };
+    let drawn = drawn(session, &listed);
+    let look = |channel: Channel| {
+        let index = listed.iter().position(|other| *other == channel).unwrap_or_default();
+        look(ui, channel, index)
+    };
+    let curves: Vec<ChannelCurve> =
+        drawn.iter().flat_map(|channel| curves(session, scale, *channel, look(*channel))).collect();
+    let entry = |channel: &Channel| LegendEntry {
+        channel: *channel,
+        colours: look(*channel).0,
+        is_drawn: drawn.contains(channel),
+    };
+    let entries: Vec<LegendEntry> = listed.iter().map(entry).collect();
+    graph_legend::ui(ui, session, areas, &entries, ruler, actions);
+    let scales = scales(ui, areas, &drawn, &curves);
+    let metres = session.document().metres_per_unit();
+    graph_axes::ui(ui, scales, sides(&drawn), areas.keys, metres);
+    plot(ui, scale, areas, &curves, scales);
+    let graph = GraphView { session, scale, area: areas.keys, scales, curves: &curves };
     graph_mouse::paint(ui, &graph);
 
     let area = ui.interact(areas.keys, Id::unique("timeline curves"), Sense::click_and_drag());
-    let names: Vec<String> = channels.iter().map(|it| labels::channel(session, *it)).collect();
+    let names: Vec<String> = drawn.iter().map(|it| labels::channel(session, *it)).collect();
     let said = format!("Curves of {}", names.join(", "));
     area.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
     take_keyboard(ui, &area, ruler);
@@ -74,17 +81,72 @@ pub(in crate::ui) fn ui(
 
 const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
-/// The channels whose curves are shown, at most `MOST`: the selected channels that have keys or,
-/// without a selection, all channels of the shown rig that have keys.
-fn shown(session: &Session) -> Vec<Channel> {
-    let all = row::channels(session);
-    let selected = session.selected_channels();
-    let is_of_rig = |channel: &Channel| channel.rig() == Some(session.rig());
-    let chosen: Vec<_> = match selected.is_empty() {
-        true => all.into_iter().filter(is_of_rig).collect(),
-        false => all.into_iter().filter(|channel| selected.contains(channel)).collect(),
+/// Width in points of the axis at the right of the curves, if there is one.
+pub(super) fn width_at_right(session: &Session) -> f32 {
+    match sides(&drawn(session, &listed(session))).right {
+        Some(_) => VALUES,
+        None => 0.0,
+    }
+}
+
+/// The channels with keys that can be shown: of the arm all, of a figure those of the selected joints or,
+/// if none is selected, all.
+fn listed(session: &Session) -> Vec<Channel> {
+    let selected = session.selection();
+    let is_listed = |channel: &Channel| {
+        let own = channel.joint().into_iter().chain(labels::joint_of_channel(session, *channel));
+        let is_selected = selected.is_empty() || own.into_iter().any(|it| selected.contains(&it));
+        channel.rig() == Some(session.rig()) && (session.rig() == RigKind::Arm || is_selected)
     };
-    chosen.into_iter().take(MOST).collect()
+    let mut listed: Vec<Channel> = row::channels(session).into_iter().filter(is_listed).collect();
+    // Channels of one joint stand together.
+    listed.sort_by_key(|channel| labels::joint_of_channel(session, *channel));
+    listed.truncate(MOST);
+    listed
+}
+
+/// The channels whose curves are shown: of those listed the selected ones, or all if none is selected.
+fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
+    let selected = session.selected_channels();
+    let chosen = listed.iter().copied().filter(|channel| selected.contains(channel));
+    let chosen: Vec<Channel> = chosen.collect();
+    if chosen.is_empty() { listed.iter().copied().take(MOST_DRAWN).collect() } else { chosen }
+}
+
+fn hint(session: &Session) -> &'static str {
+    match session.rig() {
+        RigKind::Skeleton if !session.selection().is_empty() => {
+            "No curves of the selected joints. Press K to key them, or select no joint to see all"
+        }
+        RigKind::Skeleton | RigKind::Arm => "No curves. Pose the rig and press K to add keys",
+    }
+}
+
+fn sides(drawn: &[Channel]) -> AxisSides {
+    AxisSides::new(|kind| drawn.iter().any(|channel| ValueKind::of(*channel) == kind))
+}
+
+/// The scales of a drag, or those that the user has set, or those that fit.
+fn scales(
+    ui: &Ui,
+    areas: &TimelineAreas,
+    drawn: &[Channel],
+    curves: &[ChannelCurve],
+) -> ValueScales {
+    if let Some(held) = graph_mouse::held_scales(ui) {
+        return held;
+    }
+    let stored = ValueScales::load(ui, drawn);
+    let fitting = || {
+        ValueScales::fitting(|kind| {
+            let curves = curves.iter().filter(move |curve| curve.kind == kind);
+            curves.flat_map(|curve| &curve.line).map(|point| point[1])
+        })
+    };
+    let mut scales = stored.unwrap_or_else(fitting);
+    let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
+    scales.follow_input(ui, areas.keys, drawn, is_panning);
+    scales
 }
 
 /// Colours, one for each component, and line style of a channel's curves. A channel with three
@@ -108,29 +170,25 @@ fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
 }
 
 fn curves(
-    ui: &Ui,
     session: &Session,
     scale: TimeScale,
     channel: Channel,
-    index: usize,
+    (colours, style): (Vec<Color32>, LineStyle),
 ) -> Vec<ChannelCurve> {
     let keys = &session.document().keys;
     let Some(track) = keys.track(channel) else {
         return Vec::new();
     };
-    let unit = match channel.quantity() {
-        Quantity::Angle | Quantity::Angles => 180.0 / core::f64::consts::PI,
-        Quantity::Point | Quantity::Length | Quantity::Fraction | Quantity::Switch => 1.0,
-    };
+    let kind = ValueKind::of(channel);
+    let unit = kind.factor();
     let name = labels::channel(session, channel);
-    let (colours, style) = look(ui, channel, index);
     let times = times(scale);
     let values: Vec<_> =
         times.iter().filter_map(|time| Some((*time, keys.value(channel, *time)?))).collect();
     let curve = |(axis, colour): (usize, Color32)| ChannelCurve {
         channel,
         axis,
-        unit,
+        kind,
         name: format!("{name} {axis}"),
         colour,
         style,
@@ -152,99 +210,32 @@ fn times(scale: TimeScale) -> Vec<f64> {
     (0..=count).map(|index| from + (to - from) * index as f64 / count as f64).collect()
 }
 
-/// The displayed values at the bottom and the top of the plot.
-fn values(curves: &[ChannelCurve]) -> (f64, f64) {
-    let values = curves.iter().flat_map(|curve| &curve.line).map(|point| point[1]);
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    let room = (0.12 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
-    // A constant value lies in the middle.
-    let room = if high - low < room { 0.5 * room + 0.5 } else { room };
-    (low - room, high + room)
-}
-
 fn plot(
     ui: &mut Ui,
     scale: TimeScale,
     areas: &TimelineAreas,
     curves: &[ChannelCurve],
-    (low, high): (f64, f64),
+    scales: ValueScales,
 ) {
     let (from, to) = scale.range();
-    let bounds = PlotBounds::from_min_max([from, low], [to, high]);
-    let left = areas.keys.left() - VALUES;
-    let rect = Rect::from_min_max(pos2(left, areas.keys.top()), areas.keys.max);
+    let rect = areas.keys;
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     plot::still("timeline curves", rect.height())
         .width(rect.width())
-        .show_grid(Vec2b::new(false, true))
-        .show_axes(Vec2b::new(false, true))
-        .y_grid_spacer(egui_plot::uniform_grid_spacer(move |grid| {
-            let lines = f64::from((rect.height() / BETWEEN_VALUES).max(1.0));
-            let step = round_step((grid.bounds.1 - grid.bounds.0) / lines);
-            [step, 5.0 * step, 10.0 * step]
-        }))
-        .custom_y_axes(vec![
-            AxisHints::new_y()
-                .formatter(|mark, _| value(mark.value, mark.step_size))
-                .label_spacing(Rangef::new(13.0, 15.0))
-                .min_thickness(VALUES),
-        ])
+        .show_grid(Vec2b::FALSE)
+        .show_axes(Vec2b::FALSE)
         .show(&mut inside, |plot| {
-            plot.set_auto_bounds(Vec2b::FALSE);
-            plot.set_plot_bounds(bounds);
+            // From the bottom to the top, because each kind of value has a scale of its own.
+            plot::show(plot, PlotBounds::from_min_max([from, 0.0], [to, 1.0]));
             for curve in curves {
-                let line = Line::new(&curve.name, PlotPoints::from(curve.line.clone()));
+                let placed = |points: &[[f64; 2]]| -> PlotPoints<'_> {
+                    let points = points.iter();
+                    points.map(|[time, value]| [*time, scales.part(curve.kind, *value)]).collect()
+                };
+                let line = Line::new(&curve.name, placed(&curve.line));
                 plot.line(line.color(curve.colour).width(1.75).style(curve.style));
-                let knots = Points::new(&curve.name, PlotPoints::from(curve.knots.clone()));
+                let knots = Points::new(&curve.name, placed(&curve.knots));
                 plot.points(knots.color(curve.colour).radius(3.0));
             }
         });
-}
-
-/// Formats a value with enough decimals to distinguish it from a label that is `step` away.
-fn value(value: f64, step: f64) -> String {
-    let digits = -step.max(1e-6).log10().floor();
-    format::fixed(value, digits.max(0.0) as usize)
-}
-
-/// The smallest number that is at least `step` and is 1, 2 or 5 times a power of ten.
-fn round_step(step: f64) -> f64 {
-    let power = 10_f64.powf(step.max(1e-30).log10().floor());
-    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
-    steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
-}
-
-/// Shows the names of the channels, each with the colours of its curves.
-fn legend(ui: &mut Ui, session: &Session, areas: &TimelineAreas, channels: &[Channel]) {
-    let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
-    let rect = Rect::from_min_max(areas.names.min, right);
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        ScrollArea::vertical().id_salt("legend").auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            for (index, channel) in channels.iter().enumerate() {
-                entry(ui, session, *channel, index);
-            }
-        });
-    });
-}
-
-fn entry(ui: &mut Ui, session: &Session, channel: Channel, index: usize) {
-    const SWATCH: f32 = 6.0;
-    let size = vec2(ui.available_width(), ROW);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let name = labels::channel(session, channel);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Curve of {name}")));
-    let (colours, _) = look(ui, channel, index);
-    let width = SWATCH * colours.len() as f32;
-    for (place, colour) in colours.iter().enumerate() {
-        let x = rect.left() + 10.0 + SWATCH * place as f32;
-        let at = pos2(x, rect.center().y);
-        ui.painter().hline(x..=x + SWATCH - 1.5, at.y, Stroke::new(3.0, *colour));
-    }
-    let beside = Rect::from_min_max(pos2(rect.left() + width + 3.0, rect.top()), rect.max);
-    text::line(ui, beside, &name, ui.visuals().text_color());
-    let axes = if colours.len() == 3 { ": x, y and z in axis colours" } else { "" };
-    response.on_hover_text(format!("{name}{axes}"));
 }

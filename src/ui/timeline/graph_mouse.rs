@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::channel_curve::ChannelCurve;
 use super::drag::{self, PointsDrag, TangentDrag, TimelineDrag};
 use super::time_scale::TimeScale;
+use super::value_scale::{ValueKind, ValueScales};
 use crate::document::{Channel, Quantity};
 use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::session::{
@@ -25,8 +26,7 @@ pub(super) struct GraphView<'a> {
     pub session: &'a Session,
     pub scale: TimeScale,
     pub area: Rect,
-    /// The displayed values at the bottom and the top.
-    pub values: (f64, f64),
+    pub scales: ValueScales,
     pub curves: &'a [ChannelCurve],
 }
 
@@ -40,13 +40,12 @@ struct Handle<'a> {
 }
 
 impl GraphView<'_> {
-    fn points_per_value(&self) -> f64 {
-        f64::from(self.area.height()) / (self.values.1 - self.values.0)
+    fn points_per_value(&self, kind: ValueKind) -> f64 {
+        self.scales.points_per_value(kind, self.area.height())
     }
 
-    fn place(&self, time: f64, value: f64) -> Pos2 {
-        let up = (value - self.values.0) * self.points_per_value();
-        pos2(self.scale.x(time), self.area.bottom() - up as f32)
+    fn place(&self, time: f64, kind: ValueKind, value: f64) -> Pos2 {
+        pos2(self.scale.x(time), self.scales.y(kind, value, self.area.y_range()))
     }
 
     fn track(&self, channel: Channel) -> Option<&Spline<Vec3>> {
@@ -57,7 +56,11 @@ impl GraphView<'_> {
     fn keys<'a>(&'a self, curve: &'a ChannelCurve) -> impl Iterator<Item = (&'a Knot<Vec3>, Pos2)> {
         let knots = self.track(curve.channel).map_or(&[][..], Spline::knots);
         knots.iter().filter_map(|knot| {
-            let at = self.place(knot.time, curve.unit * f64::from(knot.value[curve.axis]));
+            let at = self.place(
+                knot.time,
+                curve.kind,
+                curve.kind.factor() * f64::from(knot.value[curve.axis]),
+            );
             self.area.expand(REACH).contains(at).then_some((knot, at))
         })
     }
@@ -112,7 +115,9 @@ impl GraphView<'_> {
         let handle = |(is_leaving, _, slope): (bool, bool, Vec3)| {
             let side = if is_leaving { 1.0 } else { -1.0 };
             let across = self.scale.points_per_second();
-            let up = curve.unit * f64::from(slope[curve.axis]) * self.points_per_value();
+            let up = curve.kind.factor()
+                * f64::from(slope[curve.axis])
+                * self.points_per_value(curve.kind);
             let direction = egui::vec2(across as f32, -up as f32).normalized();
             let at = from + side * HANDLE * direction;
             Handle { curve, key: (curve.channel, knot.time), is_leaving, from, at }
@@ -121,11 +126,11 @@ impl GraphView<'_> {
     }
 }
 
-/// The values at the bottom and the top of the plot when the drag in it began; `None` without one.
-pub(super) fn held_values(ui: &Ui) -> Option<(f64, f64)> {
+/// The scales of the plot when the drag in it began; `None` without one.
+pub(super) fn held_scales(ui: &Ui) -> Option<ValueScales> {
     match drag::get(ui)? {
-        TimelineDrag::Points(PointsDrag { values, .. })
-        | TimelineDrag::Tangent(TangentDrag { values, .. }) => Some(values),
+        TimelineDrag::Points(PointsDrag { scales, .. })
+        | TimelineDrag::Tangent(TangentDrag { scales, .. }) => Some(scales),
         _ => None,
     }
 }
@@ -184,8 +189,8 @@ fn press_handle(ui: &Ui, graph: &GraphView<'_>, at: Pos2) -> bool {
         return false;
     };
     let Handle { curve, key, is_leaving, .. } = *handle;
-    let (axis, unit, values) = (curve.axis, curve.unit, graph.values);
-    let drag = TangentDrag { key, axis, unit, is_leaving, moved: false, values };
+    let (axis, kind, scales) = (curve.axis, curve.kind, graph.scales);
+    let drag = TangentDrag { key, axis, kind, is_leaving, moved: false, scales };
     drag::set(ui, TimelineDrag::Tangent(drag));
     true
 }
@@ -205,9 +210,9 @@ fn press_key(ui: &Ui, graph: &GraphView<'_>, pressed: Pos2, adds: bool, actions:
     if keys != selected {
         actions.push(SelectAction::Keys(keys.clone()));
     }
-    let (axis, unit, time, values) = (curve.axis, curve.unit, key.1, graph.values);
+    let (axis, kind, time, scales) = (curve.axis, curve.kind, key.1, graph.scales);
     let moved = false;
-    let drag = PointsDrag { keys, axis, unit, time, pressed, moved, clicked, values };
+    let drag = PointsDrag { keys, axis, kind, time, pressed, moved, clicked, scales };
     drag::set(ui, TimelineDrag::Points(drag));
 }
 
@@ -254,9 +259,9 @@ fn move_keys(
             0.0 => 0.0,
             _ => drag::snapped(ui, session.document().timeline, later) - drag.time,
         };
-        let shown = -f64::from(y) / graph.points_per_value();
+        let shown = -f64::from(y) / graph.points_per_value(drag.kind);
         let mut raise = Vec3::ZERO;
-        raise[drag.axis] = (shown / drag.unit) as f32;
+        raise[drag.axis] = (shown / drag.kind.factor()) as f32;
         let count = labels::count_of_keys(drag.keys.len());
         let said = format!(
             "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
@@ -306,13 +311,13 @@ fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Opt
     const LEAST: f32 = 2.0;
     let (channel, time) = drag.key;
     let track = graph.track(channel)?;
-    let value = drag.unit * f64::from(track.get(time)?[drag.axis]);
-    let key = graph.place(time, value);
+    let value = drag.kind.factor() * f64::from(track.get(time)?[drag.axis]);
+    let key = graph.place(time, drag.kind, value);
     let side = if drag.is_leaving { 1.0 } else { -1.0 };
     let across = (side * (mouse.x - key.x)).max(LEAST);
     let seconds = f64::from(across) / graph.scale.points_per_second();
-    let rise = f64::from(key.y - mouse.y) / graph.points_per_value();
-    let slope = (f64::from(side) * rise / (drag.unit * seconds)) as f32;
+    let rise = f64::from(key.y - mouse.y) / graph.points_per_value(drag.kind);
+    let slope = (f64::from(side) * rise / (drag.kind.factor() * seconds)) as f32;
     let Slopes { mut arriving, mut leaving } = track.slopes(time)?;
     let is_alone = ui.input(|input| input.modifiers.alt);
     if drag.is_leaving || !is_alone {

@@ -2,7 +2,7 @@
 
 use egui::{Event, EventFilter, Key, Modifiers, Ui};
 
-use super::{drag, ruler};
+use super::{drag, ruler, time_scale};
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session, ShellAction};
 use crate::ui::keyboard::{focus, viewport};
 
@@ -114,7 +114,7 @@ fn next_frame(session: &Session, by: f64) -> f64 {
         true => (frame + ROUNDING).floor() + 1.0,
         false => (frame - ROUNDING).ceil() - 1.0,
     };
-    let (first, last) = drag::span(session);
+    let (first, last) = time_scale::span(session);
     timeline.time_of_number(next).clamp(first.min(session.time()), last.max(session.time()))
 }
 

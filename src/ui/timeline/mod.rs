@@ -5,7 +5,9 @@ mod channel_curve;
 mod context_menu;
 mod dope_sheet;
 mod drag;
+mod graph_axes;
 mod graph_editor;
+mod graph_legend;
 mod graph_mouse;
 mod keyboard;
 mod mouse;
@@ -14,6 +16,7 @@ mod ruler;
 mod text;
 mod time_scale;
 mod transport_bar;
+mod value_scale;
 
 use egui::{Rect, Ui};
 
@@ -36,20 +39,22 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
 
 /// Shows the timeline.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let areas = TimelineAreas::new(ui.available_rect_before_wrap());
+    let curves = session.preferences().curves;
+    let beside = if curves { graph_editor::width_at_right(session) } else { 0.0 };
+    let areas = TimelineAreas::new(ui.available_rect_before_wrap(), beside);
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
     let mut scale = TimeScale::load(ui, timeline, areas.keys.x_range());
     let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
     let wheeled = Rect::from_min_max(areas.ruler.min, areas.keys.max);
-    scale.follow_input(ui, session, wheeled, is_panning);
+    scale.follow_input(ui, session, wheeled, curves.then_some(areas.keys), is_panning);
 
     // First, so that Tab goes through it before the keys below it.
     ruler::auto_key_note(ui, session, scale, areas.ruler, actions);
     ruler::ground(ui, scale, timeline, wheeled);
     ruler::grid(ui, scale, timeline, areas.keys);
     let ruler = ruler::ui(ui, session, scale, areas.ruler, actions);
-    if session.preferences().curves {
+    if curves {
         graph_editor::ui(ui, session, scale, &areas, &ruler, actions);
     } else {
         dope_sheet::ui(ui, session, scale, &areas, &ruler, actions);

@@ -2,8 +2,10 @@
 
 use std::collections::HashSet;
 
+use egui::Ui;
+
 use crate::document::Channel;
-use crate::session::{Key, Session};
+use crate::session::{Key, SelectAction, Session};
 
 /// A row with the keys of all channels or of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +70,17 @@ fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
     let first = knots.partition_point(|knot| knot.time < from);
     let seen = knots.iter().skip(first).take_while(move |knot| knot.time <= to);
     seen.map(|knot| knot.time)
+}
+
+/// The selection after a click on the name of a channel: the channel alone, or none if it was alone before;
+/// with Shift or Ctrl it is added or removed.
+pub(in crate::ui) fn clicked(ui: &Ui, session: &Session, channel: Channel) -> SelectAction {
+    let selected = session.selected_channels();
+    let is_selected = selected.contains(&channel);
+    let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+    let goes = is_selected && (several || selected.len() == 1);
+    let others = selected.iter().copied().filter(|other| several && *other != channel);
+    SelectAction::Channels(others.chain((!goes).then_some(channel)).collect())
 }
 
 /// A set of keys with fast lookup.

@@ -7,6 +7,7 @@ use egui::{
 
 use super::drag;
 use super::time_scale::TimeScale;
+use super::value_scale::ValueScales;
 use crate::document::Timeline;
 use crate::session::{Actions, PlaybackAction, Session};
 use crate::ui::{style, widgets};
@@ -48,6 +49,7 @@ pub(in crate::ui) fn ui(
     }
     if response.double_clicked() {
         TimeScale::fit(ui);
+        ValueScales::fit(ui);
         ui.request_repaint();
     } else if is_pressed(ui, &response) {
         response.request_focus();

@@ -1,6 +1,6 @@
 //! The visible time range and its mapping to the screen.
 
-use egui::{Event, Id, MouseWheelUnit, Rangef, Rect, Ui};
+use egui::{Event, Id, MouseWheelUnit, Rangef, Rect, Ui, Vec2};
 
 use crate::document::Timeline;
 use crate::session::Session;
@@ -8,11 +8,13 @@ use crate::session::Session;
 /// Margin at both ends, in points.
 const MARGIN: f32 = 16.0;
 /// Zoom factor of a wheel step.
-const WHEEL: f64 = 1.2;
+pub(super) const WHEEL: f64 = 1.2;
 /// Scroll distance in points that counts as one wheel step.
 const POINTS_PER_STEP: f32 = 50.0;
 /// Minimum length of the visible range, in frames.
 const LEAST_FRAMES: f64 = 4.0;
+/// Maximum length of the visible range, as a multiple of the timeline with all keys.
+const WIDEST: f64 = 4.0;
 
 /// Converts between times in seconds and x on screen in points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,9 +85,17 @@ impl TimeScale {
         (self.time(self.seen.min), self.time(self.seen.max))
     }
 
-    /// Zooms by the wheel about the mouse; pans by Shift+wheel and horizontal wheel, and by the
-    /// mouse if `is_panning`; follows the playhead during playback. Stores a changed range.
-    pub fn follow_input(&mut self, ui: &Ui, session: &Session, area: Rect, is_panning: bool) {
+    /// Zooms by the wheel about the mouse, but not by Ctrl+wheel in `values`, where that zooms values;
+    /// pans by Shift+wheel and horizontal wheel, and by the mouse if `is_panning`; follows the playhead
+    /// during playback. Stores a changed range.
+    pub fn follow_input(
+        &mut self,
+        ui: &Ui,
+        session: &Session,
+        area: Rect,
+        values: Option<Rect>,
+        is_panning: bool,
+    ) {
         let before = *self;
         let timeline = session.document().timeline;
         if session.is_playing() {
@@ -98,20 +108,18 @@ impl TimeScale {
         if is_panning {
             self.pan(-ui.input(|input| input.pointer.delta().x));
         }
+        let is_in_values = values.is_some_and(|values| ui.rect_contains_pointer(values));
         if ui.rect_contains_pointer(area) {
             for event in ui.input(|input| input.events.clone()) {
                 match event {
-                    Event::Zoom(factor) => self.zoom(mouse.x, f64::from(factor), timeline),
+                    Event::Zoom(factor) => self.zoom(mouse.x, f64::from(factor), session),
+                    Event::MouseWheel { modifiers, .. } if modifiers.command && is_in_values => {}
                     Event::MouseWheel { unit, delta, modifiers, .. } => {
-                        let steps = match unit {
-                            MouseWheelUnit::Point => delta / POINTS_PER_STEP,
-                            MouseWheelUnit::Line => delta,
-                            MouseWheelUnit::Page => delta * 10.0,
-                        };
+                        let steps = wheel_steps(unit, delta);
                         let across = if modifiers.shift { steps.x + steps.y } else { steps.x };
                         self.pan(-across * POINTS_PER_STEP);
                         if !modifiers.shift {
-                            self.zoom(mouse.x, WHEEL.powf(f64::from(steps.y)), timeline);
+                            self.zoom(mouse.x, WHEEL.powf(f64::from(steps.y)), session);
                         }
                     }
                     _ => {}
@@ -136,10 +144,12 @@ impl TimeScale {
     }
 
     /// Zooms in by `factor`; the time at `x` on screen keeps its position.
-    fn zoom(&mut self, x: f32, factor: f64, timeline: Timeline) {
-        let least = LEAST_FRAMES / timeline.frame_rate;
+    fn zoom(&mut self, x: f32, factor: f64, session: &Session) {
+        let least = LEAST_FRAMES / session.document().timeline.frame_rate;
+        let (start, end) = span(session);
         let span = self.to - self.from;
-        let new_span = (span / factor).clamp(least, 4.0 * Timeline::MAX_TIME);
+        let most = (WIDEST * (end - start)).max(least);
+        let new_span = (span / factor).clamp(least, most);
         if !new_span.is_finite() {
             return;
         }
@@ -154,6 +164,25 @@ impl TimeScale {
         if !(self.from..=self.to).contains(&time) {
             (self.from, self.to) = (time, time + span);
         }
+    }
+}
+
+/// Start and end, in seconds, of the range that contains the timeline and all keys.
+pub(in crate::ui) fn span(session: &Session) -> (f64, f64) {
+    let Timeline { start, end, .. } = session.document().timeline;
+    session.document().keys.tracks().fold((start, end), |(start, end), (_, track)| {
+        let knots = track.knots();
+        let first = knots.first().map_or(start, |knot| knot.time.min(start));
+        (first, knots.last().map_or(end, |knot| knot.time.max(end)))
+    })
+}
+
+/// Steps of the wheel, across and up.
+pub(super) fn wheel_steps(unit: MouseWheelUnit, delta: Vec2) -> Vec2 {
+    match unit {
+        MouseWheelUnit::Point => delta / POINTS_PER_STEP,
+        MouseWheelUnit::Line => delta,
+        MouseWheelUnit::Page => delta * 10.0,
     }
 }
 

@@ -1,0 +1,169 @@
+//! The scales of the values in the graph editor: one for angles, one for lengths and one for ratios.
+
+use egui::{Event, Id, Rangef, Rect, Ui};
+
+use super::time_scale::{WHEEL, wheel_steps};
+use crate::document::{Channel, Quantity};
+
+/// Part of the height that is left free above and below the curves.
+const ROOM: f64 = 0.12;
+
+/// What a value is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ValueKind {
+    Angle,
+    Length,
+    /// A number without a unit.
+    Ratio,
+}
+
+impl ValueKind {
+    pub const ALL: [Self; 3] = [Self::Angle, Self::Length, Self::Ratio];
+
+    pub fn of(channel: Channel) -> Self {
+        match (channel, channel.quantity()) {
+            (Channel::Stretch, _) => Self::Ratio,
+            (_, Quantity::Angle | Quantity::Angles) => Self::Angle,
+            (_, Quantity::Point | Quantity::Length) => Self::Length,
+            (_, Quantity::Fraction | Quantity::Switch) => Self::Ratio,
+        }
+    }
+
+    /// Displayed values per value: degrees per radian for angles.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Angle => 180.0 / core::f64::consts::PI,
+            Self::Length | Self::Ratio => 1.0,
+        }
+    }
+
+    /// Name and sign of the unit, in a document with these metres in a unit.
+    pub fn unit(self, metres_per_unit: f32) -> (&'static str, &'static str) {
+        match (self, metres_per_unit) {
+            (Self::Angle, _) => ("degrees", "°"),
+            (Self::Length, 1.0) => ("metres", "m"),
+            (Self::Length, 0.01) => ("centimetres", "cm"),
+            (Self::Length, 0.001) => ("millimetres", "mm"),
+            (Self::Length, _) => ("units of the scene", "units"),
+            (Self::Ratio, _) => ("parts of the whole", "0–1"),
+        }
+    }
+
+    fn index(self) -> usize {
+        match self {
+            Self::Angle => 0,
+            Self::Length => 1,
+            Self::Ratio => 2,
+        }
+    }
+}
+
+/// The displayed values at the bottom and the top of the plot, for each [`ValueKind`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ValueScales([(f64, f64); 3]);
+
+/// Scales that the user has set, for these curves.
+#[derive(Clone, PartialEq)]
+struct StoredScales {
+    channels: Vec<Channel>,
+    scales: ValueScales,
+}
+
+impl ValueScales {
+    /// The scales that show all displayed values of each kind.
+    pub fn fitting<I: Iterator<Item = f64>>(values: impl Fn(ValueKind) -> I) -> Self {
+        Self(ValueKind::ALL.map(|kind| fitted(values(kind))))
+    }
+
+    /// The scales that the user has set for the curves of `channels`; `None` if there are none.
+    pub fn load(ui: &Ui, channels: &[Channel]) -> Option<Self> {
+        let stored = ui.data(|data| data.get_temp::<StoredScales>(id()))?;
+        (stored.channels == channels).then_some(stored.scales)
+    }
+
+    /// Removes the scales that the user has set, so that all curves are shown again.
+    pub fn fit(ui: &Ui) {
+        ui.data_mut(|data| data.remove::<StoredScales>(id()));
+    }
+
+    /// Zooms by Ctrl+wheel about the mouse in `area`, and pans by `is_panning`, which is vertical only after
+    /// a zoom. Stores changed scales for the curves of `channels`.
+    pub fn follow_input(&mut self, ui: &Ui, area: Rect, channels: &[Channel], is_panning: bool) {
+        let before = *self;
+        let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else { return };
+        if is_panning && Self::load(ui, channels).is_some() {
+            let up = f64::from(ui.input(|input| input.pointer.delta().y) / area.height().max(1.0));
+            self.change(|low, high| (low + up * (high - low), high + up * (high - low)));
+        }
+        if ui.rect_contains_pointer(area) {
+            let height = f64::from((area.bottom() - mouse.y) / area.height().max(1.0));
+            for event in ui.input(|input| input.events.clone()) {
+                if let Event::MouseWheel { unit, delta, modifiers, .. } = event
+                    && modifiers.command
+                {
+                    let factor = WHEEL.powf(-f64::from(wheel_steps(unit, delta).y));
+                    self.change(|low, high| {
+                        let still = low + height * (high - low);
+                        (still + (low - still) * factor, still + (high - still) * factor)
+                    });
+                }
+            }
+        }
+        if *self != before {
+            let stored = StoredScales { channels: channels.to_vec(), scales: *self };
+            ui.data_mut(|data| data.insert_temp(id(), stored));
+        }
+    }
+
+    /// Changes the bottom and top of all scales, as far as they stay finite and apart.
+    fn change(&mut self, change: impl Fn(f64, f64) -> (f64, f64)) {
+        /// Greatest value, and least distance between top and bottom relative to them.
+        const LIMITS: (f64, f64) = (1e30, 1e-6);
+        for scale in &mut self.0 {
+            let (low, high) = change(scale.0, scale.1);
+            let size = low.abs().max(high.abs());
+            if size < LIMITS.0 && high - low > LIMITS.1 * size.max(LIMITS.1) {
+                *scale = (low, high);
+            }
+        }
+    }
+
+    /// The displayed values at the bottom and the top of the plot.
+    pub fn range(self, kind: ValueKind) -> (f64, f64) {
+        self.0[kind.index()]
+    }
+
+    pub fn points_per_value(self, kind: ValueKind, height: f32) -> f64 {
+        let (low, high) = self.range(kind);
+        f64::from(height) / (high - low)
+    }
+
+    /// Part of the way from the bottom to the top of the plot at which a displayed value is.
+    pub fn part(self, kind: ValueKind, value: f64) -> f64 {
+        let (low, high) = self.range(kind);
+        (value - low) / (high - low)
+    }
+
+    /// Screen y of a displayed value in a plot over `ys`.
+    pub fn y(self, kind: ValueKind, value: f64, ys: Rangef) -> f32 {
+        ys.max - (self.part(kind, value) * f64::from(ys.span())) as f32
+    }
+}
+
+/// A range with all values, and free room on both sides.
+fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if low > high {
+        return (0.0, 1.0);
+    }
+    let room = (ROOM * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
+    // A constant value lies in the middle.
+    let room = if high - low < room { 0.5 * room + 0.5 } else { room };
+    (low - room, high + room)
+}
+
+fn id() -> Id {
+    Id::unique("timeline value scales")
+}
