@@ -15,23 +15,24 @@
 //! m₁ = 0 if a·b ≤ 0, else the Catmull–Rom slope, clamped to ±3·min(|a|, |b|)
 //! ```
 //!
-//! and at the first and last knot the only secant. So no component has an extremum between two knots,
-//! and equal knots hold their value. At a knot between an automatic and a smooth curve, both have the
-//! automatic slope.
+//! and at the first and last knot the only secant. So no component has an extremum between two
+//! knots, and equal knots hold their value. At a knot between an automatic and a smooth curve, both
+//! have the automatic slope.
 //!
 //! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can be a
 //! straight line or a step instead. Whoever knows that the values are the angles of a rotation can turn
 //! the shortest way instead: see [`Spline::segment`].
 //!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
-//! first knot and after the last, the curve is constant. Between smooth and automatic curves it is C¹.
+//! first knot and after the last, the curve is constant. Between smooth and automatic curves it is
+//! C¹.
 //!
 //! # What breaks
 //!
-//! A smooth curve overshoots: the values 1000, 10, 10, 1000 at equal intervals give −114 between the
-//! two in the middle. So does an automatic one whose knots have slopes of their own. The caller clamps
-//! values that have a valid range. Angles must be unwrapped: from 350° to 10° the curve passes through
-//! 180°, from 350° to 370° through 360°.
+//! A smooth curve overshoots: the values 1000, 10, 10, 1000 at equal intervals give −114 between
+//! the two in the middle. So does an automatic one whose knots have slopes of their own. The caller
+//! clamps values that have a valid range. Angles must be unwrapped: from 350° to 10° the curve
+//! passes through 180°, from 350° to 370° through 360°.
 //!
 //! # Source
 //!

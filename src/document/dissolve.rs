@@ -93,8 +93,8 @@ impl Orphan {
         times
     }
 
-    /// The orphan's own key at a time; or else a key with the curve that is in force there, of the orphan
-    /// or of the nearest dissolved joint with keys.
+    /// The orphan's own key at a time; or else a key with the curve that is in force there, of the
+    /// orphan or of the nearest dissolved joint with keys.
     fn key(&self, keys: &Keys, channel: fn(JointId) -> Channel, time: f64) -> Knot<Vec3> {
         let joints = [self.joint].into_iter().chain(self.dissolved.iter().copied());
         let mut tracks = joints.filter_map(|joint| keys.track(channel(joint)));

@@ -62,17 +62,18 @@ impl Keys {
         self.tracks.values().map(|track| track.knots().len()).sum()
     }
 
-    /// Adds a key at a time in seconds with a Catmull–Rom curve, or sets the value of the channel's key
-    /// at that time, which keeps its curve. Does nothing if the time or the value is not finite.
+    /// Adds a key at a time in seconds with a Catmull–Rom curve, or sets the value of the channel's
+    /// key at that time, which keeps its curve. Does nothing if the time or the value is not
+    /// finite.
     pub fn insert(&mut self, channel: Channel, time: f64, value: Vec3) {
         if time.is_finite() && value.is_finite() {
             self.tracks.make_mut().entry(channel).or_default().make_mut().insert(time, value);
         }
     }
 
-    /// Adds a key as the user interface does, with an automatic curve, or sets the value of the channel's
-    /// key at that time, which keeps its curve. Switches are not interpolated and keep the default. Does
-    /// nothing if the time or the value is not finite.
+    /// Adds a key as the user interface does, with an automatic curve, or sets the value of the
+    /// channel's key at that time, which keeps its curve. Switches are not interpolated and keep
+    /// the default. Does nothing if the time or the value is not finite.
     pub fn insert_auto(&mut self, channel: Channel, time: f64, value: Vec3) {
         let new = || Knot { interpolation: new_interpolation(channel), ..Knot::new(time, value) };
         let key = self.key(channel, time).unwrap_or_else(new);

@@ -1,5 +1,5 @@
-//! What this program adds to glTF files under `extras`, and reads again from its own files. Other programs
-//! ignore it.
+//! What this program adds to glTF files under `extras`, and reads again from its own files. Other
+//! programs ignore it.
 
 use glam::{DQuat, Quat, Vec3};
 use serde::de::IgnoredAny;
@@ -10,8 +10,8 @@ use crate::io::format::KeyFields;
 use crate::io::json_path::JsonPath;
 use crate::kinematics::spline::{Knot, Spline};
 
-/// Extras of a sampler: the keys whose curve it is, with times of the file, and in the joint's angles or
-/// as its offsets in metres.
+/// Extras of a sampler: the keys whose curve it is, with times of the file, and in the joint's
+/// angles or as its offsets in metres.
 #[derive(Serialize, Deserialize)]
 pub struct SamplerExtras {
     #[serde(rename = "ik_arm_keys")]

@@ -1,4 +1,5 @@
-//! The axes of the graph editor: one at the left and one at the right, each with the unit of its values.
+//! The axes of the graph editor: one at the left and one at the right, each with the unit of its
+//! values.
 
 use egui::{Align2, Color32, Id, Pos2, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2};
 
@@ -11,8 +12,8 @@ const BETWEEN: f32 = 20.0;
 /// Distance in points between the plot and the labels.
 const GAP: f32 = 5.0;
 
-/// The kinds of values that have an axis, at the left and at the right. Angles are at the left and lengths at
-/// the right; ratios take a side that is free.
+/// The kinds of values that have an axis, at the left and at the right. Angles are at the left and
+/// lengths at the right; ratios take a side that is free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct AxisSides {
     pub left: Option<ValueKind>,

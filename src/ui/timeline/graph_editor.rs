@@ -89,8 +89,8 @@ pub(super) fn width_at_right(session: &Session) -> f32 {
     }
 }
 
-/// The channels with keys that can be shown: of the arm all, of a figure those of the selected joints or,
-/// if none is selected, all.
+/// The channels with keys that can be shown: of the arm all, of a figure those of the selected
+/// joints or, if none is selected, all.
 fn listed(session: &Session) -> Vec<Channel> {
     let selected = session.selection();
     let is_listed = |channel: &Channel| {
@@ -105,7 +105,8 @@ fn listed(session: &Session) -> Vec<Channel> {
     listed
 }
 
-/// The channels whose curves are shown: of those listed the selected ones, or all if none is selected.
+/// The channels whose curves are shown: of those listed the selected ones, or all if none is
+/// selected.
 fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
     let selected = session.selected_channels();
     let chosen = listed.iter().copied().filter(|channel| selected.contains(channel));

@@ -1,4 +1,5 @@
-//! The names in the graph editor: joints, and below each its channels with the colours of their curves.
+//! The names in the graph editor: joints, and below each its channels with the colours of their
+//! curves.
 
 use egui::{
     Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
@@ -51,8 +52,8 @@ pub(super) fn ui(
     });
 }
 
-/// Shows the name of a joint. A click selects the joint, with Shift or Ctrl besides the others; a click on
-/// the only selected joint selects none.
+/// Shows the name of a joint. A click selects the joint, with Shift or Ctrl besides the others; a
+/// click on the only selected joint selects none.
 fn joint_name(
     ui: &mut Ui,
     session: &Session,
@@ -81,7 +82,8 @@ fn joint_name(
     ));
 }
 
-/// Shows the name of a channel. A click shows its curves alone, with Shift or Ctrl besides the others.
+/// Shows the name of a channel. A click shows its curves alone, with Shift or Ctrl besides the
+/// others.
 fn channel_name(
     ui: &mut Ui,
     session: &Session,

@@ -72,8 +72,8 @@ fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
     seen.map(|knot| knot.time)
 }
 
-/// The selection after a click on the name of a channel: the channel alone, or none if it was alone before;
-/// with Shift or Ctrl it is added or removed.
+/// The selection after a click on the name of a channel: the channel alone, or none if it was alone
+/// before; with Shift or Ctrl it is added or removed.
 pub(in crate::ui) fn clicked(ui: &Ui, session: &Session, channel: Channel) -> SelectAction {
     let selected = session.selected_channels();
     let is_selected = selected.contains(&channel);

@@ -85,9 +85,9 @@ impl TimeScale {
         (self.time(self.seen.min), self.time(self.seen.max))
     }
 
-    /// Zooms by the wheel about the mouse, but not by Ctrl+wheel in `values`, where that zooms values;
-    /// pans by Shift+wheel and horizontal wheel, and by the mouse if `is_panning`; follows the playhead
-    /// during playback. Stores a changed range.
+    /// Zooms by the wheel about the mouse, but not by Ctrl+wheel in `values`, where that zooms
+    /// values; pans by Shift+wheel and horizontal wheel, and by the mouse if `is_panning`; follows
+    /// the playhead during playback. Stores a changed range.
     pub fn follow_input(
         &mut self,
         ui: &Ui,

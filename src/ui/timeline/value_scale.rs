@@ -1,4 +1,5 @@
-//! The scales of the values in the graph editor: one for angles, one for lengths and one for ratios.
+//! The scales of the values in the graph editor: one for angles, one for lengths and one for
+//! ratios.
 
 use egui::{Event, Id, Rangef, Rect, Ui};
 
@@ -86,8 +87,8 @@ impl ValueScales {
         ui.data_mut(|data| data.remove::<StoredScales>(id()));
     }
 
-    /// Zooms by Ctrl+wheel about the mouse in `area`, and pans by `is_panning`, which is vertical only after
-    /// a zoom. Stores changed scales for the curves of `channels`.
+    /// Zooms by Ctrl+wheel about the mouse in `area`, and pans by `is_panning`, which is vertical
+    /// only after a zoom. Stores changed scales for the curves of `channels`.
     pub fn follow_input(&mut self, ui: &Ui, area: Rect, channels: &[Channel], is_panning: bool) {
         let before = *self;
         let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else { return };

@@ -38,7 +38,8 @@ pub struct JointTrack<const N: usize> {
     pub curve: Curve,
     /// One value for each key; for cubic splines the arriving slope, the value and the leaving slope.
     pub values: Vec<[f32; N]>,
-    /// The keys whose curve a cubic spline is, as the file has them in `extras`; none for other curves.
+    /// The keys whose curve a cubic spline is, as the file has them in `extras`; none for other
+    /// curves.
     pub keys: Vec<Knot<Vec3>>,
 }
 

@@ -2,8 +2,9 @@
 //!
 //! A node's frame is its joint's space turned by a constant C. Relative to its parent it turns by
 //! C_parentᵀ · R · C with the joint's rotation R, and is moved by a constant matrix times the joint's offset:
-//! a slerp or steps of R, and lines, steps and cubics of the offset, stay what they are. Curves of angles
-//! become splines of quaternions. Of curves that are cubics in the file, the keys are written, too.
+//! a slerp or steps of R, and lines, steps and cubics of the offset, stay what they are. Curves of
+//! angles become splines of quaternions. Of curves that are cubics in the file, the keys are
+//! written, too.
 
 use ::gltf::json::animation::Interpolation as Curve;
 use std::rc::Rc;
@@ -169,8 +170,8 @@ fn offset_to_node(rig: &GltfRig, joint: &Joint, transform: DMat3) -> DMat3 {
     }
 }
 
-/// The curve of the file for keys of angles: lines for slerps, steps for steps, and cubic splines for
-/// other curves. `None` if the file needs a key at every frame.
+/// The curve of the file for keys of angles: lines for slerps, steps for steps, and cubic splines
+/// for other curves. `None` if the file needs a key at every frame.
 fn rotation_curve(track: &Spline<Vec3>) -> Option<Curve> {
     Some(match one_interpolation(track) {
         Some(Interpolation::Slerp) => Curve::Linear,
@@ -200,8 +201,8 @@ fn translation(
     Some(KeptTrack { node: joint.index(), times, curve, slopes, keys: Vec::new() })
 }
 
-/// The slopes of a node's translation at a time; level where the curve is constant, before the track's
-/// first key and after its last.
+/// The slopes of a node's translation at a time; level where the curve is constant, before the
+/// track's first key and after its last.
 fn slopes_at(track: &Spline<Vec3>, time: f64, to_node: DMat3) -> Slopes<Vec3> {
     let Some(own) = track.slopes(time) else {
         return Slopes { arriving: Vec3::ZERO, leaving: Vec3::ZERO };

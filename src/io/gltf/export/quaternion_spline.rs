@@ -1,8 +1,8 @@
 //! Rotations by keys of angles as glTF's cubic splines of quaternions.
 //!
-//! A curve of angles is no cubic of quaternions. Between two keys it is cut into equal pieces, until the
-//! cubic through the ends of each, with the slopes of the curve there, is as near to the curve as
-//! [`EXACT`].
+//! A curve of angles is no cubic of quaternions. Between two keys it is cut into equal pieces,
+//! until the cubic through the ends of each, with the slopes of the curve there, is as near to the
+//! curve as [`EXACT`].
 
 use core::ops::{Add, Mul};
 
@@ -34,8 +34,8 @@ pub struct QuaternionKey {
     pub leaving: DQuat,
 }
 
-/// The keys at `times`, in seconds, which include those of `track`, and at times in between. No curve of
-/// the track is a step.
+/// The keys at `times`, in seconds, which include those of `track`, and at times in between. No
+/// curve of the track is a step.
 pub fn keys(track: &Spline<Vec3>, times: &[f64], node: NodeRotation) -> Vec<QuaternionKey> {
     let mut keys: Vec<QuaternionKey> = Vec::new();
     for pair in times.windows(2) {

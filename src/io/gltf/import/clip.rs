@@ -10,8 +10,8 @@ const FALLBACK_RATE: f64 = 60.0;
 
 /// Returns the timeline from the first key to the last. Its frame rate is the one that
 /// [`frame_rate::of_times`] finds with as little tolerance as possible, or else [`FALLBACK_RATE`];
-/// `own_rate`, if the file tells it. Returns `None` if all keys are at the same time. `at` is the path of
-/// the animation.
+/// `own_rate`, if the file tells it. Returns `None` if all keys are at the same time. `at` is the
+/// path of the animation.
 pub fn timeline(
     tracks: &NodeTracks<'_>,
     own_rate: Option<f64>,

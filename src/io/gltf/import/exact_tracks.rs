@@ -14,8 +14,8 @@
 //! the joint with the same interpolation. Only the quaternion splines of rotations are no splines of
 //! angles: they get keys in between, until the angles are as exact as f32.
 //!
-//! Files of this program have the keys of cubic splines beside them, see [`extras`](crate::io::gltf::extras).
-//! They are taken if their curve is that of the file.
+//! Files of this program have the keys of cubic splines beside them, see
+//! [`extras`](crate::io::gltf::extras). They are taken if their curve is that of the file.
 
 use core::cell::Cell;
 
@@ -105,8 +105,8 @@ impl<'a> ExactTracks<'a> {
         })
     }
 
-    /// The keys of angles that this program has written beside a rotation, and the frame of the angles
-    /// relative to the node; `None` without them, or if the file's curve is another one.
+    /// The keys of angles that this program has written beside a rotation, and the frame of the
+    /// angles relative to the node; `None` without them, or if the file's curve is another one.
     fn own_rotation(&self, node: usize) -> Option<(Spline<Vec3>, DMat3)> {
         /// Largest difference in radians, twice that of the export.
         const NEAR: f64 = 1e-4;
@@ -136,8 +136,8 @@ impl<'a> ExactTracks<'a> {
         is_same.then(|| (keys, DMat3::from_quat(frame)))
     }
 
-    /// The keys of an offset that this program has written beside a translation; `None` without them, or if
-    /// the curve of the file, `read`, is another one.
+    /// The keys of an offset that this program has written beside a translation; `None` without
+    /// them, or if the curve of the file, `read`, is another one.
     fn own_offset(&self, node: usize, read: &Spline<Vec3>) -> Option<Spline<Vec3>> {
         /// Largest difference of single-precision numbers from each other, relative to the largest.
         const NEAR: f32 = 1e-5;
