@@ -50,7 +50,7 @@ fn soft_reach(bits: &mut Bits<'_>) -> Option<SoftReach> {
 
 fn reference(bits: &mut Bits<'_>) -> TwistReference {
     match bits.below(4) {
-        0 => TwistReference::Limb,
+        0 => TwistReference::Up,
         1 => TwistReference::Pole(bits.finite_vector()),
         2 => {
             let map = Stereographic::new(bits.finite_vector(), bits.finite_vector());

@@ -24,7 +24,7 @@ fn twist_reference(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("twist");
     group.throughput(Throughput::Elements(facings.len() as u64));
     let references = [
-        ("limb", TwistReference::Limb),
+        ("up", TwistReference::Up),
         ("pole", TwistReference::Pole(Vec3::new(0.0, 400.0, -100.0))),
         ("stereographic", TwistReference::Stereographic(Stereographic::default())),
         ("transport", TwistReference::Transport),

@@ -1,7 +1,7 @@
 //! Inverse kinematics of the arm with a choice of twist reference and of soft limits.
 //!
 //! [`Ik`] combines a [`TwoBone`] with a [`TwistReference`] and a [`SoftReach`]. With
-//! [`TwistReference::Limb`] and hard limits its results are those of [`TwoBone`], bit for bit.
+//! [`TwistReference::Up`] and hard limits its results are those of [`TwoBone`], bit for bit.
 //!
 //! Everything is in Root space, right-handed; lengths share any one unit, angles are radians.
 //!
@@ -106,7 +106,7 @@ impl Ik {
         let outward = self.reference.outward(pointer, last.transported);
         let transported = TransportedFrame { direction: pointer.direction, outward };
         let twist = match self.reference {
-            TwistReference::Limb => twist,
+            TwistReference::Up => twist,
             _ => twist + angle_from_limb(pointer, outward),
         };
         let wanted = length(cursor);

@@ -255,7 +255,7 @@ fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
         direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_arc(it, from, to))
     };
     match after.ik.reference {
-        TwistReference::Limb => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
+        TwistReference::Up => nearest(Vec3::Y).min(nearest(Vec3::NEG_Y)),
         TwistReference::Pole(pole) => nearest(pole).min(nearest(-pole)),
         TwistReference::Stereographic(map) => nearest(map.singular()),
         // Without a previous frame, transport begins at the stereographic direction.

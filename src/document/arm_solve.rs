@@ -19,7 +19,7 @@ impl Arm {
     /// The twist reference of the given kind; a [`TwistReferenceKind::Pole`] has this arm's pole.
     pub fn reference_for(&self, kind: TwistReferenceKind) -> TwistReference {
         match kind {
-            TwistReferenceKind::Limb => TwistReference::Limb,
+            TwistReferenceKind::Up => TwistReference::Up,
             TwistReferenceKind::Pole => TwistReference::Pole(self.pole),
             TwistReferenceKind::Stereographic => {
                 TwistReference::Stereographic(Stereographic::default())
@@ -100,7 +100,7 @@ impl Arm {
         let solved = self.solve();
         let pose = self.blended_with(&solved.pose);
         let transported = match (self.twist_reference, self.ik_state.transported) {
-            (TwistReferenceKind::Limb, _) | (TwistReferenceKind::Transport, None) => None,
+            (TwistReferenceKind::Up, _) | (TwistReferenceKind::Transport, None) => None,
             _ => Some(solved.transported),
         };
         let hand_orientation = self.hand_orientation.with_roll_in(&pose);

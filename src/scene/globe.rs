@@ -25,7 +25,7 @@ impl Globe {
     pub fn singular(&self) -> impl Iterator<Item = Vec3> + Clone {
         let both = |axis: Vec3| [Some(axis), Some(-axis)];
         let directions = match self.reference {
-            TwistReference::Limb => both(Vec3::Y),
+            TwistReference::Up => both(Vec3::Y),
             TwistReference::Pole(pole) => {
                 let axis = pole.as_dvec3().try_normalize();
                 axis.map_or([None; 2], |axis| both(axis.as_vec3()))

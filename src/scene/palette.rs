@@ -84,7 +84,7 @@ impl Palette {
     /// Colour of a twist reference in the comparison of all references.
     pub fn twist_reference(&self, twist_reference: TwistReferenceKind) -> Colour {
         let [dark, light] = match twist_reference {
-            TwistReferenceKind::Limb => [0xf2d06b, 0x866400],
+            TwistReferenceKind::Up => [0xf2d06b, 0x866400],
             TwistReferenceKind::Pole => [0x8fd460, 0x3f7a15],
             TwistReferenceKind::Stereographic => [0x3fb8a5, 0x0b7466],
             TwistReferenceKind::Transport => [0xf08fb4, 0xb02a63],

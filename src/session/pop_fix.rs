@@ -24,7 +24,7 @@ impl PopFix {
         }
         match spike.pop {
             PopCause::Singular { .. } => match arm.twist_reference {
-                TwistReferenceKind::Limb | TwistReferenceKind::Pole => {
+                TwistReferenceKind::Up | TwistReferenceKind::Pole => {
                     Some(Self::ChangeReference(TwistReferenceKind::Stereographic))
                 }
                 TwistReferenceKind::Stereographic => {

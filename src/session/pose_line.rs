@@ -26,7 +26,7 @@ pub(super) fn of(arm: &Arm) -> String {
     set("root", json!(arm.root.to_array()));
     set("twist_deg", json!(twist_without_history(&arm).to_degrees()));
     match arm.twist_reference {
-        TwistReferenceKind::Limb => None,
+        TwistReferenceKind::Up => None,
         TwistReferenceKind::Pole => set("reference", json!({ "pole": arm.pole.to_array() })),
         TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
             set("reference", json!("stereographic"))

@@ -120,7 +120,7 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
 /// Tooltip of a twist reference.
 pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'static str {
     match twist_reference {
-        TwistReferenceKind::Limb => "Measure from straight up; flips above and below the shoulder",
+        TwistReferenceKind::Up => "Measure from straight up; flips above and below the shoulder",
         TwistReferenceKind::Pole => {
             "Measure from the Pole; flips where the Pointer passes through it"
         }

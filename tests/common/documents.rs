@@ -100,7 +100,7 @@ fn target_kind(random: &mut Random) -> TargetKind {
     }
     let reference = match random.below(4) {
         0 => ElbowReference::Fk,
-        1 => ElbowReference::Limb,
+        1 => ElbowReference::Up,
         2 => ElbowReference::Pole(random.finite_vector()),
         _ => ElbowReference::Stereographic(Stereographic::default()),
     };

@@ -20,7 +20,7 @@ fn arm(random: &mut Random) -> Arm {
         cursor: Cursor::unpinned(random.direction() * outer * random.within(0.05..1.5)),
         root: random.vector(outer),
         twist: random.within(0.0..TAU),
-        twist_reference: random.one_of(&[TwistReferenceKind::Limb, TwistReferenceKind::Pole]),
+        twist_reference: random.one_of(&[TwistReferenceKind::Up, TwistReferenceKind::Pole]),
         pole: random.direction() * outer,
         influence: random.one_of(&[1.0, 1.0, 0.5, 0.0]),
         fk: Fk { shoulder: random.angles(), bend: random.within(0.1..3.0), stretch: 1.0 },

@@ -67,7 +67,7 @@ fn random_target(random: &mut Random, joint: JointId, tip: Vec3) -> Target {
         period: random.within(0.5..4.0),
     };
     let settings = LimbSettings {
-        reference: random.one_of(&[ElbowReference::Fk, ElbowReference::Limb]),
+        reference: random.one_of(&[ElbowReference::Fk, ElbowReference::Up]),
         twist: random.within(-3.0..3.0),
         soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
             .expect("in range"),

@@ -21,7 +21,7 @@ fn arm(random: &mut Random) -> Arm {
         root: random.vector(outer),
         twist: random.within(0.0..TAU),
         twist_reference: random.one_of(&[
-            TwistReferenceKind::Limb,
+            TwistReferenceKind::Up,
             TwistReferenceKind::Pole,
             TwistReferenceKind::Stereographic,
         ]),

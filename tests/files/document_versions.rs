@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use ik_arm::document::TwistReferenceKind;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::chain_ik::Root;
+use ik_arm::kinematics::limb_ik::ElbowReference;
 
 use crate::common::damage::message;
 
@@ -111,6 +113,32 @@ fn a_root_that_older_files_call_fixed_turns() {
         assert_eq!((document.skeleton_rig.solver.root, warnings), (Root::Turns, vec![]));
         assert!(io::to_json(&document).expect("finite numbers").contains("\"root\": \"turns\""));
     }
+}
+
+#[test]
+fn the_reference_up_is_read_by_its_former_name_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let documents = ["limb", "up"].map(|name| {
+        let path = folder.path().join("reference.json");
+        let text = format!(
+            "{{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"skeleton\",\
+             \"arm\":{{\"twist_reference\":{{\"kind\":\"{name}\"}}}},\
+             \"skeleton\":{{\"joints\":[{{\"name\":\"a\",\"axis\":[1,0,0]}},\
+             {{\"name\":\"b\",\"parent\":0,\"axis\":[1,0,0]}}]}},\
+             \"targets\":[{{\"joint\":1,\"home\":[1,1,0],\"limb\":{{\"reference\":\"{name}\"}}}}]}}"
+        );
+        fs::write(&path, text).expect("written");
+        let Opened { document, warnings, .. } = open(&path);
+        assert_eq!(warnings, []);
+        document
+    });
+    let [former, document] = &documents;
+    assert_eq!(former, document);
+    assert_eq!(document.arm.twist_reference, TwistReferenceKind::Up);
+    let limb = document.skeleton_rig.targets[0].limb().expect("a limb");
+    assert_eq!(limb.reference, ElbowReference::Up);
+    let saved = io::to_json(document).expect("finite numbers");
+    assert!(saved.contains("\"kind\": \"up\"") && saved.contains("\"reference\": \"up\""));
 }
 
 fn version_1(fields: &str) -> String {

@@ -37,7 +37,7 @@ fn globe_scene(reference: TwistReference, theme: Theme) -> Scene {
 
 fn references() -> [(&'static str, TwistReference); 3] {
     [
-        ("limb", TwistReference::Limb),
+        ("up", TwistReference::Up),
         ("pole", TwistReference::Pole(POLE)),
         ("stereographic", TwistReference::Stereographic(Stereographic::default())),
     ]
@@ -55,10 +55,10 @@ fn the_globe_of_each_reference_in_both_themes() {
 fn the_globe_seen_from_inside() {
     let mut inside =
         globe_scene(TwistReference::Stereographic(Stereographic::default()), Theme::Dark);
-    let target = Vec3::NEG_X * globe(TwistReference::Limb).radius;
+    let target = Vec3::NEG_X * globe(TwistReference::Up).radius;
     inside.camera = Camera { target, yaw: 1.8, pitch: 0.2, distance: 430.0, ..inside.camera };
     let eye = inside.camera.projection(1.0).eye;
-    assert!(eye.distance(Vec3::ZERO) < globe(TwistReference::Limb).radius);
+    assert!(eye.distance(Vec3::ZERO) < globe(TwistReference::Up).radius);
     check("globe_inside", &inside);
 }
 
@@ -132,7 +132,7 @@ fn every_pixel_of_a_globe_has_the_colour_of_its_gain() {
     const OFF: f64 = 2.5 / 255.0;
     let tilted = Stereographic::new(Vec3::new(0.4, 0.8, 0.7), Vec3::Y).expect("a map");
     let references = [
-        TwistReference::Limb,
+        TwistReference::Up,
         TwistReference::Pole(Vec3::new(-0.3, 0.2, 0.9) * 300.0),
         TwistReference::Stereographic(tilted),
         TwistReference::Transport,
@@ -195,7 +195,7 @@ fn a_globe_without_a_size_is_not_drawn() {
         (Vec3::ZERO, f32::INFINITY),
         (Vec3::NAN, 1.0),
     ] {
-        let globe = Globe { centre, radius, reference: TwistReference::Limb };
+        let globe = Globe { centre, radius, reference: TwistReference::Up };
         let mut with = plain.clone();
         with.add_globe(globe);
         assert_eq!(with, plain, "{globe:?}");
@@ -208,7 +208,7 @@ fn a_globe_without_a_size_is_not_drawn() {
 #[test]
 fn every_singular_direction_is_marked_on_the_globe() {
     let expected = [
-        (TwistReference::Limb, vec![Vec3::Y, Vec3::NEG_Y]),
+        (TwistReference::Up, vec![Vec3::Y, Vec3::NEG_Y]),
         (TwistReference::Pole(Vec3::X * 30.0), vec![Vec3::X, Vec3::NEG_X]),
         (TwistReference::Pole(Vec3::X * 1e-30), vec![Vec3::X, Vec3::NEG_X]),
         (TwistReference::Pole(Vec3::X * 1e30), vec![Vec3::X, Vec3::NEG_X]),

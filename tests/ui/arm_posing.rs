@@ -171,7 +171,7 @@ fn changing_the_twist_reference_keeps_the_elbow() {
         ("Pole", TwistReferenceKind::Pole),
         ("Stereographic", TwistReferenceKind::Stereographic),
         ("Transport", TwistReferenceKind::Transport),
-        ("Limb", TwistReferenceKind::Limb),
+        ("Up", TwistReferenceKind::Up),
     ] {
         pick(&mut bench, "Twist reference", name);
         assert_eq!(bench.session().arm().twist_reference, twist_reference);

@@ -48,7 +48,7 @@ pub enum ElbowReference {
     #[default]
     Fk,
     /// Up, +y of the space of the upper joint's parent.
-    Limb,
+    Up,
     /// The direction to a point in the world.
     Pole(Vec3),
     /// A stereographic map in the space of the upper joint's parent.
@@ -157,7 +157,7 @@ impl<'a> LocalTarget<'a> {
         let above = fk.above.rotation;
         let outward = match self.target.reference {
             ElbowReference::Fk => None,
-            ElbowReference::Limb => Some(above.y_axis),
+            ElbowReference::Up => Some(above.y_axis),
             ElbowReference::Pole(_) => Some((self.pole - fk.base).normalize_or_zero()),
             ElbowReference::Stereographic(map) => {
                 map.outward(above.transpose() * pointer).map(|outward| above * outward)

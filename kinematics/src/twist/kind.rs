@@ -12,9 +12,10 @@ use thiserror::Error;
     serde(rename_all = "snake_case")
 )]
 pub enum TwistReferenceKind {
-    /// The Limb frame's +y.
+    /// Up: the Limb frame's +y.
     #[default]
-    Limb,
+    #[cfg_attr(feature = "serde", serde(alias = "limb"))]
+    Up,
     /// Direction towards a point of Root space.
     Pole,
     /// Stereographic map of directions.
@@ -25,17 +26,17 @@ pub enum TwistReferenceKind {
 
 /// Error for a text that is not the name of a twist reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("twist reference must be limb, pole, stereographic or transport")]
+#[error("twist reference must be up, pole, stereographic or transport")]
 pub struct UnknownTwistReference;
 
 impl TwistReferenceKind {
     /// All kinds, in the order in which panels list them.
-    pub const ALL: [Self; 4] = [Self::Limb, Self::Pole, Self::Stereographic, Self::Transport];
+    pub const ALL: [Self; 4] = [Self::Up, Self::Pole, Self::Stereographic, Self::Transport];
 
-    /// Name for labels, such as "Limb".
+    /// Name for labels, such as "Up".
     pub fn name(self) -> &'static str {
         match self {
-            Self::Limb => "Limb",
+            Self::Up => "Up",
             Self::Pole => "Pole",
             Self::Stereographic => "Stereographic",
             Self::Transport => "Transport",
@@ -47,7 +48,7 @@ impl fmt::Display for TwistReferenceKind {
     /// The name in lower case, as in files and on the command line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
-            Self::Limb => "limb",
+            Self::Up => "up",
             Self::Pole => "pole",
             Self::Stereographic => "stereographic",
             Self::Transport => "transport",
@@ -58,10 +59,11 @@ impl fmt::Display for TwistReferenceKind {
 impl FromStr for TwistReferenceKind {
     type Err = UnknownTwistReference;
 
-    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display).
+    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display). `limb`, the former name
+    /// of `up`, is read too.
     fn from_str(text: &str) -> Result<Self, UnknownTwistReference> {
         match text {
-            "limb" => Ok(Self::Limb),
+            "up" | "limb" => Ok(Self::Up),
             "pole" => Ok(Self::Pole),
             "stereographic" => Ok(Self::Stereographic),
             "transport" => Ok(Self::Transport),

@@ -20,7 +20,7 @@
 //!
 //! | reference | e₀ | singular at | gain |
 //! | --- | --- | --- | --- |
-//! | [`TwistReference::Limb`] | the Limb frame's +y | ŵ = ±y | \|tan θ_y\| |
+//! | [`TwistReference::Up`] | the Limb frame's +y | ŵ = ±y | \|tan θ_y\| |
 //! | [`TwistReference::Pole`] p | component of p perpendicular to ŵ, normalised | ŵ ∥ p | \|cot ∠(ŵ, p)\| |
 //! | [`TwistReference::Stereographic`] | k × ŵ normalised, k = (ŵ − R) × V | ŵ = R | tan(½ ∠(ŵ, −R)) |
 //! | [`TwistReference::Transport`] | the previous e₀, parallel-transported | none | 0 |
@@ -32,7 +32,7 @@
 //!
 //! A. Elias, J. Wen, *Redundancy parameterization and inverse kinematics of 7-DOF revolute
 //! manipulators*, arXiv 2307.13122, 2023 (stereographic swivel angle); E. Palmieri, *IK-Rigging in
-//! three.js*, 2014 (the Limb as reference).
+//! three.js*, 2014 (up as reference).
 
 mod kind;
 mod limb;

@@ -16,9 +16,10 @@ use crate::two_bone::Pointer;
     serde(rename_all = "snake_case")
 )]
 pub enum TwistReference {
-    /// The Limb frame's +y: the part of up (+y of Root space) that is perpendicular to the Pointer.
+    /// Up: the Limb frame's +y, the part of +y of Root space that is perpendicular to the Pointer.
     #[default]
-    Limb,
+    #[cfg_attr(feature = "serde", serde(alias = "limb"))]
+    Up,
     /// Direction towards the pole, a point in Root space.
     Pole(Vec3),
     /// Direction by a stereographic map, which is singular in one direction only.
@@ -34,7 +35,7 @@ impl TwistReference {
     pub fn outward(self, pointer: Pointer, last: Option<TransportedFrame>) -> Vec3 {
         let w = unit(pointer.direction);
         let own = match self {
-            Self::Limb => Some(pointer.limb_frame().y_axis.as_dvec3()),
+            Self::Up => Some(pointer.limb_frame().y_axis.as_dvec3()),
             Self::Pole(pole) => towards(pole, w),
             Self::Stereographic(map) => map.outward(w),
             // Without a previous frame, transport begins at the stereographic direction.
@@ -53,7 +54,7 @@ impl TwistReference {
     #[must_use]
     pub fn angle(self, pointer: Pointer, last: Option<TransportedFrame>) -> f32 {
         match self {
-            Self::Limb => 0.0,
+            Self::Up => 0.0,
             _ => angle_from_limb(pointer, self.outward(pointer, last)),
         }
     }
@@ -63,7 +64,7 @@ impl TwistReference {
     pub fn gain(self, pointer: Pointer) -> f32 {
         let w = unit(pointer.direction);
         let gain = match self {
-            Self::Limb => w.y.abs() / w.x.hypot(w.z),
+            Self::Up => w.y.abs() / w.x.hypot(w.z),
             // Rounding of the Pointer moves a pole on the Pointer's line slightly off this line.
             Self::Pole(pole) if towards(pole, w).is_none() => f64::INFINITY,
             Self::Pole(pole) => {
@@ -82,7 +83,7 @@ impl TwistReference {
     /// The kind of the reference, without its pole or map.
     pub fn kind(self) -> TwistReferenceKind {
         match self {
-            Self::Limb => TwistReferenceKind::Limb,
+            Self::Up => TwistReferenceKind::Up,
             Self::Pole(_) => TwistReferenceKind::Pole,
             Self::Stereographic(_) => TwistReferenceKind::Stereographic,
             Self::Transport => TwistReferenceKind::Transport,

@@ -119,7 +119,7 @@ pub fn arms_of(lengths: Range<f32>) -> impl Strategy<Value = TwoBone> {
 /// Every kind of twist reference.
 pub fn references(poles: impl Strategy<Value = Vec3>) -> impl Strategy<Value = TwistReference> {
     prop_oneof![
-        Just(TwistReference::Limb),
+        Just(TwistReference::Up),
         poles.prop_map(TwistReference::Pole),
         Just(TwistReference::Stereographic(Stereographic::default())),
         Just(TwistReference::Transport),

@@ -89,7 +89,7 @@ fn random_rig(random: &mut Random) -> SkeletonRig {
         let settings = LimbSettings {
             reference: random.one_of(&[
                 ElbowReference::Fk,
-                ElbowReference::Limb,
+                ElbowReference::Up,
                 ElbowReference::Pole(random_pole()),
             ]),
             twist: random.within(-3.0..3.0),

@@ -241,7 +241,7 @@ fn blend(
     bones: TwoBone,
     cursor: Vec3,
 ) -> TwoBonePose {
-    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
+    let ik = Ik { bones, reference: TwistReference::Up, soft_reach };
     let solved = ik.solve(cursor, 0.3, IkState::default()).pose;
     blended(fk, &solved, influence, bones, cursor)
 }
@@ -256,7 +256,7 @@ fn frame(pose: &TwoBonePose) -> DMat3 {
 #[test]
 fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
     let bones = TwoBone::new(2.0, 3.0).expect("lengths");
-    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
+    let ik = Ik { bones, reference: TwistReference::Up, soft_reach: SoftReach::default() };
     for twist in [0.0, 1.0, -2.5_f32] {
         for bend in [0.0, core::f32::consts::PI] {
             let fk = Fk { shoulder: Vec3::new(twist, 0.3, -0.7), bend, stretch: 1.0 };

@@ -33,7 +33,7 @@ proptest! {
         bones in arms_of(1.0..10.0), cursor in points(25.0), twist in -7.0..7.0_f32
     ) {
         let plain = bones.solve(cursor, twist);
-        let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: SoftReach::default() };
+        let ik = Ik { bones, reference: TwistReference::Up, soft_reach: SoftReach::default() };
         let pose = ik.solve(cursor, twist, IkState::default()).pose;
         prop_assert_eq!(bits(pose.elbow), bits(plain.elbow));
         prop_assert_eq!(bits(pose.hand), bits(plain.hand));
@@ -235,7 +235,7 @@ fn speed_beside_vertical(reference: TwistReference, aside: f32) -> f64 {
 fn past_vertical_elbow_speed_is_unbounded_with_limb_and_bounded_with_stereographic() {
     for bound in [1e1, 1e2, 1e3, 1e4] {
         let aside = 0.5 / bound as f32;
-        let speed = speed_beside_vertical(TwistReference::Limb, aside);
+        let speed = speed_beside_vertical(TwistReference::Up, aside);
         assert!(speed > bound, "{speed} at {aside}");
         let map = TwistReference::Stereographic(Stereographic::default());
         let speed = speed_beside_vertical(map, aside.max(1e-3));
@@ -247,7 +247,7 @@ fn past_vertical_elbow_speed_is_unbounded_with_limb_and_bounded_with_stereograph
 fn without_softness_the_speed_of_a_nearly_straight_elbow_is_unbounded() {
     let bones = TwoBone::new(1.0, 1.0).expect("lengths");
     let speed = |soft_reach, from: f32| {
-        let ik = Ik { bones, reference: TwistReference::Limb, soft_reach };
+        let ik = Ik { bones, reference: TwistReference::Up, soft_reach };
         let elbow = |x| ik.solve(Vec3::X * x, 0.0, IkState::default()).pose.elbow.as_dvec3();
         elbow(from).distance(elbow(2.0)) / f64::from(2.0 - from)
     };
@@ -274,7 +274,7 @@ fn a_cursor_whose_distance_overflows_is_not_reached() {
     // √2 times as far as the largest number.
     let cursor = Vec3::new(0.0, FAR, FAR);
     let bones = TwoBone::new(1.0, FAR).expect("lengths");
-    let ik = Ik { bones, reference: TwistReference::Limb, soft_reach: soft(0.1, 1.0, 0.0) };
+    let ik = Ik { bones, reference: TwistReference::Up, soft_reach: soft(0.1, 1.0, 0.0) };
     let pose = ik.solve(cursor, 0.0, IkState::default()).pose;
     assert_eq!(pose.reach, Some(Reach::TooFar));
     assert!((pose.hand.as_dvec3().length() / f64::from(FAR) - 1.0).abs() < 0.1, "{}", pose.hand);

@@ -254,7 +254,7 @@ fn the_fk_twist_of_every_reference_keeps_the_elbow() {
         let (skeleton, limb) = leg(&mut random);
         let reference = random.one_of(&[
             ElbowReference::Fk,
-            ElbowReference::Limb,
+            ElbowReference::Up,
             ElbowReference::Pole(Vec3::new(3.0, 4.0, -5.0)),
             ElbowReference::Stereographic(Stereographic::default()),
         ]);
@@ -409,7 +409,7 @@ fn degenerate_limbs_and_targets_give_finite_poses() {
         let soft_reach = SoftReach::new(random.within(0.0..0.9), 1.2, 0.5).expect("in range");
         let reference = random.one_of(&[
             ElbowReference::Fk,
-            ElbowReference::Limb,
+            ElbowReference::Up,
             ElbowReference::Pole(point),
             ElbowReference::Stereographic(Stereographic::default()),
         ]);

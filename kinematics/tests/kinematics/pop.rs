@@ -67,7 +67,7 @@ fn over_the_top() -> impl Iterator<Item = Vec3> + Clone {
 
 #[test]
 fn a_hand_that_passes_over_the_shoulder_pops_at_the_limbs_pole() {
-    let pops = pops(arm(TwistReference::Limb, 0.0), over_the_top());
+    let pops = pops(arm(TwistReference::Up, 0.0), over_the_top());
     assert!(!pops.is_empty());
     let nearest = pops.iter().map(|pop| match pop {
         PopCause::Singular { nearest } => f64::from(*nearest),
@@ -114,7 +114,7 @@ fn stereographic_pops_only_behind_and_transport_nowhere() {
         |pop: &PopCause| matches!(pop, PopCause::Singular { nearest } if *nearest < 0.15);
     assert!(!on_map.is_empty() && on_map.iter().all(is_singular), "{on_map:?}");
     assert_eq!(pops_of(TwistReference::Transport), []);
-    assert_eq!(pops_of(TwistReference::Limb), []);
+    assert_eq!(pops_of(TwistReference::Up), []);
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn every_input_change_except_the_cursors_has_its_own_name() {
     let fk = Fk { bend: 1.25, ..before.fk };
     let changed = [
         (InputChange::Lengths, with(Ik { bones, ..ik })),
-        (InputChange::TwistReference, with(Ik { reference: TwistReference::Limb, ..ik })),
+        (InputChange::TwistReference, with(Ik { reference: TwistReference::Up, ..ik })),
         (InputChange::Pole, with(Ik { reference: TwistReference::Pole(Vec3::X), ..ik })),
         (InputChange::SoftReach, with(Ik { soft_reach: soft(0.1), ..ik })),
         (InputChange::Influence, PosedArm { influence: 0.25, ..before }),
@@ -189,7 +189,7 @@ fn every_input_change_except_the_cursors_has_its_own_name() {
 
 #[test]
 fn settings_that_do_not_pose_the_arm_are_no_input_change() {
-    let before = moments(arm(TwistReference::Limb, 0.0), [Vec3::X])[0];
+    let before = moments(arm(TwistReference::Up, 0.0), [Vec3::X])[0];
     let elsewhere = PosedArm { cursor: Vec3::Y, ..before };
     let pinned = PosedArm { pinned_root: Some(Vec3::Y), ..before };
     let turned = PosedArm { fk: Fk { bend: 2.0, ..before.fk }, ..before };
@@ -225,7 +225,7 @@ fn cursors() -> impl Strategy<Value = Vec3> {
 
 fn references() -> impl Strategy<Value = TwistReference> {
     prop_oneof![
-        Just(TwistReference::Limb),
+        Just(TwistReference::Up),
         Just(TwistReference::Pole(Vec3::new(30.0, -250.0, 120.0))),
         Just(map()),
     ]

@@ -47,7 +47,7 @@ fn settings(random: &mut Random) -> LimbSettings {
     LimbSettings {
         reference: random.one_of(&[
             ElbowReference::Fk,
-            ElbowReference::Limb,
+            ElbowReference::Up,
             ElbowReference::Pole(Vec3::new(1.0, -2.0, 3.0)),
             ElbowReference::Stereographic(Stereographic::default()),
         ]),

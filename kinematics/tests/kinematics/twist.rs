@@ -19,7 +19,7 @@ const POLE: Vec3 = Vec3::new(30.0, -250.0, 120.0);
 
 fn stateless() -> [TwistReference; 3] {
     [
-        TwistReference::Limb,
+        TwistReference::Up,
         TwistReference::Pole(POLE),
         TwistReference::Stereographic(Stereographic::default()),
     ]
@@ -29,7 +29,7 @@ fn stateless() -> [TwistReference; 3] {
 fn twin(reference: TwistReference, w: DVec3) -> DVec3 {
     match reference {
         // Up, as far as the Pointer lets it.
-        TwistReference::Limb => (DVec3::Y - w * w.y).normalize(),
+        TwistReference::Up => (DVec3::Y - w * w.y).normalize(),
         TwistReference::Pole(pole) => {
             let pole = pole.as_dvec3();
             (pole - w * pole.dot(w)).normalize()
@@ -179,8 +179,8 @@ fn singular_directions_have_an_infinite_gain_and_use_the_transported_direction()
     }
     for w in [Vec3::Y, Vec3::NEG_Y] {
         let pointer = Pointer::towards(w, Pointer::default());
-        assert_eq!(TwistReference::Limb.gain(pointer), f32::INFINITY);
-        assert!(TwistReference::Limb.outward(pointer, None).is_finite());
+        assert_eq!(TwistReference::Up.gain(pointer), f32::INFINITY);
+        assert!(TwistReference::Up.outward(pointer, None).is_finite());
     }
 }
 
@@ -225,7 +225,7 @@ fn stereographic_needs_two_directions() {
 #[test]
 fn the_limb_reference_is_the_y_axis_of_the_limb_frame() {
     let pointer = Pointer::towards(Vec3::new(1.0, 2.0, -0.5), Pointer::default());
-    assert_eq!(TwistReference::Limb.angle(pointer, None), 0.0);
+    assert_eq!(TwistReference::Up.angle(pointer, None), 0.0);
     let limb = pointer.limb_frame();
     assert_eq!(angle_from_limb(pointer, limb.y_axis), 0.0);
     assert!((angle_from_limb(pointer, limb.z_axis) - std::f32::consts::FRAC_PI_2).abs() < 1e-6);

@@ -17,9 +17,9 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 #[derive(clap::Args)]
 #[command(after_help = r#"Each line in is an object; only "hand" (relative to root) is required:
   {"hand":[250,120,60],"upper":200,"lower":300,"root":[0,0,0],"twist_deg":0,
-   "reference":"limb","softness":0,"max_stretch":1,"min_elbow_angle_deg":0}
+   "reference":"up","softness":0,"max_stretch":1,"min_elbow_angle_deg":0}
 reference, the direction that the twist is measured from:
-  "limb"            up, as far as the hand's direction lets it
+  "up"              up, as far as the hand's direction lets it
   {"pole":[x,y,z]}  towards a point, relative to root
   "stereographic"   from a stereographic map of all directions but -x
   "transport"       as stereographic in the first line, then transported from line to line; a bad

@@ -53,7 +53,8 @@ struct LimbFields {
 enum ElbowReferenceName {
     #[default]
     Fk,
-    Limb,
+    #[serde(alias = "limb")]
+    Up,
     Pole,
     Stereographic,
 }
@@ -149,7 +150,7 @@ impl LimbFields {
     fn new(settings: &LimbSettings) -> Self {
         let (reference, pole) = match settings.reference {
             ElbowReference::Fk => (ElbowReferenceName::Fk, None),
-            ElbowReference::Limb => (ElbowReferenceName::Limb, None),
+            ElbowReference::Up => (ElbowReferenceName::Up, None),
             ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(JsonPoint(pole))),
             ElbowReference::Stereographic(_) => (ElbowReferenceName::Stereographic, None),
         };
@@ -166,7 +167,7 @@ impl LimbFields {
     fn settings(&self, at: &JsonPath, joints: usize) -> Result<LimbSettings, FieldError> {
         let reference = match (self.reference.unwrap_or_default(), self.pole) {
             (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
-            (ElbowReferenceName::Limb, _) => ElbowReference::Limb,
+            (ElbowReferenceName::Up, _) => ElbowReference::Up,
             (ElbowReferenceName::Pole, Some(JsonPoint(pole))) => ElbowReference::Pole(pole),
             (ElbowReferenceName::Pole, None) => {
                 return Err(FieldError::new(at.clone(), "must have `pole` for reference `pole`"));

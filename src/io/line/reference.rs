@@ -25,12 +25,12 @@ impl<'de> Deserialize<'de> for ReferenceField {
             type Value = ReferenceField;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(r#""limb", {"pole":[x,y,z]}, "stereographic" or "transport""#)
+                f.write_str(r#""up", {"pole":[x,y,z]}, "stereographic" or "transport""#)
             }
 
             fn visit_str<E: Error>(self, name: &str) -> Result<ReferenceField, E> {
                 match name.parse() {
-                    Ok(TwistReferenceKind::Limb) => Ok(ReferenceField(TwistReference::Limb)),
+                    Ok(TwistReferenceKind::Up) => Ok(ReferenceField(TwistReference::Up)),
                     Ok(TwistReferenceKind::Stereographic) => {
                         Ok(ReferenceField(TwistReference::Stereographic(Stereographic::default())))
                     }

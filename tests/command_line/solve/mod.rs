@@ -134,7 +134,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
 #[test]
 fn omitted_fields_default_to_the_original_arm_at_the_origin() {
     let full = concat!(
-        r#"{"min_elbow_angle_deg":0,"max_stretch":1,"softness":0,"reference":"limb","#,
+        r#"{"min_elbow_angle_deg":0,"max_stretch":1,"softness":0,"reference":"up","#,
         r#""twist_deg":0,"root":[0,0,0],"lower":300,"upper":200,"hand":[250,120,60]}"#
     );
     assert_eq!(answers(&solve(POSE)), answers(&solve(full)));
@@ -232,9 +232,9 @@ impl Query {
         // Omitted fields, written out.
         let as_before = [
             "",
-            r#","reference":"limb""#,
+            r#","reference":"up""#,
             r#","softness":0,"max_stretch":1"#,
-            r#","min_elbow_angle_deg":0,"reference":"limb","softness":-0.0,"max_stretch":1.0"#,
+            r#","min_elbow_angle_deg":0,"reference":"up","softness":-0.0,"max_stretch":1.0"#,
         ][random.below(4)];
         format!(
             r#"{{"hand":[{hand}],"upper":{upper},"lower":{lower},"root":[{root}],"twist_deg":{twist}{as_before}}}"#
@@ -350,7 +350,7 @@ fn a_missing_unknown_or_duplicate_field_is_named() {
             "unknown field `elbow_spin_deg`; it is called `twist_deg`".to_owned(),
         ),
         (
-            r#"{"swivel":"limb","hand":[1,2,3]}"#,
+            r#"{"swivel":"up","hand":[1,2,3]}"#,
             "unknown field `swivel`; it is called `reference`".to_owned(),
         ),
         (
@@ -759,7 +759,7 @@ fn any_valid_line() -> impl Strategy<Value = String> {
     let number = || any::<f32>().prop_filter("finite", |n| n.is_finite());
     let length = number().prop_map(|n| n.abs().max(f32::from_bits(1)));
     let twist_reference = prop_oneof![
-        prop::sample::select(vec!["limb", "stereographic", "transport"])
+        prop::sample::select(vec!["up", "stereographic", "transport"])
             .prop_map(|name| format!("\"{name}\"")),
         prop::array::uniform3(number())
             .prop_map(|[x, y, z]| format!("{{\"pole\":[{x:e},{y:e},{z:e}]}}")),

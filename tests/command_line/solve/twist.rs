@@ -67,7 +67,7 @@ struct Formula {
 fn formulas(at: Vec3) -> [Formula; 3] {
     [
         Formula {
-            twist_reference: r#""limb""#.to_owned(),
+            twist_reference: r#""up""#.to_owned(),
             outward: |w, _| DVec3::Y.reject_from(w).normalize(),
             gain: |w, _| w.y.asin().tan().abs(),
         },
@@ -143,8 +143,8 @@ fn a_pole_is_relative_to_the_root() {
 fn at_a_singular_direction_the_gain_is_null_and_the_elbow_is_that_of_limb() {
     let hand = Vec3::new(250.0, 120.0, 60.0);
     for (hand, twist_reference) in [
-        (Vec3::new(0.0, 400.0, 0.0), r#""limb""#.to_owned()),
-        (Vec3::new(0.0, -400.0, 0.0), r#""limb""#.to_owned()),
+        (Vec3::new(0.0, 400.0, 0.0), r#""up""#.to_owned()),
+        (Vec3::new(0.0, -400.0, 0.0), r#""up""#.to_owned()),
         (hand, pole(Vec3::ZERO)),
         (hand, pole(hand)),
         (hand, pole(hand * -7.0)),
@@ -153,7 +153,7 @@ fn at_a_singular_direction_the_gain_is_null_and_the_elbow_is_that_of_limb() {
     ] {
         // State of earlier lines has no effect on it.
         let elsewhere = transported(Vec3::new(10.0, -20.0, 300.0));
-        let lines = [elsewhere, line(hand, &twist_reference), line(hand, r#""limb""#)];
+        let lines = [elsewhere, line(hand, &twist_reference), line(hand, r#""up""#)];
         let [_, singular, limb] = poses(&lines).try_into().expect("three poses");
         assert_eq!(singular.reference_gain, None, "{twist_reference} at {hand}");
         let off = singular.elbow.distance(limb.elbow);
@@ -164,7 +164,7 @@ fn at_a_singular_direction_the_gain_is_null_and_the_elbow_is_that_of_limb() {
 #[test]
 fn beside_a_singular_direction_the_gain_is_a_number() {
     for (twist_reference, hand) in [
-        (r#""limb""#.to_owned(), Vec3::new(0.1, 400.0, 0.0)),
+        (r#""up""#.to_owned(), Vec3::new(0.1, 400.0, 0.0)),
         (r#""stereographic""#.to_owned(), Vec3::new(-400.0, 0.2, 0.0)),
         (pole(Vec3::new(0.0, 0.0, -9.0)), Vec3::new(0.1, 0.0, -400.0)),
     ] {
@@ -252,7 +252,7 @@ fn the_transported_direction_survives_bad_and_blank_lines() {
         "x",
         "{}",
         r#"{"hand":[1,2]}"#,
-        r#"{"hand":[0,0,300],"reference":"limb","upper":0}"#,
+        r#"{"hand":[0,0,300],"reference":"up","upper":0}"#,
         r#"{"hand":[0,0,300],"reference":"limp"}"#,
         r#"{"hand":[0,0,300],"reference":"transport","softness":1}"#,
         r#"{"hand":[0,0,300],"reference":"transport"} x"#,
@@ -275,7 +275,7 @@ fn transport_restarts_after_a_line_with_another_reference() {
     let alone = answers(&solve(&third));
     for other in [
         "",
-        r#","reference":"limb""#,
+        r#","reference":"up""#,
         r#","reference":{"pole":[1,2,3]}"#,
         r#","reference":"stereographic""#,
     ] {
@@ -338,21 +338,28 @@ fn without_transport_lines_are_independent() {
     assert_eq!(found, forwards);
 }
 
+#[test]
+fn the_reference_up_is_read_by_its_former_name_too() {
+    let lines = [r#""limb""#, r#""up""#].map(|name| line(Vec3::new(120.0, 200.0, 40.0), name));
+    let poses = poses(&lines);
+    assert_eq!(poses[0].elbow, poses[1].elbow);
+}
+
 // Invalid lines
 
 #[test]
 fn an_unknown_reference_is_refused_with_the_list_of_references() {
-    let all = r#"expected "limb", {"pole":[x,y,z]}, "stereographic" or "transport""#;
+    let all = r#"expected "up", {"pole":[x,y,z]}, "stereographic" or "transport""#;
     for (twist_reference, found) in [
         (r#""limp""#, r#"invalid value: string "limp""#),
-        (r#""Limb""#, r#"invalid value: string "Limb""#),
+        (r#""Up""#, r#"invalid value: string "Up""#),
         (r#""""#, r#"invalid value: string """#),
         (r#""pole""#, r#"invalid value: string "pole""#),
         ("null", "invalid type: null"),
         ("true", "invalid type: boolean `true`"),
         ("5", "invalid type: integer `5`"),
         ("[0,1,0]", "invalid type: sequence"),
-        (r#"["limb"]"#, "invalid type: sequence"),
+        (r#"["up"]"#, "invalid type: sequence"),
     ] {
         let error = refusal(line(Vec3::ONE, twist_reference));
         assert_eq!(error, format!("reference: {found}, {all}"));
@@ -365,7 +372,7 @@ fn an_invalid_pole_is_named_with_the_expected_type() {
     for (twist_reference, error) in [
         ("{}", "reference: missing field `pole`".to_owned()),
         (r#"{"pol":[0,1,0]}"#, "reference.pol: unknown field `pol`, expected `pole`".to_owned()),
-        (r#"{"limb":null}"#, "reference.limb: unknown field `limb`, expected `pole`".to_owned()),
+        (r#"{"up":null}"#, "reference.up: unknown field `up`, expected `pole`".to_owned()),
         (
             r#"{"pole":[0,1,0],"up":1}"#,
             "reference.up: unknown field `up`, expected `pole`".to_owned(),
@@ -398,7 +405,7 @@ fn an_invalid_pole_is_named_with_the_expected_type() {
         assert_eq!(refusal(line(Vec3::ONE, twist_reference)), error, "{twist_reference}");
     }
     assert_eq!(
-        refusal(r#"{"hand":[1,2,3],"reference":"limb","reference":"limb"}"#),
+        refusal(r#"{"hand":[1,2,3],"reference":"up","reference":"up"}"#),
         "duplicate field `reference`"
     );
 }

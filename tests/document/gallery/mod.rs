@@ -113,7 +113,7 @@ fn straight_up_and_down_the_limbs_elbow_jumps_and_the_stereographic_one_does_not
         arms.iter().filter(is_upright).map(|arm| arm.cursor_in_root().y).collect();
     assert_eq!(upright, [350.0, -350.0]);
     assert!(arms.iter().all(is_at_its_cursor));
-    assert_eq!((document.arm.twist_reference, jumps(&arms, 20.0)), (TwistReferenceKind::Limb, 2));
+    assert_eq!((document.arm.twist_reference, jumps(&arms, 20.0)), (TwistReferenceKind::Up, 2));
     let across = largest(&steps(&arms, |arm| arm.pose().elbow));
     let out = f64::from(arms[0].pose().out);
     assert!(across > 1.9 * out, "{across}, out {out}");

@@ -51,7 +51,7 @@ fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     let (cos_yaw, sin_yaw) = if flat == 0.0 { heading.into() } else { (x / flat, z / flat) };
     let limb = DVec3::new(-sin_pitch * cos_yaw, flat, -sin_pitch * sin_yaw);
     match arm.twist_reference {
-        TwistReferenceKind::Limb => limb,
+        TwistReferenceKind::Up => limb,
         TwistReferenceKind::Pole => {
             let pole = arm.pole.as_dvec3();
             let aside = pole.reject_from_normalized(forward);

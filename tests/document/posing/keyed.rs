@@ -118,7 +118,7 @@ fn the_twist_of_a_transported_elbow_can_be_set_between_keys_of_the_hand() {
 #[test]
 fn a_transported_elbow_between_keys_stays_with_another_twist_reference() {
     for twist_reference in
-        [TwistReferenceKind::Limb, TwistReferenceKind::Pole, TwistReferenceKind::Stereographic]
+        [TwistReferenceKind::Up, TwistReferenceKind::Pole, TwistReferenceKind::Stereographic]
     {
         let mut session = move_off_the_keys_and_back(transported_between_keys());
         let before = *session.pose();

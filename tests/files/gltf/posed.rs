@@ -68,7 +68,7 @@ fn target(random: &mut Random, rig: &SkeletonRig, joint: JointId, reach: f32) ->
     let path = random.one_of(&[TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight]);
     let motion = TargetMotion { path, radius: 0.1 * reach, period: 1.3 };
     let pole = ElbowReference::Pole(random.vector(3.0) * reach);
-    let reference = random.one_of(&[ElbowReference::Fk, ElbowReference::Limb, pole]);
+    let reference = random.one_of(&[ElbowReference::Fk, ElbowReference::Up, pole]);
     let settings = LimbSettings {
         reference,
         twist: random.within(-2.0..2.0),

@@ -85,7 +85,7 @@ fn describe(spike: &Spike) -> String {
     match spike.pop {
         PopCause::Singular { nearest } => {
             let pole = match spike.ik.reference {
-                TwistReference::Limb => "the vertical",
+                TwistReference::Up => "the vertical",
                 TwistReference::Pole(_) => "the pole",
                 TwistReference::Stereographic(_) | TwistReference::Transport => {
                     "straight behind, −x"

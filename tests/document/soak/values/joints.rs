@@ -187,7 +187,7 @@ impl Values<'_> {
     fn limb(&mut self) -> TargetKind {
         let pole = self.small_point();
         let reference =
-            self.one_of(&[ElbowReference::Fk, ElbowReference::Limb, ElbowReference::Pole(pole)]);
+            self.one_of(&[ElbowReference::Fk, ElbowReference::Up, ElbowReference::Pole(pole)]);
         let orientation = self.chance(0.5).then(|| self.small_point());
         let (twist, pole_space) = (self.number(4.0), self.space());
         let settings =

@@ -59,7 +59,7 @@ fn reference(
     let map = ElbowReference::Stereographic(Stereographic::default());
     let references = [
         (ElbowReference::Fk, "FK", "Keep the side that the joint angles give"),
-        (ElbowReference::Limb, "Up", "Measure from up"),
+        (ElbowReference::Up, "Up", "Measure from up"),
         (pole, "Pole", "Measure from the direction to a point"),
         (map, "Stereographic", "Measure from a stereographic map"),
     ];
