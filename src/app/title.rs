@@ -6,10 +6,13 @@ use crate::session::Session;
 pub const TITLE: &str = "ik-arm";
 
 /// Title of the window: the file's name, an asterisk for unsaved changes, and the program; during the
-/// tour, the step.
+/// tour, the step or the title of the last card.
 pub fn title(session: &Session) -> String {
     if let Some(tour) = session.tour() {
-        return format!("Tour, step {} – {TITLE}", tour.number() + 1);
+        return match tour.step() {
+            Some(_) => format!("Tour, step {} – {TITLE}", tour.number() + 1),
+            None => format!("Tour, {} – {TITLE}", tour.title()),
+        };
     }
     let unsaved = if session.is_unsaved() { "*" } else { "" };
     match session.file().and_then(Path::file_name) {

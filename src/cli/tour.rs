@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::report::fail;
 use crate::session::{
-    Comparison, PlaybackAction, Preferences, Session, TourAction, TourStep, filled,
+    Comparison, PlaybackAction, Preferences, Session, TourAction, TourEnd, TourStep, filled,
 };
 
 const WIDTH: usize = 88;
@@ -28,7 +28,7 @@ fn print(out: &mut impl Write) -> io::Result<()> {
         session.apply(TourAction::Enter(number));
         print_step(out, step, &mut session)?;
     }
-    Ok(())
+    print_end(out, TourEnd::get())
 }
 
 fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> io::Result<()> {
@@ -40,7 +40,16 @@ fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> i
     paragraph(out, &format!("Now try it: {}", filled(&step.task, session)))?;
     paragraph(out, &format!("Without a mouse: {}", step.keyboard))?;
     demonstrate(session);
+    paragraph(out, &format!("Answer: {}", step.guess.right_answer()))?;
     paragraph(out, &format!("What happens: {}", filled(&step.result, session)))
+}
+
+fn print_end(out: &mut impl Write, end: &TourEnd) -> io::Result<()> {
+    writeln!(out, "\n{}\n", end.title)?;
+    for sentence in &end.sentences {
+        paragraph(out, &format!("- {sentence}"))?;
+    }
+    paragraph(out, &end.next)
 }
 
 /// Does the task of the step, and waits for the end of what it starts.

@@ -116,7 +116,7 @@ pub use skin_areas::SkinAreas;
 pub use solver_action::SolverAction;
 pub use solver_run::SolverRun;
 pub use solver_status::{SolverState, SolverStatus};
-pub use tour::{Goal, Guess, TourAction, TourState, TourStep, filled};
+pub use tour::{Goal, Guess, TourAction, TourEnd, TourState, TourStep, filled};
 pub use transaction_action::TransactionAction;
 pub use transport::TransportPath;
 pub use turn_drag::{GripRing, TurnDrag};

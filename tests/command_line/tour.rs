@@ -1,6 +1,6 @@
 //! `ik-arm tour` and `ik-arm gui --tour`, as a person runs them.
 
-use ik_arm::session::TourStep;
+use ik_arm::session::{TourEnd, TourStep};
 
 use crate::run;
 
@@ -14,7 +14,15 @@ fn the_whole_text_of_the_tour_is_printed_with_the_numbers_of_its_scenes() {
     }
     assert!(text.lines().all(|line| line.chars().count() <= 90), "lines fit into a terminal");
     assert!(!text.contains(['{', '}']), "every figure is filled in");
-    assert!(text.contains("distance² = upper² + lower²"));
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("cos φ = (upper² + lower² − distance²) / (2 · upper · lower)"));
+    let answers = TourStep::all().iter().map(|step| step.guess.right_answer());
+    for answer in answers {
+        assert!(words.contains(&format!("Answer: {answer} What happens: ")), "{answer}");
+    }
+    for sentence in &TourEnd::get().sentences {
+        assert!(words.contains(&format!("- {sentence}")), "{sentence}");
+    }
 }
 
 #[test]

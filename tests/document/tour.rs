@@ -10,8 +10,8 @@ use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, PoseMode,
-    Preferences, Session, SolverAction, TourAction, TourState, TourStep, TransactionAction,
-    ViewAction, filled,
+    Preferences, Session, SolverAction, TourAction, TourEnd, TourState, TourStep,
+    TransactionAction, ViewAction, filled,
 };
 
 fn session() -> Session {
@@ -52,6 +52,12 @@ fn there_are_twelve_steps_each_with_a_question_of_two_to_four_answers() {
         assert!((2..=4).contains(&answers.len()), "{}", step.title);
         assert!(answers.iter().enumerate().all(|(at, one)| !answers[..at].contains(one)));
         assert!(step.guess.question.ends_with('?'), "{}", step.title);
+        assert!(answers.iter().any(|answer| answer == step.guess.right_answer()), "{}", step.title);
+        let right = (0..answers.len()).filter(|answer| step.guess.is_right(*answer));
+        assert_eq!(right.count(), 1, "{}", step.title);
+        let told = [&step.title, &step.text].map(|text| text.to_lowercase());
+        let answer = step.guess.right_answer().to_lowercase();
+        assert!(!told.iter().any(|text| text.contains(&answer)), "{}", step.title);
         let document = step.document().expect("a scene");
         let is_arm = document.rig == ik_arm::document::RigKind::Arm;
         assert_eq!(document.display.shows(Overlay::ElbowCircle), is_arm, "{}", step.title);
@@ -147,7 +153,7 @@ fn bytes(session: &Session) -> String {
 
 #[test]
 fn the_own_document_comes_back_as_it_was_after_every_step() {
-    for number in 1..=TourStep::all().len() {
+    for number in 1..=TourStep::all().len() + 1 {
         let mut session = changed();
         let before = session.clone();
         session.apply(TourAction::Enter(number - 1));
@@ -226,8 +232,62 @@ fn steps_can_be_entered_in_any_order_and_remember_what_was_done() {
     assert!(tour.is_done(3) && !tour.is_done(0) && !tour.shows_result());
     session.apply(TourAction::Enter(3));
     assert!(!shows_result(&session), "a step that is entered again begins again");
-    session.apply(TourAction::Enter(999));
-    assert_eq!(session.tour().unwrap().number(), 11);
+}
+
+#[test]
+fn after_the_last_step_a_card_tells_what_the_user_can_say_now() {
+    let steps = TourStep::all().len();
+    for number in [steps, 999] {
+        let mut session = in_step(number + 1);
+        let tour = session.tour().unwrap();
+        assert_eq!((tour.number(), tour.step()), (steps, None));
+        assert_eq!(tour.title(), "What you can say now");
+        act(&mut session, [TourAction::Guess(0), TourAction::Demonstrate]);
+        act(&mut session, [EditAction::SetTranslation(Vec3::Y * 0.5)]);
+        let tour = session.tour().unwrap();
+        assert!(!tour.shows_result() && (0..=steps).all(|step| !tour.is_done(step)));
+        session.apply(TourAction::Enter(steps - 1));
+        assert_eq!(session.tour().unwrap().step(), TourStep::all().last());
+    }
+    assert_eq!(TourEnd::get().sentences.len(), 5);
+}
+
+/// The elbow of an arm in its plane, by the law of cosines.
+fn elbow(upper: f64, lower: f64, distance: f64) -> (f64, f64) {
+    let along = (distance * distance + upper * upper - lower * lower) / (2.0 * distance);
+    (along, (upper * upper - along * along).sqrt())
+}
+
+#[test]
+fn the_nearly_straight_arm_races_as_far_as_its_step_says_wherever_the_cursor_was_dragged() {
+    let mut session = in_step(7);
+    assert!(filled("{cursor_at_start}", &session).starts_with("497.5"));
+    let ((x, y), (to_x, to_y)) = (elbow(200.0, 300.0, 497.5), elbow(200.0, 300.0, 498.5));
+    let moved = (to_x - x).hypot(to_y - y);
+    assert!(moved > 5.0, "the right answer says so: {moved}");
+    let cursor = session.arm().cursor_in_root();
+    for hand in [cursor, cursor * 1.3, cursor * 0.5] {
+        act(&mut session, [EditAction::SetHand(hand)]);
+        assert_eq!(filled("{hard_race}", &session), format!("{moved:.1}"));
+    }
+    act(&mut session, [EditAction::SetSoftReach(SoftReach::new(0.1, 1.0, 0.0).unwrap())]);
+    assert!(shows_result(&session));
+    let number = |name: &str| filled(name, &session).parse::<f64>().expect("a number");
+    assert!(number("{race}") < 2.0 && number("{hard_race}") > 5.0);
+    // The soft zone is 0.1·(500 − 100)/2 = 20 wide.
+    let gap = 497.5 - (500.0 - 20.0 * (-(497.5_f64 - 480.0) / 20.0).exp());
+    assert_eq!(filled("{soft_gap}", &session), format!("{gap:.1}"));
+}
+
+#[test]
+fn the_jump_over_the_shoulder_names_the_steps_of_hand_and_elbow() {
+    let mut session = in_step(1);
+    demonstrate(&mut session);
+    let number = |name: &str| filled(name, &session).parse::<f64>().expect("a number");
+    let [hand, elbow, ratio] = ["{hand_step}", "{elbow_step}", "{elbow_to_hand}"].map(number);
+    // The demonstration moves the hand from x = 180 to -180 in 72 steps.
+    assert_eq!(hand, 5.0);
+    assert!((elbow / hand - ratio).abs() < 1.0, "{elbow} / {hand} = {ratio}");
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn the_sides_of_the_triangle_light_up_the_limbs() {
 /// The rectangle of the triangle's drawing.
 fn triangle(bench: &Bench) -> Rect {
     let name = "Triangle: upper limb 200.0, lower limb 300.0, distance 360.0, angle at the shoulder \
-                56.4 degrees";
+                56.4 degrees, angle at the elbow 89.8 degrees";
     bench.rect(Role::Image, name)
 }
 

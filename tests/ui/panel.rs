@@ -255,7 +255,7 @@ fn the_explain_panel_names_the_quantities_and_shows_their_values() {
     for value in ["53.1°", "0.0°", "500.0", "180.0°"] {
         assert!(bench.shows(Role::Label, value), "{value}");
     }
-    assert!(bench.says("Triangle: upper limb 200.0, lower limb 300.0, distance 500.0, angle at the shoulder 0.0 degrees"));
+    assert!(bench.says("Triangle: upper limb 200.0, lower limb 300.0, distance 500.0, angle at the shoulder 0.0 degrees, angle at the elbow 180.0 degrees"));
     bench.show_tab(PanelTab::Reach);
     assert!(bench.says("Reach: Cursor at 500.0; the hand reaches from 100.0 to 500.0"));
 }

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use ik_arm::document::Theme;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    PlaybackAction, Preferences, SelectAction, SolverAction, TourAction, TourStep, filled,
+    PlaybackAction, Preferences, SelectAction, SolverAction, TourAction, TourEnd, TourStep, filled,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -32,6 +32,12 @@ fn step(number: usize) -> &'static TourStep {
 
 fn is_done(bench: &Bench, number: usize) -> bool {
     bench.session().tour().is_some_and(|tour| tour.is_done(number - 1) && tour.shows_result())
+}
+
+/// The answer to the step's question, as the card marks a guess.
+fn mark(step: &TourStep, guess: usize) -> String {
+    let mark = if step.guess.is_right(guess) { "Right" } else { "Not quite" };
+    format!("{mark}: {}", step.guess.right_answer())
 }
 
 /// Moves the mouse through points with the button down, and releases it.
@@ -171,7 +177,7 @@ fn every_step_notices_its_task_done_with_the_mouse() {
             do_with_the_mouse(&mut bench, number);
             assert!(is_done(&bench, number), "step {number} at {size:?}");
             assert!(bench.says("What happened"), "step {number}");
-            assert!(bench.says(&format!("You guessed: {}", step.guess.answers[0])));
+            assert!(bench.says(&mark(step, 0)), "step {number}");
         }
     }
 }
@@ -274,9 +280,15 @@ fn cards_show_all_of_their_text_at_every_stage() {
             bench.apply_moving([TourAction::Demonstrate]);
             bench.wait(if number == 11 { 8.0 } else { 0.1 });
             let result = said(&bench, &step.result);
-            expect_in_sight(&bench, ["What happened", &result, "You guessed: "]);
+            expect_in_sight(&bench, ["What happened", &result, &mark(step, 0)]);
             assert!(bench.viewport().height() > 220.0, "room for the scene of step {number}");
         }
+        let bench = in_step(TourStep::all().len() + 1, size, Theme::Dark);
+        let TourEnd { title, sentences, next } = TourEnd::get();
+        assert!(bench.says(title));
+        let texts = sentences.iter().chain([next]).map(|text| text.replace('*', ""));
+        let texts: Vec<_> = texts.collect();
+        expect_in_sight(&bench, texts.iter().map(String::as_str));
     }
 }
 
@@ -285,11 +297,11 @@ fn cards_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for theme in THEMES {
         for (size, width) in [(LARGE, "large"), (SMALL, "small")] {
-            for (number, step) in (1..).zip(TourStep::all()) {
+            for number in 1..=TourStep::all().len() + 1 {
                 let mut bench = in_step(number, size, theme);
                 // The question and, in every second step, the task.
                 if number % 2 == 0 {
-                    bench.click(Role::Button, &step.guess.answers[0]);
+                    bench.click(Role::Button, &step(number).guess.answers[0]);
                 }
                 let theme = format!("{theme:?}").to_lowercase();
                 let name = format!("tour/{number:02}_{width}_{theme}");
@@ -328,6 +340,11 @@ fn the_card_leads_through_the_steps_and_back_to_the_own_document() {
         let name = next(&bench);
         bench.click(Role::Button, name);
     }
+    assert!(bench.says(&TourEnd::get().title));
+    bench.click(Role::Button, "Back");
+    assert!(bench.says(&step(TourStep::all().len()).title));
+    bench.click(Role::Button, "Next");
+    bench.click(Role::Button, "Finish");
     assert!(bench.session().tour().is_none());
     assert_eq!(*bench.session().document(), before);
     assert!(!bench.shows(Role::Button, "Take the tour"), "it is not offered again");
@@ -339,7 +356,7 @@ fn any_step_can_be_entered_from_its_dot_and_left() {
     let dot = format!("Step 7: {}", step(7).title);
     assert!(has_tooltip(&mut bench, Role::Button, &dot));
     bench.click(Role::Button, &dot);
-    assert!(bench.says(&step(7).text[..20]));
+    assert!(bench.says("The limbs are 200.0 mm and 300.0 mm long"));
     assert!(bench.shows(Role::Slider, "Softness"), "the section of the step is open");
     bench.click(Role::Button, "Back");
     assert!(bench.says(&step(6).title));
@@ -347,6 +364,43 @@ fn any_step_can_be_entered_from_its_dot_and_left() {
     assert!(bench.session().tour().is_none());
     bench.choose(&["Help", "Tour"]);
     assert!(bench.says(&step(1).title));
+}
+
+#[test]
+fn each_guess_is_marked_right_or_not_quite_with_the_right_answer() {
+    for (guess, said) in
+        [(0, "Not quite: It vanishes"), (1, "Not quite: It vanishes"), (2, "Right: It vanishes")]
+    {
+        let mut bench = in_step(5, SMALL, Theme::Dark);
+        bench.click(Role::Button, &step(5).guess.answers[guess]);
+        assert!(!bench.says("It vanishes"), "the answer comes after the task");
+        do_with_the_mouse(&mut bench, 5);
+        assert!(bench.says(said), "{said}");
+    }
+    let mut bench = in_step(5, SMALL, Theme::Dark);
+    do_with_the_mouse(&mut bench, 5);
+    assert!(bench.says("Answer: It vanishes"), "without a guess");
+}
+
+#[test]
+fn sections_that_the_tour_opened_close_again_when_it_ends() {
+    let mut bench = Bench::first(LARGE, Preferences::default());
+    bench.toggle(&["Root"]);
+    let shown = |bench: &Bench| {
+        ["Softness", "Upper length", "Root x"].map(|slider| bench.shows(Role::Slider, slider))
+    };
+    assert_eq!(shown(&bench), [false, false, true]);
+    for number in [5, 7, 9, 12] {
+        bench.apply([TourAction::Enter(number - 1)]);
+    }
+    bench.apply([TourAction::Enter(8)]);
+    assert_eq!(shown(&bench), [true, true, true]);
+    bench.click(Role::Button, "Leave");
+    assert_eq!(shown(&bench), [false, false, true], "only what the tour opened");
+    bench.toggle(&["Lengths"]);
+    bench.choose(&["Help", "Tour"]);
+    bench.click(Role::Button, "Leave");
+    assert_eq!(shown(&bench), [false, true, true], "what the user opened later stays open");
 }
 
 #[test]
@@ -371,9 +425,11 @@ fn do_it_for_me_shows_the_result_without_a_mouse() {
     bench.click(Role::Button, &step(5).guess.answers[2]);
     assert!(has_tooltip(&mut bench, Role::Button, "Do it for me"));
     bench.click(Role::Button, "Do it for me");
-    assert!(bench.says(
-        "The hole is gone: the nearest distance, the difference of the lengths, is now 0.0."
-    ));
+    assert!(
+        bench.says(
+            "It vanished: the nearest distance, the difference of the lengths, is now 0.0 mm."
+        )
+    );
     assert!(!is_done(&bench, 5), "the dot of the step stays empty");
 }
 

@@ -33,9 +33,11 @@ impl Session {
     }
 
     fn demonstrate(&mut self) {
-        if let Some(tour) = &mut self.tour {
+        if let Some(tour) = &mut self.tour
+            && let Some(step) = tour.step()
+        {
             tour.show_result();
-            let goal = tour.step().goal;
+            let goal = step.goal;
             let actions = demonstration::actions(goal, self);
             let (edits, others): (Vec<_>, Vec<_>) =
                 actions.into_iter().partition(|action| matches!(action, Action::Edit(_)));
@@ -54,8 +56,9 @@ impl Session {
     }
 
     fn enter_tour(&mut self, number: usize) {
-        let number = number.min(TourStep::all().len() - 1);
-        let step = &TourStep::all()[number];
+        let steps = TourStep::all();
+        let number = number.min(steps.len());
+        let step = &steps[number.min(steps.len() - 1)];
         let document = match step.document() {
             Ok(document) => document,
             Err(error) => return self.fail(error.to_string()),
@@ -109,7 +112,8 @@ impl Session {
     /// Shows the result of the step once its task is done.
     pub(in crate::session) fn watch_tour(&mut self) {
         let is_met = self.tour.as_ref().is_some_and(|tour| {
-            !tour.shows_result() && predicates::is_met(tour.step().goal, self, tour.start())
+            !tour.shows_result()
+                && tour.step().is_some_and(|step| predicates::is_met(step.goal, self, tour.start()))
         });
         if is_met {
             self.change_tour(TourState::finish);

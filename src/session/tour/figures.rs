@@ -2,8 +2,9 @@
 
 use crate::document::{Arm, Document};
 use crate::kinematics::chain_ik::{Method, Status};
+use crate::kinematics::pop::ElbowStep;
 use crate::kinematics::soft_reach::SoftReach;
-use crate::session::pops::Spike;
+use crate::session::pops::{PopSampleKind, Spike};
 use crate::session::session::Session;
 use crate::session::solver_run::SolverRun;
 
@@ -11,8 +12,10 @@ use crate::session::solver_run::SolverRun;
 type Figure = fn(&Session) -> Option<String>;
 
 /// All figures by their names in the texts.
-const FIGURES: [(&str, Figure); 26] = [
-    ("elbow_to_hand", elbow_to_hand),
+const FIGURES: [(&str, Figure); 31] = [
+    ("elbow_to_hand", |session| Some(factor(highest_spike(session)?.ratio))),
+    ("elbow_step", |session| Some(whole(elbow_step(session)?))),
+    ("hand_step", |session| Some(whole(elbow_step(session)? / highest_spike(session)?.ratio))),
     ("hand", hand),
     ("upper", |session| Some(length(session, session.arm().bones.upper()))),
     ("lower", |session| Some(length(session, session.arm().bones.lower()))),
@@ -21,11 +24,13 @@ const FIGURES: [(&str, Figure); 26] = [
     ("twist", |session| Some(degrees(session.arm().twist))),
     ("farthest", |session| Some(length(session, session.arm().reach_limits().outer))),
     ("nearest", |session| Some(length(session, session.arm().reach_limits().inner))),
-    ("gap", |session| Some(length(session, gap(session)))),
-    ("cursor_percent", cursor_percent),
+    ("gap", |session| Some(length(session, gap(session.arm())))),
+    ("sum", |session| Some(length(session, session.arm().bones.outer_limit()))),
+    ("cursor_at_start", cursor_at_start),
     ("softness", softness),
-    ("race", |session| Some(factor(race(session.arm())))),
-    ("hard_race", |session| Some(factor(race(&hard(session.arm()))))),
+    ("race", |session| Some(factor(race(&at_start(session)?)))),
+    ("hard_race", |session| Some(factor(race(&hard(&at_start(session)?))))),
+    ("soft_gap", |session| Some(length(session, gap(&at_start(session)?)))),
     ("holonomy", |session| Some(degrees(session.transport_path().holonomy()))),
     ("shoulder_moved", shoulder_moved),
     ("fk_bow", |session| bow(session, 0.0)),
@@ -36,6 +41,7 @@ const FIGURES: [(&str, Figure); 26] = [
     ("fewest", |session| fewest_iterations(session).map(|(_, count)| count.to_string())),
     ("last", |session| most_iterations(session).map(|(method, _)| method.title().to_owned())),
     ("most", |session| most_iterations(session).map(|(_, count)| count.to_string())),
+    ("two_bone_miss", two_bone_miss),
     ("missed", |session| missed(session).map(|(name, _)| name)),
     ("miss", |session| missed(session).map(|(_, miss)| miss)),
 ];
@@ -80,11 +86,25 @@ fn factor(factor: f32) -> String {
     if factor < 9.95 { format!("{factor:.1}") } else { format!("{factor:.0}") }
 }
 
-/// The highest ratio of the elbow's move to the hand's in a pop.
-fn elbow_to_hand(session: &Session) -> Option<String> {
-    let spikes = session.pops().spikes();
-    let highest = spikes.iter().map(|Spike { ratio, .. }| *ratio).reduce(f32::max)?;
-    Some(factor(highest))
+/// A length to whole units.
+fn whole(length: f32) -> String {
+    format!("{length:.0}")
+}
+
+/// The pop with the highest ratio of the elbow's move to the hand's.
+fn highest_spike(session: &Session) -> Option<Spike> {
+    session.pops().spikes().into_iter().max_by(|one, other| one.ratio.total_cmp(&other.ratio))
+}
+
+/// Distance that the elbow moved in the highest pop.
+fn elbow_step(session: &Session) -> Option<f32> {
+    let sample = session.pops().samples().nth(highest_spike(session)?.at)?;
+    match sample.kind {
+        PopSampleKind::Step(ElbowStep { turn, bend, swing, .. }) => {
+            Some((turn + bend + swing).length())
+        }
+        PopSampleKind::Change(_) => None,
+    }
 }
 
 fn hand(session: &Session) -> Option<String> {
@@ -92,14 +112,19 @@ fn hand(session: &Session) -> Option<String> {
     Some(format!("({x}, {y}, {z})"))
 }
 
-fn gap(session: &Session) -> f32 {
-    session.pose().hand.distance(session.arm().cursor_in_root())
+fn gap(arm: &Arm) -> f32 {
+    arm.pose().hand.distance(arm.cursor_in_root())
 }
 
-fn cursor_percent(session: &Session) -> Option<String> {
-    let arm = session.arm();
-    let part = arm.cursor_in_root().length() / arm.bones.outer_limit();
-    Some(format!("{:.1} %", 100.0 * part))
+/// The arm as it is, with the Cursor where the step began.
+fn at_start(session: &Session) -> Option<Arm> {
+    let mut arm = *session.arm();
+    arm.set_cursor(session.tour()?.start().arm.cursor_in_root());
+    Some(arm)
+}
+
+fn cursor_at_start(session: &Session) -> Option<String> {
+    Some(length(session, at_start(session)?.cursor_in_root().length()))
 }
 
 fn softness(session: &Session) -> Option<String> {
@@ -112,13 +137,12 @@ fn hard(arm: &Arm) -> Arm {
     Arm { soft_reach: SoftReach::default(), ..*arm }
 }
 
-/// Distance that the elbow moves while the Cursor moves outwards, as a multiple of the Cursor's.
+/// Distance that the elbow moves while the Cursor moves outwards by 1.
 fn race(arm: &Arm) -> f32 {
-    const STEP: f32 = 5e-4;
     let cursor = arm.cursor_in_root();
     let mut moved = *arm;
-    moved.set_cursor(cursor * (1.0 + STEP));
-    arm.pose().elbow.distance(moved.pose().elbow) / (STEP * cursor.length())
+    moved.set_cursor(cursor + cursor.normalize_or_zero());
+    arm.pose().elbow.distance(moved.pose().elbow)
 }
 
 fn shoulder_moved(session: &Session) -> Option<String> {
@@ -162,17 +186,26 @@ fn most_iterations(session: &Session) -> Option<(Method, u32)> {
     racers(session)?.max_by_key(|(_, iterations)| *iterations)
 }
 
+/// Distance of the solver two-bone from the target at the end of the race.
+fn two_bone_miss(session: &Session) -> Option<String> {
+    let race = session.comparison().filter(|race| !race.is_running())?;
+    let report = race.runs().map(SolverRun::report).find(|it| it.method == Method::TwoBone)?;
+    Some(distance(session, report.error))
+}
+
+/// A distance in a skeleton's scene, in metres or centimetres.
+fn distance(session: &Session, distance: f32) -> String {
+    match distance * session.document().metres_per_unit() {
+        metres if metres < 0.995 => format!("{:.0} cm", 100.0 * metres),
+        metres => format!("{metres:.1} m"),
+    }
+}
+
 /// Name of the end that misses its target most, and by how much.
 fn missed(session: &Session) -> Option<(String, String)> {
     let (index, miss) = session.farthest_target()?;
     let rig = session.skeleton_rig();
     let end = rig.skeleton.joint(rig.end_of(&rig.targets[index]))?;
-    (miss > session.solver_tolerance()).then(|| {
-        let metres = session.document().metres_per_unit;
-        let miss = match metres {
-            Some(metres) => format!("{:.0} cm", 100.0 * metres * miss),
-            None => format!("{miss:.2}"),
-        };
-        (format!("the {}", end.name.replace('_', " ")), miss)
-    })
+    (miss > session.solver_tolerance())
+        .then(|| (format!("the {}", end.name.replace('_', " ")), distance(session, miss)))
 }

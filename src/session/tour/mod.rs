@@ -11,6 +11,6 @@ mod tour_state;
 
 pub use figures::filled;
 pub use goal::Goal;
-pub use step::{Guess, TourStep};
+pub use step::{Guess, TourEnd, TourStep};
 pub use tour_action::TourAction;
 pub use tour_state::TourState;

@@ -9,8 +9,8 @@ use crate::session::panel_tab::PanelTab;
 
 /// A step of the tour.
 ///
-/// Texts may name live numbers of the scene in braces, such as `{hand}`, and parts of the window
-/// between asterisks.
+/// Texts may name live numbers of the scene in braces, such as `{hand}`. Parts of the window and new
+/// terms are between asterisks.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TourStep {
@@ -49,6 +49,32 @@ pub struct Guess {
     pub question: String,
     /// Two to four answers.
     pub answers: Vec<String>,
+    /// Index of the right answer.
+    right: usize,
+}
+
+impl Guess {
+    /// The right answer.
+    pub fn right_answer(&self) -> &str {
+        self.answers.get(self.right).map_or("", String::as_str)
+    }
+
+    /// Whether an answer, counted from 0, is the right one.
+    pub fn is_right(&self, answer: usize) -> bool {
+        answer == self.right
+    }
+}
+
+/// The card after the last step: what the user can say now.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TourEnd {
+    /// The card's title.
+    pub title: String,
+    /// What the user can say now.
+    pub sentences: Vec<String>,
+    /// Where to go next, with parts of the window between asterisks.
+    pub next: String,
 }
 
 /// The scenes that are no examples, by their names.
@@ -65,6 +91,18 @@ static STEPS: LazyLock<Vec<TourStep>> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../assets/tour/steps.json"))
         .unwrap_or_else(|error| unreachable!("a test reads the steps of the tour: {error}"))
 });
+
+static END: LazyLock<TourEnd> = LazyLock::new(|| {
+    serde_json::from_str(include_str!("../../../assets/tour/end.json"))
+        .unwrap_or_else(|error| unreachable!("a test reads the end of the tour: {error}"))
+});
+
+impl TourEnd {
+    /// The card after the last step.
+    pub fn get() -> &'static Self {
+        &END
+    }
+}
 
 impl TourStep {
     /// All steps, in order.

@@ -1,7 +1,7 @@
-use super::step::TourStep;
+use super::step::{TourEnd, TourStep};
 use crate::document::Document;
 
-/// Where the user is in the tour.
+/// Where the user is in the tour: in a step, or at the card after the last one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TourState {
     number: usize,
@@ -20,14 +20,19 @@ impl TourState {
         Self { number, start, guess: None, shows_result: false, done }
     }
 
-    /// Number of the step, counted from 0.
+    /// Number of the step, counted from 0; at the card after the last step, the number of all steps.
     pub fn number(&self) -> usize {
         self.number
     }
 
-    /// The step.
-    pub fn step(&self) -> &'static TourStep {
-        &TourStep::all()[self.number]
+    /// The step; `None` at the card after the last one.
+    pub fn step(&self) -> Option<&'static TourStep> {
+        TourStep::all().get(self.number)
+    }
+
+    /// Title of the card.
+    pub fn title(&self) -> &'static str {
+        self.step().map_or(&TourEnd::get().title, |step| &step.title)
     }
 
     /// The document with which the step began.
@@ -56,7 +61,7 @@ impl TourState {
     }
 
     pub(super) fn choose(&mut self, answer: usize) {
-        if answer < self.step().guess.answers.len() {
+        if self.step().is_some_and(|step| answer < step.guess.answers.len()) {
             self.guess = Some(answer);
         }
     }
@@ -67,6 +72,8 @@ impl TourState {
 
     pub(super) fn finish(&mut self) {
         self.shows_result = true;
-        self.done[self.number] = true;
+        if let Some(done) = self.done.get_mut(self.number) {
+            *done = true;
+        }
     }
 }

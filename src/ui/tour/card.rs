@@ -1,10 +1,11 @@
-//! The card of a step: what there is to see, a question, a task, and at last the result.
+//! The card of a step: what there is to see, a question, a task, and at last the result with the answer.
+//! After the last step it has what the user can say now.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, FontId, Id, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::progress::progress;
-use crate::session::{Actions, Session, TourAction, TourState, TourStep, filled};
+use crate::session::{Actions, Session, TourAction, TourEnd, TourState, TourStep, filled};
 use crate::ui::style;
 use crate::ui::widgets;
 
@@ -19,10 +20,11 @@ const FOOTER: f32 = 38.0;
 /// Height of the card in a window in which it has a width. It is the same for all steps, so that the
 /// view does not change its size.
 pub(in crate::ui) fn height(width: f32) -> f32 {
-    if width < WIDE { 244.0 } else { 196.0 }
+    if width < WIDE { 276.0 } else { 204.0 }
 }
 
-/// Unfolds the section of the left panel that a step needs, once, when the step begins.
+/// Unfolds the section of the left panel that a step needs, once, when the step begins. When the tour
+/// ends, folds the sections again that it unfolded.
 pub(in crate::ui) fn open_section(ui: &Ui, session: &Session) {
     let shown = Id::unique("step of the tour");
     let now = session.tour().map(TourState::number);
@@ -31,8 +33,11 @@ pub(in crate::ui) fn open_section(ui: &Ui, session: &Session) {
         return widgets::open_section(ui, None);
     }
     ui.data_mut(|data| data.insert_temp(shown, now));
-    let section = session.tour().and_then(|tour| tour.step().section.as_deref());
-    widgets::open_section(ui, section);
+    let step = session.tour().and_then(TourState::step);
+    widgets::open_section(ui, step.and_then(|step| step.section.as_deref()));
+    if now.is_none() {
+        widgets::fold_opened_sections(ui);
+    }
     // The sections below take their places in the next frame.
     ui.ctx().request_repaint();
 }
@@ -52,9 +57,11 @@ pub(in crate::ui) fn card(ui: &mut Ui, session: &Session, tour: &TourState, acti
 
 fn header(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new(&tour.step().title).strong().size(16.0));
-        let (number, all) = (tour.number() + 1, TourStep::all().len());
-        ui.label(RichText::new(format!("{number} of {all}")).weak());
+        ui.label(RichText::new(tour.title()).strong().size(16.0));
+        if tour.step().is_some() {
+            let (number, all) = (tour.number() + 1, TourStep::all().len());
+            ui.label(RichText::new(format!("{number} of {all}")).weak());
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let leave = ui.small_button("Leave");
             if leave.on_hover_text("End the tour and put your document back").clicked() {
@@ -65,7 +72,7 @@ fn header(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
 }
 
 fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
-    let (number, last) = (tour.number(), TourStep::all().len() - 1);
+    let (number, is_end) = (tour.number(), tour.step().is_none());
     let back = ui.add_enabled(number > 0, egui::Button::new("Back"));
     let back = back.on_hover_text("Go to the step before");
     if back.on_disabled_hover_text("This is the first step").clicked() {
@@ -74,11 +81,11 @@ fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
     ui.add_space(4.0);
     ui.scope(|ui| progress(ui, tour, actions));
     ui.add_space(4.0);
-    let (name, tooltip, action) = match number == last {
+    let (name, tooltip, action) = match is_end {
         true => ("Finish", "End the tour and put your document back", TourAction::Leave),
-        false => ("Next", "Go to the next step", TourAction::Enter(number + 1)),
+        false => ("Next", "Go to the next card", TourAction::Enter(number + 1)),
     };
-    let next = match tour.shows_result() {
+    let next = match tour.shows_result() || is_end {
         true => widgets::primary_button(ui, name),
         false => ui.button(name),
     };
@@ -88,12 +95,12 @@ fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
 }
 
 fn body(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions) {
-    let step = tour.step();
     ScrollArea::vertical().id_salt(tour.number()).auto_shrink([false, false]).show(ui, |ui| {
         ui.set_max_width(ui.available_width().min(TEXT_WIDTH));
         ui.spacing_mut().item_spacing.y = 4.0;
+        let Some(step) = tour.step() else { return end(ui) };
         if tour.shows_result() {
-            return result(ui, session, tour);
+            return result(ui, session, step, tour.guess());
         }
         paragraph(ui, &filled(&step.text, session));
         ui.add_space(4.0);
@@ -130,16 +137,28 @@ fn task(ui: &mut Ui, session: &Session, step: &TourStep, actions: &mut Actions) 
     });
 }
 
-fn result(ui: &mut Ui, session: &Session, tour: &TourState) {
-    let step = tour.step();
+fn result(ui: &mut Ui, session: &Session, step: &TourStep, guess: Option<usize>) {
     ui.horizontal(|ui| {
         caption(ui, "What happened");
-        if let Some(answer) = tour.guess().and_then(|guess| step.guess.answers.get(guess)) {
-            let guessed = RichText::new(format!("You guessed: {answer}")).weak().size(12.0);
-            ui.add(Label::new(guessed).truncate().selectable(false));
-        }
+        let mark = match guess {
+            None => "Answer",
+            Some(guess) if step.guess.is_right(guess) => "Right",
+            Some(_) => "Not quite",
+        };
+        let answer = RichText::new(format!("{mark}: {}", step.guess.right_answer()));
+        ui.add(Label::new(answer.strong().size(12.0)).truncate().selectable(false));
     });
     paragraph(ui, &filled(&step.result, session));
+}
+
+fn end(ui: &mut Ui) {
+    let TourEnd { sentences, next, .. } = TourEnd::get();
+    ui.spacing_mut().item_spacing.y = 2.0;
+    for sentence in sentences {
+        paragraph(ui, &format!("• {sentence}"));
+    }
+    ui.add_space(4.0);
+    paragraph(ui, next);
 }
 
 fn caption(ui: &mut Ui, text: &str) {

@@ -30,7 +30,8 @@ pub(in crate::ui) use key_button::KeyButton;
 pub(in crate::ui) use number::DragNumber;
 pub(in crate::ui) use point::{AXES, PointSliders};
 pub(in crate::ui) use section::{
-    at_right, folded_section, named_section, open_section, pair, section, section_with, term_pair,
+    at_right, fold_opened_sections, folded_section, named_section, open_section, pair, section,
+    section_with, term_pair,
 };
 pub(in crate::ui) use segments::{Segment, segments};
 pub(in crate::ui) use slider::Slider;

@@ -1,5 +1,6 @@
 //! Foldable sections and labelled rows of the side panels.
 
+use egui::collapsing_header::CollapsingState;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, CollapsingHeader, FontId, Id, InnerResponse, Label, Layout, Rect, Ui, UiBuilder,
@@ -15,6 +16,21 @@ const SPACE: f32 = 1.0;
 /// Unfolds the section that is identified by `id` in the next frame, and scrolls to it.
 pub(in crate::ui) fn open_section(ui: &Ui, id: Option<&str>) {
     ui.data_mut(|data| data.insert_temp(section_to_open(), id.map(ToOwned::to_owned)));
+}
+
+/// Folds the sections that [`open_section`] has unfolded since the last call.
+pub(in crate::ui) fn fold_opened_sections(ui: &Ui) {
+    let opened: Option<Vec<Id>> = ui.data_mut(|data| data.remove_temp(opened_sections()));
+    let opened = opened.unwrap_or_default();
+    for mut section in opened.iter().filter_map(|id| CollapsingState::load(ui, *id)) {
+        section.set_open(false);
+        section.store(ui);
+    }
+}
+
+/// Where the sections are noted that were folded before [`open_section`].
+fn opened_sections() -> Id {
+    Id::unique("sections to fold again")
 }
 
 fn section_to_open() -> Id {
@@ -78,6 +94,9 @@ fn show_section(
     let heading = cut(ui, title);
     let is_asked = ui.data(|data| data.get_temp(section_to_open())) == Some(Some(id.to_owned()));
     let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
+    if is_asked {
+        note_opened(ui, ui.make_persistent_id(id), open);
+    }
     let shown = header.open(is_asked.then_some(true)).show_unindented(ui, contents);
     if is_asked {
         let end = shown.body_returned.map_or(shown.header_response.rect, |()| ui.min_rect());
@@ -85,6 +104,13 @@ fn show_section(
     }
     ui.add_space(SPACE);
     shown.header_response.rect
+}
+
+/// Notes a section that is about to be unfolded, if it is folded.
+fn note_opened(ui: &Ui, id: Id, open_at_first: bool) {
+    if !CollapsingState::load_with_default_open(ui, id, open_at_first).is_open() {
+        ui.data_mut(|data| data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(id));
+    }
 }
 
 /// The title, truncated to the width of the panel: egui would widen the panel for a longer title.

@@ -10,6 +10,7 @@ mod pointer;
 mod pops;
 mod reach_curve;
 mod reach_meter;
+mod same_step;
 mod triangle;
 mod twist_references;
 
@@ -48,6 +49,7 @@ pub(in crate::ui) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions
 pub(in crate::ui) fn reach(ui: &mut Ui, session: &Session) {
     reach_meter::ui(ui, session);
     sentence(ui, session);
+    widgets::section(ui, "Same step, two poses", |ui| same_step::ui(ui, session));
     widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
 }
 

@@ -6,7 +6,7 @@ use egui::{
     Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
-use super::drawing_labels::{Labels, Place, beside};
+use super::drawing_labels::{Labels, Place, around, beside};
 use super::lit::{FigureLine, Lit};
 use crate::document::Arm;
 use crate::kinematics::two_bone::TwoBonePose;
@@ -16,8 +16,10 @@ use crate::ui::style;
 const HEIGHT: f32 = 184.0;
 /// Room for labels at the sides, and above and below.
 const MARGINS: Vec2 = vec2(44.0, 34.0);
-/// Radius of the arc of θ_e, in points.
+/// Radius of the arcs of the angles, in points.
 const ARC: f32 = 18.0;
+/// Half of the angle that each compass arc takes, in radians.
+const COMPASS: f32 = 0.3;
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit) {
     let (arm, pose) = (session.arm(), session.pose());
@@ -25,11 +27,12 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit) {
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| {
         let text = format!(
-            "Triangle: upper limb {}, lower limb {}, distance {}, angle at the shoulder {:.1} degrees",
+            "Triangle: upper limb {}, lower limb {}, distance {}, angle at the shoulder {:.1} degrees, angle at the elbow {:.1} degrees",
             arm.format_length(arm.bones.upper() * pose.stretch),
             arm.format_length(arm.bones.lower() * pose.stretch),
             arm.format_length(pose.distance),
             pose.shoulder_angle().to_degrees(),
+            pose.elbow_angle().to_degrees(),
         );
         WidgetInfo::labeled(Role::Image, true, text)
     });
@@ -88,11 +91,6 @@ impl TriangleDrawing {
     /// The lines that light up, and that the mouse can point at.
     fn figure_lines(&self) -> [FigureLine; 7] {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
-        let at_elbow = {
-            let [to_shoulder, to_hand] = [shoulder, hand].map(|end| (end - elbow).angle());
-            let turn = (to_hand - to_shoulder + TAU).rem_euclid(TAU);
-            arc(elbow, to_shoulder, if turn > 0.5 * TAU { turn - TAU } else { turn })
-        };
         [
             (ArmFigure::Upper, vec![shoulder, elbow]),
             (ArmFigure::Lower, vec![elbow, hand]),
@@ -100,10 +98,24 @@ impl TriangleDrawing {
             (ArmFigure::Along, vec![shoulder, foot]),
             (ArmFigure::Distance, vec![shoulder, hand]),
             (ArmFigure::Out, vec![foot, elbow]),
-            (ArmFigure::ShoulderAngle, arc(shoulder, 0.0, -self.angle)),
-            (ArmFigure::ElbowAngle, at_elbow),
+            (ArmFigure::ShoulderAngle, arc(shoulder, ARC, 0.0, -self.angle)),
+            (ArmFigure::ElbowAngle, self.elbow_arc()),
         ]
         .map(|(figure, points)| FigureLine { figure, points })
+    }
+
+    /// The direction from the elbow to the shoulder, and the turn from there to the hand, in radians
+    /// clockwise from the right.
+    fn at_elbow(&self) -> (f32, f32) {
+        let [to_shoulder, to_hand] =
+            [self.shoulder, self.hand].map(|end| (end - self.elbow).angle());
+        let turn = (to_hand - to_shoulder + TAU).rem_euclid(TAU);
+        (to_shoulder, if turn > 0.5 * TAU { turn - TAU } else { turn })
+    }
+
+    fn elbow_arc(&self) -> Vec<Pos2> {
+        let (start, turn) = self.at_elbow();
+        arc(self.elbow, ARC, start, turn)
     }
 
     /// Paints lines and labels, and returns where the labels are.
@@ -111,7 +123,8 @@ impl TriangleDrawing {
         let thin = Stroke::new(1.0, self.weak);
         painter.extend(Shape::dashed_line(&[self.elbow, self.foot], thin, 3.0, 3.0));
         painter.line_segment([self.shoulder, self.hand], Stroke::new(1.5, self.text));
-        self.paint_angle(painter);
+        self.paint_compass(painter);
+        self.paint_angles(painter);
         painter.line_segment([self.shoulder, self.elbow], Stroke::new(4.0, self.upper));
         painter.line_segment([self.elbow, self.hand], Stroke::new(4.0, self.lower));
         for joint in [self.shoulder, self.elbow, self.hand] {
@@ -120,9 +133,19 @@ impl TriangleDrawing {
         self.write(painter, ui)
     }
 
-    fn paint_angle(&self, painter: &Painter) {
-        let points = arc(self.shoulder, 0.0, -self.angle);
-        painter.add(Shape::line(points, Stroke::new(1.5, self.accent)));
+    /// Paints the circles around shoulder and hand where they cross: the elbow.
+    fn paint_compass(&self, painter: &Painter) {
+        for (centre, colour) in [(self.shoulder, self.upper), (self.hand, self.lower)] {
+            let spoke = self.elbow - centre;
+            let points = arc(centre, spoke.length(), spoke.angle() - COMPASS, 2.0 * COMPASS);
+            painter.add(Shape::line(points, Stroke::new(1.0, colour.gamma_multiply(0.6))));
+        }
+    }
+
+    fn paint_angles(&self, painter: &Painter) {
+        let stroke = Stroke::new(1.5, self.accent);
+        painter.add(Shape::line(arc(self.shoulder, ARC, 0.0, -self.angle), stroke));
+        painter.add(Shape::line(self.elbow_arc(), stroke));
     }
 
     /// Writes each label at the first of its positions that is clear of lines and other labels. Labels
@@ -143,7 +166,10 @@ impl TriangleDrawing {
         let below = vec2(0.0, 1.0);
         let beneath = Place { at: shoulder + below * 6.0, away: below };
         let in_angle: Vec<_> = in_angle.chain([beneath]).collect();
-        labels.write("Angle θ_e", self.accent, ArmFigure::ShoulderAngle, &in_angle);
+        labels.write("Shoulder θ_e", self.accent, ArmFigure::ShoulderAngle, &in_angle);
+        let (start, turn) = self.at_elbow();
+        let at_elbow = around(elbow, ARC, start + 0.5 * turn);
+        labels.write("Elbow φ", self.accent, ArmFigure::ElbowAngle, &at_elbow);
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
         labels.write("Out o_e", self.weak, ArmFigure::Out, &heights);
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
@@ -159,9 +185,9 @@ impl TriangleDrawing {
     }
 }
 
-/// Points of an arc around a corner. Angles are in radians, clockwise from the right.
-fn arc(corner: Pos2, start: f32, turn: f32) -> Vec<Pos2> {
+/// Points of an arc around a point. Angles are in radians, clockwise from the right.
+fn arc(centre: Pos2, radius: f32, start: f32, turn: f32) -> Vec<Pos2> {
     const STEPS: u8 = 24;
     let part = |step: u8| f32::from(step) / f32::from(STEPS);
-    (0..=STEPS).map(|step| corner + ARC * Vec2::angled(start + part(step) * turn)).collect()
+    (0..=STEPS).map(|step| centre + radius * Vec2::angled(start + part(step) * turn)).collect()
 }
