@@ -281,7 +281,8 @@ fn cards_show_all_of_their_text_at_every_stage() {
             bench.wait(if number == 11 { 8.0 } else { 0.1 });
             let result = said(&bench, &step.result);
             expect_in_sight(&bench, ["What happened", &result, &mark(step, 0)]);
-            assert!(bench.viewport().height() > 220.0, "room for the scene of step {number}");
+            let height = bench.viewport().height();
+            assert!(height > 220.0, "room for the scene of step {number}: {height}");
         }
         let bench = in_step(TourStep::all().len() + 1, size, Theme::Dark);
         let TourEnd { title, sentences, next } = TourEnd::get();

@@ -20,6 +20,7 @@ pub(in crate::ui) fn dialog(ui: &mut Ui, actions: &mut Actions) {
 fn show(ui: &mut Ui, entry: &Entry, actions: &mut Actions) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(&entry.term).strong());
+        let Some(show_me) = entry.show_me() else { return };
         let link = ui.link("Show me");
         link.widget_info(|| {
             let name = format!("Show me: {}", entry.term);
@@ -27,7 +28,7 @@ fn show(ui: &mut Ui, entry: &Entry, actions: &mut Actions) {
         });
         if link.on_hover_text("Begin the tour at the step that shows it").clicked() {
             actions.push(ShellAction::CloseDialog);
-            actions.push(entry.show_me());
+            actions.push(show_me);
         }
     });
     ui.label(&entry.text);

@@ -1,4 +1,4 @@
-//! The glossary: terms of the user interface, each with two sentences and a step of the tour.
+//! The glossary: terms of the user interface, each with two sentences and often a step of the tour.
 
 mod dialog;
 mod entry;

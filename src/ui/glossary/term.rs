@@ -24,8 +24,10 @@ pub(in crate::ui) fn term(ui: &Ui, label: Response, width: f32, of: &str, action
         ui.set_max_width(WIDTH);
         ui.label(RichText::new(&entry.term).strong());
         ui.label(&entry.text);
-        if ui.link("Show me").clicked() {
-            actions.push(entry.show_me());
+        if let Some(show_me) = entry.show_me()
+            && ui.link("Show me").clicked()
+        {
+            actions.push(show_me);
         }
     });
 }

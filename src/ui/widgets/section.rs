@@ -94,23 +94,19 @@ fn show_section(
     let heading = cut(ui, title);
     let is_asked = ui.data(|data| data.get_temp(section_to_open())) == Some(Some(id.to_owned()));
     let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
-    if is_asked {
-        note_opened(ui, ui.make_persistent_id(id), open);
-    }
     let shown = header.open(is_asked.then_some(true)).show_unindented(ui, contents);
+    let header = &shown.header_response;
+    if is_asked && header.changed() {
+        ui.data_mut(|data| {
+            data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(header.id)
+        });
+    }
     if is_asked {
         let end = shown.body_returned.map_or(shown.header_response.rect, |()| ui.min_rect());
         ui.scroll_to_rect(shown.header_response.rect.union(end), None);
     }
     ui.add_space(SPACE);
     shown.header_response.rect
-}
-
-/// Notes a section that is about to be unfolded, if it is folded.
-fn note_opened(ui: &Ui, id: Id, open_at_first: bool) {
-    if !CollapsingState::load_with_default_open(ui, id, open_at_first).is_open() {
-        ui.data_mut(|data| data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(id));
-    }
 }
 
 /// The title, truncated to the width of the panel: egui would widen the panel for a longer title.
