@@ -248,7 +248,7 @@ fn next(bench: &Bench) -> &'static str {
 
 /// Expects that texts of the card are above its lower row of buttons, not scrolled out of sight.
 fn expect_in_sight<'a>(bench: &Bench, texts: impl IntoIterator<Item = &'a str>) {
-    let row = bench.rect(Role::Button, "Back").top();
+    let row = bench.rect(Role::Button, "Back").top() - 4.0;
     let top = bench.rect(Role::Button, "Leave").bottom();
     for text in texts {
         let mut nodes = bench.harness.query_all_by_label_contains(text);
@@ -300,9 +300,13 @@ fn cards_look_as_they_did() {
         for (size, width) in [(LARGE, "large"), (SMALL, "small")] {
             for number in 1..=TourStep::all().len() + 1 {
                 let mut bench = in_step(number, size, theme);
-                // The question and, in every second step, the task.
-                if number % 2 == 0 {
+                // The question, the task and the result in turn.
+                if number <= TourStep::all().len() && number % 3 != 1 {
                     bench.click(Role::Button, &step(number).guess.answers[0]);
+                }
+                if number % 3 == 0 {
+                    bench.apply_moving([TourAction::Demonstrate]);
+                    bench.wait(0.1);
                 }
                 let theme = format!("{theme:?}").to_lowercase();
                 let name = format!("tour/{number:02}_{width}_{theme}");
@@ -381,6 +385,15 @@ fn each_guess_is_marked_right_or_not_quite_with_the_right_answer() {
     let mut bench = in_step(5, SMALL, Theme::Dark);
     do_with_the_mouse(&mut bench, 5);
     assert!(bench.says("Answer: It vanishes"), "without a guess");
+}
+
+#[test]
+fn the_two_poses_of_nearly_straight_are_shown_after_the_guess() {
+    let mut bench = in_step(7, LARGE, Theme::Dark);
+    assert!(!bench.says("Nearly straight: hand"));
+    bench.click(Role::Button, &step(7).guess.answers[2]);
+    do_with_the_mouse(&mut bench, 7);
+    assert!(bench.says("Nearly straight: hand"));
 }
 
 #[test]

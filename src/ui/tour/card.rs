@@ -20,7 +20,7 @@ const FOOTER: f32 = 38.0;
 /// Height of the card in a window in which it has a width. It is the same for all steps, so that the
 /// view does not change its size.
 pub(in crate::ui) fn height(width: f32) -> f32 {
-    if width < WIDE { 270.0 } else { 204.0 }
+    if width < WIDE { 270.0 } else { 216.0 }
 }
 
 /// Unfolds the section of the left panel that a step needs, once, when the step begins. When the tour

@@ -16,7 +16,7 @@ mod twist_references;
 
 use egui::{Ui, vec2};
 
-use crate::session::{Actions, ArmFigure, Session};
+use crate::session::{Actions, ArmFigure, Session, TourState};
 use crate::ui::pose_summary;
 use crate::ui::widgets;
 use lit::Lit;
@@ -49,7 +49,10 @@ pub(in crate::ui) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions
 pub(in crate::ui) fn reach(ui: &mut Ui, session: &Session) {
     reach_meter::ui(ui, session);
     sentence(ui, session);
-    widgets::section(ui, "Same step, two poses", |ui| same_step::ui(ui, session));
+    // A step of the tour asks for what this section shows.
+    if session.tour().is_none_or(TourState::shows_result) {
+        widgets::section(ui, "Same step, two poses", |ui| same_step::ui(ui, session));
+    }
     widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
 }
 

@@ -1,9 +1,10 @@
-//! The same step of the Cursor with the arm bent and nearly straight, each as two poses laid over each
-//! other.
+//! The same step of the hand with the arm bent and nearly straight, each as two poses laid over each
+//! other. Soft limits play no part: this is the triangle alone.
 
 use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::document::Arm;
+use crate::kinematics::soft_reach::{ReachLimits, SoftReach};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::session::Session;
 use crate::ui::style;
@@ -11,10 +12,10 @@ use crate::ui::style;
 const HEIGHT: f32 = 92.0;
 /// Room for joints at the sides, and for the line of text below the arm.
 const MARGINS: [f32; 2] = [8.0, 24.0];
-/// Length of the step, as a fraction of the longest distance.
-const STEP: f32 = 0.04;
-/// Distance at which the step ends, as a fraction of the longest distance, by its name.
-const ENDS: [(&str, f32); 2] = [("Bent", 0.75), ("Nearly straight", 1.0)];
+/// Length of the step, as a fraction of the range of the hand's distances.
+const STEP: f32 = 0.05;
+/// Where in this range the step ends, from 0 to 1, by its name.
+const ENDS: [(&str, f32); 2] = [("Bent", 0.7), ("Nearly straight", 1.0)];
 
 pub(super) fn ui(ui: &mut Ui, session: &Session) {
     let steps = ENDS.map(|(name, end)| SameStep::new(session.arm(), name, end));
@@ -25,7 +26,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session) {
     }
 }
 
-/// Two poses of the arm, before and after a step of the Cursor away from the shoulder.
+/// Two poses of the arm, before and after a step of the hand away from the shoulder.
 struct SameStep<'a> {
     arm: &'a Arm,
     name: &'static str,
@@ -34,16 +35,18 @@ struct SameStep<'a> {
 }
 
 impl<'a> SameStep<'a> {
-    /// The step that ends at a fraction of the longest distance.
+    /// The step that ends at a part of the range of the hand's distances.
     fn new(arm: &'a Arm, name: &'static str, end: f32) -> Self {
-        let outer = arm.reach_limits().outer;
+        let hard = Arm { influence: 1.0, soft_reach: SoftReach::default(), ..*arm };
+        let ReachLimits { inner, outer } = hard.reach_limits();
         let direction = arm.pose().pointer.direction;
         let pose = |part: f32| {
-            let mut posed = Arm { influence: 1.0, ..*arm };
-            posed.set_cursor(direction * (outer * part));
+            let mut posed = hard;
+            posed.set_cursor(direction * (inner + part * (outer - inner)));
             posed.pose()
         };
-        Self { arm, name, step: STEP * outer, poses: [pose(end - STEP), pose(end)] }
+        let step = STEP * (outer - inner);
+        Self { arm, name, step, poses: [pose(end - STEP), pose(end)] }
     }
 
     /// Distance that the elbow moves in the plane of the arm.
@@ -54,7 +57,7 @@ impl<'a> SameStep<'a> {
 
     fn text(&self) -> String {
         let [step, elbow] = [self.step, self.elbow()].map(|length| self.arm.format_length(length));
-        format!("{}: Cursor {step}, elbow {elbow}", self.name)
+        format!("{}: hand {step}, elbow {elbow}", self.name)
     }
 }
 
@@ -80,9 +83,7 @@ fn drawing(ui: &mut Ui, step: &SameStep<'_>, highest: f32) {
     let moved = Stroke::new(3.0, style::accent(ui));
     painter.line_segment([before[1], after[1]], moved);
     painter.line_segment([before[2], after[2]], moved);
-    response.on_hover_text(
-        "Compare how far the same step of the Cursor moves the elbow (Softness calms it)",
-    );
+    response.on_hover_text("Compare how far the same step of the hand moves the elbow");
 }
 
 /// Shoulder, elbow and hand of both poses on screen.
@@ -91,7 +92,7 @@ fn corners(rect: Rect, step: &SameStep<'_>, highest: f32) -> [[Pos2; 3]; 2] {
         rect.min + vec2(MARGINS[0], MARGINS[0]),
         rect.max - vec2(MARGINS[0], MARGINS[1]),
     );
-    let outer = step.arm.reach_limits().outer;
+    let outer = step.arm.bones.outer_limit();
     let scale = (inside.width() / outer).min(inside.height() / highest);
     step.poses.map(|pose| {
         let place = |along: f32, out: f32| {

@@ -19,7 +19,7 @@ const MARGINS: Vec2 = vec2(44.0, 34.0);
 /// Radius of the arcs of the angles, in points.
 const ARC: f32 = 18.0;
 /// Half of the angle that each compass arc takes, in radians.
-const COMPASS: f32 = 0.3;
+const COMPASS: f32 = 0.2;
 
 pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit) {
     let (arm, pose) = (session.arm(), session.pose());
@@ -135,11 +135,17 @@ impl TriangleDrawing {
 
     /// Paints the circles around shoulder and hand where they cross: the elbow.
     fn paint_compass(&self, painter: &Painter) {
-        for (centre, colour) in [(self.shoulder, self.upper), (self.hand, self.lower)] {
-            let spoke = self.elbow - centre;
-            let points = arc(centre, spoke.length(), spoke.angle() - COMPASS, 2.0 * COMPASS);
+        for (points, colour) in self.compass().into_iter().zip([self.upper, self.lower]) {
             painter.add(Shape::line(points, Stroke::new(1.0, colour.gamma_multiply(0.6))));
         }
+    }
+
+    /// Arcs of the circles around shoulder and hand that cross at the elbow.
+    fn compass(&self) -> [Vec<Pos2>; 2] {
+        [self.shoulder, self.hand].map(|centre| {
+            let spoke = self.elbow - centre;
+            arc(centre, spoke.length(), spoke.angle() - COMPASS, 2.0 * COMPASS)
+        })
     }
 
     fn paint_angles(&self, painter: &Painter) {
@@ -151,11 +157,10 @@ impl TriangleDrawing {
     /// Writes each label at the first of its positions that is clear of lines and other labels. Labels
     /// without such a position are left out, except those of the sides.
     fn write(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, ArmFigure)> {
-        let mut labels = Labels::new(painter, ui, self.lines().to_vec());
+        let mut labels = Labels::new(painter, ui, self.lines());
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
         labels.write_always("Upper d_1", self.upper, ArmFigure::Upper, &beside(shoulder, elbow));
         labels.write_always("Lower d_2", self.lower, ArmFigure::Lower, &beside(elbow, hand));
-        labels.write_always("Distance D", self.text, ArmFigure::Distance, &beside(hand, shoulder));
         let angle = self.angle.min(TAU / 4.0);
         let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             [0.5, 0.65, 0.8, 0.35].map(|part| Place {
@@ -169,7 +174,12 @@ impl TriangleDrawing {
         labels.write("Shoulder θ_e", self.accent, ArmFigure::ShoulderAngle, &in_angle);
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
+        let above = [(-1.0, -14.0), (1.0, -14.0), (-1.0, -24.0), (1.0, -24.0)];
+        let above = above
+            .map(|(side, up)| Place { at: elbow + vec2(side * 12.0, up), away: vec2(side, 0.0) });
+        let at_elbow = [at_elbow, above.to_vec()].concat();
         labels.write("Elbow φ", self.accent, ArmFigure::ElbowAngle, &at_elbow);
+        labels.write_always("Distance D", self.text, ArmFigure::Distance, &beside(hand, shoulder));
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
         labels.write("Out o_e", self.weak, ArmFigure::Out, &heights);
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
@@ -179,9 +189,12 @@ impl TriangleDrawing {
         labels.written()
     }
 
-    fn lines(&self) -> [[Pos2; 2]; 4] {
+    /// The lines that labels keep clear of.
+    fn lines(&self) -> Vec<[Pos2; 2]> {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
-        [[shoulder, elbow], [elbow, hand], [shoulder, hand], [elbow, foot]]
+        let sides = [[shoulder, elbow], [elbow, hand], [shoulder, hand], [elbow, foot]];
+        let ends = self.compass().map(|points| [points[0], points[points.len() - 1]]);
+        [sides.as_slice(), &ends].concat()
     }
 }
 
