@@ -98,7 +98,7 @@ fn show_section(
     let header = &shown.header_response;
     if is_asked && header.changed() {
         ui.data_mut(|data| {
-            data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(header.id)
+            data.get_temp_mut_or_default::<Vec<Id>>(opened_sections()).push(header.id);
         });
     }
     if is_asked {
