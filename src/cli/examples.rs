@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use thiserror::Error;
 
 use super::report::fail;
-use crate::io::{self as files, Example, WriteError};
+use crate::io::{self as files, Example, WriteError, system_reason};
 
 #[derive(clap::Args)]
 #[command(after_help = "Without NAME it lists the examples. With NAME it prints one as a document:
@@ -32,7 +32,7 @@ fn names() -> PossibleValuesParser {
 enum ExamplesError {
     #[error(transparent)]
     File(#[from] WriteError),
-    #[error("cannot write to standard output: {0}")]
+    #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(#[from] io::Error),
 }
 

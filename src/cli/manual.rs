@@ -9,6 +9,8 @@ use thiserror::Error;
 
 use super::report::fail;
 
+use crate::io::system_reason;
+
 /// Arguments of `ik-arm manual`.
 #[derive(clap::Args)]
 pub struct ManualArgs {
@@ -17,7 +19,7 @@ pub struct ManualArgs {
 }
 
 #[derive(Debug, Error)]
-#[error("cannot write the pages to {}: {source}", folder.display())]
+#[error("cannot write the pages to {}: {}", folder.display(), system_reason(source))]
 struct ManualError {
     folder: PathBuf,
     source: io::Error,

@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum OpenError {
     /// The system cannot read the file.
-    #[error("{file} cannot be read: {source}")]
+    #[error("{file} cannot be read: {}", system_reason(source))]
     Read {
         /// Name of the file.
         file: String,
@@ -131,7 +131,7 @@ pub enum WriteError {
         folder: String,
     },
     /// The system cannot write the file.
-    #[error("{path} could not be written: {source}")]
+    #[error("{path} could not be written: {}", system_reason(source))]
     Write {
         /// Path of the file.
         path: String,
@@ -148,6 +148,13 @@ fn list(names: &[String]) -> String {
             format!("it has {}", quoted.join(", "))
         }
     }
+}
+
+/// The reason that the system gives for an error, without its number.
+pub(crate) fn system_reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    let number = error.raw_os_error().map(|number| format!(" (os error {number})"));
+    number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
 }
 
 /// Replaces the middle of a long message by `…`.

@@ -46,6 +46,8 @@ mod write;
 
 pub use bvh::{BvhUnit, to_bvh};
 pub use csv::to_csv;
+#[cfg(feature = "app")]
+pub(crate) use error::system_reason;
 pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::{Example, Group, new_document};
 pub use file_animation::FileAnimation;

@@ -160,3 +160,15 @@ fn in_a_read_only_folder_the_document_stays_open_and_unsaved() {
     let elsewhere = tempfile::tempdir().expect("a folder");
     io::save(session.document(), &elsewhere.path().join("x.json")).expect("saved");
 }
+
+#[test]
+fn messages_tell_the_reason_of_the_system_without_its_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = folder.path().join("missing.json");
+    let options = io::OpenOptions::default();
+    let read = io::open(&missing, &options).expect_err("it is missing");
+    let said = read.to_string();
+    assert!(said.ends_with("missing.json cannot be read: No such file or directory"), "{said}");
+    let read = io::open(folder.path(), &options).expect_err("a folder");
+    assert!(!read.to_string().contains("os error"), "{read}");
+}

@@ -20,7 +20,7 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::report::{fail, say};
 use crate::document::{RigKind, SkeletonRig};
-use crate::io::{OpenError, Opened};
+use crate::io::{OpenError, Opened, system_reason};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
 use given_target::{GivenTarget, SetTargetsError};
@@ -115,7 +115,7 @@ enum PoseCommandError {
     Solve { file: String, error: SolveError },
     #[error("{file}: the position of joint {name:?} must be within ±3.4028235e38")]
     Overflow { file: String, name: String },
-    #[error("cannot write to standard output: {0}")]
+    #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(#[from] io::Error),
 }
 

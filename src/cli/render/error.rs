@@ -3,6 +3,7 @@ use std::io;
 use thiserror::Error;
 
 use crate::io::OpenError;
+use crate::io::system_reason;
 use crate::kinematics::two_bone::LengthError;
 use crate::render::{CrowdError, DrawError, GpuError, SavePictureError};
 
@@ -25,6 +26,6 @@ pub enum RenderCommandError {
     CrowdLength { min: f32, max: f32, upper: f32, lower: f32 },
     #[error(transparent)]
     Save(#[from] SavePictureError),
-    #[error("cannot write to standard output: {0}")]
+    #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(#[from] io::Error),
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::report::fail;
-use crate::io::{LineError, solve_line};
+use crate::io::{LineError, solve_line, system_reason};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -56,11 +56,11 @@ pub fn run(args: &SolveArgs) -> ExitCode {
 /// Reasons why the command stops before the end of the input.
 #[derive(Debug, Error)]
 enum SolveCommandError {
-    #[error("cannot open {name}: {error}")]
+    #[error("cannot open {name}: {}", system_reason(error))]
     Open { name: String, error: io::Error },
-    #[error("cannot read {name}: {error}")]
+    #[error("cannot read {name}: {}", system_reason(error))]
     Read { name: String, error: io::Error },
-    #[error("cannot write to standard output: {0}")]
+    #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(io::Error),
 }
 

@@ -6,7 +6,7 @@ use std::path::{Component, Path};
 
 use super::file::{GltfBuffer, GltfFile, index_rule};
 use crate::io::base64;
-use crate::io::error::OpenError;
+use crate::io::error::{OpenError, system_reason};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
@@ -119,7 +119,7 @@ fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, Strin
         return Err(format!("must be in the file's own folder, got {uri:?}"));
     }
     let path = folder.join(name);
-    let failed = |error| format!("{} cannot be read: {error}", path.display());
+    let failed = |error| format!("{} cannot be read: {}", path.display(), system_reason(&error));
     if !fs::metadata(&path).map_err(failed)?.is_file() {
         return Err(format!("must be a file, got {}", path.display()));
     }
