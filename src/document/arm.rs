@@ -1,3 +1,5 @@
+use core::fmt;
+
 use glam::Vec3;
 
 use super::cursor::Cursor;
@@ -130,7 +132,7 @@ impl Arm {
 
     /// A length of the arm as text, rounded to a thousandth of a grid cell.
     pub fn format_length(&self, length: f32) -> String {
-        format!("{length:.*}", self.length_decimals())
+        ShownLength { length, decimals: self.length_decimals() }.to_string()
     }
 
     /// Number of decimals in [`Self::format_length`], from 0 to 8.
@@ -148,6 +150,24 @@ impl Arm {
         let reach = points.into_iter().map(|point| point.distance(centre)).fold(0.0, f32::max);
         let radius = reach.max(self.bones.outer_limit() * 0.5).min(f32::MAX);
         ((self.root + centre).clamp(Vec3::MIN, Vec3::MAX), radius)
+    }
+}
+
+/// Writes a length with some decimals, and a very large one in scientific notation.
+pub(crate) struct ShownLength {
+    pub length: f32,
+    pub decimals: usize,
+}
+
+impl fmt::Display for ShownLength {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const LARGE: f32 = 1e9;
+        let Self { length, decimals } = *self;
+        match length.abs() {
+            size if !(size < f32::MAX) => f.write_str("overflow"),
+            LARGE.. => write!(f, "{length:.3e}"),
+            _ => write!(f, "{length:.decimals$}"),
+        }
     }
 }
 

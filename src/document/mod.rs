@@ -38,6 +38,7 @@ pub use crate::rig::{
     FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing,
 };
 pub use arm::Arm;
+pub(crate) use arm::ShownLength;
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};
 pub use channel::{Channel, Quantity};

@@ -151,11 +151,12 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         RigKind::Arm => format::decimals_of_cell(session.shown().grid_cell() * 0.1),
         RigKind::Skeleton => format::decimals_of_cell(session.shown().grid_cell()),
     };
+    let [x, y, z] = moved.to_array().map(|way| match format::has_overflowed(way.into()) {
+        true => format::OVERFLOW.to_owned(),
+        false => format!("{way:+.digits$}"),
+    });
     format!(
-        "{verb} {how}: {:+.digits$}, {:+.digits$}, {:+.digits$}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",
-        moved.x,
-        moved.y,
-        moved.z,
+        "{verb} {how}: {x}, {y}, {z}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",
         typed(drag.typed()),
     )
 }

@@ -4,9 +4,10 @@ use core::f32::consts::TAU;
 
 use egui::Key;
 use egui::accesskit::Role;
+use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::EditAction;
+use ik_arm::session::{EditAction, PanelTab};
 
 use crate::bench::{Bench, bits};
 use crate::panel::SLIDERS;
@@ -128,6 +129,34 @@ fn an_invalid_length_is_refused_with_a_message() {
                 bench.node(Role::SpinButton, &format!("{slider} value")).value(),
                 Some(format!("{:.1}", value(&Arm::default(), slider)))
             );
+        }
+    }
+}
+
+#[test]
+fn no_number_on_screen_is_infinite_or_the_largest_one() {
+    let huge = [Vec3::splat(f32::MAX), Vec3::splat(1e38), Vec3::new(-3e38, 3e38, 1.0)];
+    for hand in huge {
+        let mut bench = Bench::new();
+        bench.apply([EditAction::SetHand(hand), EditAction::SetRoot(-hand)]);
+        bench.apply([EditAction::SetUpper(3e38), EditAction::SetLower(3e38)]);
+        for tab in [PanelTab::Triangle, PanelTab::Twist, PanelTab::Reach, PanelTab::Pops] {
+            bench.show_tab(tab);
+            for node in bench.harness.root().children_recursive() {
+                let node = node.accesskit_node();
+                let texts = [node.label(), node.value()];
+                for text in texts.into_iter().flatten() {
+                    let words =
+                        text.split(|it: char| !it.is_alphanumeric() && !".+-−".contains(it));
+                    for word in words {
+                        let is_bad = ["inf", "-inf", "+inf", "NaN"].contains(&word)
+                            || word.contains("3.4e38")
+                            || word.contains("e38") && word.contains("3.40")
+                            || word.len() > 24 && word.bytes().all(|it| it.is_ascii_digit());
+                        assert!(!is_bad, "{tab:?}, {:?}: {text}", node.role());
+                    }
+                }
+            }
         }
     }
 }

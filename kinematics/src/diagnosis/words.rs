@@ -245,8 +245,15 @@ fn percent(fraction: f32) -> String {
     format!("{} %", (100.0 * fraction).ceil())
 }
 
-/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`.
+/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`, and in
+/// scientific notation if it is very large.
 pub fn significant(value: f32) -> String {
+    const LARGE: f32 = 1e9;
+    match value.abs() {
+        size if !(size < f32::MAX) => return "more than numbers hold".to_owned(),
+        LARGE.. => return format!("{value:.2e}"),
+        _ => {}
+    }
     let magnitude = value.abs().log10().floor();
     let decimals =
         if magnitude.is_finite() { (2.0 - magnitude).clamp(0.0, 8.0) as usize } else { 0 };

@@ -2,10 +2,19 @@
 
 use crate::kinematics::diagnosis::significant;
 
+/// Stands for a number that is not finite, or that was clamped to the largest one.
+pub(in crate::ui) const OVERFLOW: &str = "overflow";
+
+/// Whether the number is not finite or was clamped to ±`f32::MAX`.
+pub(in crate::ui) fn has_overflowed(value: f64) -> bool {
+    !value.is_finite() || value.abs() >= f64::from(f32::MAX)
+}
+
 /// Formats a number in about six characters: with at most three decimals, or in scientific notation
 /// below 0.001 and from 100,000.
 pub(in crate::ui) fn short(value: f32) -> String {
     match value.abs() {
+        _ if has_overflowed(value.into()) => OVERFLOW.to_owned(),
         0.0 => "0".to_owned(),
         ..0.001 => format!("{value:.1e}"),
         ..10.0 => format!("{value:.3}"),
@@ -45,6 +54,7 @@ pub(in crate::ui) fn fixed(value: f64, decimals: usize) -> String {
     // Small negative numbers would be formatted as "-0".
     let value = if value.abs() < 0.5 * 0.1_f64.powi(decimals as i32) { 0.0 } else { value };
     match value.abs() {
+        _ if has_overflowed(value) => OVERFLOW.to_owned(),
         0.0 if decimals > MOST => "0".to_owned(),
         _ if decimals > MOST => format!("{value:.2e}"),
         ..99.995 => format!("{value:.decimals$}"),
@@ -62,6 +72,15 @@ pub(in crate::ui) fn decimals_of_cell(cell: f32) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_that_overflow_say_so() {
+        for value in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, f32::MIN] {
+            assert_eq!(short(value), "overflow");
+            assert_eq!(fixed(value.into(), 2), "overflow");
+        }
+        assert_eq!((short(3e38).as_str(), fixed(3e38, 2).as_str()), ("3.0e38", "3.0e38"));
+    }
 
     #[test]
     fn whole_numbers_have_their_thousands_apart() {

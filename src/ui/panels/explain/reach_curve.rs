@@ -7,7 +7,7 @@ use egui_plot::{
     Points, VLine,
 };
 
-use crate::document::Arm;
+use crate::document::{Arm, ShownLength};
 use crate::kinematics::soft_reach::{HandDistance, SoftReach};
 use crate::session::Session;
 use crate::ui::style;
@@ -98,8 +98,9 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
     // Capped so that the limits stay readable.
     let most = f64::from(longest.min(4.0)) + 0.2;
-    let digits = format::decimals_of_cell(arm.grid_cell());
-    let length = move |part: f64| format!("{:.digits$}", part * outer);
+    let decimals = format::decimals_of_cell(arm.grid_cell());
+    let length =
+        move |part: f64| ShownLength { length: (part * outer) as f32, decimals }.to_string();
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
     let weak = ui.visuals().weak_text_color();
@@ -188,7 +189,8 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
 fn reading(arm: &Arm, cursor: f32) -> String {
     let cursor = cursor.min(f32::MAX);
     let HandDistance { distance, slope, .. } = arm.soft_reach.hand_distance(arm.bones, cursor);
-    format!("Cursor at {cursor:.1}: hand at {distance:.1}, slope {slope:.2}")
+    let [cursor, distance] = [cursor, distance].map(|length| ShownLength { length, decimals: 1 });
+    format!("Cursor at {cursor}: hand at {distance}, slope {slope:.2}")
 }
 
 /// A sentence that says which curves are examples.

@@ -2,6 +2,7 @@
 
 use egui::{Sense, Ui, vec2};
 
+use crate::document::ShownLength;
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::session::Session;
 use crate::ui::style;
@@ -14,7 +15,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     const BEYOND: f32 = 1.25;
     let arm = session.arm();
     let ReachLimits { inner, outer } = arm.reach_limits();
-    let digits = format::decimals_of_cell(arm.grid_cell());
+    let decimals = format::decimals_of_cell(arm.grid_cell());
+    let shown = |length: f32| ShownLength { length, decimals }.to_string();
     let (what, distance) = match arm.uses_ik() {
         true => ("Cursor", arm.cursor_in_root().length()),
         false => ("Hand", session.pose().distance),
@@ -44,9 +46,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     // On a short bar the two numbers would overlap.
     let apart = place(outer) - place(inner) > 60.0;
     if apart && inner > 0.0 {
-        written(place(inner), egui::Align2::CENTER_TOP, format!("{inner:.digits$}"));
+        written(place(inner), egui::Align2::CENTER_TOP, shown(inner));
     }
-    written(place(outer), egui::Align2::CENTER_TOP, format!("{outer:.digits$}"));
+    written(place(outer), egui::Align2::CENTER_TOP, shown(outer));
     let [distance, inner, outer] = [distance, inner, outer].map(|it| arm.format_length(it));
     let summary = format!("{what} at {distance}; the hand reaches from {inner} to {outer}");
     response.widget_info(|| {
