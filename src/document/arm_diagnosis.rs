@@ -1,6 +1,7 @@
 use super::Arm;
 use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Names};
 use crate::kinematics::skeleton::JointId;
+use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 
 impl Arm {
@@ -15,10 +16,10 @@ impl Arm {
             _ if influence < 1.0 => Cause::Influence { influence },
             Some(Reach::Reached) | None => return None,
             Some(reach) => {
-                let soft = self.soft_reach;
+                let smallest_angle = self.soft_reach.min_elbow_angle();
                 let boundary = match reach {
-                    _ if soft.softness() > 0.0 => Boundary::SoftLimit,
-                    Reach::TooClose if soft.min_elbow_angle() > 0.0 => Boundary::ElbowAngle,
+                    _ if self.is_softened() => Boundary::SoftLimit,
+                    Reach::TooClose if smallest_angle > 0.0 => Boundary::ElbowAngle,
                     _ => Boundary::Bones,
                 };
                 Cause::OutOfReach {
@@ -32,6 +33,13 @@ impl Arm {
         };
         let residual = pose.hand.distance(self.cursor_in_root());
         Some(Diagnosis { target: HAND, residual, cause, joints: vec![HAND], remedies: Vec::new() })
+    }
+
+    /// Whether softness alone keeps the hand from the Cursor: hard limits would let it go there.
+    pub fn is_softened(&self) -> bool {
+        let ReachLimits { inner, outer } = self.reach_limits();
+        let distance = self.cursor_in_root().length();
+        self.soft_reach.softness() > 0.0 && (inner..=outer).contains(&distance)
     }
 
     /// [`Arm::diagnose`] as a sentence with a full stop.

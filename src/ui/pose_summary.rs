@@ -1,6 +1,6 @@
 //! Sentences about the current pose.
 
-use crate::document::{Arm, PathKind, RigKind};
+use crate::document::{Arm, PathKind, RigKind, ShownLength};
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
@@ -91,6 +91,7 @@ fn describe_pose(session: &Session) -> String {
         _ if !arm.uses_ik() => "FK",
         _ if arm.influence < 1.0 => "Between FK and IK",
         Some(Reach::Reached) | None => "Reached",
+        Some(_) if arm.is_softened() => "Softened",
         Some(Reach::TooFar) => "Too far",
         Some(Reach::TooClose) => "Too close",
     };
@@ -98,8 +99,7 @@ fn describe_pose(session: &Session) -> String {
     let ReachLimits { inner, outer } = arm.reach_limits();
     let [x, y, z] = hand.to_array().map(|coordinate| arm.format_length(coordinate));
     let distance = arm.format_length(pose.distance);
-    let digits = decimals_of_cell(arm.grid_cell());
-    format!(
-        "{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {inner:.digits$}–{outer:.digits$}"
-    )
+    let decimals = decimals_of_cell(arm.grid_cell());
+    let [inner, outer] = [inner, outer].map(|length| ShownLength { length, decimals });
+    format!("{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {inner}–{outer}")
 }

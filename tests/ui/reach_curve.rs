@@ -177,3 +177,22 @@ fn extreme_hands_and_lengths_are_plotted() {
         plot(&bench);
     }
 }
+
+#[test]
+fn a_cursor_within_reach_is_softened_and_one_beyond_it_too_far() {
+    for (x, softness, said) in [
+        (480.0, 0.3, "Softened · hand"),
+        (530.0, 0.3, "Too far · hand"),
+        (105.0, 0.3, "Softened · hand"),
+        (95.0, 0.3, "Too close · hand"),
+        (530.0, 0.0, "Too far · hand"),
+        (480.0, 0.0, "Reached · hand"),
+    ] {
+        let soft_reach = SoftReach::new(softness, 1.0, 0.0).expect("soft limits");
+        let bench =
+            Bench::after([EditAction::SetHand(Vec3::X * x), EditAction::SetSoftReach(soft_reach)]);
+        assert!(bench.says(said), "{x}, {softness}: not {said}");
+        let is_soft = bench.says("The soft limits slow the hand down");
+        assert_eq!(is_soft, said.starts_with("Softened"), "{x}, {softness}");
+    }
+}
