@@ -70,6 +70,7 @@ impl Session {
     pub(super) fn set_time(&mut self, time: f64) {
         let before = self.time();
         if self.playback.set_time(time) {
+            self.shell.leave_moment();
             self.with_camera_following(|session| {
                 if session.editing.discard_overrides(before, session.time()) {
                     session.say(format!(

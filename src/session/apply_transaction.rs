@@ -3,6 +3,7 @@ use core::fmt::Display;
 use glam::Vec3;
 
 use super::drag::{Drag, DragKind, Grip};
+use super::message::Message;
 use super::point_drag::{Constraint, PointDrag};
 use super::session::Session;
 use super::snapshot::Snapshot;
@@ -119,7 +120,8 @@ impl Session {
             self.playback.has_auto_keyed();
         }
         if change.has_overridden {
-            self.say("Unkeyed change: press K or it is lost when the time changes");
+            let text = "Unkeyed change: press K or it is lost when the time changes";
+            self.shell.set_message(Message::of_moment(text));
         }
         self.follow_document();
         self.forget_trail();

@@ -3,11 +3,22 @@
 pub(super) struct Message {
     text: String,
     is_error: bool,
+    /// Whether the message is about the pose at the current time, and goes when the time changes.
+    is_of_moment: bool,
 }
 
 impl Message {
     pub fn new(text: impl Into<String>) -> Self {
-        Self { text: text.into(), is_error: false }
+        Self { text: text.into(), is_error: false, is_of_moment: false }
+    }
+
+    /// A message about the pose at the current time.
+    pub fn of_moment(text: impl Into<String>) -> Self {
+        Self { is_of_moment: true, ..Self::new(text) }
+    }
+
+    pub fn is_of_moment(&self) -> bool {
+        self.is_of_moment
     }
 
     /// An error message; the first letter of `why` becomes a capital.
@@ -15,7 +26,7 @@ impl Message {
         let mut letters = why.chars();
         let first = letters.next().map(|letter| letter.to_uppercase().to_string());
         let text = format!("{}{}", first.unwrap_or_default(), letters.as_str());
-        Self { text, is_error: true }
+        Self { text, is_error: true, is_of_moment: false }
     }
 
     pub fn text(&self) -> &str {

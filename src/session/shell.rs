@@ -49,6 +49,11 @@ impl Shell {
         self.message = Some(message);
     }
 
+    /// Removes a message about the pose at the time that has passed.
+    pub fn leave_moment(&mut self) {
+        self.message.take_if(|message| message.is_of_moment());
+    }
+
     pub fn clear_message(&mut self) {
         self.message = None;
     }

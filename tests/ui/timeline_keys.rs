@@ -235,3 +235,15 @@ fn after_the_first_key_a_pose_at_another_time_is_kept_and_a_note_says_why() {
     bench.click(Role::Button, "Turn off");
     assert!(!bench.session().is_auto_key() && !bench.says(NOTE));
 }
+
+#[test]
+fn once_dragged_keys_are_dropped_the_status_line_says_what_was_done() {
+    let mut bench = keyed();
+    let at = key_of_hand(&bench, 1.0);
+    bench.drag(PointerButton::Primary, at, at + egui::vec2(60.0, 0.0));
+    assert!(bench.session().message().is_some_and(|it| it.starts_with("Move 1 key: ")));
+    bench.release(PointerButton::Primary);
+    let said = bench.session().message().unwrap_or_default();
+    assert!(said.starts_with("Moved 1 key by +"), "{said}");
+    assert!(!said.contains("cancel"), "{said}");
+}

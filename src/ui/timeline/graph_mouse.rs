@@ -263,9 +263,12 @@ fn move_keys(
         let mut raise = Vec3::ZERO;
         raise[drag.axis] = (shown / drag.kind.factor()) as f32;
         let count = labels::count_of_keys(drag.keys.len());
-        let said = format!(
-            "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
-        );
+        let said = match drag::is_released(ui) {
+            true => format!("Moved {count} by {by:+.2} s, {shown:+.2}"),
+            false => format!(
+                "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
+            ),
+        };
         actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise });
         actions.push(ShellAction::Report(said));
     }
@@ -295,9 +298,11 @@ fn turn_tangent(
         drag::set(ui, TimelineDrag::Tangent(drag));
     }
     actions.extend(turned(ui, graph, drag, mouse));
-    actions.push(ShellAction::Report(
-        "Turn the tangent     Alt this side only · Esc cancel".to_owned(),
-    ));
+    let said = match drag::is_released(ui) {
+        true => "Turned the tangent",
+        false => "Turn the tangent     Alt this side only · Esc cancel",
+    };
+    actions.push(ShellAction::Report(said.to_owned()));
     if drag::is_released(ui) {
         actions.push(TransactionAction::Commit);
         drag::clear(ui);
