@@ -3,20 +3,14 @@ use glam::Vec2;
 
 use super::Gpu;
 use super::font::Rectangle;
-use super::glyph_sheet::{GlyphSheet, LINE_HEIGHT};
+use super::glyph_sheet::GlyphSheet;
+use super::label_places::LabelPlaces;
 use super::pipeline::Output;
 use super::quads::{self, Quads};
 use super::texture_sampler::TextureSampler;
 use crate::scene::{Label, Scene};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/label.wgsl");
-
-/// Gap between a label and the ball beside which it is written, in points.
-const GAP: f32 = 3.0;
-
-/// Both coordinates of the point on a ball's outline that is nearest to its label, as a fraction of
-/// the ball's radius.
-const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
 
 /// Offsets in points of the copies of each glyph that form a halo, which keeps letters readable on
 /// any background.
@@ -47,6 +41,7 @@ pub(super) struct Labels {
     glyphs: Quads<GlyphInstance>,
     sampler: TextureSampler,
     sheet: Option<GlyphSheet>,
+    places: LabelPlaces,
 }
 
 impl Labels {
@@ -66,7 +61,7 @@ impl Labels {
                 output: Output::Overlay(format),
             },
         );
-        Self { glyphs, sampler, sheet: None }
+        Self { glyphs, sampler, sheet: None, places: LabelPlaces::default() }
     }
 
     /// Sends the changes to the device and returns the number of bytes sent. `size` is the
@@ -79,7 +74,10 @@ impl Labels {
         sheet.font.prepare(scene.labels.iter().map(|label| scene.text(label)));
         let sent = sheet.upload(gpu, &self.sampler);
         let size = Vec2::new(size.0 as f32, size.1 as f32);
-        let glyphs = scene.labels.iter().flat_map(|label| glyphs(&sheet, scene, label, size));
+        let width = |label: &Label| sheet.font.width(scene.text(label));
+        self.places.place(&scene.labels, &scene.camera, size, sheet.scale, width);
+        let placed = scene.labels.iter().zip(self.places.pens());
+        let glyphs = placed.flat_map(|(label, pen)| glyphs(&sheet, scene, label, *pen, size));
         let sent = sent + self.glyphs.upload(gpu, glyphs);
         self.sheet = Some(sheet);
         sent
@@ -97,42 +95,25 @@ impl Labels {
     }
 }
 
-/// Glyphs of a label's halo, then of the label itself; empty if the labelled point cannot be
-/// projected.
+/// Glyphs of a label's halo, then of the label itself, from the start of its baseline in pixels on;
+/// empty without one.
 fn glyphs<'a>(
     sheet: &'a GlyphSheet,
     scene: &'a Scene,
     label: &Label,
+    pen: Option<Vec2>,
     size: Vec2,
 ) -> impl Iterator<Item = GlyphInstance> + use<'a> {
     let (text, colour) = (scene.text(label), label.colour.channels());
     let halo = scene.palette.sky_bottom.with_opacity(0.55).channels();
     let around = HALO.into_iter().map(move |offset| (offset * sheet.scale, halo));
-    let laid = pen(sheet, scene, label, size).into_iter().flat_map(move |pen| {
+    let laid = pen.into_iter().flat_map(move |pen| {
         around.clone().chain([(Vec2::ZERO, colour)]).map(move |layer| (pen, layer))
     });
     laid.flat_map(move |(pen, (offset, colour))| {
         let letters = sheet.font.lay_out(text, pen);
         letters.map(move |letter| glyph_instance(sheet, size, letter, offset, colour))
     })
-}
-
-/// Start of a label's baseline in pixels; `None` if the labelled point cannot be projected.
-fn pen(sheet: &GlyphSheet, scene: &Scene, label: &Label, size: Vec2) -> Option<Vec2> {
-    let projection = scene.camera.projection(size.x / size.y);
-    let at = projection.project(label.at)?;
-    let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
-    let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
-    let away = ball * DIAGONAL + GAP * sheet.scale;
-    let across = match label.side.is_left() {
-        true => -away - sheet.font.width(scene.text(label)),
-        false => away,
-    };
-    let drop = match label.side.is_above() {
-        true => -away,
-        false => away + 0.6 * LINE_HEIGHT * sheet.scale,
-    };
-    Some(point + Vec2::new(across, drop))
 }
 
 fn glyph_instance(

@@ -21,6 +21,7 @@ mod gpu_timer;
 mod ignored_letters;
 mod instance_buffer;
 mod label;
+mod label_places;
 mod line;
 mod mesh;
 mod picture;

@@ -3,6 +3,12 @@ use glam::{Vec2, Vec3};
 use super::Colour;
 use crate::document::Camera;
 
+/// Distance of a text from its ball, in points.
+const GAP: f32 = 3.0;
+/// Distance from a point along both axes of the picture at which a text is clear of the squares and the free
+/// handle around the point, in points.
+const HANDLES: f32 = 46.0;
+
 /// A label beside a point; [`Scene::text`](super::Scene::text) returns its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Label {
@@ -10,7 +16,9 @@ pub struct Label {
     pub at: Vec3,
     /// Radius in world units of a ball around the point that the text does not cover.
     pub clearance: f32,
-    /// Side of the ball on which the text is written.
+    /// Distance of the text from the ball, in points.
+    pub gap: f32,
+    /// Side of the ball on which the text is written, if there is room.
     pub side: LabelSide,
     /// Colour of the text.
     pub colour: Colour,
@@ -31,7 +39,8 @@ pub enum LabelSide {
 }
 
 impl LabelSide {
-    const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
+    /// All sides.
+    pub const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
 
     /// Whether the text is to the left of the point.
     pub fn is_left(self) -> bool {
@@ -73,6 +82,11 @@ pub(super) struct TextRange {
 
 impl Label {
     pub(super) fn new(at: Vec3, clearance: f32, side: LabelSide, colour: Colour) -> Self {
-        Self { at, clearance, side, colour, text: TextRange::default() }
+        Self { at, clearance, gap: GAP, side, colour, text: TextRange::default() }
+    }
+
+    /// A label that is clear of the handles around its point.
+    pub(super) fn clear_of_handles(self) -> Self {
+        Self { gap: HANDLES, ..self }
     }
 }

@@ -1,7 +1,7 @@
 use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
-use crate::document::{Arm, Display, Overlay, TwistReferenceKind};
+use crate::document::{Arm, Display, Overlay, ShownLength, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Solid, SphereShell};
@@ -45,7 +45,7 @@ pub(super) fn add(
             add_pin(scene, arm.cursor_in_world(), thickness);
         }
         if pose.reach != Some(Reach::Reached) {
-            add_gap(scene, &rig, arm, thickness);
+            add_gap(scene, &rig, arm, thickness, has_handles);
         }
     }
     if arm.twist_reference == TwistReferenceKind::Pole && arm.uses_ik() {
@@ -142,15 +142,24 @@ fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
 }
 
 /// Adds a dashed line from the hand to a Cursor out of reach, labelled with the length of the line.
-fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32) {
+fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32, has_handles: bool) {
     let (hand, cursor) = (rig.origin(ArmPart::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     // The fingers are on the same line, beyond the hand.
-    let side = LabelSide::clear_of(&[hand, cursor + (cursor - hand)], cursor, &scene.camera);
-    let label = Label::new(cursor, CURSOR_BALL * thickness, side, colour);
-    let (length, digits) = (hand.distance(cursor), arm.length_decimals());
-    scene.add_label(label, format_args!("{length:.digits$}"));
+    let line = [hand, cursor + (cursor - hand)];
+    let arrows = Vec3::AXES.map(|axis| cursor + axis * hand.distance(cursor));
+    let [x, y, z] = arrows;
+    let label = |side| Label::new(cursor, CURSOR_BALL * thickness, side, colour);
+    let label = match has_handles {
+        true => {
+            let all = [line[0], line[1], x, y, z];
+            label(LabelSide::clear_of(&all, cursor, &scene.camera)).clear_of_handles()
+        }
+        false => label(LabelSide::clear_of(&line, cursor, &scene.camera)),
+    };
+    let (length, decimals) = (hand.distance(cursor), arm.length_decimals());
+    scene.add_label(label, format_args!("{}", ShownLength { length, decimals }));
 }
 
 /// Adds the names of the joints, clear of the limbs and the Pointer. If the elbow has the label of a

@@ -1,0 +1,184 @@
+use glam::Vec2;
+
+use super::glyph_sheet::LINE_HEIGHT;
+use crate::document::Camera;
+use crate::scene::{Label, LabelSide};
+
+/// Both coordinates of the point on a ball's outline that is nearest to its label, as a fraction of
+/// the ball's radius.
+const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
+/// Ratio of the height of letters to that of a line.
+const LETTERS: f32 = 0.75;
+/// Maximum number of lines by which a label is moved away from its point to be clear of others.
+const MOST_LINES: u8 = 3;
+
+/// Where labels are written, so that none covers another or leaves the picture: on its own side of its point
+/// if there is room, else on another side, else farther away. Earlier labels of a scene choose first.
+#[derive(Debug, Default)]
+pub(super) struct LabelPlaces {
+    pens: Vec<Option<Vec2>>,
+    /// Corners of the placed texts.
+    taken: Vec<[Vec2; 2]>,
+}
+
+impl LabelPlaces {
+    /// The start of each label's baseline in pixels; `None` for a point that cannot be projected.
+    pub fn pens(&self) -> &[Option<Vec2>] {
+        &self.pens
+    }
+
+    /// Places labels on a picture of a size in pixels. `scale` is the number of pixels per point,
+    /// `width` the width of a label's text in pixels.
+    pub fn place(
+        &mut self,
+        labels: &[Label],
+        camera: &Camera,
+        size: Vec2,
+        scale: f32,
+        width: impl Fn(&Label) -> f32,
+    ) {
+        self.pens.clear();
+        self.taken.clear();
+        let projection = camera.projection(size.x / size.y);
+        for label in labels {
+            let Some(at) = projection.project(label.at) else {
+                self.pens.push(None);
+                continue;
+            };
+            let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
+            let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
+            let away = ball * DIAGONAL + label.gap * scale;
+            let text = Text { point, away, width: width(label), line: LINE_HEIGHT * scale };
+            let is_free = |pen: &Vec2| {
+                let corners = text.corners(*pen);
+                self.taken.iter().all(|other| !overlap(corners, *other))
+            };
+            let is_inside = |pen: &Vec2| {
+                let [low, high] = text.corners(*pen);
+                low.cmpge(Vec2::ZERO).all() && high.cmple(size).all()
+            };
+            let free = || text.places(label.side).filter(is_free);
+            let pen = free().find(is_inside).or_else(|| free().next());
+            let pen = pen.unwrap_or_else(|| text.pen(label.side, 0));
+            self.taken.push(text.corners(pen));
+            self.pens.push(Some(pen));
+        }
+    }
+}
+
+/// A label's text beside its point, in pixels.
+#[derive(Clone, Copy)]
+struct Text {
+    point: Vec2,
+    /// Distance from the point along each axis.
+    away: f32,
+    width: f32,
+    /// Height of a line.
+    line: f32,
+}
+
+impl Text {
+    /// Starts of the baseline, the best first.
+    fn places(self, side: LabelSide) -> impl Iterator<Item = Vec2> {
+        let others = LabelSide::ALL.into_iter().filter(move |other| *other != side);
+        let sides = std::iter::once(side).chain(others);
+        (0..=MOST_LINES).flat_map(move |lines| sides.clone().map(move |side| self.pen(side, lines)))
+    }
+
+    fn pen(self, side: LabelSide, lines: u8) -> Vec2 {
+        let Self { point, away, width, line } = self;
+        let across = if side.is_left() { -away - width } else { away };
+        let farther = f32::from(lines) * line;
+        let drop = match side.is_above() {
+            true => -away - farther,
+            false => away + 0.6 * line + farther,
+        };
+        point + Vec2::new(across, drop)
+    }
+
+    fn corners(self, pen: Vec2) -> [Vec2; 2] {
+        [pen - Vec2::new(0.0, LETTERS * self.line), pen + Vec2::new(self.width, 0.0)]
+    }
+}
+
+fn overlap([low, high]: [Vec2; 2], [other_low, other_high]: [Vec2; 2]) -> bool {
+    low.cmplt(other_high).all() && other_low.cmplt(high).all()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::document::{Document, Overlay, Theme, TwistReferenceKind};
+    use crate::scene::Scene;
+    use crate::session::Overlays;
+
+    const SIZE: Vec2 = Vec2::new(720.0, 700.0);
+    /// Width of a letter and height of a line, in pixels.
+    const LETTER: f32 = 7.0;
+
+    /// The corners of the texts of a scene.
+    fn placed(scene: &Scene) -> Vec<[Vec2; 2]> {
+        let mut places = LabelPlaces::default();
+        let width = |label: &Label| LETTER * scene.text(label).chars().count() as f32;
+        places.place(&scene.labels, &scene.camera, SIZE, 1.0, width);
+        assert_eq!(places.pens().len(), scene.labels.len());
+        places.taken
+    }
+
+    #[test]
+    fn no_label_of_the_arm_covers_another() {
+        let kinds = [TwistReferenceKind::Limb, TwistReferenceKind::Pole];
+        for (overlay, count) in [(Overlay::Frames, 9), (Overlay::TwistReferences, 3)] {
+            for kind in kinds {
+                for cursor in [[250.0, 120.0, 60.0], [440.0, 320.0, 60.0], [10.0, 220.0, -200.0]] {
+                    let mut document = Document::default();
+                    document.arm.set_cursor(Vec3::from(cursor));
+                    document.arm.twist_reference = kind;
+                    document.display = document.display.with(overlay, true);
+                    let scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+                    let texts = placed(&scene);
+                    assert!(texts.len() >= count, "{overlay:?}: {}", texts.len());
+                    for (index, text) in texts.iter().enumerate() {
+                        let others = texts[..index].iter();
+                        let hidden = others.filter(|other| overlap(*text, **other)).count();
+                        let label = scene.text(&scene.labels[index]);
+                        assert_eq!(hidden, 0, "{overlay:?}, {kind:?}, {cursor:?}: {label}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_length_of_a_gap_stands_clear_of_the_handles_of_the_cursor() {
+        // In points, as the handles are drawn.
+        const SQUARE: f32 = 42.0;
+        const ARROW: f32 = 80.0;
+        for cursor in [[440.0, 320.0, 60.0], [-300.0, 400.0, 200.0], [300.0, -200.0, 400.0]] {
+            let mut document = Document::default();
+            document.arm.set_cursor(Vec3::from(cursor));
+            document.camera = document.camera.framing(Vec3::ZERO, 900.0, SIZE.x / SIZE.y);
+            let overlays = Overlays { has_handles: true, ..Overlays::default() };
+            let scene = Scene::new(&document, &overlays, Theme::Dark);
+            let gap = scene.labels.iter().position(|it| scene.text(it).parse::<f32>().is_ok());
+            let [low, high] = placed(&scene)[gap.expect("the length of the gap")];
+            let projection = scene.camera.projection(SIZE.x / SIZE.y);
+            let seen = |point: Vec3| {
+                let at = projection.project(point).expect("before the eye");
+                (at * Vec2::new(0.5, -0.5) + 0.5) * SIZE
+            };
+            let centre = seen(cursor.into());
+            let is_in = |at: Vec2| at.cmpge(low).all() && at.cmple(high).all();
+            for nth in 0..=u16::try_from(ARROW as u32).unwrap() {
+                for axis in Vec3::AXES {
+                    let to = (seen(Vec3::from(cursor) + axis) - centre).normalize_or_zero();
+                    assert!(!is_in(centre + to * f32::from(nth)), "{cursor:?}: under an arrow");
+                }
+            }
+            let nearest = centre.clamp(low, high);
+            assert!((nearest - centre).abs().max_element() >= SQUARE, "{cursor:?}: under a square");
+        }
+    }
+}
