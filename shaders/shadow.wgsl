@@ -3,6 +3,7 @@
 
 const LIGHT_WIDTH = 0.16;
 const CONTACT = 0.35; // softness where the limb touches the ground, as a fraction of its radius
+const THIN = 8.0; // softness in radii from which a limb is too thin to hide all light
 
 struct Instance {
     @location(0) base: vec4f, // centre, radius
@@ -52,7 +53,9 @@ fn fragment(g: Ground) -> @location(0) vec4f {
     let height = max(dot(away, KEY_DIRECTION), 0.0);
     let miss = length(away - KEY_DIRECTION * height) - radius;
     let softness = radius * CONTACT + height * LIGHT_WIDTH;
-    let shade = 1.0 - smoothstep(-softness, softness, miss);
+    // A limb much thinner than its soft edge is wide hides only a part of the light.
+    let hidden = saturate(THIN * radius / softness);
+    let shade = hidden * (1.0 - smoothstep(-softness, softness, miss));
     let faded = shade * (1.0 - saturate(height / (view.planes_radius * 1.6)));
     let above = select(0.0, 1.0, view.eye.y > 0.0);
     return vec4f(0.0, 0.0, 0.0, faded * view.shadow_strength * presence(g.point, FLOOR_RADIUS) * above);

@@ -6,6 +6,7 @@ mod bones;
 #[path = "../common/mod.rs"]
 mod common;
 mod dissolve;
+mod drawn;
 mod edits;
 mod elbow_circle;
 mod examples;

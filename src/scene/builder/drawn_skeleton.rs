@@ -14,6 +14,14 @@ const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
 /// Minimum of a bone's radius limit by reach, as a fraction of the bone's length, so that the first
 /// bones of a new skeleton are as thick as they will be in the complete one.
 const MIN_LIMIT: f32 = 0.07;
+/// Minimum of a bone's radius limit, as a fraction of the skeleton's reach, so that a chain of many short
+/// bones can be seen.
+const LEAST_LIMIT: f32 = 0.004;
+/// Ratio of a bone's length to its radius below which the balls at its ends would hide it.
+const SHORT: f32 = 2.4;
+/// Least length of a shadow as a fraction of the reach: short bones in a row share one, since soft shadows
+/// add up where they overlap.
+const SHADOW: f32 = 0.04;
 /// Maximum radius of a joint without a bone, as a fraction of the skeleton's reach.
 const POINT_RADIUS: f32 = 0.02;
 /// Ratio of the tip's radius to the base's radius of a slender bone.
@@ -25,6 +33,8 @@ const SLENDER: f32 = 4.0;
 pub(super) const GHOST: f32 = 0.45;
 /// Ratio of the radius of a rod between a bone and a child away from it to the thinner bone's radius.
 const LINK: f32 = 0.3;
+/// Ratio of the radius of an onion skin to that of the figure, so that it hides less of the figure.
+const ONION_SKIN: f32 = 0.5;
 /// Contrast of the FK pose with the background, from 0 to 1.
 const FK_CONTRAST: f32 = 0.35;
 
@@ -58,7 +68,7 @@ impl<'a> DrawnSkeleton<'a> {
             0.0 => POINT_RADIUS * self.reach,
             length => {
                 let of_reach = (of_reach * self.reach).max(MIN_LIMIT * length);
-                of_reach.min(of_length * length)
+                of_reach.min((of_length * length).max(LEAST_LIMIT * self.reach))
             }
         };
         (self.joints[joint.index()].radius * self.scale).clamp(0.25 * limit, limit)
@@ -97,8 +107,12 @@ impl<'a> DrawnSkeleton<'a> {
         if base != tip {
             scene.add_solid(base, tip, radius, self.tip_radius(joint), colour);
         }
-        let ball = if base == tip { colour } else { scene.palette.joint };
-        scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour: ball });
+        if base.distance(tip) < SHORT * radius {
+            scene.balls.push(Ball { centre: base, radius, colour });
+        } else {
+            let colour = scene.palette.joint;
+            scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour });
+        }
         if self.are_leaves[joint.index()] && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
@@ -130,14 +144,14 @@ impl<'a> DrawnSkeleton<'a> {
 
     /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of that
     /// bone, so that no bone floats.
-    pub fn add_link(&self, scene: &mut Scene, joint: JointId) {
+    pub fn add_link(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
         let Some(parent) = self.joints[joint.index()].parent else { return };
         let (base, tip) = (self.pose.base(parent), self.pose.tip(parent));
         let to = self.pose.base(joint);
         let from = if to.distance(base) <= to.distance(tip) { base } else { tip };
         if distance_from_segment(to, base, tip) > self.radius(parent) {
             let radius = LINK * self.radius(parent).min(self.radius(joint));
-            scene.add_solid(from, to, radius, radius, scene.palette.joint);
+            scene.add_solid(from, to, radius, radius, colour);
         }
     }
 
@@ -165,10 +179,50 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
+    /// Adds the shadow of a joint's bone, and of the short bones before it that have none of their own.
     pub fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
-        let (base, tip, radius) = (self.pose.base(joint), self.pose.tip(joint), self.radius(joint));
-        let limb = Shadow { base, base_radius: radius, tip, tip_radius: self.tip_radius(joint) };
+        if !self.ends_shadow(joint) {
+            return;
+        }
+        let above = |joint: &JointId| self.joints[joint.index()].parent;
+        let shared = std::iter::successors(above(&joint), above);
+        let first = shared.take_while(|it| !self.ends_shadow(*it)).last().unwrap_or(joint);
+        let (base, tip) = (self.pose.base(first), self.pose.tip(joint));
+        let (base_radius, tip_radius) = (self.radius(first), self.tip_radius(joint));
+        let limb = Shadow { base, base_radius, tip, tip_radius };
         scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
+    }
+
+    /// Whether a shadow ends at a joint's tip: every so many short bones, and at the end of a chain.
+    fn ends_shadow(&self, joint: JointId) -> bool {
+        const MOST: f32 = 64.0;
+        let length = self.pose.base(joint).distance(self.pose.tip(joint));
+        let bones = (SHADOW * self.reach / length).ceil().clamp(1.0, MOST) as usize;
+        self.are_leaves[joint.index()] || (self.depths[joint.index()] + 1).is_multiple_of(bones)
+    }
+
+    /// Adds the figure in the pose of another frame. `thickness` is the radius of a joint's part of the skin;
+    /// `None` without a skin.
+    pub fn add_onion_skin(
+        &self,
+        scene: &mut Scene,
+        colour: Colour,
+        thickness: impl Fn(JointId) -> Option<f32>,
+    ) {
+        for joint in self.pose.ids() {
+            let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
+            let [from, to] = match thickness(joint) {
+                Some(thickness) => [thickness; 2],
+                None => [self.radius(joint), self.tip_radius(joint)],
+            };
+            let [from, to] = [from, to].map(|radius| ONION_SKIN * radius);
+            if base != tip {
+                scene.add_solid(base, tip, from, to, colour);
+                scene.balls.push(Ball { centre: tip, radius: to, colour });
+            }
+            scene.balls.push(Ball { centre: base, radius: from, colour });
+            self.add_link(scene, joint, colour);
+        }
     }
 
     /// Adds the names of the selected joints and of the joint under the mouse.

@@ -1,27 +1,32 @@
-use glam::Vec3;
-
-use crate::document::{Document, RigKind};
+use crate::document::{Arm, Document, RigKind};
 use crate::rig::ArmPart;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
 
 /// Radius of the dot of each frame on a trail, as a fraction of the rig's reach.
 const DOT_RADIUS: f32 = 0.004;
-/// Radius of an onion skin's bones, as a fraction of the rig's reach.
+/// Radius of the limbs in an onion skin of the arm, as a fraction of its reach.
 const BONE_RADIUS: f32 = 0.008;
 /// Contrast of an opaque onion skin with the background, from 0 (the background's colour) to 1 (the
 /// skin's plain colour).
 const CONTRAST: f32 = 0.7;
 
-/// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion
-/// skins.
+/// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion skins of
+/// the arm. Those of a figure are added with the figure, whose sizes they have.
 pub(super) fn add(scene: &mut Scene, document: &Document, overlays: &Overlays, reach: f32) {
     add_trail(scene, overlays, DOT_RADIUS * reach);
-    for skin in &overlays.onion_skins {
-        let plain = if skin.past { scene.palette.joint } else { scene.palette.accent };
-        let colour = scene.palette.sky_top.mixed(plain, CONTRAST * skin.opacity);
-        add_skin(scene, skin, document.rig, colour, BONE_RADIUS * reach);
+    if document.rig == RigKind::Arm {
+        for skin in &overlays.onion_skins {
+            let colour = onion_skin_colour(scene, skin);
+            add_arm(scene, &skin.arm, colour, BONE_RADIUS * reach);
+        }
     }
+}
+
+/// The colour of an onion skin: fainter the farther it is from the playhead.
+pub(super) fn onion_skin_colour(scene: &Scene, skin: &OnionSkin) -> Colour {
+    let plain = if skin.past { scene.palette.joint } else { scene.palette.accent };
+    scene.palette.sky_top.mixed(plain, CONTRAST * skin.opacity)
 }
 
 fn add_trail(scene: &mut Scene, overlays: &Overlays, radius: f32) {
@@ -34,23 +39,14 @@ fn add_trail(scene: &mut Scene, overlays: &Overlays, radius: f32) {
     scene.balls.extend(dots);
 }
 
-fn add_skin(scene: &mut Scene, skin: &OnionSkin, rig: RigKind, colour: Colour, radius: f32) {
-    let mut add = |base: Vec3, tip: Vec3| {
+fn add_arm(scene: &mut Scene, arm: &Arm, colour: Colour, radius: f32) {
+    let rig = arm.rig(&arm.pose());
+    let [root, elbow, hand] =
+        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+    for (base, tip) in [(root, elbow), (elbow, hand)] {
         if base != tip {
             scene.add_solid(base, tip, radius, radius, colour);
         }
         scene.balls.push(Ball { centre: tip, radius, colour });
-    };
-    match rig {
-        RigKind::Arm => {
-            let rig = skin.arm.rig(&skin.arm.pose());
-            let [root, elbow, hand] =
-                [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
-            add(root, elbow);
-            add(elbow, hand);
-        }
-        RigKind::Skeleton => {
-            skin.pose.ids().for_each(|joint| add(skin.pose.base(joint), skin.pose.tip(joint)));
-        }
     }
 }

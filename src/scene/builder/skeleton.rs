@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::drawn_skeleton::DrawnSkeleton;
 use super::inside::InsideDrawing;
+use super::motion;
 use super::scratch::Scratch;
 use super::skin::ShownSkin;
 use super::targets;
@@ -55,13 +56,18 @@ pub(super) fn add(
         }
         let colour = drawn.colour(scene, joint, overlays);
         drawn.add_bone(scene, joint, colour);
-        drawn.add_link(scene, joint);
+        drawn.add_link(scene, joint, scene.palette.joint);
         if display.shows(Overlay::Shadow) {
             drawn.add_shadow(scene, joint);
         }
     }
     if let Some(skin) = skin {
         skin.add(scene, &evaluated.solved, overlays, display);
+    }
+    for onion_skin in &overlays.onion_skins {
+        let colour = motion::onion_skin_colour(scene, onion_skin);
+        let thickness = |joint: JointId| Some(skin.as_ref()?.thickness(joint) * scale);
+        drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour, thickness);
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
@@ -90,7 +96,9 @@ pub(super) fn add(
                 targets::add_trail(scene, target, &evaluated.solved, overlays.time);
             }
             if target.enabled && overlays.ghosts.is_empty() && !rig.leads_path(target) {
-                drawn.add_gap(scene, target.joint, report.position, scene.palette.accent);
+                let is_selected = overlays.selection.contains(&rig.end_of(target));
+                let has_handles = overlays.has_handles && is_selected;
+                drawn.add_gap(scene, target.joint, report.position, accent, has_handles);
             }
         }
     }

@@ -90,6 +90,11 @@ impl<'a> ShownSkin<'a> {
         Colour([r, g, b, 255]).with_opacity(opacity)
     }
 
+    /// Radius of the skin around a joint's bone, in units of the skeleton.
+    pub fn thickness(&self, joint: JointId) -> f32 {
+        self.mesh.radii.get(joint.index()).copied().unwrap_or_default()
+    }
+
     /// Adds what a skin without bones shows of a joint: its shadow, and its bone if it is selected or
     /// under the mouse.
     pub fn add_joint(
@@ -101,7 +106,7 @@ impl<'a> ShownSkin<'a> {
         display: Display,
     ) {
         let (base, tip) = (drawn.pose.base(joint), drawn.pose.tip(joint));
-        let thickness = self.mesh.radii.get(joint.index()).map_or(0.0, |it| it * drawn.scale);
+        let thickness = self.thickness(joint) * drawn.scale;
         if display.shows(Overlay::Shadow) && thickness > 0.0 {
             for offset in self.offsets() {
                 let (base, tip) = (base + offset, tip + offset);

@@ -4,13 +4,14 @@ use glam::Vec3;
 
 use super::arc::add_arc;
 use super::drawn_skeleton::DrawnSkeleton;
-use crate::document::{Target, TwistReferenceKind};
+use crate::document::{ShownLength, Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetReport;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
 
-/// Radius of a target's ball, as a fraction of the skeleton's reach.
-const TARGET_RADIUS: f32 = 0.014;
+/// Maximum radius of a target's ball: as a fraction of the skeleton's reach, and as a multiple of the
+/// radius of the bone that it moves, so that the ball hides no bones of a long chain.
+const TARGET_RADIUS: (f32, f32) = (0.014, 1.6);
 /// Opacity of the line from a limb's base to its target at full influence.
 const POINTER_OPACITY: f32 = 0.45;
 /// Duration in seconds and number of segments of a target's trail.
@@ -20,7 +21,7 @@ impl DrawnSkeleton<'_> {
     /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the pole.
     pub fn add_target(&self, scene: &mut Scene, target: &Target, report: &TargetReport) {
         let at = report.position;
-        let radius = TARGET_RADIUS * self.reach;
+        let radius = self.target_radius(target.joint);
         let guide = scene.palette.guide;
         let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
         scene.guide_balls.push(Ball { centre: at, radius, colour });
@@ -34,16 +35,31 @@ impl DrawnSkeleton<'_> {
         }
     }
 
+    fn target_radius(&self, joint: JointId) -> f32 {
+        let (of_reach, of_bone) = TARGET_RADIUS;
+        (of_reach * self.reach).min(of_bone * self.radius(joint))
+    }
+
     /// Adds a line from a joint's tip to its target, labelled with their distance, unless the tip
     /// reaches the target.
-    pub fn add_gap(&self, scene: &mut Scene, joint: JointId, at: Vec3, colour: Colour) {
-        let (tip, radius) = (self.pose.tip(joint), TARGET_RADIUS * self.reach);
+    ///
+    /// The label is clear of the target's handles if it has any.
+    pub fn add_gap(
+        &self,
+        scene: &mut Scene,
+        joint: JointId,
+        at: Vec3,
+        colour: Colour,
+        has_handles: bool,
+    ) {
+        let (tip, radius) = (self.pose.tip(joint), self.target_radius(joint));
         let gap = tip.distance(at);
         if gap > 1.5 * radius {
             scene.lines.push(Line { from: tip, to: at, colour, dashed: true });
             let label = Label::new(at, radius, LabelSide::Above, colour);
-            let decimals = residual_decimals(self.reach);
-            scene.add_label(label, format_args!("{gap:.decimals$}"));
+            let label = if has_handles { label.clear_of_handles() } else { label };
+            let shown = ShownLength { length: gap, decimals: residual_decimals(self.reach) };
+            scene.add_label(label, format_args!("{shown}"));
         }
     }
 

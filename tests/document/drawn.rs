@@ -1,0 +1,102 @@
+//! What a scene draws of a skeleton: bones, shadows and onion skins.
+
+use glam::Vec3;
+use ik_arm::document::{Display, Document, Overlay, RigKind, Target, Theme};
+use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::scene::Scene;
+use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
+
+/// A vertical chain of bones, two units long, with a target for its tip.
+fn chain(bones: usize) -> Document {
+    let mut skeleton = Skeleton::default();
+    let length = 2.0 / bones as f32;
+    let mut parent = None;
+    for nth in 0..bones {
+        let axis = Vec3::Y * length;
+        let offset = if nth == 0 { Vec3::ZERO } else { axis };
+        let joint = Joint { offset, radius: 0.02, ..Joint::new(&nth.to_string(), parent, axis) };
+        parent = Some(skeleton.add(joint).expect("a joint"));
+    }
+    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    document.skeleton_rig.skeleton = skeleton.into();
+    document.skeleton_rig.targets = vec![Target::new(JointId::new(bones - 1), Vec3::Y, 0.1)];
+    document.display = Display::default().with(Overlay::Axes, false);
+    document
+}
+
+fn scene(document: &Document) -> Scene {
+    Scene::new(document, &Overlays::default(), Theme::Dark)
+}
+
+#[test]
+fn bones_of_a_long_chain_can_be_seen_beside_its_target() {
+    for bones in [10, 50, 100, 400] {
+        let scene = scene(&chain(bones));
+        let palette = scene.palette;
+        let is_limb = |colour| colour == palette.upper || colour == palette.lower;
+        let solids = scene.solids.iter().filter(|it| is_limb(it.colour));
+        let thinnest = solids.map(|it| it.shape.base_radius).fold(f32::MAX, f32::min);
+        // A four hundredth of the reach: some two pixels in a picture of the chain 700 pixels high.
+        assert!(thinnest >= 2.0 * 0.0025, "{bones}: {thinnest}");
+        let target = scene.guide_balls.iter().map(|ball| ball.radius).fold(0.0, f32::max);
+        assert!(target <= 2.0 * thinnest, "{bones}: {target} hides bones of {thinnest}");
+        // No grey ball hides a bone between two others.
+        let length = 2.0 / bones as f32;
+        let hiding = scene.balls.iter().filter(|ball| !is_limb(ball.colour));
+        let covered = hiding.map(|ball| ball.radius).fold(0.0, f32::max);
+        assert!(covered <= 0.45 * length || bones >= 50, "{bones}: {covered}");
+        if bones >= 100 {
+            let between = |y: f32| y > 0.01 && y < 1.99;
+            let grey = scene.balls.iter().filter(|it| !is_limb(it.colour) && between(it.centre.y));
+            assert_eq!(grey.count(), 0, "{bones}: grey dots cover the bones");
+        }
+    }
+}
+
+#[test]
+fn shadows_of_short_bones_do_not_add_up() {
+    for bones in [10, 24, 100, 400] {
+        let scene = scene(&chain(bones));
+        assert!(scene.shadows.len() <= 26, "{bones}: {}", scene.shadows.len());
+        let length: f32 = scene.shadows.iter().map(|it| it.base.distance(it.tip)).sum();
+        assert!((length - 2.0).abs() < 1e-3, "{bones}: the shadows are {length} long");
+    }
+}
+
+#[test]
+fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
+    let mut session = Session::default();
+    session.apply(FileAction::OpenExample(Example::find("walk").expect("an example")));
+    session.apply(PlaybackAction::SetTime(0.5));
+    for has_skin in [true, false] {
+        let mut document = session.shown().clone();
+        document.display =
+            document.display.with(Overlay::OnionSkins, true).with(Overlay::Skin, has_skin);
+        let mut shown = Session::default();
+        shown.apply(FileAction::Opened {
+            document: Box::new(document),
+            file: None,
+            contents: None,
+        });
+        shown.apply(PlaybackAction::SetTime(0.5));
+        let overlays = shown.overlays();
+        let [.., skin] = &overlays.onion_skins[..] else { panic!("onion skins") };
+        let scene = Scene::new(shown.shown(), &overlays, Theme::Dark);
+        let skeleton = shown.skeleton();
+        let joint = |name: &str| skeleton.find(name).expect("a joint");
+        // The legs start beside the pelvis: a rod leads to each.
+        let thigh = skin.pose.base(joint("left_thigh"));
+        let hips = scene.solids.iter().filter(|it| {
+            let tip = it.transform.transform_point3(Vec3::X * it.shape.length);
+            tip.distance(thigh) < 1e-4
+        });
+        assert!(hips.count() >= 1, "nothing leads to the hip of an onion skin");
+        let shin = skin.pose.base(joint("left_shin"));
+        let broadest = scene.balls.iter().filter(|it| it.centre.distance(shin) < 1e-4);
+        let broadest = broadest.map(|it| it.radius).fold(0.0, f32::max);
+        // A stick, as they were, has 0.8 % of the reach.
+        let stick = 0.008 * shown.skeleton_rig().reach();
+        assert!(broadest > 1.2 * stick, "the knee has {broadest}, a stick {stick}");
+    }
+}
