@@ -233,3 +233,28 @@ fn the_hands_ranges_follow_the_lengths() {
         assert_eq!(reached, if end > 0.5 { 1200.0 } else { -1200.0 });
     }
 }
+
+/// Whether a tooltip is on screen.
+fn has_tooltip(bench: &Bench) -> bool {
+    let layers = bench.harness.ctx.memory(|memory| memory.areas().visible_layer_ids());
+    layers.iter().any(|layer| layer.order == egui::Order::Tooltip)
+}
+
+#[test]
+fn after_a_slider_was_dragged_its_tooltip_stays_away_until_the_mouse_leaves_it() {
+    for (role, name) in [(Role::Slider, "Hand x"), (Role::SpinButton, "Hand x value")] {
+        let mut bench = Bench::new();
+        let at = bench.rect(role, name).center();
+        bench.drag_and_drop(PointerButton::Primary, at, at + egui::vec2(12.0, 0.0));
+        bench.wait(1.5);
+        assert!(!has_tooltip(&bench), "{name}: a tooltip covers the rows below");
+        bench.move_to(at + egui::vec2(14.0, 1.0));
+        bench.wait(1.5);
+        assert!(!has_tooltip(&bench), "{name}: the mouse is still there");
+        bench.move_to(bench.empty_point());
+        bench.wait(0.5);
+        bench.move_to(at);
+        bench.wait(1.5);
+        assert!(has_tooltip(&bench), "{name}: the mouse came back");
+    }
+}

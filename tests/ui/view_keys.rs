@@ -51,11 +51,15 @@ fn five_toggles_f_frames_the_arm_home_frames_all() {
 }
 
 #[test]
-fn view_keys_do_nothing_while_a_field_or_a_slider_has_the_keyboard() {
-    for (role, name) in [(Role::SpinButton, "Hand x value"), (Role::Slider, "Socket twist")] {
+fn view_keys_do_nothing_while_a_field_has_the_keyboard() {
+    for (role, name, typed) in [
+        (Role::SpinButton, "Hand x value", "1375"),
+        // A slider makes use of Home, and digits alone choose a view.
+        (Role::Slider, "Socket twist", ""),
+    ] {
         let mut bench = Bench::new();
         bench.focus(role, name);
-        bench.type_text("1375");
+        bench.type_text(typed);
         bench.key(Key::F);
         assert!(!bench.session().is_gliding());
         assert_eq!(bench.session().camera(), &Camera::default(), "{name}");
@@ -176,4 +180,30 @@ fn arrow_keys_orbit_and_pan_the_focused_view_and_plus_and_minus_zoom() {
         bench.key(key);
         assert_eq!(bench.session().camera().distance < before, nearer);
     }
+}
+
+#[test]
+fn view_keys_look_along_the_axes_while_a_slider_has_the_focus() {
+    for (modifiers, key, view) in [
+        (NONE, Key::Num1, AxisView::Front),
+        (NONE, Key::Num3, AxisView::Right),
+        (NONE, Key::Num7, AxisView::Top),
+        (CTRL, Key::Num7, AxisView::Bottom),
+    ] {
+        let mut bench = Bench::new();
+        bench.focus(Role::Slider, "Hand x");
+        bench.key_with(modifiers, key);
+        bench.settle();
+        assert_eq!(bench.session().camera(), &Camera::default().along(view), "{view:?}");
+        assert_eq!(bench.focused().map(|it| it.0), Some(Role::Slider));
+    }
+}
+
+#[test]
+fn a_digit_typed_into_a_number_leaves_the_view() {
+    let mut bench = Bench::new();
+    bench.click(Role::SpinButton, "Hand x value");
+    bench.type_text("7");
+    bench.settle();
+    assert_eq!(bench.session().camera(), &Camera::default());
 }

@@ -4,18 +4,19 @@ use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Event, Id, Key, Response, Ui};
 
-/// Marks a widget that makes no use of Space, so that Space plays or pauses while it has the focus.
+/// Marks a widget that makes no use of Space and digits, so that Space plays or pauses and digits
+/// choose a view while it has the focus.
 #[derive(Clone, Copy, Default)]
-struct IgnoresSpace;
+struct IgnoresLetters;
 
-/// Lets Space play or pause while `widget` has the keyboard focus.
-pub(in crate::ui) fn leave_space(ui: &Ui, widget: Id) {
-    ui.data_mut(|data| data.insert_temp(widget, IgnoresSpace));
+/// Lets Space play or pause, and digits choose a view, while `widget` has the keyboard focus.
+pub(in crate::ui) fn leave_letters(ui: &Ui, widget: Id) {
+    ui.data_mut(|data| data.insert_temp(widget, IgnoresLetters));
 }
 
-pub(in crate::ui) fn leaves_space(ui: &Ui) -> bool {
+pub(in crate::ui) fn leaves_letters(ui: &Ui) -> bool {
     let focused = ui.memory(egui::Memory::focused);
-    focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresSpace>(id)).is_some())
+    focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresLetters>(id)).is_some())
 }
 
 /// Whether a text field had the keyboard focus at the end of the previous frame.

@@ -65,6 +65,19 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
+    axis_views(ui, session, actions);
+    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    if pressed(Key::F) {
+        actions.push(commands::frame_selection(session));
+    }
+    if pressed(Key::Home) {
+        actions.push(commands::frame_all(session));
+    }
+}
+
+/// Handles the digits that choose a view along an axis or the other projection, for use also while a
+/// widget has the keyboard focus that makes no use of digits.
+pub(in crate::ui) fn axis_views(ui: &Ui, session: &Session, actions: &mut Actions) {
     let camera = session.settled_camera();
     let along = |view| ViewAction::GlideTo(camera.along(view));
     ui.input(|input| {
@@ -81,17 +94,8 @@ fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
                 actions.push(along(if other_side { opposite } else { view }));
             }
         }
-        if other_side {
-            return;
-        }
-        if input.key_pressed(Key::Num5) {
+        if input.key_pressed(Key::Num5) && !other_side {
             actions.push(ViewAction::SetCamera(commands::with_other_projection(camera)));
-        }
-        if input.key_pressed(Key::F) {
-            actions.push(commands::frame_selection(session));
-        }
-        if input.key_pressed(Key::Home) {
-            actions.push(commands::frame_all(session));
         }
     });
 }

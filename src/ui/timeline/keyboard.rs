@@ -24,7 +24,7 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     } else if pressed(Key::K) && modifiers.is_none() {
         actions.push(EditAction::Key(session.channels_to_key()));
     }
-    if focus::leaves_space(ui) && pressed(Key::Space) && modifiers.is_none() {
+    if focus::leaves_letters(ui) && pressed(Key::Space) && modifiers.is_none() {
         if session.is_playing() || session.has_motion() {
             actions.push(PlaybackAction::Play(!session.is_playing()));
         } else {
@@ -70,7 +70,7 @@ pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) 
     let arrows =
         EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(ruler::id(), arrows));
-    focus::leave_space(ui, ruler::id());
+    focus::leave_letters(ui, ruler::id());
     let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
     let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
     let timeline = session.document().timeline;

@@ -323,9 +323,11 @@ fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) 
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.drag().is_some() {
         keyboard::viewport::viewport(ui, session, actions);
+    } else if focus::leaves_letters(ui) && !session.is_asking() {
+        keyboard::viewport::axis_views(ui, session, actions);
     }
     if response.has_focus() {
-        focus::leave_space(ui, response.id);
+        focus::leave_letters(ui, response.id);
         let arrows =
             EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));

@@ -3,7 +3,7 @@
 use egui::{Response, Ui};
 
 use super::format;
-use super::number::DragNumber;
+use super::number::{DragNumber, hover_text};
 use crate::session::{Action, Actions, Session};
 
 /// Width in points with which three fields and a name fit side by side in the narrowest panel.
@@ -47,6 +47,6 @@ impl NumberField<'_> {
         let Self { name, value, unit, .. } = self;
         let number = DragNumber { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };
         let response = number.show(ui, session.is_editing(), actions, set);
-        response.on_hover_text(self.tooltip)
+        hover_text(response, self.tooltip)
     }
 }

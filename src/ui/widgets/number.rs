@@ -97,6 +97,26 @@ impl<N: Numeric> DragNumber<'_, N> {
     }
 }
 
+/// Shows a tooltip while the mouse is over a widget. After a press of the widget it stays away until the
+/// mouse leaves: it would cover the rows below, where the effect of the press shows.
+pub(in crate::ui) fn hover_text(response: Response, tooltip: &str) -> Response {
+    let id = response.id.with("pressed");
+    let ctx = response.ctx.clone();
+    if response.is_pointer_button_down_on() {
+        ctx.data_mut(|data| data.insert_temp(id, WasPressed));
+    } else if !response.contains_pointer() {
+        ctx.data_mut(|data| data.remove::<WasPressed>(id));
+    }
+    match ctx.data(|data| data.get_temp::<WasPressed>(id)) {
+        Some(WasPressed) => response,
+        None => response.on_hover_text(tooltip),
+    }
+}
+
+/// Marks a widget that was pressed and that the mouse has not left since.
+#[derive(Clone, Copy, Default)]
+struct WasPressed;
+
 /// Marks a number in which Esc ended the typing in the previous pass.
 #[derive(Clone, Copy, Default)]
 struct LeftByEscape;

@@ -7,7 +7,7 @@ use egui::{
 
 use super::format;
 use super::key_button::KeyButton;
-use super::number::DragNumber;
+use super::number::{DragNumber, hover_text};
 use super::symbol;
 use crate::document::Channel;
 use crate::session::{Action, Actions, Session, TransactionAction};
@@ -139,7 +139,7 @@ impl Slider<'_> {
         });
         self.paint(ui, rect, &response);
         response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
-        response.on_hover_text(self.tooltip)
+        hover_text(response, self.tooltip)
     }
 
     fn paint(&self, ui: &Ui, rect: Rect, response: &Response) {
@@ -229,7 +229,7 @@ impl Slider<'_> {
         if !rail.has_focus() {
             return 0.0;
         }
-        focus::leave_space(ui, rail.id);
+        focus::leave_letters(ui, rail.id);
         let arrows =
             EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(rail.id, arrows));
@@ -279,7 +279,7 @@ impl Slider<'_> {
             format: &|value| format::fixed(value, self.decimals()),
         };
         let response = number.show(ui, is_sliding(session), actions, set);
-        response.on_hover_text("Drag, or click to type");
+        hover_text(response, "Drag, or click to type");
     }
 
     fn decimals(&self) -> usize {

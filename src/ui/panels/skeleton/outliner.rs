@@ -243,7 +243,7 @@ fn respond(
     if !response.has_focus() {
         return;
     }
-    focus::leave_space(ui, response.id);
+    focus::leave_letters(ui, response.id);
     let arrows = egui::EventFilter { vertical_arrows: true, ..Default::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
     viewport::viewport(ui, session, actions);

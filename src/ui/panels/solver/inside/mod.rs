@@ -54,7 +54,7 @@ fn slider(ui: &mut Ui, run: &SolverRun, shown: usize, count: usize, actions: &mu
         // Without a second value the slider could not be laid out.
         let slider = Slider::new(&mut number, 1..=count.max(2)).suffix(format!(" / {count}"));
         let slider = ui.add(slider).labelled_by(label.id);
-        focus::leave_space(ui, slider.id);
+        focus::leave_letters(ui, slider.id);
         let slider = slider.on_hover_text("Show a part of the iteration (Shift , and Shift .)");
         if slider.changed() {
             let part = Some(number.clamp(1, count) - 1);
