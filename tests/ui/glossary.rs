@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use ik_arm::document::RigKind;
+use ik_arm::document::{RigKind, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{EditAction, FileAction, PanelTab, Preferences, SelectAction};
@@ -80,5 +80,28 @@ fn the_glossary_lists_every_term_with_its_meaning_and_its_step() {
         bench.choose(&["Help", "Glossary"]);
         bench.click(Role::Button, "Close");
         assert_eq!(bench.session().dialog(), None);
+    }
+}
+
+#[test]
+fn a_term_is_underlined_with_dots() {
+    // Points from dot to dot.
+    const SPACING: u32 = 4;
+    let offers_tour = false;
+    for theme in [Theme::Dark, Theme::Light] {
+        let preferences = Preferences { offers_tour, theme, ..Preferences::default() };
+        let mut bench = Bench::first(LARGE, preferences);
+        let picture = bench.harness.render().expect("a picture");
+        let rect = bench.rect(Role::Label, "reference");
+        let (left, right) = (rect.left().round() as u32, rect.right() as u32);
+        // Right of the word, on the panel.
+        let panel = *picture.get_pixel(left - 3, rect.center().y as u32);
+        let differs = |x: u32, y: u32| *picture.get_pixel(x, y) != panel;
+        let rows = rect.center().y as u32 + 4..rect.bottom() as u32 + 3;
+        let is_dotted = |y: u32| {
+            let dots = (left..right).step_by(SPACING as usize);
+            dots.clone().all(|x| differs(x, y)) && dots.clone().all(|x| !differs(x + 2, y))
+        };
+        assert!(rows.into_iter().any(is_dotted), "{theme:?}: no dots under {rect:?}");
     }
 }

@@ -3,13 +3,13 @@
 use egui::Key;
 use egui::accesskit::Role;
 use glam::Vec3;
-use ik_arm::document::{Arm, Camera, Display, Overlay, Theme};
+use ik_arm::document::{Arm, Camera, Display, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{
     Action, Dialog, EditAction, Effect, FrameBudget, Navigation, PanelTab, ShellAction, ViewAction,
 };
 
-use crate::bench::{Bench, SMALL};
+use crate::bench::{Bench, LARGE, SMALL};
 
 pub const SLIDERS: [&str; 9] = [
     "Hand x",
@@ -268,4 +268,27 @@ fn a_panel_can_be_made_wider() {
     bench.settle();
     assert!((bench.viewport().left() - edge.x - 63.0).abs() < 12.0, "{:?}", bench.viewport());
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+}
+
+#[test]
+fn nothing_covers_the_title_of_the_socket_twist_with_any_reference() {
+    for size in [LARGE, SMALL] {
+        for kind in TwistReferenceKind::ALL {
+            let mut bench = Bench::of_size(size);
+            bench.apply([EditAction::SetTwistReference(kind)]);
+            let title = bench.rect(Role::DisclosureTriangle, "Socket twist");
+            // The title's row is sensitive over its whole width; its text is this wide.
+            let title = title.with_max_x(title.left() + 100.0);
+            let choice = bench.rect(Role::ComboBox, "Twist reference");
+            assert!(!title.intersects(choice), "{kind:?}: {title:?} {choice:?}");
+            if bench.shows(Role::Label, "reference") {
+                let label = bench.rect(Role::Label, "reference");
+                assert!(
+                    !title.intersects(label) && !label.intersects(choice),
+                    "{kind:?}: {label:?}"
+                );
+            }
+            assert!(choice.right() < bench.viewport().left(), "{kind:?}: {choice:?}");
+        }
+    }
 }

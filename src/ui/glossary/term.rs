@@ -1,6 +1,6 @@
 //! A term on screen: underlined with dots; hovering it tells its meaning.
 
-use egui::{Label, Response, RichText, Shape, Stroke, Ui, pos2};
+use egui::{Label, Response, RichText, Ui, pos2};
 
 use super::entry::Entry;
 use crate::session::Actions;
@@ -32,10 +32,16 @@ pub(in crate::ui) fn term(ui: &Ui, label: Response, width: f32, of: &str, action
     });
 }
 
+/// Draws dots below the text. They are discs, since egui rounds lines and rectangles of one point to no
+/// length.
 fn underline(ui: &Ui, label: &Response, width: f32) {
-    const SPACING: f32 = 3.0;
+    const RADIUS: f32 = 0.8;
+    const SPACING: f32 = 4.0;
     let y = label.rect.center().y + 0.5 * ui.text_style_height(&egui::TextStyle::Body);
-    let ends = [pos2(label.rect.left(), y), pos2(label.rect.left() + width, y)];
     let colour = ui.visuals().weak_text_color();
-    ui.painter().extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 1.0, SPACING - 1.0));
+    for nth in 0..(width / SPACING).ceil() as u32 {
+        let x = label.rect.left() + SPACING * nth as f32;
+        // In the middle of a pixel, so that all dots look the same.
+        ui.painter().circle_filled(pos2(x.round() + 0.5, y.round() - 0.5), RADIUS, colour);
+    }
 }

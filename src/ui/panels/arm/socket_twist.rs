@@ -2,13 +2,16 @@
 
 use core::f32::consts::TAU;
 
-use egui::{ComboBox, Ui};
+use egui::{Color32, ComboBox, TextStyle, Ui};
 
 use super::disabled::ANGLES_LEAD;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{self, PointSliders, Slider};
 use crate::ui::{glossary, labels};
+
+/// Least width of the combo box's text, in points.
+const COMBO: f32 = 36.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();
@@ -32,17 +35,30 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Shows the combo box of the twist references, for the title row of the section.
+/// Shows the combo box of the twist references, for the title row of the section, with a label if there
+/// is room for both.
 pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    /// Width in points of the section's title, the label "reference" and the combo box.
-    const ALL: f32 = 244.0;
-    let has_room = ui.available_width() > ALL;
+    /// Width in points of the section's title with its triangle.
+    const TITLE: f32 = 104.0;
+    const LABEL: &str = "reference";
+    let chosen = session.arm().twist_reference;
+    let spacing = ui.spacing();
+    let around = 2.0 * (spacing.button_padding.x + spacing.item_spacing.x);
+    let icon = spacing.icon_spacing + spacing.icon_width;
+    let needed = TITLE + width(ui, LABEL) + width(ui, chosen.name()).max(COMBO) + icon + around;
+    let has_room = ui.available_width() > needed;
     widgets::at_right(ui, |ui| {
         if has_room {
-            glossary::term_label(ui, "reference", "Twist reference", actions);
+            glossary::term_label(ui, LABEL, "Twist reference", actions);
         }
-        choice(ui, session.arm().twist_reference, actions);
+        choice(ui, chosen, actions);
     });
+}
+
+/// Width of a text, in points.
+fn width(ui: &Ui, text: &str) -> f32 {
+    let font = TextStyle::Body.resolve(ui.style());
+    ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x
 }
 
 fn choice(ui: &mut Ui, chosen: TwistReferenceKind, actions: &mut Actions) {
