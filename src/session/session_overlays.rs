@@ -27,6 +27,8 @@ impl Session {
         overlays.figure = self.figure();
         overlays.concerned.clear();
         if let (Some(found), true) = (self.known_why().first(), self.solvers.is_idle()) {
+            // The sentence calls a limb's target by its hand.
+            overlays.concerned.extend(self.skeleton_rig().named_tip(found));
             overlays.concerned.extend_from_slice(&found.joints);
         }
         overlays.inside = self.inside();

@@ -10,6 +10,7 @@ use egui::{
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use glam::Vec3;
+use ik_arm::document::RigKind;
 use ik_arm::session::{
     Action, Actions, Effect, PanelTab, Preferences, Session, ShellAction, ViewAction,
 };
@@ -316,11 +317,14 @@ impl Bench {
         }]);
     }
 
-    /// Scrolls the panel of a widget until the widget is in sight.
+    /// Scrolls the panel of a widget until the widget is in sight, in the left panel above the note on the
+    /// selected target.
     pub fn reveal(&mut self, role: Role, name: &str) {
+        const NOTE: f32 = 150.0;
         for _ in 0..40 {
-            let rect = self.rect(role, name);
-            if rect.bottom() < self.viewport().bottom() - 8.0 {
+            let (rect, view) = (self.rect(role, name), self.viewport());
+            let has_note = rect.right() < view.left() && self.has_note();
+            if rect.bottom() < view.bottom() - 8.0 - if has_note { NOTE } else { 0.0 } {
                 return;
             }
             self.move_to(egui::pos2(rect.center().x, self.viewport().center().y));
@@ -328,6 +332,13 @@ impl Bench {
             self.settle();
         }
         panic!("{name} cannot be scrolled to");
+    }
+
+    fn has_note(&self) -> bool {
+        let session = self.session();
+        let rig = session.skeleton_rig();
+        let selected = session.selected().filter(|_| session.rig() == RigKind::Skeleton);
+        selected.is_some_and(|joint| rig.target_of_end(joint).is_some())
     }
 
     pub fn click_at(&mut self, at: Pos2) {

@@ -3,6 +3,7 @@
 use egui::PointerButton::Primary as LEFT;
 use egui::accesskit::Role;
 use egui::{Key, vec2};
+use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Target};
 use ik_arm::io::Example;
@@ -287,4 +288,54 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     let kind = TargetKind::Limb(LimbSettings::default());
     bench.apply([Action::from(EditAction::SetTarget(Target { kind, ..moved }))]);
     assert!(turned(&bench).angle_between(before) > 0.05, "without, it follows the forearm");
+}
+
+#[test]
+fn a_target_that_is_reached_has_a_tick_and_one_that_is_not_its_distance() {
+    let mut bench = with_targets();
+    // The note on a selected target says "Reached", too.
+    bench.apply([SelectAction::Joints(Vec::new())]);
+    let all = bench.session().skeleton_rig().targets.len();
+    let ticks =
+        |bench: &Bench| bench.harness.query_all_by_role_and_label(Role::Label, "Reached").count();
+    assert_eq!(ticks(&bench), all);
+    let moved = *target(&bench, "left_forearm");
+    bench.apply([EditAction::SetTarget(Target { home: moved.home + Vec3::X * 3.0, ..moved })]);
+    assert_eq!(ticks(&bench), all - 1);
+}
+
+#[test]
+fn a_target_matched_to_fk_says_that_the_figure_follows_if_the_target_poses() {
+    let mut bench = with_targets();
+    for (influence, said) in
+        [(1.0, "the figure follows into its FK pose"), (0.0, "nothing else moves")]
+    {
+        select(&mut bench, "left_hand");
+        let posing = *target(&bench, "left_forearm");
+        let home = posing.home + Vec3::Y * 0.1;
+        bench.apply([EditAction::SetTarget(Target { influence, home, ..posing })]);
+        bench.reveal(Role::Button, "Target to FK");
+        assert!(crate::looks::has_tooltip(&mut bench, Role::Button, "Target to FK"));
+        assert!(bench.says(said), "{influence}: {said}");
+        let before = tips(&bench);
+        bench.click(Role::Button, "Target to FK");
+        let moved = farthest(&before, &tips(&bench));
+        assert_eq!(moved > 1e-3, influence > 0.0, "{influence}: {moved}");
+    }
+}
+
+#[test]
+fn no_row_moves_when_a_slider_is_let_go_that_put_a_target_out_of_reach() {
+    let mut bench = with_targets();
+    select(&mut bench, "left_hand");
+    bench.reveal(Role::Slider, "Target x");
+    let rail = bench.rect(Role::Slider, "Target x");
+    let end = rail.right_center() - vec2(3.0, 0.0);
+    bench.drag_and_drop(LEFT, rail.center(), end);
+    bench.settle();
+    assert!(bench.says("left_hand not reached"), "the slider put the target out of reach");
+    assert_eq!(bench.rect(Role::Slider, "Target x"), rail);
+    let nodes = bench.harness.query_all_by_role(Role::Button);
+    let under = nodes.filter(|node| node.rect().expand(4.0).contains(end)).count();
+    assert_eq!(under, 0, "a button came under the mouse");
 }

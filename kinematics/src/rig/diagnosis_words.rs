@@ -19,14 +19,22 @@ impl SkeletonRig {
         self.with_names(|names| remedy.done(names))
     }
 
+    /// The joint by which [`Self::sentence`] calls what does not reach its target; `None` if the rig has
+    /// no such target.
+    pub fn named_tip(&self, found: &Diagnosis) -> Option<JointId> {
+        self.named(found.target)
+    }
+
     fn with_names(&self, say: impl FnOnce(Names<'_>) -> String) -> String {
         let joint = |joint: JointId| {
             self.skeleton.joint(joint).map_or_else(String::new, |it| it.name.clone())
         };
-        let tip = |of: JointId| {
-            let target = self.target(of).map(|index| self.end_of(&self.targets[index]));
-            joint(target.unwrap_or(of))
-        };
+        let tip = |of: JointId| joint(self.named(of).unwrap_or(of));
         say(Names { joint: &joint, tip: &tip })
+    }
+
+    /// The joint by which sentences call what the target of a joint moves: a limb's hand, or the joint.
+    fn named(&self, target: JointId) -> Option<JointId> {
+        self.target(target).map(|index| self.end_of(&self.targets[index]))
     }
 }

@@ -11,7 +11,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
     rig(ui, session, actions);
     ui.add_space(2.0);
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    let note = skeleton::noted(session);
+    let height = ui.available_height();
+    let room = height - note.map_or(0.0, |_| skeleton::note_height(height));
+    let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
+    rows.show(ui, |ui| {
         match session.rig() {
             RigKind::Arm => arm::ui(ui, session, actions),
             RigKind::Skeleton => skeleton::ui(ui, session, actions),
@@ -30,6 +34,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         resets(ui, session, actions);
         ui.add_space(8.0);
     });
+    if let Some(target) = note {
+        skeleton::note(ui, session, target, actions);
+    }
 }
 
 fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -11,8 +11,23 @@ use crate::ui::widgets::{self, AXES, PointSliders};
 use egui::Ui;
 use glam::Vec3;
 
-use crate::document::Channel;
+use crate::document::{Channel, RigKind, Target};
 use crate::session::{Actions, EditAction, Session};
+
+pub(in crate::ui) use targets::note_height;
+
+/// The target of the selected joint, of which the panel has a note; `None` without one.
+pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
+    let selected = session.selected().filter(|_| session.rig() == RigKind::Skeleton)?;
+    let rig = session.skeleton_rig();
+    rig.target_of_end(selected).map(|index| rig.targets[index])
+}
+
+/// Shows whether a target is reached and, if not, why, with what helps. It stands at the foot of the panel,
+/// always as high, so that no row moves under the mouse when a slider is let go.
+pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    targets::note(ui, session, &target, actions);
+}
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
@@ -22,7 +37,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     {
         let title = format!("Joint: {}", joint.name);
         widgets::named_section(ui, "joint", &title, |ui| joint::ui(ui, session, selected, actions));
-        if let Some(target) = rig.target_of_end(selected).map(|index| rig.targets[index])
+        if let Some(target) = noted(session)
             && let Some((_, end)) = targets::end(rig, &target)
         {
             let title = format!("Target of {end}");

@@ -6,7 +6,7 @@ mod motion;
 mod space;
 mod status;
 
-use egui::{RichText, Ui};
+use egui::{RichText, Role, Ui, WidgetInfo};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetPath};
 use crate::kinematics::skeleton::JointId;
@@ -14,6 +14,8 @@ use crate::rig::{TargetKind, TargetReport};
 use crate::session::{Actions, EditAction, SelectAction, Session};
 use crate::ui::labels;
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
+
+pub(in crate::ui) use status::{height as note_height, ui as note};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
@@ -37,13 +39,7 @@ fn row(
 ) {
     let Some((end, end_name)) = end(session.skeleton_rig(), target) else { return };
     widgets::pair(ui, "", |ui| {
-        let misses_only_rotation =
-            report.misses_rotation() && report.error <= session.solver_tolerance();
-        let (missing, tooltip) = match report.rotation_error.filter(|_| misses_only_rotation) {
-            Some(angle) => (format::degrees(angle), "Rotation that is missing"),
-            None => (format::short(report.error), "Distance from tip to target"),
-        };
-        ui.label(RichText::new(missing).monospace()).on_hover_text(tooltip);
+        what_is_missing(ui, report, session.skeleton_rig().tolerance());
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let mut enabled = target.enabled;
             let name = format!("Target of {end_name}");
@@ -62,6 +58,23 @@ fn row(
     });
 }
 
+/// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if nothing
+/// is.
+fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
+    let distance = format::short(report.error);
+    if report.error > tolerance {
+        let missing = ui.label(RichText::new(distance).monospace());
+        missing.on_hover_text("Distance from tip to target");
+    } else if let Some(angle) = report.rotation_error.filter(|_| report.misses_rotation()) {
+        let missing = ui.label(RichText::new(format::degrees(angle)).monospace());
+        missing.on_hover_text("Rotation that is missing");
+    } else {
+        let tick = ui.label(RichText::new("✓").color(ui.visuals().weak_text_color()));
+        tick.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Reached"));
+        tick.on_hover_text(format!("Reached: the tip is {distance} from the target"));
+    }
+}
+
 /// The joint that a target is named after, and its name: the hand of a limb, or the target's joint.
 pub(super) fn end<'a>(rig: &'a SkeletonRig, target: &Target) -> Option<(JointId, &'a str)> {
     let joint = rig.end_of(target);
@@ -76,7 +89,6 @@ pub(in crate::ui) fn selected(
     actions: &mut Actions,
 ) {
     let step = session.shown().grid_cell() * 0.1;
-    status::ui(ui, session, &target, actions);
     influence(ui, session, target, actions);
     kind::ui(ui, session, target, actions);
     place(ui, session, target, step, actions);
@@ -150,7 +162,11 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
 /// Shows the buttons that match the target and the FK pose.
 fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     ui.horizontal(|ui| {
-        let tooltip = "Move the target to where the joint angles alone put the tip";
+        // A target that poses pulls the tip with it.
+        let tooltip = match target.is_posing() {
+            true => "Move the target to the tip's FK place; the figure follows into its FK pose",
+            false => "Move the target to the tip; nothing else moves",
+        };
         if widgets::button(ui, "Target to FK", tooltip, None) {
             actions.push(EditAction::MatchTargetToFk(target.joint));
         }

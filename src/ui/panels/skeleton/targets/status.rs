@@ -1,6 +1,6 @@
 //! Whether a target is reached and, if not, why, with what helps.
 
-use egui::{Id, RichText, Ui};
+use egui::{RichText, ScrollArea, Ui};
 
 use crate::document::Target;
 use crate::kinematics::chain_ik::Status;
@@ -11,28 +11,34 @@ use crate::session::{Actions, Session};
 use crate::ui::widgets::format;
 use crate::ui::{style, why};
 
-/// Shows the status. During a drag it keeps its height, so that no slider moves away from the mouse.
-pub(super) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+/// Height with the line above, in points, in a panel of a height: a fifth of it, but enough for a cause and a
+/// remedy.
+pub(in crate::ui) fn height(panel: f32) -> f32 {
+    const RANGE: (f32, f32) = (98.0, 150.0);
+    (0.2 * panel).clamp(RANGE.0, RANGE.1).round()
+}
+
+/// Shows the note on a target at constant height.
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let Some(report) = session.target_report(target.joint) else { return };
-    let id = Id::unique("height of the status");
-    let is_held = why::is_held(ui) || session.is_editing();
-    let shown = ui.scope(|ui| {
-        if is_held {
-            ui.set_min_height(ui.data(|data| data.get_temp(id)).unwrap_or_default());
-        }
-        let index = session.skeleton_rig().target(target.joint);
-        let why = index.map_or(&[][..], |index| match is_held {
-            true => session.known_why_target(index),
-            false => session.why_target(index),
-        });
+    let (rig, is_held) = (session.skeleton_rig(), why::is_held(ui) || session.is_editing());
+    let index = rig.target(target.joint);
+    let why = index.map_or(&[][..], |index| match is_held {
+        true => session.known_why_target(index),
+        false => session.why_target(index),
+    });
+    ui.separator();
+    ScrollArea::vertical().id_salt("note").auto_shrink(false).show(ui, |ui| {
+        let end = super::end(rig, target).map_or("", |end| end.1);
+        ui.spacing_mut().item_spacing.y = 3.0;
         match why.is_empty() {
-            true => status(ui, session, target, report),
-            false => explain(ui, session, report, why, actions),
+            true => {
+                ui.strong(format!("Target of {end}"));
+                status(ui, session, target, report);
+            }
+            false => explain(ui, session, (end, report), why, actions),
         }
     });
-    if !is_held {
-        ui.data_mut(|data| data.insert_temp(id, shown.response.rect.height()));
-    }
 }
 
 fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport) {
@@ -53,15 +59,16 @@ fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport
 fn explain(
     ui: &mut Ui,
     session: &Session,
-    report: &TargetReport,
+    (end, report): (&str, &TargetReport),
     causes: &[Diagnosis],
     actions: &mut Actions,
 ) {
     let text = match missing_rotation(report) {
         Some(missing) if report.error <= session.solver_tolerance() => missing,
-        _ => format!("Not reached: {} away", format::short(report.error)),
+        _ => format!("{} away", format::short(report.error)),
     };
-    ui.label(RichText::new(text).color(style::accent(ui)));
+    let heading = RichText::new(format!("{end} not reached: {text}"));
+    ui.label(heading.color(style::accent(ui)));
     for found in causes {
         why::cause(ui, session, found);
         ui.horizontal_wrapped(|ui| why::remedies(ui, session, found, usize::MAX, actions));
@@ -85,7 +92,9 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
             }
         },
         TargetOutcome::Limb(limb) => match limb.reach {
-            LimbReach::Reached if let Some(missing) = missing_rotation(report) => missing,
+            LimbReach::Reached if let Some(missing) = missing_rotation(report) => {
+                format!("Not reached: {missing}")
+            }
             LimbReach::Reached if limb.stretch > 1.0 => {
                 format!("Reached, stretched to {:.0} %", 100.0 * limb.stretch)
             }
@@ -105,5 +114,5 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
 /// The rotation that is missing, in words; `None` for a hand that is turned as its target asks.
 fn missing_rotation(report: &TargetReport) -> Option<String> {
     let angle = report.rotation_error.filter(|_| report.misses_rotation())?;
-    Some(format!("Not reached: {} of its rotation missing", format::degrees(angle)))
+    Some(format!("{} of its rotation missing", format::degrees(angle)))
 }
