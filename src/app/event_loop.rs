@@ -10,7 +10,7 @@ use super::background;
 use super::error::AppError;
 use super::graphics_error::GraphicsError;
 use super::recovery::{self, RecoveredFile, Recovery};
-use super::settings::Settings;
+use super::settings::{Settings, SettingsWriter};
 use super::user_event::UserEvent;
 use super::window::{AppWindow, Repaint};
 use crate::document::Document;
@@ -22,10 +22,7 @@ use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourA
 /// # Errors
 ///
 /// If there is no display or no graphics device, or the device is lost for good.
-pub fn run(
-    document: Option<(Document, Option<PathBuf>)>,
-    tour_step: Option<usize>,
-) -> Result<(), AppError> {
+pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), AppError> {
     let started = Instant::now();
     let event_loop =
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
@@ -49,6 +46,8 @@ pub fn run(
         started,
         proxy: event_loop.create_proxy(),
         session,
+        settings_writer: SettingsWriter::default(),
+        next_frame: None,
         settings,
         recovery,
         recovered,
@@ -65,7 +64,11 @@ struct App {
     started: Instant,
     proxy: EventLoopProxy<UserEvent>,
     session: Session,
+    /// Settings of the previous run, until the window is open.
     settings: Settings,
+    settings_writer: SettingsWriter,
+    /// Time of the next frame; `None` until there is input.
+    next_frame: Option<Instant>,
     recovery: Recovery,
     /// Unsaved document of an earlier run that did not end cleanly.
     recovered: Option<RecoveredFile>,
@@ -95,10 +98,29 @@ impl App {
             Repaint::At(time) => Some(time),
             Repaint::OnInput => None,
         };
-        event_loop.set_control_flow(match again.into_iter().chain(backup).min() {
-            Some(time) => ControlFlow::WaitUntil(time),
-            None => ControlFlow::Wait,
-        });
+        self.next_frame = again.into_iter().chain(backup).min();
+        self.settings_writer.note_change();
+        self.sleep(event_loop);
+    }
+
+    /// Sleeps until the next frame or the next look at the settings is due, or there is input.
+    fn sleep(&self, event_loop: &ActiveEventLoop) {
+        let due = self.next_frame.into_iter().chain(self.settings_writer.due());
+        event_loop.set_control_flow(due.min().map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+    }
+
+    /// Draws a frame and writes the settings, as far as each is due.
+    fn wake(&mut self, event_loop: &ActiveEventLoop) {
+        let AppState::Active(window) = &self.state else { return };
+        let now = Instant::now();
+        if self.next_frame.is_some_and(|due| due <= now) {
+            window.request_redraw();
+        }
+        // The tour changes settings while it lasts.
+        if self.session.tour().is_none() {
+            self.settings_writer.write_if_due(now, || window.settings(&self.session));
+        }
+        self.sleep(event_loop);
     }
 
     /// Ends the program after the graphics device is lost for good; unsaved changes are kept for
@@ -132,13 +154,13 @@ impl App {
     /// Removes the recovered file once the user has opened or declined its document, and this run
     /// has no unsaved changes without a backup.
     fn remove_settled_recovery(&mut self) {
-        let is_settled = self.session.has_settled_recovery();
         let own = self.session.own();
         let is_safe = !own.is_unsaved() || self.recovery.has(own.revision());
-        if is_settled
-            && is_safe
-            && let Some(RecoveredFile { path, .. }) = self.recovered.take()
-        {
+        self.remove_recovered_if(self.session.has_settled_recovery() && is_safe);
+    }
+
+    fn remove_recovered_if(&mut self, is_settled: bool) {
+        if is_settled && let Some(RecoveredFile { path, .. }) = self.recovered.take() {
             recovery::remove(&path);
         }
     }
@@ -163,11 +185,9 @@ impl ApplicationHandler<UserEvent> for App {
         self.state = AppState::Suspended;
     }
 
-    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, AppState::Active(window)) =
-            (cause, &self.state)
-        {
-            window.request_redraw();
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.wake(event_loop);
         }
     }
 
@@ -232,6 +252,10 @@ impl ApplicationHandler<UserEvent> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        if !matches!(self.state, AppState::Failed(_)) {
+            // What was recovered is saved now, or the user gave it up.
+            self.remove_recovered_if(self.session.has_settled_recovery());
+        }
         self.recovery.end();
         self.close();
     }

@@ -78,7 +78,8 @@ impl PanelPainter {
         }
     }
 
-    /// Redraws the areas of the panels and the scene that have changed since the last call.
+    /// Redraws the areas of the panels and the scene that have changed since the last call, and returns
+    /// whether there are any.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -86,9 +87,10 @@ impl PanelPainter {
         (panels, screen): (&[ClippedPrimitive], &ScreenDescriptor),
         scene: &PlacedScene<'_>,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-    ) {
+    ) -> bool {
         let viewport = PixelArea::nearest(scene.viewport, screen);
         let changed = self.changed_areas(gpu, (panels, screen), viewport, scene.has_changed);
+        let has_changed = !changed.is_empty();
         let batches = self.triangles.upload(gpu, panels, screen, &changed);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("panels"),
@@ -113,6 +115,7 @@ impl PanelPainter {
             set_viewport(&mut pass, window);
             self.triangles.draw(&mut pass, &batches);
         }
+        has_changed
     }
 
     /// Areas that must be drawn, in a kept picture of the screen's size.

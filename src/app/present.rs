@@ -11,10 +11,12 @@ use super::graphics::Graphics;
 use super::graphics_error::GraphicsError;
 use super::panel_painter::PlacedScene;
 use crate::render::TimedPass;
+use crate::ui::FrameTimes;
 
 /// Outcome of a frame.
 pub(super) enum Presented {
-    Shown,
+    /// The window is up to date. `has_changed` tells whether this frame differs from the one before.
+    Shown { has_changed: bool },
     /// The surface accepts no frame now. Retry after this time, or, for `None`, when the system
     /// requests a redraw.
     Later(Option<Duration>),
@@ -83,10 +85,10 @@ impl Graphics {
         };
         let timestamps = self.gpu_timer.as_mut().map(|timer| timer.pass(TimedPass::Panels));
         let panels = (panels, &screen);
-        self.panels.draw(&self.gpu, &mut encoder, panels, &scene, timestamps);
+        let has_changed = self.panels.draw(&self.gpu, &mut encoder, panels, &scene, timestamps);
         self.panels.copy_to(&self.gpu, &mut encoder, &frame.texture);
         if let Some(gpu_timer) = &mut self.gpu_timer {
-            gpu_timer.stop(&mut encoder, drawn);
+            gpu_timer.stop(&mut encoder, if has_changed { drawn } else { FrameTimes::UNCOUNTED });
         }
         self.gpu.queue.submit([encoder.finish()]);
         if let Some(gpu_timer) = &self.gpu_timer {
@@ -97,7 +99,7 @@ impl Graphics {
         self.gpu.queue.present(frame);
         waited += presenting.elapsed();
         self.check()?;
-        Ok((Presented::Shown, waited))
+        Ok((Presented::Shown { has_changed }, waited))
     }
 
     /// Waits until the device has executed all commands.

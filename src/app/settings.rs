@@ -1,4 +1,5 @@
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use egui::util::IdTypeMap;
 use egui_winit::WindowSettings;
@@ -7,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::io;
 use crate::session::Preferences;
 
-/// Everything that is saved when the program ends: preferences, recent files, position of the window, layout
-/// of the panels.
+/// Everything that is kept from one start of the program to the next: preferences, recent files, position of
+/// the window, layout of the panels.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Settings {
@@ -43,12 +44,55 @@ impl Settings {
     }
 
     fn try_save(&self) -> Result<(), Box<dyn std::error::Error>> {
-        let Some(path) = path() else {
-            return Ok(());
+        write(&ron::to_string(self)?)
+    }
+}
+
+fn write(text: &str) -> Result<(), Box<dyn std::error::Error>> {
+    let Some(path) = path() else {
+        return Ok(());
+    };
+    let folder = path.parent().ok_or("it has no folder")?;
+    std::fs::create_dir_all(folder)?;
+    Ok(io::write(&path, text.as_bytes())?)
+}
+
+/// Writes the settings soon after they change, so that a program that is killed loses none.
+#[derive(Default)]
+pub(super) struct SettingsWriter {
+    /// What was written or found unchanged last.
+    written: String,
+    /// Time to look for changes; `None` if nothing has happened since the last look.
+    due: Option<Instant>,
+}
+
+impl SettingsWriter {
+    const INTERVAL: Duration = Duration::from_secs(2);
+
+    /// Notes that something happened that may have changed the settings.
+    pub fn note_change(&mut self) {
+        self.due.get_or_insert_with(|| Instant::now() + Self::INTERVAL);
+    }
+
+    pub fn due(&self) -> Option<Instant> {
+        self.due
+    }
+
+    /// Writes the settings if they are due and differ from those written last; logs an error.
+    pub fn write_if_due(&mut self, now: Instant, settings: impl FnOnce() -> Settings) {
+        if self.due.is_none_or(|due| now < due) {
+            return;
+        }
+        self.due = None;
+        let text = match ron::to_string(&settings()) {
+            Ok(text) if text != self.written => text,
+            Ok(_) => return,
+            Err(error) => return log::warn!("the settings cannot be written: {error}"),
         };
-        let folder = path.parent().ok_or("it has no folder")?;
-        std::fs::create_dir_all(folder)?;
-        Ok(io::write(&path, ron::to_string(self)?.as_bytes())?)
+        if let Err(error) = write(&text) {
+            log::warn!("the settings cannot be written: {error}");
+        }
+        self.written = text;
     }
 }
 

@@ -205,9 +205,11 @@ impl AppWindow {
         self.egui.handle_platform_output(&self.window, platform);
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
         let delay = match self.draw(session, output, &mut frame) {
-            Ok(Presented::Shown) => {
+            Ok(Presented::Shown { has_changed }) => {
                 self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
-                self.machine.times.push(frame);
+                if has_changed {
+                    self.machine.times.push(frame);
+                }
                 if !self.graphics.as_ref().is_some_and(|graphics| graphics.has_own_time) {
                     let budget = session.preferences().frame_budget.time();
                     self.dynamic_resolution.measure(frame.resolution_scale, frame.total(), budget);
@@ -427,7 +429,7 @@ impl AppWindow {
             frame.wait += waited;
             frame.encode += lap().saturating_sub(waited);
             graphics.panels.free_textures(freed);
-            if self.retries.is_retrying() && matches!(presented, Presented::Shown) {
+            if self.retries.is_retrying() && matches!(presented, Presented::Shown { .. }) {
                 graphics.finish()?;
             }
             Ok(presented)

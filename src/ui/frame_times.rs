@@ -75,6 +75,8 @@ impl Default for FrameTimes {
 impl FrameTimes {
     /// Maximum number of frames in the buffer.
     pub const MOST: usize = 240;
+    /// Index of a frame that changed nothing on screen and is not counted.
+    pub const UNCOUNTED: u64 = u64::MAX;
 
     /// Adds the durations of a frame; a full buffer drops its oldest frame.
     pub fn push(&mut self, frame: FrameTime) {

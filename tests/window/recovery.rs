@@ -55,3 +55,38 @@ fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_ne
     program.kill();
     assert_eq!(document_of(&second).arm.cursor_in_root(), hand);
 }
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_recovered_document_that_is_given_up_is_not_offered_again() {
+    let (folder, places, program) = open();
+    change(&program, &places);
+    program.terminate();
+    program.end();
+    assert_eq!(kept(folder.path()).len(), 1);
+
+    let program = Program::open(folder.path());
+    let offered = program.at_rest();
+    program.key("Return");
+    program.wait_until("the document opens", |now| changed(&offered, now, places.thumb, 6.0) > 40);
+    // Quits before half a minute is over, without saving.
+    program.key("ctrl+q");
+    program.at_rest();
+    program.key("Tab");
+    program.key("Return");
+    assert_eq!(program.end(), Some(0));
+    assert!(kept(folder.path()).is_empty(), "it would be offered again");
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn settings_are_kept_when_the_program_is_killed() {
+    let (folder, places, program) = open();
+    let before = program.at_rest();
+    program.click(places.skeleton_switch);
+    program
+        .wait_until("the skeleton", |now| changed(&before, now, places.skeleton_switch, 8.0) > 20);
+    let file = folder.path().join("ik-arm/settings.ron");
+    wait_for("the settings", || file.exists().then_some(()));
+    program.kill();
+}
