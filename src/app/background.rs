@@ -15,10 +15,7 @@ use crate::io::{self, OpenError, OpenOptions, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::SkinSource;
 use crate::scene::Scene;
-use crate::session::{
-    Action, Actions, BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, PathDialog,
-    ShellAction,
-};
+use crate::session::{Action, BakeJob, Export, ExportJob, FileAction, PathDialog, ShellAction};
 
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
 pub(super) fn save_picture(
@@ -129,39 +126,25 @@ pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProx
     });
 }
 
-/// Actions for a file that was read: they show the file's document or the error, and ask which of
-/// several skeletons and animations to open, unless `options` choose one.
-pub(super) fn open_actions(
+/// The action for a file that was read, which shows the file's document or the error, and what to say
+/// once the document is open.
+pub(super) fn opened(
     path: PathBuf,
     options: OpenOptions,
     read: Result<Opened, OpenError>,
-) -> Actions {
-    let mut actions = Actions::new();
+) -> (Option<String>, FileAction) {
     let opened = match read {
         Ok(opened) => opened,
-        Err(error) => {
-            actions.push(FileAction::NotOpened { path, why: error.to_string() });
-            return actions;
-        }
+        Err(error) => return (None, FileAction::NotOpened { path, why: error.to_string() }),
     };
-    let message = match &opened.warnings[..] {
+    let remark = match &opened.warnings[..] {
         [] => format!("Opened {}", path.display()),
         [one] => format!("Opened {}; {one}", path.display()),
         [first, rest @ ..] => {
             format!("Opened {}; {first}, and {} more warnings", path.display(), rest.len())
         }
     };
-    let asks = options == OpenOptions::default();
-    let is_own = opened.skeletons.is_empty();
-    let contents = (!is_own).then(|| Box::new(FileContents::new(path.clone(), options, &opened)));
-    let question = contents.clone().filter(|contents| asks && contents.has_choice());
-    let document = Box::new(opened.document);
-    // Save must not overwrite a file of another program.
-    actions.push(FileAction::Opened { document, file: is_own.then_some(path), contents });
-    actions.push(ShellAction::Report(message));
-    actions
-        .extend(question.map(|contents| ShellAction::OpenDialog(Dialog::ChooseContents(contents))));
-    actions
+    (Some(remark), FileAction::opened(path, options, opened))
 }
 
 /// Opens the system's file dialog in place of `dialog`, starting at `path`.

@@ -1,4 +1,3 @@
-use std::path::PathBuf;
 use std::time::Instant;
 
 use winit::application::ApplicationHandler;
@@ -13,11 +12,10 @@ use super::recovery::{self, RecoveredFile, Recovery};
 use super::settings::{Settings, SettingsWriter};
 use super::user_event::UserEvent;
 use super::window::{AppWindow, Repaint};
-use crate::document::Document;
 use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
 
-/// Opens the window, with a document and its file if given, and returns when the window is closed.
-/// Begins the tour at `tour_step`, counted from 0, if given.
+/// Opens the window, with the document of a file if `opened` is given, and returns when the window is
+/// closed. Begins the tour at `tour_step`, counted from 0, if given.
 ///
 /// # Errors
 ///
@@ -30,8 +28,8 @@ pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), A
     let mut session = Session::new(settings.preferences);
     session.set_recent(settings.recent.clone());
     session.set_export_folder(settings.export_folder.clone());
-    if let Some((document, file)) = document {
-        session.apply(FileAction::Opened { document: Box::new(document), file, contents: None });
+    if let Some(opened) = opened {
+        session.apply(opened);
     }
     let recovery = Recovery::start();
     let recovered = recovery.find();
@@ -236,9 +234,9 @@ impl ApplicationHandler<UserEvent> for App {
                 self.session.apply(FileAction::ExportEnded(result));
             }
             UserEvent::Opened { path, options, read } => {
-                for action in background::open_actions(path, options, *read) {
-                    self.session.apply(action);
-                }
+                let (remark, action) = background::opened(path, options, *read);
+                self.session.remark_when_opened(remark);
+                self.session.apply(action);
             }
             UserEvent::SkinLocated { path, before, read } => {
                 self.session.apply(FileAction::SkinLocated { path, before, read });

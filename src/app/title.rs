@@ -1,11 +1,9 @@
-use std::path::Path;
-
 use crate::session::Session;
 
 /// Name of the program, as in the window's title.
 pub const TITLE: &str = "ik-arm";
 
-/// Title of the window: the file's name, an asterisk for unsaved changes, and the program; during the
+/// Title of the window: the document's name, an asterisk for unsaved changes, and the program; during the
 /// tour, the step or the title of the last card.
 pub fn title(session: &Session) -> String {
     if let Some(tour) = session.tour() {
@@ -15,8 +13,8 @@ pub fn title(session: &Session) -> String {
         };
     }
     let unsaved = if session.is_unsaved() { "*" } else { "" };
-    match session.file().and_then(Path::file_name) {
-        Some(name) => format!("{}{unsaved} – {TITLE}", name.to_string_lossy()),
+    match session.document_name() {
+        Some(name) => format!("{name}{unsaved} – {TITLE}"),
         None if session.is_unsaved() => format!("untitled* – {TITLE}"),
         None => TITLE.to_owned(),
     }

@@ -9,7 +9,7 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::report::fail;
 use crate::app;
-use crate::session::TourStep;
+use crate::session::{FileAction, TourStep};
 
 #[derive(clap::Args)]
 pub struct GuiArgs {
@@ -31,12 +31,9 @@ fn steps() -> i64 {
 pub fn run(args: &GuiArgs) -> ExitCode {
     let mut document = None;
     if let Some(path) = &args.file {
-        match open::open(path, &args.open.options()) {
-            // A file of another program is opened but never overwritten by Save.
-            Ok(opened) => {
-                let file = opened.skeletons.is_empty().then(|| path.clone());
-                document = Some((opened.document, file));
-            }
+        let options = args.open.options();
+        match open::open(path, &options) {
+            Ok(opened) => document = Some(FileAction::opened(path.clone(), options, opened)),
             Err(error) => return fail(&error),
         }
     }

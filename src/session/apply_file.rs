@@ -23,6 +23,14 @@ impl Session {
         self.files.file()
     }
 
+    /// Name of the document: its file's, or without the extension that of the file of another program
+    /// that it was imported from; `None` for a new document.
+    pub fn document_name(&self) -> Option<String> {
+        let own = self.files.file().and_then(Path::file_name);
+        let imported = || self.files.origin().and_then(Path::file_stem);
+        Some(own.or_else(imported)?.to_string_lossy().into_owned())
+    }
+
     /// Files that were opened or saved, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         self.files.recent()
@@ -41,10 +49,10 @@ impl Session {
         self.say("The unsaved document is open; save it");
     }
 
-    /// Whether the action opens a file, and the document has changed since the user chose the file.
-    pub(super) fn is_late(&self, action: &FileAction) -> bool {
-        let is_other = self.files.opening().is_some_and(|revision| revision != self.revision());
-        matches!(action, FileAction::Opened { .. }) && (is_other || self.is_editing())
+    /// Sets the text for the status bar once the file is open that was read: with unsaved changes,
+    /// that is after a question.
+    pub fn remark_when_opened(&mut self, remark: Option<String>) {
+        self.files.set_remark(remark);
     }
 
     /// The skeletons and animations of the file of another program that the document comes from.
@@ -84,7 +92,7 @@ impl Session {
         self.end_glide();
         match self.files.file() {
             Some(path) => Effect::Save(path.to_owned()),
-            None => Effect::ChoosePath(PathDialog::save_as()),
+            None => Effect::ChoosePath(self.save_as_dialog()),
         }
     }
 
@@ -129,7 +137,7 @@ impl Session {
             self.shell.open_dialog(Dialog::Exporting);
             return None;
         }
-        if self.is_unsaved() && (action.leaves_document() || self.is_late(&action)) {
+        if self.is_unsaved() && action.leaves_document() {
             self.shell.open_dialog(Dialog::Unsaved { then: Box::new(action) });
             return None;
         }
@@ -185,14 +193,18 @@ impl Session {
                 if !matches!(self.shell.path_dialog(), Some(PathDialog::Open { .. })) {
                     self.shell.take_dialog();
                 }
-                self.files.set_opening(self.revision());
                 return Some(Effect::Open { path, options });
             }
             FileAction::Opened { document, file, contents } => {
                 let seems_z_up = file.is_none() && document.looks_z_up();
+                let remark = self.files.take_remark();
                 self.replace_document(*document, file);
-                self.files.set_contents(contents);
+                self.files.set_contents(contents.clone());
                 self.files.set_seems_z_up(seems_z_up);
+                remark.into_iter().for_each(|remark| self.say(remark));
+                if let Some(contents) = contents.filter(|it| it.asks()) {
+                    self.open_dialog(Dialog::ChooseContents(contents));
+                }
             }
             FileAction::NotOpened { path, why } => self.fail_open(&path, &why),
             FileAction::LocateSkin(path) => {
@@ -269,13 +281,27 @@ impl Session {
         self.files.job()
     }
 
+    /// The dialog that asks where to save the document.
+    pub fn save_as_dialog(&self) -> PathDialog {
+        PathDialog::SaveAs { path: format!("{}.json", self.file_stem()), problem: None }
+    }
+
+    /// The dialog that asks where to save a picture of the viewport.
+    pub fn save_picture_dialog(&self) -> PathDialog {
+        PathDialog::SavePicture { path: format!("{}.png", self.file_stem()) }
+    }
+
+    /// Name for files of the document, without an extension.
+    fn file_stem(&self) -> String {
+        let stem = self.files.origin().and_then(Path::file_stem);
+        stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy()).into_owned()
+    }
+
     /// The dialog for an export of the document, with default settings.
     pub fn export_dialog(&self) -> PathDialog {
         const SIZE: (u32, u32) = (1280, 800);
-        let stem = self.files.file().and_then(|file| file.file_stem());
-        let stem = stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy());
         PathDialog::Export(Export {
-            path: format!("{stem}.glb").into(),
+            path: format!("{}.glb", self.file_stem()).into(),
             frame_rate: self.document().timeline.frame_rate,
             size: SIZE,
         })

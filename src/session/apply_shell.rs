@@ -49,7 +49,10 @@ impl Session {
                 job.progress.cancel();
                 self.say("Bake cancelled");
             }
-            _ => drop(self.files.take_after_save()),
+            _ => {
+                self.files.take_after_save();
+                self.files.take_remark();
+            }
         }
     }
 
@@ -70,7 +73,9 @@ impl Session {
         let in_folder = |folder: &Path| folder.join(typed);
         let full = match dialog {
             PathDialog::Export(_) | PathDialog::SavePicture { .. } => {
-                self.files.export_folder().or(self.files.document_folder()).map(in_folder)
+                // The folder of the last export may be gone, or was never there.
+                let exported = self.files.export_folder().filter(|folder| folder.is_dir());
+                exported.or(self.files.document_folder()).map(in_folder)
             }
             PathDialog::SaveAs { .. } => self.files.document_folder().map(in_folder),
             // A file that exists relative to the current folder takes precedence.
@@ -80,6 +85,16 @@ impl Session {
             PathDialog::Open { .. } | PathDialog::LocateSkin { .. } => None,
         };
         full.unwrap_or_else(|| typed.to_owned())
+    }
+
+    /// The folder in which a path typed into `dialog` lies, also before anything is typed.
+    pub fn folder_of(&self, dialog: &PathDialog) -> PathBuf {
+        let typed = dialog.path();
+        let any = Path::new("untitled");
+        let typed = if typed.as_os_str().is_empty() { any } else { typed };
+        let full = self.full_path(dialog, typed);
+        let full = std::path::absolute(&full).unwrap_or(full);
+        full.parent().map(Path::to_owned).unwrap_or_default()
     }
 
     /// The folder of the last export or picture; `None` before the first.

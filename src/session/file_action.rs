@@ -4,7 +4,7 @@ use super::export::{Export, ExportJob};
 use super::file_contents::FileContents;
 use super::path_dialog::PathDialog;
 use crate::document::Document;
-use crate::io::{Example, OpenOptions};
+use crate::io::{Example, OpenOptions, Opened};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError};
 
 /// Opens, saves, exports and quits.
@@ -104,6 +104,16 @@ pub enum FileAction {
 }
 
 impl FileAction {
+    /// Shows the document of the file at `path`, which was read with `options`.
+    pub fn opened(path: PathBuf, options: OpenOptions, opened: Opened) -> Self {
+        let is_own = opened.skeletons.is_empty();
+        let of_file = || Box::new(FileContents::new(path.clone(), options, &opened));
+        let contents = (!is_own).then(of_file);
+        // Save must not overwrite a file of another program.
+        let file = is_own.then_some(path);
+        Self::Opened { document: Box::new(opened.document), file, contents }
+    }
+
     /// Whether the action saves the document.
     pub(super) fn saves_document(&self) -> bool {
         let asks = |dialog: &PathDialog| matches!(dialog, PathDialog::SaveAs { .. });
@@ -118,8 +128,7 @@ impl FileAction {
     pub(super) fn concerns_document(&self) -> bool {
         let reads = matches!(
             self,
-            Self::Opened { .. }
-                | Self::NotOpened { .. }
+            Self::NotOpened { .. }
                 | Self::Saved(_)
                 | Self::NotSaved { .. }
                 | Self::Discard(_)
@@ -133,7 +142,7 @@ impl FileAction {
     pub(super) fn leaves_document(&self) -> bool {
         matches!(
             self,
-            Self::Open { .. }
+            Self::Opened { .. }
                 | Self::OpenExample(_)
                 | Self::New
                 | Self::NewSkeleton

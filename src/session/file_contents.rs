@@ -29,6 +29,11 @@ impl FileContents {
         }
     }
 
+    /// Whether the user is asked what to open: there is a choice, and none was made.
+    pub fn asks(&self) -> bool {
+        self.options == OpenOptions::default() && self.has_choice()
+    }
+
     /// Whether the file has several skeletons or animations to choose from.
     pub fn has_choice(&self) -> bool {
         self.skeletons.len() > 1 || self.animations.len() > 1

@@ -14,8 +14,8 @@ pub(super) struct Files {
     job: Option<ExportJob>,
     /// Whether an earlier run's unsaved document was opened or declined.
     recovery_settled: bool,
-    /// The document's revision when the user chose a file to open.
-    opening: Option<u64>,
+    /// What to say once the file is open that was read.
+    remark: Option<String>,
     /// What else the file of another program has that the document comes from.
     contents: Option<Box<FileContents>>,
     /// Whether z seems to point up in the document's file, and this was not settled yet.
@@ -37,7 +37,7 @@ impl Files {
             export_folder: self.export_folder.take(),
             job: self.job.take(),
             recovery_settled: self.recovery_settled,
-            opening: None,
+            remark: None,
             contents: None,
             seems_z_up: false,
             after_save: None,
@@ -88,11 +88,6 @@ impl Files {
         self.recovery_settled
     }
 
-    /// The document's revision when the user chose a file to open.
-    pub fn opening(&self) -> Option<u64> {
-        self.opening
-    }
-
     pub fn set_file(&mut self, file: PathBuf) {
         self.file = Some(file);
     }
@@ -122,9 +117,15 @@ impl Files {
         }
     }
 
-    /// Folder of the document's file; without one, of the most recent file.
+    /// The file that the document comes from: its own, or that of another program.
+    pub fn origin(&self) -> Option<&Path> {
+        let imported = self.contents.as_ref().map(|contents| contents.path.as_path());
+        self.file().or(imported)
+    }
+
+    /// Folder of the file that the document comes from; without one, of the most recent file.
     pub fn document_folder(&self) -> Option<&Path> {
-        let last = self.file.as_ref().or(self.recent.first())?;
+        let last = self.origin().or(self.recent.first().map(PathBuf::as_path))?;
         last.parent().filter(|folder| folder.is_absolute())
     }
 
@@ -136,8 +137,12 @@ impl Files {
         self.recovery_settled = true;
     }
 
-    pub fn set_opening(&mut self, revision: u64) {
-        self.opening = Some(revision);
+    pub fn set_remark(&mut self, remark: Option<String>) {
+        self.remark = remark;
+    }
+
+    pub fn take_remark(&mut self) -> Option<String> {
+        self.remark.take()
     }
 
     pub fn set_after_save(&mut self, action: Box<FileAction>) {

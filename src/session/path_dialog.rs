@@ -42,16 +42,6 @@ impl PathDialog {
         Self::Open { path: String::new(), problem: None }
     }
 
-    /// The dialog that asks where to save a new document.
-    pub fn save_as() -> Self {
-        Self::SaveAs { path: "ik-arm.json".to_owned(), problem: None }
-    }
-
-    /// The dialog that asks where to save a picture.
-    pub fn save_picture() -> Self {
-        Self::SavePicture { path: "ik-arm.png".to_owned() }
-    }
-
     /// The path as typed so far.
     pub fn path(&self) -> &Path {
         match self {

@@ -11,12 +11,12 @@ pub(in crate::ui) fn open() -> FileAction {
     FileAction::AskPath(PathDialog::open())
 }
 
-pub(in crate::ui) fn save_as() -> FileAction {
-    FileAction::AskPath(PathDialog::save_as())
+pub(in crate::ui) fn save_as(session: &Session) -> FileAction {
+    FileAction::AskPath(session.save_as_dialog())
 }
 
-pub(in crate::ui) fn save_picture() -> FileAction {
-    FileAction::AskPath(PathDialog::save_picture())
+pub(in crate::ui) fn save_picture(session: &Session) -> FileAction {
+    FileAction::AskPath(session.save_picture_dialog())
 }
 
 pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [

@@ -38,15 +38,15 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the name of the document, with an asterisk while it has unsaved changes.
 fn document_name(ui: &mut Ui, session: &Session) {
-    let (name, tooltip) = match session.file() {
+    const NO_FILE: &str = "This document has no file yet (Ctrl+S)";
+    let name = session.document_name().unwrap_or_else(|| "untitled".to_owned());
+    let (name, tooltip) = match (session.file(), session.contents()) {
         _ if session.tour().is_some() => {
             ("Tour".to_owned(), "Your own document is kept".to_owned())
         }
-        Some(path) => {
-            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-            (name, path.display().to_string())
-        }
-        None => ("untitled".to_owned(), "This document has no file yet (Ctrl+S)".to_owned()),
+        (Some(path), _) => (name, path.display().to_string()),
+        (None, Some(from)) => (name, format!("{NO_FILE}; it comes from {}", from.path.display())),
+        (None, None) => (name, NO_FILE.to_owned()),
     };
     let is_unsaved = session.tour().is_none() && session.is_unsaved();
     let (mark, told) = if is_unsaved { ("*", "\nIt has unsaved changes") } else { ("", "") };
@@ -78,14 +78,14 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         actions.push(FileAction::Save);
     }
     if item(ui, "Save as…", "Ctrl+Shift+S") {
-        actions.push(commands::save_as());
+        actions.push(commands::save_as(session));
     }
     ui.separator();
     if item(ui, "Export…", "Ctrl+E") {
         actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
     }
     if item(ui, "Save picture…", "Ctrl+P") {
-        actions.push(commands::save_picture());
+        actions.push(commands::save_picture(session));
     }
     ui.separator();
     if item(ui, "Quit", "Ctrl+Q") {

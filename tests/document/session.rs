@@ -1,18 +1,21 @@
 //! A session stays valid under any actions.
 
+use std::path::PathBuf;
+
 use glam::Vec3;
 use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, HandSpace, Overlay, PathKind, Ray, RigKind,
     SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
-use ik_arm::io::{Example, OpenOptions};
+use ik_arm::io::{Example, FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, FileAction, Grip, PlaybackAction, PointHandle, PoseMode,
-    SelectAction, Session, SolverAction, TransactionAction, ViewAction,
+    Action, Dialog, DragInput, EditAction, Effect, Export, FileAction, FileContents, Grip,
+    PathDialog, PlaybackAction, PointHandle, PoseMode, SelectAction, Session, ShellAction,
+    SolverAction, TransactionAction, ViewAction,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -741,4 +744,116 @@ fn reaching_arm(random: &mut Random) -> Arm {
     arm.fk.stretch = random.one_of(&[1.0, 0.5, 2.0]);
     arm.set_cursor(random.direction() * arm.bones.outer_limit() * random.within(0.0..4.0));
     arm
+}
+
+#[test]
+fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay() {
+    let mut session = halfway();
+    session.apply(PlaybackAction::SetAutoKey(false));
+    session.apply(EditAction::SetHand(Vec3::X));
+    assert!(session.message().is_some_and(|it| it.starts_with("Unkeyed change")));
+    session.apply(PlaybackAction::SetTime(0.25));
+    assert_eq!(session.message(), None, "the change is lost, and so is what to do about it");
+    session.apply(ShellAction::Report("Saved".to_owned()));
+    session.apply(PlaybackAction::SetTime(0.3));
+    assert_eq!(session.message(), Some("Saved"));
+}
+
+#[test]
+fn unsaved_changes_are_asked_about_only_once_the_other_file_was_read() {
+    let mut session = Session::default();
+    session.apply(EditAction::SetTwist(1.0));
+    let (path, options) = (PathBuf::from("other.json"), OpenOptions::default());
+    let effect = session.apply(FileAction::Open { path: path.clone(), options: options.clone() });
+    assert_eq!(effect, Some(Effect::Open { path: path.clone(), options }));
+    assert_eq!(session.dialog(), None, "nothing is lost yet");
+    session.apply(FileAction::NotOpened { path, why: "it is not there".to_owned() });
+    assert!(matches!(session.dialog(), Some(Dialog::Path(PathDialog::Open { .. }))));
+    assert_eq!(session.arm().twist, 1.0);
+
+    session.apply(ShellAction::CloseDialog);
+    session.remark_when_opened(Some("Opened other.json".to_owned()));
+    let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
+    session.apply(opened.clone());
+    assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
+    assert_ne!(session.message(), Some("Opened other.json"), "it is not open yet");
+    session.apply(FileAction::Discard(Box::new(opened)));
+    assert_eq!((session.dialog(), session.message()), (None, Some("Opened other.json")));
+}
+
+/// The contents of a file of another program with one skeleton and some animations.
+fn contents(path: &str, animations: usize) -> Box<FileContents> {
+    let moves =
+        |nth| FileAnimation { name: format!("{nth}"), start: 0.0, end: 1.0, moving_joints: 3 };
+    Box::new(FileContents {
+        path: path.into(),
+        options: OpenOptions::default(),
+        skeletons: vec!["rig".to_owned()],
+        animations: (0..animations).map(moves).collect(),
+        animation: Some(0),
+    })
+}
+
+#[test]
+fn an_imported_file_gives_the_document_its_name() {
+    let mut session = Session::default();
+    assert_eq!(session.document_name(), None);
+    let contents = Some(contents("/models/Walk cycle.glb", 1));
+    session.apply(FileAction::Opened { document: Box::default(), file: None, contents });
+    assert_eq!(session.document_name().as_deref(), Some("Walk cycle"));
+    assert_eq!(session.file(), None, "Save must not overwrite the file of another program");
+    let named = |dialog: PathDialog| dialog.path().to_owned();
+    assert_eq!(named(session.save_as_dialog()), PathBuf::from("Walk cycle.json"));
+    assert_eq!(named(session.save_picture_dialog()), PathBuf::from("Walk cycle.png"));
+    assert_eq!(named(session.export_dialog()), PathBuf::from("Walk cycle.glb"));
+    assert_eq!(session.folder_of(&session.save_as_dialog()), PathBuf::from("/models"));
+    assert_eq!(session.apply(FileAction::Save), Some(Effect::ChoosePath(session.save_as_dialog())));
+    session.apply(FileAction::Saved("/mine/walk.json".into()));
+    assert_eq!(session.document_name().as_deref(), Some("walk.json"));
+}
+
+#[test]
+fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about_changes() {
+    let mut session = Session::default();
+    session.apply(EditAction::SetTwist(1.0));
+    let contents = Some(contents("/models/Walk.glb", 2));
+    let opened = FileAction::Opened { document: Box::default(), file: None, contents };
+    session.apply(opened.clone());
+    assert!(matches!(session.dialog(), Some(Dialog::Unsaved { .. })));
+    session.apply(FileAction::Discard(Box::new(opened)));
+    assert!(matches!(session.dialog(), Some(Dialog::ChooseContents(_))));
+}
+
+#[test]
+fn an_export_into_a_missing_folder_does_not_leave_the_next_one_there() {
+    let mut session = Session::default();
+    let dialog = session.export_dialog();
+    let before = session.folder_of(&dialog);
+    let PathDialog::Export(export) = dialog.clone() else { panic!("an export") };
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = folder.path().join("missing/arm.glb");
+    session.apply(FileAction::Export(Export { path: missing, ..export.clone() }));
+    session.apply(FileAction::ExportEnded(Err("there is no folder".to_owned())));
+    assert_eq!(session.folder_of(&session.export_dialog()), before);
+    let there = folder.path().join("arm.glb");
+    session.apply(FileAction::Export(Export { path: there, ..export }));
+    session.apply(FileAction::ExportEnded(Ok("Exported".to_owned())));
+    assert_eq!(session.folder_of(&session.export_dialog()), folder.path());
+}
+
+#[test]
+fn what_a_diagnosis_names_is_outlined() {
+    let mut session = Session::default();
+    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    let rig = session.skeleton_rig();
+    let [hand, forearm] =
+        ["left_hand", "left_forearm"].map(|it| rig.skeleton.find(it).expect("a joint"));
+    let index = rig.target_of_end(hand).expect("a target");
+    let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
+    session.apply(EditAction::SetTarget(target));
+    let found = session.why().first().expect("it is too far away");
+    let said = session.skeleton_rig().sentence(found);
+    assert!(said.starts_with("left_hand cannot reach that far"), "{said}");
+    let outlined = session.overlays().concerned;
+    assert!(outlined.contains(&hand) && outlined.contains(&forearm), "{outlined:?}");
 }

@@ -9,9 +9,8 @@ use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, PoseMode,
-    Preferences, Session, SolverAction, TourAction, TourEnd, TourState, TourStep,
-    TransactionAction, ViewAction, filled,
+    Action, Dialog, EditAction, Effect, FileAction, PlaybackAction, PoseMode, Preferences, Session,
+    SolverAction, TourAction, TourEnd, TourState, TourStep, TransactionAction, ViewAction, filled,
 };
 
 fn session() -> Session {
@@ -190,7 +189,7 @@ fn a_drag_that_was_under_way_is_kept_as_an_undo_step() {
 
 #[test]
 fn scenes_of_the_tour_are_not_saved_over_the_own_document() {
-    let save_as = PathDialog::save_as();
+    let save_as = session().save_as_dialog();
     for action in [
         FileAction::Save,
         FileAction::SaveAs(PathBuf::from("/tmp/other.json")),

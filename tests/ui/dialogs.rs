@@ -202,3 +202,12 @@ fn ctrl_q_quits() {
     bench.key_with(CTRL, Key::Q);
     assert_eq!(bench.effects(), [Effect::Quit]);
 }
+
+#[test]
+fn the_open_dialog_names_its_folder_before_a_path_is_typed() {
+    let mut bench = Bench::new();
+    bench.key_with(CTRL, Key::O);
+    bench.settle();
+    let folder = std::env::current_dir().expect("a folder");
+    assert!(bench.shows(Role::Label, &format!("In {}", folder.display())));
+}

@@ -119,3 +119,36 @@ fn a_document_with_keys_survives_saving_and_opening() {
     again.apply([PlaybackAction::SetTime(0.75)]);
     assert_eq!(again.hand(), Vec3::new(0.0, 200.0, 50.0));
 }
+
+#[test]
+fn a_name_without_an_extension_keeps_the_chosen_format() {
+    for (format, name, path) in [
+        ("PNG sequence", "walk", "walk_####.png"),
+        ("PNG sequence", "walk.", "walk_####.png"),
+        ("CSV", "walk", "walk.csv"),
+        ("CSV", "walk.bvh", "walk.bvh"),
+    ] {
+        let mut bench = asked();
+        bench.click(Role::Button, format);
+        bench.focus(Role::TextInput, "File");
+        bench.key_with(Modifiers::COMMAND, Key::A);
+        bench.type_text(name);
+        bench.settle();
+        bench.click(Role::Button, "Export");
+        let written = exported(&mut bench).path;
+        assert_eq!(written.file_name().and_then(|it| it.to_str()), Some(path), "{format}, {name}");
+    }
+}
+
+#[test]
+fn a_format_leaves_the_dots_of_a_name() {
+    let mut bench = asked();
+    bench.focus(Role::TextInput, "File");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.type_text("walk.v2");
+    bench.settle();
+    bench.click(Role::Button, "PNG sequence");
+    bench.click(Role::Button, "Export");
+    let written = exported(&mut bench).path;
+    assert_eq!(written.file_name().and_then(|it| it.to_str()), Some("walk.v2_####.png"));
+}

@@ -15,7 +15,7 @@ impl DrawnSkeleton<'_> {
             let is_single = ghosts.len() == 1;
             if is_single && display.shows(Overlay::Cursor) {
                 for target in &ghost.targets {
-                    drawn.add_gap(scene, target.joint, target.point, colour);
+                    drawn.add_gap(scene, target.joint, target.point, colour, false);
                 }
             }
             if is_single && display.shows(Overlay::Labels) {

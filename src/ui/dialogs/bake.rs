@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use egui::{Button, DragValue, Grid, ProgressBar, Ui};
+use egui::{DragValue, Grid, ProgressBar, Ui};
 
 use super::first_button::first_button;
 use crate::document::{Bake, BakeError, Timeline};
@@ -46,8 +46,8 @@ pub(in crate::ui) fn ui(
     }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        if error.is_some() {
-            ui.add_enabled(false, Button::new("Bake"));
+        if let Some(error) = &error {
+            widgets::primary_button(ui, "Bake", Some(error));
         } else if first_button(ui, "Bake") {
             actions.push(BakeAction::Start(changed));
         }

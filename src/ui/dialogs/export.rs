@@ -1,8 +1,8 @@
 //! The export dialog.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use egui::{DragValue, Grid, Ui};
+use egui::{DragValue, Grid, Id, Ui};
 
 use super::path::{browse, folder, unless_there};
 use super::prompt::prompt;
@@ -74,13 +74,14 @@ pub(in crate::ui) fn ui(
     ui.set_width(460.0);
     let path = export.path.to_string_lossy();
     let change = |export: Export| ShellAction::OpenDialog(PathDialog::Export(export).into());
-    let chosen = Format::of(&export.path).ok();
+    let ending = ending(ui, export, is_new);
+    let chosen = Format::of(&with_ending(&export.path, ending)).ok();
     ui.horizontal_wrapped(|ui| {
         for FormatChoice { format, name, ending, tooltip } in CHOICES {
             let is_chosen = chosen == Some(format);
             let button = egui::Button::selectable(is_chosen, name).frame_when_inactive(true);
             if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
-                let path = format!("{}{ending}", stem(&path)).into();
+                let path = format!("{}{}", stem(&path), ending).into();
                 actions.push(change(Export { path, ..export.clone() }));
             }
         }
@@ -131,13 +132,34 @@ pub(in crate::ui) fn ui(
     if typed != path {
         actions.push(change(Export { path: typed.clone().into(), ..export.clone() }));
     }
-    folder(
-        ui,
-        session,
-        &PathDialog::Export(Export { path: typed.clone().into(), ..export.clone() }),
-    );
+    let path = with_ending(Path::new(typed.trim()), ending);
+    let export = Export { path, ..export.clone() };
+    folder(ui, session, &PathDialog::Export(export.clone()));
     ui.add_space(4.0);
-    buttons(ui, session, &Export { path: typed.trim().into(), ..export.clone() }, entered, actions);
+    buttons(ui, session, &export, entered, actions);
+}
+
+/// The ending of the format that was chosen last, which a name without an extension gets.
+fn ending(ui: &Ui, export: &Export, is_new: bool) -> &'static str {
+    let id = Id::unique("ending of the export");
+    let format = Format::of(&export.path).ok();
+    let ending = CHOICES.iter().find(|choice| Some(choice.format) == format).map(|it| it.ending);
+    let before = if is_new { None } else { ui.data(|data| data.get_temp(id)) };
+    let ending = ending.or(before).unwrap_or(CHOICES[0].ending);
+    ui.data_mut(|data| data.insert_temp(id, ending));
+    ending
+}
+
+/// The path with the ending if its name has no extension.
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let has_extension = path.extension().is_some_and(|extension| !extension.is_empty());
+    match path.file_name().filter(|_| !has_extension) {
+        Some(name) => {
+            let name = name.to_string_lossy();
+            path.with_file_name(format!("{}{ending}", name.trim_end_matches('.')))
+        }
+        None => path.to_owned(),
+    }
 }
 
 /// Shows the length of the motion, if there is any.
@@ -165,8 +187,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
         None
     };
     ui.horizontal(|ui| {
-        let accept = ui.add_enabled(why_not.is_none(), egui::Button::new("Export"));
-        let accept = accept.on_disabled_hover_text(why_not.unwrap_or_default());
+        let accept = widgets::primary_button(ui, "Export", why_not);
         if (accept.clicked() || entered) && why_not.is_none() {
             let back = PathDialog::Export(export.clone());
             let path = session.full_path(&back, &export.path);
@@ -180,9 +201,11 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
     });
 }
 
-/// The path without its extension and without the placeholder of the frame number, `_####`.
+/// The path without the extension of a format and without the placeholder of the frame number, `_####`.
 fn stem(path: &str) -> String {
-    let without = Path::new(path).with_extension("");
+    let path = Path::new(path);
+    let has_format = Format::of(path).is_ok();
+    let without = if has_format { path.with_extension("") } else { path.to_owned() };
     let without = without.to_string_lossy();
     without.trim_end_matches('#').trim_end_matches('_').to_owned()
 }

@@ -1,6 +1,6 @@
 //! Dialogs about joints and skeletons.
 
-use egui::{Button, Ui};
+use egui::Ui;
 
 use super::first_button::first_button;
 use super::prompt::prompt;
@@ -32,9 +32,7 @@ pub(super) fn rename(
     }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let accept = ui
-            .add_enabled(why_not.is_none(), Button::new("Rename"))
-            .on_disabled_hover_text(why_not.unwrap_or_default());
+        let accept = widgets::primary_button(ui, "Rename", why_not);
         if (accept.clicked() || entered) && why_not.is_none() {
             actions.push(EditAction::RenameJoint { joint, name: typed.trim().to_owned() });
         }

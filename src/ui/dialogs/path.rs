@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Button, Label, RichText, Ui};
+use egui::{Label, RichText, Ui};
 
 use super::prompt::prompt;
 use crate::export::existing;
@@ -69,10 +69,9 @@ pub(super) fn ask_path(
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         let typed = typed.trim();
-        let accept = ui
-            .add_enabled(!typed.is_empty(), Button::new(question.accept))
-            .on_disabled_hover_text("Enter a path first");
-        if (accept.clicked() || entered) && !typed.is_empty() {
+        let why_not = typed.is_empty().then_some("Enter a path first");
+        let accepted = widgets::primary_button(ui, question.accept, why_not).clicked();
+        if (accepted || entered) && !typed.is_empty() {
             let path = session.full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
             actions.push(match dialog {
@@ -96,10 +95,8 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
 
 /// Shows the folder in which the dialog's path lies, also if the path is typed without a folder.
 pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog) {
-    let full = session.full_path(dialog, dialog.path());
-    let full = std::path::absolute(&full).unwrap_or(full);
-    let folder = full.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
-    ui.add(Label::new(RichText::new(format!("In {folder}")).weak()).truncate());
+    let folder = session.folder_of(dialog);
+    ui.add(Label::new(RichText::new(format!("In {}", folder.display())).weak()).truncate());
 }
 
 /// Returns `action`, which writes the file at `path`. If that would overwrite a file other than the

@@ -43,8 +43,7 @@ pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut A
 
 pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &FileAction, actions: &mut Actions) {
     ui.set_width(380.0);
-    let name = session.file().and_then(Path::file_name);
-    let name = name.map_or("The document".into(), |name| name.to_string_lossy());
+    let name = session.document_name().unwrap_or_else(|| "The document".to_owned());
     ui.label(format!("{name} has unsaved changes."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {

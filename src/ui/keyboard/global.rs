@@ -43,7 +43,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(commands::open());
     }
     if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S) {
-        actions.push(commands::save_as());
+        actions.push(commands::save_as(session));
     }
     if pressed(Modifiers::COMMAND, Key::S) {
         actions.push(FileAction::Save);
@@ -56,7 +56,7 @@ pub(in crate::ui) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
     }
     if pressed(Modifiers::COMMAND, Key::P) {
-        actions.push(commands::save_picture());
+        actions.push(commands::save_picture(session));
     }
     if pressed(Modifiers::NONE, Key::F1) {
         actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));

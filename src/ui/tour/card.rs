@@ -86,7 +86,7 @@ fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
         false => ("Next", "Go to the next card", TourAction::Enter(number + 1)),
     };
     let next = match tour.shows_result() || is_end {
-        true => widgets::primary_button(ui, name),
+        true => widgets::primary_button(ui, name, None),
         false => ui.button(name),
     };
     if next.on_hover_text(tooltip).clicked() {

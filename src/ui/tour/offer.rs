@@ -24,7 +24,7 @@ fn contents(ui: &mut Ui, actions: &mut Actions) {
     ui.label(format!("See how it works, in {steps} short steps."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let take = widgets::primary_button(ui, "Take the tour");
+        let take = widgets::primary_button(ui, "Take the tour", None);
         if take.on_hover_text("Begin the tour; your document is kept").clicked() {
             actions.push(TourAction::Enter(0));
         }

@@ -20,8 +20,12 @@ pub(in crate::ui) fn button(
     }
 }
 
-/// Shows the button that most users press, in the accent colour.
-pub(in crate::ui) fn primary_button(ui: &mut Ui, name: &str) -> Response {
-    let text = RichText::new(name).color(ui.visuals().panel_fill).strong();
-    ui.add(Button::new(text).fill(style::accent(ui)))
+/// Shows the button that most users press, in the accent colour. `disabled` is the reason why it is
+/// disabled, shown as its tooltip; `None` enables it.
+pub(in crate::ui) fn primary_button(ui: &mut Ui, name: &str, disabled: Option<&str>) -> Response {
+    let Some(why) = disabled else {
+        let text = RichText::new(name).color(ui.visuals().panel_fill).strong();
+        return ui.add(Button::new(text).fill(style::accent(ui)));
+    };
+    ui.add_enabled(false, Button::new(name)).on_disabled_hover_text(why)
 }
