@@ -73,8 +73,8 @@ fn a_drag_without_pops_is_reported_as_such() {
 fn a_hand_dragged_over_the_top_pops_at_the_pole_until_stereographic_is_used() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
-    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"));
-    assert!(bench.says("Pole: the Pointer passed within 3."));
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Singularity"));
+    assert!(bench.says("Singularity: the Pointer passed within 3."));
     let (elbow, hand) = (bench.session().pose().elbow, bench.hand());
     bench.click(Role::Button, "Use Stereographic");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Stereographic);
@@ -82,7 +82,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_stereographic_is_used() {
     assert!(bench.says("settings have changed since"));
     assert!(!bench.shows(Role::Button, "Use Stereographic"), "it is done");
     over_the_top(&mut bench);
-    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Singularity"), "no other one");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn behind_the_body_stereographic_pops_until_transport_is_used() {
     bench.click(Role::Button, "Use Transport");
     assert_eq!(bench.session().arm().twist_reference, TwistReferenceKind::Transport);
     behind(&mut bench);
-    assert!(bench.shows(Role::Image, "Pops: 1, the last one Pole"), "no other one");
+    assert!(bench.shows(Role::Image, "Pops: 1, the last one Singularity"), "no other one");
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn the_same_fix_is_offered_once() {
     let mut bench = from_the_front();
     over_the_top(&mut bench);
     over_the_top(&mut bench);
-    assert!(bench.shows(Role::Image, "Pops: 2, the last one Pole"));
+    assert!(bench.shows(Role::Image, "Pops: 2, the last one Singularity"));
     let _ = bench.node(Role::Button, "Use Stereographic");
 }
 
@@ -202,4 +202,13 @@ fn pops_and_the_reach_curve_look_as_they_did() {
             results.add(try_image_snapshot_options(&page(&mut bench, tab), name, &options));
         }
     }
+}
+
+#[test]
+fn the_cause_of_a_pop_has_another_name_than_the_twist_references() {
+    let mut bench = from_the_front();
+    over_the_top(&mut bench);
+    assert!(bench.says("Pops: 1, the last one Singularity"));
+    let is_reference = |kind: TwistReferenceKind| kind.name() == "Singularity";
+    assert!(!TwistReferenceKind::ALL.into_iter().any(is_reference));
 }

@@ -5,8 +5,9 @@ use core::f32::consts::FRAC_PI_2;
 use egui::accesskit::Role;
 use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{RigKind, TargetPath};
+use ik_arm::document::{RigKind, Target, TargetPath};
 use ik_arm::io::{Example, FileAnimation, Group, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
@@ -14,7 +15,7 @@ use ik_arm::session::{
     PlaybackAction, SelectAction, ShellAction, SolverAction, ViewAction,
 };
 
-use crate::bench::{Bench, SMALL};
+use crate::bench::{Bench, LARGE, SMALL};
 use ik_arm::kinematics::skeleton::JointId;
 
 /// A root with three joints in a chain, built by pressing buttons.
@@ -617,6 +618,8 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
         contents: Some(contents),
     };
     bench.apply([opened(contents(&["rig"], &["Idle", "Run"]))]);
+    assert!(bench.says("2 animations"), "asked once it is open");
+    bench.click(Role::Button, "Keep what is open");
     bench.choose(&["File", "Skeletons and animations…"]);
     assert!(bench.says("2 animations"));
     bench.click(Role::Button, "Run · 2.00 s · 3 joints");
@@ -680,4 +683,47 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
         SelectAction::Joints((0..201).map(JointId::new).collect()).into(),
     ]);
     bench.settle();
+}
+
+#[test]
+fn where_no_solver_can_run_the_empty_plots_say_why() {
+    let mut bench = built();
+    for tab in [PanelTab::Solver, PanelTab::Race] {
+        bench.show_tab(tab);
+        assert!(bench.says("Add a target to a joint first."), "{tab:?}");
+        assert!(!bench.says("Press Run"), "{tab:?}");
+    }
+}
+
+#[test]
+fn a_race_of_many_iterations_stays_inside_the_window() {
+    for size in [LARGE, SMALL] {
+        let mut bench = Bench::of_size(size);
+        bench.apply([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
+        let far = |target: &Target| Target { home: Vec3::new(3.0, 3.0, 3.0), ..*target };
+        let targets: Vec<_> = bench.session().skeleton_rig().targets.iter().map(far).collect();
+        bench.apply(targets.into_iter().map(EditAction::SetTarget));
+        bench.apply([EditAction::SetIterationsPerFrame(1000)]);
+        bench.show_tab(PanelTab::Race);
+        bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
+        bench.settle();
+        let latest = bench.session().shown_iteration().expect("a race").latest;
+        assert!(latest >= 1000, "too few iterations for the test: {latest}");
+        // The margin of the panel.
+        let edge = size.x - 8.0 + 0.5;
+        for node in bench.harness.root().children_recursive() {
+            let widget = node.accesskit_node();
+            let is_widget = matches!(
+                widget.role(),
+                Role::Label | Role::Button | Role::Slider | Role::SpinButton | Role::Image
+            );
+            if !is_widget || widget.bounding_box().is_none() {
+                continue;
+            }
+            let rect = node.rect();
+            let is_on_page = rect.left() > bench.viewport().right();
+            let name = widget.label();
+            assert!(!is_on_page || rect.right() <= edge, "{name:?} ends at {}", rect.right());
+        }
+    }
 }

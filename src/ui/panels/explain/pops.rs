@@ -73,7 +73,7 @@ fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, action
 
 fn name(pop: PopCause) -> &'static str {
     match pop {
-        PopCause::Singular { .. } => "Pole",
+        PopCause::Singular { .. } => "Singularity",
         PopCause::Straight => "Straight",
         PopCause::Folded => "Inner limit",
         PopCause::Shoulder => "Shoulder",

@@ -115,11 +115,11 @@ fn iteration(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
     if mark.value > edge { String::new() } else { mark.value.to_string() }
 }
 
+/// A power of ten as a number, such as "0.001", or from the fifth on in scientific notation.
 fn power_of_ten(exponent: f64) -> String {
+    const DIGITS: i32 = 4;
     match exponent.round() as i32 {
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        2 => "100".to_owned(),
+        exponent if exponent.abs() <= DIGITS => 10_f64.powi(exponent).to_string(),
         exponent => format!("1e{exponent}"),
     }
 }

@@ -54,7 +54,10 @@ pub(in crate::ui) fn skin(ui: &mut Ui, session: &Session) {
 /// Shows the errors of the shown runs and the slider through their iterations; without a run, `empty`.
 fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions) {
     let Some(shown) = session.shown_iteration() else {
-        ui.label(empty);
+        match why_not(session) {
+            Some(reason) => ui.label(format!("{reason}.")),
+            None => ui.label(empty),
+        };
         return;
     };
     ui.weak("Up: error · across: iterations · dashed: tolerance");
