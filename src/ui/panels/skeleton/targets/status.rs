@@ -14,7 +14,7 @@ use crate::ui::{style, why};
 /// Height with the line above, in points, in a panel of a height: a fifth of it, but enough for a cause and a
 /// remedy.
 pub(in crate::ui) fn height(panel: f32) -> f32 {
-    const RANGE: (f32, f32) = (98.0, 150.0);
+    const RANGE: (f32, f32) = (116.0, 150.0);
     (0.2 * panel).clamp(RANGE.0, RANGE.1).round()
 }
 
