@@ -164,7 +164,7 @@ impl fmt::Display for ShownLength {
         const LARGE: f32 = 1e9;
         let Self { length, decimals } = *self;
         match length.abs() {
-            size if !(size < f32::MAX) => f.write_str("overflow"),
+            size if size.is_nan() || size >= f32::MAX => f.write_str("overflow"),
             LARGE.. => write!(f, "{length:.3e}"),
             _ => write!(f, "{length:.decimals$}"),
         }

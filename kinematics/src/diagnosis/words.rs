@@ -250,7 +250,7 @@ fn percent(fraction: f32) -> String {
 pub fn significant(value: f32) -> String {
     const LARGE: f32 = 1e9;
     match value.abs() {
-        size if !(size < f32::MAX) => return "more than numbers hold".to_owned(),
+        size if size.is_nan() || size >= f32::MAX => return "more than numbers hold".to_owned(),
         LARGE.. => return format!("{value:.2e}"),
         _ => {}
     }
