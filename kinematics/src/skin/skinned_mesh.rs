@@ -111,12 +111,17 @@ impl SkinnedMesh {
 
     /// The joint with the greatest weight at a point of the mesh.
     pub fn heaviest_joint(&self, hit: &MeshHit) -> JointId {
+        self.weights_at(hit).first()
+    }
+
+    /// The weights of the joints at a point of the mesh.
+    pub fn weights_at(&self, hit: &MeshHit) -> VertexWeights {
         let weights = hit.corners.iter().zip(hit.shares).flat_map(|(corner, share)| {
             self.weights[*corner as usize]
                 .iter()
                 .map(move |(joint, weight)| (joint, weight * share))
         });
-        VertexWeights::heaviest(weights).0.first()
+        VertexWeights::heaviest(weights).0
     }
 
     /// The same mesh with its joints renumbered: `joints[i]` is the new index of joint i, and the weights of
