@@ -1,4 +1,4 @@
-use glam::{Mat4, Vec2, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 
 /// Projection of a camera for the aspect ratio of a picture: maps points of the world into the
 /// picture and back.
@@ -75,5 +75,33 @@ impl Ray {
         let met = self.origin + self.direction * along_ray;
         let along = (met - point).dot(axis);
         (along_ray >= 0.0 && along.is_finite()).then_some(along)
+    }
+
+    /// Position of the point of a line segment that is nearest to the ray's line, from 0 at the
+    /// first end to 1 at the second.
+    pub fn nearest_on_segment(&self, [from, to]: [Vec3; 2]) -> f32 {
+        let (along, from_origin, direction) = self.beside(from, to);
+        let across = along.reject_from_normalized(direction);
+        let part = -from_origin.dot(across) / across.length_squared();
+        if part.is_finite() { part.clamp(0.0, 1.0) as f32 } else { 0.0 }
+    }
+
+    /// Distance along the ray at which it enters the hull of two balls; `None` if it misses the
+    /// hull or starts beyond it. The hull is that of a ball whose centre and radius change evenly
+    /// from one to the other.
+    pub fn enters_capsule(&self, centres: [Vec3; 2], radii: [f32; 2]) -> Option<f32> {
+        let part = f64::from(self.nearest_on_segment(centres));
+        let (along, from_origin, direction) = self.beside(centres[0], centres[1]);
+        let centre = from_origin + along * part;
+        let radius = f64::from(radii[0]) + f64::from(radii[1] - radii[0]) * part;
+        let middle = centre.dot(direction);
+        let inside = radius * radius - centre.reject_from_normalized(direction).length_squared();
+        (inside >= 0.0 && middle >= 0.0).then(|| (middle - inside.sqrt()) as f32)
+    }
+
+    /// A segment, the vector from the ray's origin to its start, and the unit direction of the ray.
+    fn beside(&self, from: Vec3, to: Vec3) -> (DVec3, DVec3, DVec3) {
+        let [from, to, origin] = [from, to, self.origin].map(Vec3::as_dvec3);
+        (to - from, from - origin, self.direction.as_dvec3().normalize_or_zero())
     }
 }

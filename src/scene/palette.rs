@@ -81,6 +81,11 @@ impl Palette {
         }
     }
 
+    /// A colour under the mouse.
+    pub fn lit(&self, colour: Colour) -> Colour {
+        colour.mixed(self.guide, 0.3)
+    }
+
     /// Colour of a twist reference in the comparison of all references.
     pub fn twist_reference(&self, twist_reference: TwistReferenceKind) -> Colour {
         let [dark, light] = match twist_reference {

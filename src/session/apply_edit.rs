@@ -37,11 +37,7 @@ impl Session {
             EditAction::SwitchPoseMode(mode) => self.switch_pose_mode(mode),
             EditAction::SetShoulder(angles) => self.set_shoulder(angles),
             EditAction::SetBend(bend) => self.set_bend(bend),
-            EditAction::SetHandOrientation(angles) => {
-                self.set_point("hand angles", angles, |arm, angles| {
-                    arm.hand_orientation.angles = angles;
-                });
-            }
+            EditAction::SetHandOrientation(angles) => self.set_hand_orientation(angles),
             EditAction::SetHandSpace(space) => {
                 self.shell.clear_message();
                 self.commit(self.shown().with_hand_space(space));

@@ -1,5 +1,6 @@
 use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
+use super::body_part::BodyPart;
 use super::effect::Effect;
 use super::select_action::SelectAction;
 use super::session::Session;
@@ -19,6 +20,11 @@ impl Session {
 
     /// The joint under the mouse, in the viewport or in the outliner.
     pub fn hovered(&self) -> Option<JointId> {
+        self.hovered_part()?.joint()
+    }
+
+    /// The part of a body under the mouse, which lights up.
+    pub fn hovered_part(&self) -> Option<BodyPart> {
         self.selection.hovered()
     }
 
@@ -35,7 +41,7 @@ impl Session {
     pub(super) fn apply_selection(&mut self, action: SelectAction) -> Option<Effect> {
         match action {
             SelectAction::Joints(joints) => self.select(joints),
-            SelectAction::Hover(joint) => self.hover(joint),
+            SelectAction::Hover(part) => self.hover(part),
             SelectAction::Wiggle(wiggled) => self.set_wiggle(wiggled),
             SelectAction::ArmJoint(joint) => self.selection.set_arm_joint(joint),
             SelectAction::Figure(figure) => self.selection.set_figure(figure),
@@ -58,8 +64,8 @@ impl Session {
         self.forget_trail();
     }
 
-    pub(super) fn hover(&mut self, joint: Option<JointId>) {
-        self.selection.set_hovered(joint);
+    pub(super) fn hover(&mut self, part: Option<BodyPart>) {
+        self.selection.set_hovered(part);
         self.selection.retain_joints(self.skeleton_pose().len());
     }
 

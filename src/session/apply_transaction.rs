@@ -2,6 +2,8 @@ use core::fmt::Display;
 
 use glam::Vec3;
 
+use super::arm_drag::aimed;
+use super::arm_joint::ArmJoint;
 use super::drag::{Drag, DragKind, Grip};
 use super::message::Message;
 use super::point_drag::{Constraint, PointDrag};
@@ -201,7 +203,9 @@ impl Session {
             return;
         }
         self.view.stop_glide();
-        self.selection.set_arm_joint(grip.arm_joint());
+        let is_hand = matches!(grip, Grip::Hand(_));
+        let kept = self.selected_arm_joint().filter(|joint| is_hand && *joint == ArmJoint::Hand);
+        self.selection.set_arm_joint(grip.arm_joint().or(kept));
         match grip {
             Grip::Hand(handle) => self.grab_hand(handle, ray, forward),
             Grip::Target(joint, handle) => self.grab_target(joint, handle, ray, forward),
@@ -211,7 +215,12 @@ impl Session {
             Grip::Ring(joint, axis) => self.grab_ring(joint, axis, ray),
             Grip::Pole(handle) => self.grab_pole(handle, ray, forward),
             Grip::Root(handle) => self.grab_root(handle, ray, forward),
-            Grip::Twist | Grip::Shoulder(_) | Grip::Bend => self.grab_arm_ring(grip, ray),
+            Grip::Limb => self.grab_limb(ray),
+            Grip::UpperLimb => self.grab_upper_limb(ray, forward),
+            Grip::Orientation(joint, axis) => self.grab_orientation(joint, axis, ray),
+            Grip::Twist | Grip::Shoulder(_) | Grip::Bend | Grip::HandRing(_) => {
+                self.grab_arm_ring(grip, ray);
+            }
         }
     }
 
@@ -220,7 +229,7 @@ impl Session {
         let Some((drag, shown)) = self.editing.drag_mut() else { return };
         change(drag);
         let grip = drag.grip;
-        let Arm { cursor, pole, root, fk, .. } = shown.arm;
+        let Arm { cursor, pole, root, fk, hand_orientation, .. } = shown.arm;
         let mut angles = fk.shoulder;
         match (grip, &mut drag.kind) {
             (Grip::Ring(joint, axis), DragKind::Turn(turn)) => {
@@ -253,9 +262,23 @@ impl Session {
                 let root = if point.has_moved() { dragged } else { root };
                 self.set_root(root);
             }
-            (Grip::Twist, DragKind::Turn(turn)) => {
+            (Grip::Twist | Grip::Limb, DragKind::Turn(turn)) => {
                 let twist = turn.angle();
                 self.set_twist(twist);
+            }
+            (Grip::UpperLimb, DragKind::Point(point)) => {
+                let dragged = point.point();
+                let is_turned = point.has_moved();
+                self.set_shoulder(if is_turned { aimed(angles, dragged) } else { angles });
+            }
+            (Grip::HandRing(axis), DragKind::Turn(turn)) => {
+                let mut angles = hand_orientation.angles;
+                angles[axis] = turn.angle();
+                self.set_hand_orientation(angles);
+            }
+            (Grip::Orientation(joint, axis), DragKind::Turn(turn)) => {
+                let angle = turn.angle();
+                self.turn_target(joint, axis, angle);
             }
             (Grip::Head(root, _), DragKind::Point(_)) => {
                 drag.add_waypoint(spacing);

@@ -1,11 +1,13 @@
-use glam::{Mat3, Vec3};
+use glam::{DMat3, DQuat, Mat3, Vec3};
 
+use super::body_part::BodyPart;
 use super::drag::{Drag, DragKind, Grip};
 use super::point_drag::{PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{Arm, Ray, TwistReferenceKind};
+use crate::document::{Arm, HandSpace, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
+use crate::kinematics::fk::limb_rotations;
 
 /// Drags of the arm.
 impl Session {
@@ -41,10 +43,11 @@ impl Session {
     }
 
     pub(super) fn grab_arm_ring(&mut self, grip: Grip, ray: Ray) {
-        let Arm { twist, fk, .. } = *self.arm();
+        let Arm { twist, fk, hand_orientation, .. } = *self.arm();
         let start = match grip {
             Grip::Twist => twist,
             Grip::Shoulder(axis) => fk.shoulder[axis],
+            Grip::HandRing(axis) => hand_orientation.angles[axis],
             _ => fk.bend,
         };
         if let Some(ring) = self.arm_ring(grip) {
@@ -53,11 +56,54 @@ impl Session {
         }
     }
 
+    /// Begins to turn the elbow about the Pointer, by the point of a limb at the mouse: it moves on
+    /// a circle around the Pointer as the elbow does.
+    pub(super) fn grab_limb(&mut self, ray: Ray) {
+        let Arm { root, twist, .. } = *self.arm();
+        if !self.arm().uses_ik() {
+            return;
+        }
+        let [shoulder, elbow, hand] = self.joints_in_world();
+        let limb = match self.arm_part_at(ray) {
+            Some(BodyPart::UpperLimb) => [shoulder, elbow],
+            _ => [elbow, hand],
+        };
+        let point = limb[0].lerp(limb[1], ray.nearest_on_segment(limb));
+        let axis = self.pose().pointer.direction;
+        let ring = GripRing { centre: root + axis * (point - root).dot(axis), axis };
+        self.begin_edit(Some(Drag::new(
+            Grip::Limb,
+            DragKind::Turn(TurnDrag::new(ring, twist, ray)),
+        )));
+    }
+
+    /// Begins to turn the shoulder in FK, by the point of the Upper limb at the mouse.
+    pub(super) fn grab_upper_limb(&mut self, ray: Ray, forward: Vec3) {
+        // Nearer to the shoulder a point has no direction from it.
+        const NEAREST: f32 = 0.1;
+        if self.arm().uses_ik() {
+            return;
+        }
+        let [shoulder, elbow, _] = self.joints_in_world();
+        let part = ray.nearest_on_segment([shoulder, elbow]).max(NEAREST);
+        let start = self.pose().elbow * part;
+        let drag = PointDrag::new(PointHandle::Free, start, shoulder, forward, ray);
+        let drag = drag.with_step(self.snap());
+        self.begin_edit(Some(Drag::new(Grip::UpperLimb, DragKind::Point(drag))));
+    }
+
+    /// Shoulder, elbow and hand in the world.
+    fn joints_in_world(&self) -> [Vec3; 3] {
+        let (root, pose) = (self.arm().root, self.pose());
+        [Vec3::ZERO, pose.elbow, pose.hand].map(|point| root + point)
+    }
+
     /// The ring of a grip, in world space. With IK it is the ring of the Socket twist, around the
-    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend. `None`
-    /// for other grips.
+    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with
+    /// both those of the hand's angles. `None` for other grips.
     pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
         match (grip, self.arm().uses_ik()) {
+            (Grip::HandRing(axis), _) => Some(self.hand_ring(axis)),
             (Grip::Twist, true) => Some(self.twist_ring()),
             (_, false) => self.fk_ring(grip),
             _ => None,
@@ -73,11 +119,8 @@ impl Session {
     fn fk_ring(&self, grip: Grip) -> Option<GripRing> {
         let arm = self.arm();
         let angles = arm.fk.shoulder;
-        let yaw = Mat3::from_rotation_y(angles.y);
         let axis = match grip {
-            Grip::Shoulder(1) => Vec3::Y,
-            Grip::Shoulder(2) => yaw.z_axis,
-            Grip::Shoulder(_) => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+            Grip::Shoulder(axis) => turned_axis(angles, axis),
             // The lower limb turns clockwise about the hinge as the bend grows.
             Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
             _ => return None,
@@ -85,4 +128,34 @@ impl Session {
         let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
         Some(GripRing { centre, axis })
     }
+
+    fn hand_ring(&self, axis: usize) -> GripRing {
+        let (arm, pose) = (self.arm(), self.pose());
+        let axis = turned_axis(arm.hand_orientation.angles, axis).as_dvec3();
+        let axis = match arm.hand_orientation.space {
+            HandSpace::LowerLimb => limb_rotations(pose).1 * axis,
+            HandSpace::World => axis,
+        };
+        GripRing { centre: arm.root + pose.hand, axis: axis.as_vec3() }
+    }
+}
+
+/// The axis about which the angle x, y or z (0, 1, 2) of a ball joint of the arm turns, in the
+/// space of the angles: see [`euler`].
+fn turned_axis(angles: Vec3, axis: usize) -> Vec3 {
+    let yaw = Mat3::from_rotation_y(angles.y);
+    match axis {
+        1 => Vec3::Y,
+        2 => yaw.z_axis,
+        _ => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+    }
+}
+
+/// Angles of the shoulder after the least rotation that points the Upper limb at a point of Root
+/// space. They do not change for a point at the shoulder.
+pub(super) fn aimed(angles: Vec3, point: Vec3) -> Vec3 {
+    let before = euler::rotation(angles);
+    let Some(to) = point.as_dvec3().try_normalize() else { return angles };
+    let turn = DQuat::from_rotation_arc(before.x_axis, to);
+    euler::angles(DMat3::from_quat(turn) * before, angles)
 }

@@ -80,6 +80,10 @@ impl Session {
         }
     }
 
+    pub(super) fn set_hand_orientation(&mut self, angles: Vec3) {
+        self.set_point("hand angles", angles, |arm, angles| arm.hand_orientation.angles = angles);
+    }
+
     /// Switches to FK or IK. The pose does not change, unless the soft limits exclude it.
     pub(super) fn switch_pose_mode(&mut self, mode: PoseMode) {
         const MOVED: f32 = 1e-3;

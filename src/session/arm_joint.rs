@@ -5,4 +5,6 @@ pub enum ArmJoint {
     Root,
     /// The elbow, with the ring of the Socket twist.
     Elbow,
+    /// The hand, with the rings of its orientation.
+    Hand,
 }

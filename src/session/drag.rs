@@ -16,10 +16,16 @@ pub enum Grip {
     Root(PointHandle),
     /// The ring of the Socket twist, about the Pointer.
     Twist,
+    /// A limb of the arm; dragging it turns the elbow about the Pointer.
+    Limb,
+    /// The Upper limb in FK; dragging it turns the shoulder.
+    UpperLimb,
     /// The ring of the shoulder's angle about x, y or z (0, 1, 2).
     Shoulder(usize),
-    /// The ring of the elbow's bend.
+    /// The elbow's bend: its ring, or the Lower limb in FK.
     Bend,
+    /// The ring of the hand's angle about x, y or z (0, 1, 2).
+    HandRing(usize),
     /// The target of a joint.
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
@@ -30,6 +36,9 @@ pub enum Grip {
     Tip(JointId, PointHandle),
     /// The ring of a joint's angle about x, y or z (0, 1, 2).
     Ring(JointId, usize),
+    /// The ring of the angle about x, y or z (0, 1, 2) of the orientation that the target of a
+    /// joint holds.
+    Orientation(JointId, usize),
 }
 
 impl Grip {
@@ -43,8 +52,11 @@ impl Grip {
             | Self::LimbPole(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
-            Self::Shoulder(axis) | Self::Ring(_, axis) => axis < 3,
-            Self::Bend | Self::Twist => true,
+            Self::Shoulder(axis)
+            | Self::HandRing(axis)
+            | Self::Ring(_, axis)
+            | Self::Orientation(_, axis) => axis < 3,
+            Self::Bend | Self::Twist | Self::Limb | Self::UpperLimb => true,
         }
     }
 
@@ -52,7 +64,8 @@ impl Grip {
     pub(super) fn arm_joint(self) -> Option<ArmJoint> {
         match self {
             Self::Root(_) => Some(ArmJoint::Root),
-            Self::Twist => Some(ArmJoint::Elbow),
+            Self::Twist | Self::Limb => Some(ArmJoint::Elbow),
+            Self::HandRing(_) => Some(ArmJoint::Hand),
             _ => None,
         }
     }

@@ -91,14 +91,16 @@ impl Grip {
             Self::Hand(_) => "Move hand",
             Self::Pole(_) => "Move pole",
             Self::Root(_) => "Move shoulder",
-            Self::Twist => "Set Socket twist",
-            Self::Shoulder(_) => "Turn shoulder",
+            Self::Twist | Self::Limb => "Set Socket twist",
+            Self::Shoulder(_) | Self::UpperLimb => "Turn shoulder",
             Self::Bend => "Bend elbow",
+            Self::HandRing(_) => "Turn hand",
             Self::Target(..) => "Move target",
             Self::LimbPole(..) => "Move pole",
             Self::Head(..) => "Move head",
             Self::Tip(..) => "Pose joints",
             Self::Ring(..) => "Turn joint",
+            Self::Orientation(..) => "Turn target",
         }
     }
 }

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::arm_figure::ArmFigure;
+use super::body_part::BodyPart;
 use super::inside_layer::InsideLayers;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
@@ -21,8 +22,8 @@ pub struct Overlays {
     pub evaluated: Option<Shared<EvaluatedSkeleton>>,
     /// Selected joints; the last of them is the active joint.
     pub selection: Vec<JointId>,
-    /// The joint under the mouse.
-    pub hovered: Option<JointId>,
+    /// The part of a body under the mouse, which lights up.
+    pub hovered: Option<BodyPart>,
     /// The line of the arm's figures that lights up.
     pub figure: Option<ArmFigure>,
     /// The joints that keep a tip from its target.

@@ -1,5 +1,6 @@
 use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
+use super::body_part::BodyPart;
 use super::key::Key;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{JointId, RotationAxis};
@@ -9,8 +10,8 @@ use crate::kinematics::skeleton::{JointId, RotationAxis};
 pub enum SelectAction {
     /// Selects these joints and no others; the last of them becomes the active joint.
     Joints(Vec<JointId>),
-    /// Sets the joint under the mouse; `None` if there is none.
-    Hover(Option<JointId>),
+    /// Sets the part of a body under the mouse; `None` if there is none.
+    Hover(Option<BodyPart>),
     /// Lets an angle of a joint swing in the view; `None` stops it.
     Wiggle(Option<(JointId, RotationAxis)>),
     /// Selects a joint of the arm, or none.

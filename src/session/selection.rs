@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::arm_figure::ArmFigure;
 use super::arm_joint::ArmJoint;
+use super::body_part::BodyPart;
 use super::key::Key;
 use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::{JointId, JointRemap};
@@ -17,7 +18,7 @@ pub(super) type Clipboard = Vec<(Channel, Knot<Vec3>)>;
 pub(super) struct Selection {
     /// Selected joints; the last of them is the active joint.
     joints: Vec<JointId>,
-    hovered: Option<JointId>,
+    hovered: Option<BodyPart>,
     arm_joint: Option<ArmJoint>,
     figure: Option<ArmFigure>,
     keys: Vec<Key>,
@@ -30,7 +31,7 @@ impl Selection {
         &self.joints
     }
 
-    pub fn hovered(&self) -> Option<JointId> {
+    pub fn hovered(&self) -> Option<BodyPart> {
         self.hovered
     }
 
@@ -58,8 +59,8 @@ impl Selection {
         self.joints = joints;
     }
 
-    pub fn set_hovered(&mut self, joint: Option<JointId>) {
-        self.hovered = joint;
+    pub fn set_hovered(&mut self, part: Option<BodyPart>) {
+        self.hovered = part;
     }
 
     pub fn set_arm_joint(&mut self, joint: Option<ArmJoint>) {
@@ -85,7 +86,8 @@ impl Selection {
     /// Drops selected and hovered joints whose index is `count` or more.
     pub fn retain_joints(&mut self, count: usize) {
         self.joints.retain(|joint| joint.index() < count);
-        self.hovered = self.hovered.filter(|joint| joint.index() < count);
+        let is_there = |joint: JointId| joint.index() < count;
+        self.hovered = self.hovered.filter(|part| part.joint().is_none_or(is_there));
     }
 
     /// Deselects keys and channels that the document does not have.

@@ -23,7 +23,7 @@ impl Session {
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
-        overlays.hovered = self.hovered();
+        overlays.hovered = self.hovered_part();
         overlays.figure = self.figure();
         overlays.concerned.clear();
         if let (Some(found), true) = (self.known_why().first(), self.solvers.is_idle()) {

@@ -1,11 +1,11 @@
-use glam::{Vec3, Vec3A};
+use glam::{Quat, Vec3, Vec3A};
 
 use super::drag::{Drag, DragKind, Grip};
 use super::point_drag::{Constraint, PointDrag, PointHandle};
 use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
-use crate::document::{Channel, Overlay, PathKind, Ray};
-use crate::kinematics::limb_ik::ElbowReference;
+use crate::document::{Channel, Overlay, PathKind, Ray, Target};
+use crate::kinematics::limb_ik::{ElbowReference, Limb};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::EvaluatedSkeleton;
 
@@ -83,6 +83,42 @@ impl Session {
         self.begin_edit(Some(Drag::new(Grip::Ring(joint, axis), DragKind::Turn(drag))));
     }
 
+    pub(super) fn grab_orientation(&mut self, joint: JointId, axis: usize, ray: Ray) {
+        let (Some(ring), Some(angles)) =
+            (self.orientation_ring(joint, axis), self.held_orientation(joint))
+        else {
+            return;
+        };
+        let drag = TurnDrag::new(ring, angles[axis], ray);
+        self.begin_edit(Some(Drag::new(Grip::Orientation(joint, axis), DragKind::Turn(drag))));
+    }
+
+    /// The ring, at the target of a joint and in world space, of the angle about x, y or z (0, 1,
+    /// 2) of the orientation that the target holds. `None` if it holds none, or if there is no hand
+    /// or foot.
+    pub fn orientation_ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
+        let angles = self.held_orientation(joint)?;
+        let rig = self.skeleton_rig();
+        Limb::ending_at(&rig.skeleton, joint).ok()?.hand?;
+        let space = rig.targets[rig.target(joint)?].space;
+        let turn = Quat::from_rotation_z(angles.z);
+        let local = match axis {
+            0 => turn * (Quat::from_rotation_y(angles.y) * Vec3::X),
+            1 => turn * Vec3::Y,
+            2 => Vec3::Z,
+            _ => return None,
+        };
+        let axis = space.rotation(&self.evaluated_skeleton().solved) * local;
+        Some(GripRing { centre: self.target_report(joint)?.position, axis })
+    }
+
+    /// The angles about x, y and z in radians that the target of a joint holds; `None` if it holds
+    /// none.
+    fn held_orientation(&self, joint: JointId) -> Option<Vec3> {
+        let rig = self.skeleton_rig();
+        rig.targets[rig.target(joint)?].limb()?.orientation
+    }
+
     /// The ring, in world space, of a joint's FK angle about x, y or z (0, 1, 2). `None` if a limit
     /// fixes the angle, if there is no such joint or axis, or if a target alone poses the joint and the
     /// FK pose is hidden.
@@ -94,7 +130,13 @@ impl Session {
             return None;
         }
         let EvaluatedSkeleton { fk, solved, .. } = &**self.evaluated_skeleton();
-        let is_solved = rig.target_that_turns(joint).is_some_and(|it| it.influence >= 1.0);
+        // A hand that follows the bone above it keeps its own angles.
+        let is_following = |target: &Target| {
+            let follows = target.limb().is_some_and(|limb| limb.orientation.is_none());
+            follows && target.joint != joint && rig.end_of(target) == joint
+        };
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        let is_solved = posing.is_some_and(|target| !is_following(target));
         let pose = match is_solved {
             false => solved,
             true if self.shown().display.shows(Overlay::FkPose) => fk,
@@ -156,6 +198,16 @@ impl Session {
         self.move_head(root, before, &points);
         if !points.is_empty() && self.document().keys.has(channel) {
             self.key(&[channel]);
+        }
+    }
+
+    /// Sets one of the angles of the orientation that the target of a joint holds.
+    pub(super) fn turn_target(&mut self, joint: JointId, axis: usize, angle: f32) {
+        let Some(index) = self.skeleton_rig().target(joint) else { return };
+        let mut target = self.skeleton_rig().targets[index];
+        if let Some(angles) = target.limb_mut().and_then(|limb| limb.orientation.as_mut()) {
+            angles[axis] = angle;
+            self.set_target(target);
         }
     }
 

@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::body_part::BodyPart;
 use super::session::{ASPECT, Session};
 use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::chain_ik::SolverOptions;
@@ -112,7 +113,8 @@ impl Session {
         });
         if let Some(moved) = moved {
             self.remap_keys(&moved, selected);
-            self.selection.set_hovered(self.hovered().and_then(|joint| moved.get(joint)));
+            let hovered = self.hovered().and_then(|joint| moved.get(joint));
+            self.selection.set_hovered(hovered.map(BodyPart::Joint));
             self.select(before.iter().filter_map(|joint| moved.get(*joint)).collect());
         }
     }

@@ -5,7 +5,7 @@ use crate::document::{SkeletonRig, Target};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 
 /// Maximum number of iterations per frame of a drag.
 const ITERATIONS: u32 = 64;
@@ -40,6 +40,42 @@ impl Session {
             }
             _ => self.drag_fk(before, joint, moved),
         }
+    }
+
+    /// Whether a drag of the tip of `joint` changes the pose.
+    pub fn can_drag_tip(&self, joint: JointId) -> bool {
+        let rig = self.skeleton_rig();
+        let Some(own) = rig.skeleton.joint(joint) else { return false };
+        if rig.is_joint_on_path(joint, self.time()) {
+            return false;
+        }
+        if own.axis == Vec3::ZERO {
+            return own.parent.is_none();
+        }
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        if posing.is_some_and(|it| it.joint == joint || is_elbow(&rig.skeleton, it, joint)) {
+            return true;
+        }
+        let influences = rig.influences();
+        let is_free = |limit: &Option<Limit>| limit.is_none_or(|limit| limit.min < limit.max);
+        let can_turn = |joint: &Joint| !joint.locked && joint.limits.iter().any(is_free);
+        let mut above = rig.skeleton.ancestors(joint);
+        above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
+    }
+
+    /// Whether a drag of the tip of `joint` turns the elbow of a limb that is bent.
+    pub fn turns_elbow(&self, joint: JointId) -> bool {
+        // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
+        const LEAST: f32 = 0.02;
+        let (rig, pose) = (self.skeleton_rig(), self.skeleton_pose());
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        let Some(target) = posing.filter(|it| is_elbow(&rig.skeleton, it, joint)) else {
+            return false;
+        };
+        let [base, elbow] = [joint, target.joint].map(|joint| pose.base(joint));
+        let tip = pose.tip(target.joint);
+        let out = (elbow - base).reject_from((tip - base).normalize_or_zero()).length();
+        out > LEAST * (base.distance(elbow) + elbow.distance(tip))
     }
 
     /// Turns a limb about the line from its base to its tip, as far as the elbow moves around it.

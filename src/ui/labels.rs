@@ -1,9 +1,27 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
-use crate::document::{Channel, Overlay, PathKind, RigKind, TwistReferenceKind};
+use crate::document::{Channel, Overlay, PathKind, RigKind, Target, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
-use crate::session::Session;
+use crate::session::{Grip, Session};
+
+/// What a grip of a skeleton moves, such as "pelvis", "the limb of left_hand" or "the target of
+/// left_hand"; empty for other grips.
+pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
+    let rig = session.skeleton_rig();
+    let name = |joint: JointId| rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
+    let end = |target: Option<&Target>| target.map_or("–", |target| name(rig.end_of(target)));
+    let of_joint = |joint: JointId| end(rig.target(joint).map(|index| &rig.targets[index]));
+    match grip {
+        Grip::Tip(joint, _) if session.turns_elbow(joint) => {
+            format!("the limb of {}", end(rig.target_that_turns(joint)))
+        }
+        Grip::Tip(joint, _) | Grip::Ring(joint, _) => name(joint).to_owned(),
+        Grip::Target(joint, _) => format!("the target of {}", of_joint(joint)),
+        Grip::Orientation(joint, _) => of_joint(joint).to_owned(),
+        _ => String::new(),
+    }
+}
 
 /// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of the
 /// joint that the target is named after.
@@ -111,7 +129,7 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         (_, Overlay::GridXz) => ("XZ grid", "Show the grid at y = 0"),
         (_, Overlay::GridYz) => ("YZ grid", "Show the grid at x = 0"),
         (_, Overlay::Ground) => ("Ground", "Show a floor at y = 0"),
-        (_, Overlay::Axes) => ("Axes", "Show arrows along world x, y and z"),
+        (_, Overlay::Axes) => ("Axes", "Show rods along world x, y and z"),
         (RigKind::Arm, Overlay::Labels) => ("Labels", "Show names at root, elbow and hand"),
         (_, Overlay::Shadow) => ("Shadow", "Show a soft shadow on the floor"),
     }

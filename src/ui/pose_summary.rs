@@ -64,7 +64,7 @@ fn describe_skeleton(session: &Session) -> String {
         None if rig.follow_paths.iter().any(|path| path.kind == PathKind::Head) => {
             line.push("drag the circle at the head: the body follows".to_owned());
         }
-        None => line.push("click a joint to select it, drag its tip to pose".to_owned()),
+        None => line.push("click a joint to select it, drag it to pose".to_owned()),
     }
     line.join(" · ")
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use egui::{Align, Id, Label, Layout, ProgressBar, Ui};
 
 use super::widgets::{self, format};
-use super::{mouse_hints, pose_summary};
+use super::{labels, mouse_hints, pose_summary};
 use crate::document::RigKind;
 use crate::kinematics::swing::Swing;
 use crate::session::{
@@ -139,13 +139,16 @@ fn describe_drag(session: &Session, drag: &Drag) -> String {
 fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     let moved = drag.moved();
     let how = drag.constraint().map_or("freely".to_owned(), |constraint| constraint.to_string());
+    let name = labels::grip(session, grip);
     let verb = match grip {
-        Grip::Tip(..) => "Pose",
-        Grip::Target(..) => "Target",
-        Grip::Head(..) => "Head",
-        Grip::Pole(_) => "Pole",
-        Grip::Root(_) => "Root",
-        _ => "Move",
+        Grip::Tip(joint, _) if session.is_root_point(joint) => format!("Move {name}"),
+        Grip::Tip(..) => format!("Pose {name}"),
+        Grip::Target(..) => "Target".to_owned(),
+        Grip::Head(..) => "Head".to_owned(),
+        Grip::Pole(_) => "Pole".to_owned(),
+        Grip::Root(_) => "Root".to_owned(),
+        Grip::UpperLimb => "Upper limb".to_owned(),
+        _ => "Move".to_owned(),
     };
     let digits = match session.rig() {
         RigKind::Arm => format::decimals_of_cell(session.shown().grid_cell() * 0.1),
@@ -175,10 +178,13 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));
     let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
-        Grip::Ring(_, axis) | Grip::Shoulder(axis) => {
+        Grip::Ring(_, axis)
+        | Grip::Shoulder(axis)
+        | Grip::HandRing(axis)
+        | Grip::Orientation(_, axis) => {
             format!("Rotate about {}", ["x", "y", "z"][axis.min(2)])
         }
-        Grip::Twist => "Socket twist".to_owned(),
+        Grip::Twist | Grip::Limb => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),
     };
     format!(

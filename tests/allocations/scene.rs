@@ -108,7 +108,7 @@ fn a_moving_skeleton_with_targets_keys_and_trails_allocates_nothing() {
         PlaybackAction::SetTime(0.6).into(),
         SolverAction::Step.into(),
         SolverAction::Show(0).into(),
-        SelectAction::Hover(Some(JointId::new(2))).into(),
+        SelectAction::Hover(Some(JointId::new(2).into())).into(),
         SelectAction::Hover(None).into(),
         SelectAction::Joints(vec![JointId::new(joints - 1), JointId::new(4)]).into(),
         SelectAction::Joints(vec![JointId::new(3)]).into(),

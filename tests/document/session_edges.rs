@@ -91,7 +91,8 @@ fn actions_on_a_fourth_axis_are_refused() {
             Grip::Tip(JointId::new(0), plane),
         ]
         .into_iter()
-        .chain([Grip::Shoulder(axis), Grip::Ring(JointId::new(0), axis)])
+        .chain([Grip::Shoulder(axis), Grip::HandRing(axis)])
+        .chain([Grip::Ring(JointId::new(0), axis), Grip::Orientation(JointId::new(0), axis)])
         {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             assert!(!session.is_editing(), "{grip:?} holds nothing");
@@ -114,7 +115,7 @@ fn a_missing_joint_cannot_be_hovered() {
     let mut session = session();
     for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
         let joint = JointId::new(joint);
-        session.apply(SelectAction::Hover(Some(joint)));
+        session.apply(SelectAction::Hover(Some(joint.into())));
         assert_eq!(session.hovered(), is_there.then_some(joint));
     }
 }

@@ -4,6 +4,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
+use ik_arm::document::HandSpace;
 use ik_arm::session::{ArmJoint, Drag, EditAction, Grip, PoseMode, TransactionAction};
 
 use crate::bench::{Bench, bits};
@@ -200,4 +201,53 @@ fn hidden_handles_say_what_they_do() {
         assert!(!bench.says(hint), "its handles are shown: {hint}");
     }
     assert!(bench.shows(Role::CheckBox, "Pinned to world"));
+}
+
+#[test]
+fn a_click_on_the_hand_shows_rings_that_turn_it() {
+    const RING: f32 = 104.0;
+    for space in [HandSpace::LowerLimb, HandSpace::World] {
+        for axis in 0..3 {
+            let mut bench = Bench::after([
+                EditAction::SetHandOrientation(Vec3::new(0.3, 0.2, -0.25)),
+                EditAction::SetHandSpace(space),
+            ]);
+            let (grip, before) = (Grip::HandRing(axis), *bench.session().arm());
+            let ring = bench.session().arm_ring(grip).expect("a ring");
+            let on_ring = bench.around(ring, RING);
+            for at in on_ring.into_iter().step_by(7) {
+                bench.move_to(at);
+                bench.press(LEFT);
+                assert_ne!(bench.session().drag().map(Drag::grip), Some(grip), "it is hidden");
+                bench.key(Key::Escape);
+                bench.release(LEFT);
+            }
+            bench.apply([ik_arm::session::ViewAction::SetCamera(Default::default())]);
+            bench.click_at(bench.cursor_on_screen());
+            assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Hand));
+            let turned = |bench: &Bench| {
+                let (arm, pose) = (bench.session().arm(), bench.session().pose());
+                arm.hand_rotation(pose)
+            };
+            let was = turned(&bench);
+            let to = bench.take_ring(grip, ring, RING, 0.3);
+            bench.move_to(to);
+            let now = bench.session().arm().hand_orientation.angles;
+            let old = before.hand_orientation.angles;
+            assert!((now[axis] - old[axis] - 0.3).abs() < 5e-3, "{now} was {old}");
+            for other in (0..3).filter(|other| *other != axis) {
+                assert_eq!(now[other].to_bits(), old[other].to_bits());
+            }
+            let turn = glam::DMat3::from_axis_angle(ring.axis.as_dvec3(), 0.3);
+            let apart = (turn * was - turned(&bench)).to_cols_array();
+            assert!(apart.iter().all(|apart| apart.abs() < 5e-3), "{space:?} {axis}");
+            bench.release(LEFT);
+            assert_eq!(bench.session().undo_label(), Some("Turn hand"));
+            bench.apply([TransactionAction::Undo]);
+            assert_eq!(bench.session().arm().hand_orientation.angles, old);
+            assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Hand));
+            bench.click_at(bench.empty_point());
+            assert_eq!(bench.session().selected_arm_joint(), None);
+        }
+    }
 }

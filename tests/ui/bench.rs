@@ -1,5 +1,6 @@
 //! A test bench: runs the panels as `src/app/window.rs` does, with simulated time and no window.
 
+use std::f32::consts::TAU;
 use std::time::Duration;
 
 use egui::accesskit::Role;
@@ -9,10 +10,11 @@ use egui::{
 };
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
-use glam::Vec3;
-use ik_arm::document::RigKind;
+use glam::{Quat, Vec3};
+use ik_arm::document::{Ray, RigKind};
 use ik_arm::session::{
-    Action, Actions, Effect, PanelTab, Preferences, Session, ShellAction, ViewAction,
+    Action, Actions, Effect, Grip, GripRing, PanelTab, Preferences, SelectAction, Session,
+    ShellAction, ViewAction,
 };
 use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
 
@@ -241,6 +243,56 @@ impl Bench {
         let projection = self.session().camera().projection(rect.aspect_ratio());
         let at = projection.project(point).expect("before the eye");
         rect.center() + vec2(at.x, -at.y) * rect.size() / 2.0
+    }
+
+    /// The ray through a screen position, in world space.
+    pub fn ray(&self, at: Pos2) -> Ray {
+        let rect = self.viewport();
+        let from_centre = (at - rect.center()) / (rect.size() / 2.0);
+        let projection = self.session().camera().projection(rect.aspect_ratio());
+        projection.ray(glam::Vec2::new(from_centre.x, -from_centre.y))
+    }
+
+    /// Screen positions around a ring with a constant `radius` on screen, in points.
+    pub fn around(&self, ring: GripRing, radius: f32) -> Vec<Pos2> {
+        const STEPS: u16 = 96;
+        let rect = self.viewport();
+        let projection = self.session().camera().projection(rect.aspect_ratio());
+        let [right, up] = [projection.right, projection.up].map(Vec3::normalize);
+        let (u, v) = ring.axis.any_orthonormal_pair();
+        let centre = self.on_screen(ring.centre);
+        let place = |step: u16| {
+            let (sin, cos) = (f32::from(step) / f32::from(STEPS) * TAU).sin_cos();
+            let aside = radius * (u * cos + v * sin);
+            centre + vec2(aside.dot(right), -aside.dot(up))
+        };
+        (0..STEPS).map(|step| place(step * 7 % STEPS)).collect()
+    }
+
+    /// Presses at a place of a ring of the selection where that takes `grip`, and returns the place
+    /// at which the mouse has turned the ring by an angle in radians. The button stays down.
+    pub fn take_ring(&mut self, grip: Grip, ring: GripRing, radius: f32, by: f32) -> Pos2 {
+        let joints = SelectAction::Joints(self.session().selection().to_vec());
+        let selection = [joints, SelectAction::ArmJoint(self.session().selected_arm_joint())];
+        for at in self.around(ring, radius) {
+            let facing = self.ray(at).direction.normalize().dot(ring.axis).abs();
+            self.move_to(at);
+            self.press(PointerButton::Primary);
+            let is_taken = self.session().drag().is_some_and(|drag| drag.grip() == grip);
+            if let Some(met) = self.ray(at).meets_plane(ring.centre, ring.axis)
+                && is_taken
+                && facing > 0.15
+            {
+                let turn = Quat::from_axis_angle(ring.axis, by);
+                return self.on_screen(ring.centre + turn * (met - ring.centre));
+            }
+            self.key(Key::Escape);
+            self.release(PointerButton::Primary);
+            self.apply(selection.clone());
+            // So that the next press is no double click.
+            self.skip(1.0);
+        }
+        panic!("{grip:?} is nowhere");
     }
 
     pub fn cursor_on_screen(&self) -> Pos2 {

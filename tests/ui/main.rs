@@ -18,6 +18,7 @@ mod figures;
 mod first_click;
 mod gallery;
 mod glossary;
+mod grabbing;
 mod graph_editor;
 mod habits;
 mod hand;

@@ -224,6 +224,70 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
     }
 }
 
+/// The skeleton with a bone whose tip is `aside` points outside the selected joint's ring about y,
+/// at a free place of its near half. Returns also the tip and the point of the ring beside it, on
+/// screen.
+fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
+    const RADIUS: f32 = 56.0;
+    let mut bench = bench();
+    let b = joint(&bench, "b");
+    bench.apply([SelectAction::Joints(vec![b])]);
+    let tips: Vec<Pos2> = ["root", "a", "b", "c", "d"].map(|name| tip_place(&bench, name)).into();
+    let free = (0..64).map(|part| part as f32 * PI / 32.0).find(|angle| {
+        let at = ring_place(&bench, 1, RADIUS, *angle);
+        bench.move_to(at);
+        bench.press(LEFT);
+        let grip = bench.session().drag().map(Drag::grip);
+        bench.key(Key::Escape);
+        bench.release(LEFT);
+        bench.apply([SelectAction::Joints(vec![b])]);
+        // So that the next press is no double click.
+        bench.skip(1.0);
+        grip == Some(Grip::Ring(b, 1)) && tips.iter().all(|tip| tip.distance(at) > 24.0)
+    });
+    let angle = free.expect("a free place of the ring");
+    let on_ring = ring_place(&bench, 1, RADIUS, angle);
+    let rect = bench.viewport();
+    let projection = bench.session().camera().projection(rect.aspect_ratio());
+    let centre = bench.session().ring(b, 1).expect("a ring").centre;
+    // Outwards from the ring's curve, on screen.
+    let along = ring_place(&bench, 1, RADIUS, angle + 0.02) - on_ring;
+    let outwards = along.rot90().normalized();
+    let outwards = outwards * outwards.dot(on_ring - bench.on_screen(centre)).signum();
+    let at = on_ring + outwards * aside;
+    let tip = bench.ray(at).meets_plane(centre, projection.forward);
+    let parent = joint(&bench, "root");
+    bench.apply([EditAction::AddChild { parent, tip }]);
+    let added = bench.session().selected().expect("the new joint");
+    bench.apply([Action::from(SelectAction::Joints(vec![b]))]);
+    (bench, added, [at, on_ring])
+}
+
+fn grip_at(bench: &mut Bench, at: Pos2) -> Option<Grip> {
+    bench.move_to(at);
+    bench.press(LEFT);
+    let grip = bench.session().drag().map(Drag::grip);
+    bench.key(Key::Escape);
+    bench.release(LEFT);
+    grip
+}
+
+#[test]
+fn the_ring_of_the_selected_joint_wins_over_the_tip_of_another_bone_on_it() {
+    let (mut bench, _, [_, on_ring]) = beside_a_ring(0.0);
+    let b = joint(&bench, "b");
+    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, 1)));
+    let (mut bench, _, [_, on_ring]) = beside_a_ring(6.0);
+    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, 1)));
+}
+
+#[test]
+fn a_tip_wins_over_a_ring_if_its_centre_is_clearly_nearer() {
+    let (mut bench, added, [at, _]) = beside_a_ring(6.0);
+    let grip = grip_at(&mut bench, at);
+    assert!(matches!(grip, Some(Grip::Tip(joint, _)) if joint == added), "{grip:?}");
+}
+
 #[test]
 fn digits_type_the_degrees_that_a_ring_turns() {
     let mut bench = bench();

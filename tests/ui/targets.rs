@@ -2,7 +2,7 @@
 
 use egui::PointerButton::Primary as LEFT;
 use egui::accesskit::Role;
-use egui::{Key, vec2};
+use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Target};
@@ -11,7 +11,7 @@ use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
-    Action, EditAction, FileAction, PlaybackAction, SelectAction, TransactionAction,
+    Action, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
 };
 
 use crate::bench::Bench;
@@ -338,4 +338,93 @@ fn no_row_moves_when_a_slider_is_let_go_that_put_a_target_out_of_reach() {
     let nodes = bench.harness.query_all_by_role(Role::Button);
     let under = nodes.filter(|node| node.rect().expand(4.0).contains(end)).count();
     assert_eq!(under, 0, "a button came under the mouse");
+}
+
+/// Radius in points of rings around a point with arrows.
+const RING: f32 = 104.0;
+
+fn human() -> Bench {
+    Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))])
+}
+
+fn held(bench: &Bench, name: &str) -> Option<Vec3> {
+    target(bench, name).limb().expect("a limb").orientation
+}
+
+#[test]
+fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
+    for axis in 0..3 {
+        let mut bench = human();
+        select(&mut bench, "left_foot");
+        let (shin, foot) = (joint(&bench, "left_shin"), joint(&bench, "left_foot"));
+        let grip = Grip::Orientation(shin, axis);
+        let (before, home) =
+            (held(&bench, "left_shin").expect("held"), target(&bench, "left_shin").home);
+        let turned =
+            |bench: &Bench| bench.session().evaluated_skeleton().solved.rotation_in_world(foot);
+        let was = turned(&bench);
+        let ring = bench.session().orientation_ring(shin, axis).expect("a ring");
+        let to = bench.take_ring(grip, ring, RING, 0.1);
+        bench.move_to(to);
+        assert!(bench.says("Rotate about"));
+        let now = held(&bench, "left_shin").expect("held");
+        assert!((now[axis] - before[axis] - 0.1).abs() < 2e-3, "{now} was {before}");
+        for other in (0..3).filter(|other| *other != axis) {
+            assert_eq!(now[other].to_bits(), before[other].to_bits());
+        }
+        let expected = glam::DQuat::from_axis_angle(ring.axis.as_dvec3(), 0.1) * was;
+        assert!(turned(&bench).angle_between(expected) < 3e-3, "about {axis}");
+        bench.key(Key::Escape);
+        bench.release(LEFT);
+        assert_eq!(held(&bench, "left_shin"), Some(before), "Esc restores");
+
+        let to = bench.take_ring(grip, ring, RING, 0.1);
+        bench.move_to(to);
+        bench.release(LEFT);
+        assert_eq!(bench.session().undo_label(), Some("Turn target"));
+        assert_eq!(target(&bench, "left_shin").home, home);
+        bench.apply([TransactionAction::Undo]);
+        assert_eq!(held(&bench, "left_shin"), Some(before));
+        assert_eq!(bench.session().undo_label(), None, "it was one step");
+    }
+}
+
+#[test]
+fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
+    let mut bench = human();
+    select(&mut bench, "right_foot");
+    let shin = joint(&bench, "right_shin");
+    let ring = bench.session().orientation_ring(shin, 1).expect("a ring");
+    bench.apply([PlaybackAction::SetAutoKey(true)]);
+    let to = bench.take_ring(Grip::Orientation(shin, 1), ring, RING, 0.2);
+    bench.hold(Modifiers::COMMAND | Modifiers::CTRL);
+    bench.move_to(to);
+    bench.release(LEFT);
+    bench.hold(Modifiers::NONE);
+    let degrees = held(&bench, "right_shin").expect("held").y.to_degrees();
+    assert!((degrees / 5.0 - (degrees / 5.0).round()).abs() < 1e-4, "{degrees}");
+    let keys = &bench.session().document().keys;
+    assert!(keys.has(Channel::TargetOrientation(shin)));
+    assert!(!keys.has(Channel::Target(shin)), "nothing else is keyed");
+}
+
+#[test]
+fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
+    let mut bench = human();
+    select(&mut bench, "left_hand");
+    let (forearm, hand) = (joint(&bench, "left_forearm"), joint(&bench, "left_hand"));
+    assert_eq!(bench.session().orientation_ring(forearm, 0), None);
+    let before = bench.session().skeleton()[hand].rotation;
+    let ring = bench.session().ring(hand, 2).expect("a ring");
+    let to = bench.take_ring(Grip::Ring(hand, 2), ring, RING, 0.2);
+    bench.drag(LEFT, to, to);
+    bench.release(LEFT);
+    let after = bench.session().skeleton()[hand].rotation;
+    assert!((after.z - before.z).abs() > 0.05, "{after} was {before}");
+    bench.apply([TransactionAction::Undo]);
+
+    bench.reveal(Role::RadioButton, "Keep orientation");
+    bench.click(Role::RadioButton, "Keep orientation");
+    assert_eq!(bench.session().ring(hand, 2), None, "the target turns the hand");
+    assert!(bench.session().orientation_ring(forearm, 2).is_some());
 }

@@ -92,3 +92,29 @@ fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
     assert_eq!(program.end(), Some(0), "the program ends cleanly");
     assert_eq!(program.errors(), "", "it has nothing to complain about");
 }
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_mouse_drags_the_forearm_and_the_elbow_turns_while_the_view_stays() {
+    let (_folder, places, program) = open();
+    program.mouse_to(places.empty);
+    let first = program.at_rest();
+
+    let forearm = places.elbow + (places.hand - places.elbow) * 0.5;
+    program.drag(forearm, forearm + egui::vec2(-28.0, 40.0));
+    program.mouse_to(places.empty);
+    program.wait_until("the elbow turns about the Pointer", |now| {
+        changed(&first, now, places.elbow, 40.0) > 300
+    });
+    let turned = program.at_rest();
+    assert_eq!(changed(&first, &turned, places.view_axes, 45.0), 0, "the view does not orbit");
+
+    program.key("ctrl+z");
+    // Hides the ring of the elbow.
+    program.click(places.empty);
+    program.mouse_to(places.empty);
+    program.wait_until("the drag is undone", |now| changed(&first, now, places.elbow, 12.0) < 40);
+    program.key("ctrl+q");
+    assert_eq!(program.end(), Some(0), "the program ends cleanly");
+    assert_eq!(program.errors(), "", "it has nothing to complain about");
+}

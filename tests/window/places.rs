@@ -19,6 +19,8 @@ pub struct Places {
     pub elbow: egui::Pos2,
     /// A point of the viewport with nothing under it.
     pub empty: egui::Pos2,
+    /// The middle of the axes in the corner of the viewport.
+    pub view_axes: egui::Pos2,
     pub skeleton_switch: egui::Pos2,
     /// The middle of the Human's head, while that is shown.
     pub head: egui::Pos2,
@@ -79,6 +81,7 @@ impl Places {
             hand: place(session.arm().root + session.pose().hand),
             elbow: place(session.arm().root + session.pose().elbow),
             empty: viewport.left_top() + egui::vec2(40.0, 40.0),
+            view_axes: viewport.right_bottom() - egui::vec2(63.0, 63.0),
             skeleton_switch,
             head,
             pelvis,

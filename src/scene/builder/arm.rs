@@ -4,35 +4,34 @@ use super::shadow::above_ground;
 use crate::document::{Arm, Display, Overlay, ShownLength, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
-use crate::scene::{Ball, Globe, Label, LabelSide, Line, Scene, Shadow, Solid, SphereShell};
+use crate::scene::{
+    Ball, Colour, Globe, Label, LabelSide, Line, Palette, Scene, Shadow, Solid, SphereShell,
+};
+use crate::session::{BodyPart, Overlays};
 
-/// Sizes on an arm of thickness 1. The balls of the joints are as large as the ends of the limbs,
-/// so that no gap shows when the elbow bends.
-const SHOULDER_BALL: f32 = 33.0;
-pub(super) const ELBOW_BALL: f32 = 33.0;
-const HAND_BALL: f32 = 22.0;
-const HAND: f32 = 105.0;
+/// Sizes on an arm of thickness 1.
 const CURSOR_BALL: f32 = 11.0;
 const POLE_BALL: f32 = 11.0;
 const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the arm with the guides, labels and shadows that `display` shows. A hand with handles has no
-/// label.
+/// Adds the arm with the guides, labels and shadows that `display` shows. The part under the mouse
+/// lights up; a hand with handles has no label.
 pub(super) fn add(
     scene: &mut Scene,
     arm: &Arm,
     pose: &TwoBonePose,
     display: Display,
-    has_handles: bool,
+    overlays: &Overlays,
 ) {
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
     let has_hand = display.shows(Overlay::Hand);
-    add_limbs(scene, &rig, thickness, has_hand.then(|| arm.roll(pose)));
+    let colours = BodyColours { palette: scene.palette, hovered: overlays.hovered };
+    add_limbs(scene, &rig, thickness, has_hand.then(|| arm.roll(pose)), colours);
     if has_hand {
-        add_hand(scene, arm, pose, thickness);
+        add_hand(scene, arm, pose, thickness, colours.of(BodyPart::Hand));
     }
     add_guides(scene, &rig, display);
     if display.shows(Overlay::SingularityGlobe) {
@@ -54,7 +53,7 @@ pub(super) fn add(
     if display.shows(Overlay::Labels) {
         add_labels(scene, &rig, thickness, |part| match part {
             ArmPart::Elbow => display.shows(Overlay::TwistReferences),
-            ArmPart::Hand => has_handles && arm.uses_ik(),
+            ArmPart::Hand => overlays.has_handles && arm.uses_ik(),
             _ => false,
         });
     }
@@ -63,36 +62,62 @@ pub(super) fn add(
     }
 }
 
+/// Colours of the parts of the arm, of which one may be under the mouse.
+#[derive(Clone, Copy)]
+struct BodyColours {
+    palette: Palette,
+    hovered: Option<BodyPart>,
+}
+
+impl BodyColours {
+    fn of(&self, part: BodyPart) -> Colour {
+        let colour = match part {
+            BodyPart::UpperLimb => self.palette.upper,
+            BodyPart::LowerLimb => self.palette.lower,
+            BodyPart::Root | BodyPart::Hand | BodyPart::Joint(_) => self.palette.joint,
+        };
+        if self.hovered == Some(part) { self.palette.lit(colour) } else { colour }
+    }
+}
+
 /// Adds the two limbs. With a `roll`, stripes wind along the lower limb by that angle, in radians.
-fn add_limbs(scene: &mut Scene, rig: &ArmRig, thickness: f32, roll: Option<f32>) {
-    let palette = scene.palette;
+fn add_limbs(
+    scene: &mut Scene,
+    rig: &ArmRig,
+    thickness: f32,
+    roll: Option<f32>,
+    colours: BodyColours,
+) {
     scene.solids.extend([
         Solid {
             transform: rig.world(ArmPart::UpperLimb),
             shape: rig.upper(),
-            colour: palette.upper,
+            colour: colours.of(BodyPart::UpperLimb),
             stripes: None,
         },
         Solid {
             transform: rig.world(ArmPart::LowerLimb),
             shape: rig.lower(),
-            colour: palette.lower,
+            colour: colours.of(BodyPart::LowerLimb),
             stripes: roll,
         },
     ]);
-    let joints =
-        [(ArmPart::Root, SHOULDER_BALL), (ArmPart::Elbow, ELBOW_BALL), (ArmPart::Hand, HAND_BALL)];
-    scene.balls.extend(joints.map(|(part, radius)| Ball {
+    let joints = [
+        (ArmPart::Root, BodyPart::JOINT_BALL, colours.of(BodyPart::Root)),
+        (ArmPart::Elbow, BodyPart::JOINT_BALL, colours.palette.joint),
+        (ArmPart::Hand, BodyPart::WRIST_BALL, colours.of(BodyPart::Hand)),
+    ];
+    scene.balls.extend(joints.map(|(part, radius, colour)| Ball {
         centre: rig.origin(part),
         radius: radius * thickness,
-        colour: palette.joint,
+        colour,
     }));
 }
 
-fn add_hand(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, thickness: f32) {
+fn add_hand(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, thickness: f32, colour: Colour) {
     let rotation = arm.hand_rotation(pose).as_mat3();
     let transform = Affine3A::from_mat3_translation(rotation, arm.root + pose.hand);
-    scene.add_hand(transform, HAND * thickness, scene.palette.joint);
+    scene.add_hand(transform, BodyPart::HAND * thickness, colour);
 }
 
 fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
@@ -176,9 +201,9 @@ fn add_labels(
     // The hand goes on beyond the wrist, and the Pointer beyond the hand.
     let (fingers, pointer) = (hand + (hand - elbow), hand + (hand - root));
     let named = [
-        (ArmPart::Root, root, SHOULDER_BALL, [elbow, pointer], "Root"),
-        (ArmPart::Elbow, elbow, ELBOW_BALL, [root, hand], "Elbow"),
-        (ArmPart::Hand, hand, HAND_BALL, [elbow, fingers], "Hand"),
+        (ArmPart::Root, root, BodyPart::JOINT_BALL, [elbow, pointer], "Root"),
+        (ArmPart::Elbow, elbow, BodyPart::JOINT_BALL, [root, hand], "Elbow"),
+        (ArmPart::Hand, hand, BodyPart::WRIST_BALL, [elbow, fingers], "Hand"),
     ];
     for (part, at, radius, others, name) in named {
         if !leaves_out(part) {
@@ -193,8 +218,8 @@ fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
     let [root, elbow, hand] =
         [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
     let limbs = [
-        (root, SHOULDER_BALL, elbow, rig.upper().tip_radius / thickness),
-        (elbow, rig.lower().base_radius / thickness, hand, HAND_BALL),
+        (root, BodyPart::JOINT_BALL, elbow, rig.upper().tip_radius / thickness),
+        (elbow, rig.lower().base_radius / thickness, hand, BodyPart::WRIST_BALL),
     ];
     scene.shadows.extend(limbs.into_iter().filter_map(|(base, base_radius, tip, tip_radius)| {
         above_ground(Shadow {

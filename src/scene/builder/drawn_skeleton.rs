@@ -7,7 +7,8 @@ use super::shadow::above_ground;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
-use crate::session::Overlays;
+use crate::session::{BodyPart, Overlays};
+
 /// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
 /// reach.
 const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
@@ -95,8 +96,8 @@ impl<'a> DrawnSkeleton<'a> {
         };
         if overlays.selection.contains(&joint) {
             palette.accent
-        } else if overlays.hovered == Some(joint) {
-            colour.mixed(palette.guide, 0.3)
+        } else if overlays.hovered == Some(joint.into()) {
+            palette.lit(colour)
         } else {
             colour
         }
@@ -228,7 +229,8 @@ impl<'a> DrawnSkeleton<'a> {
     /// Adds the names of the selected joints and of the joint under the mouse.
     pub fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
         labelled.clear();
-        labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
+        let hovered = overlays.hovered.and_then(BodyPart::joint);
+        labelled.extend(overlays.selection.iter().copied().chain(hovered));
         labelled.sort_unstable();
         labelled.dedup();
         for joint in labelled.iter().copied().filter(|joint| joint.index() < self.joints.len()) {

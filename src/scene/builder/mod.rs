@@ -84,7 +84,7 @@ impl SceneBuilder {
         match document.rig {
             RigKind::Arm => {
                 let pose = document.arm.pose();
-                arm::add(scene, &document.arm, &pose, display, overlays.has_handles);
+                arm::add(scene, &document.arm, &pose, display, overlays);
                 if display.shows(Overlay::ElbowCircle) {
                     elbow_circle::add(scene, &document.arm, &pose);
                 }

@@ -1,11 +1,11 @@
 use core::fmt::{self, Display, Formatter};
 
-use super::arm;
 use crate::document::{Arm, TwistReferenceKind};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::ArmRig;
 use crate::scene::{Ball, Label, LabelSide, Scene};
+use crate::session::BodyPart;
 
 /// Radii of a ghost's limbs and of its elbow, on an arm of thickness 1.
 const LIMB_RADIUS: f32 = 7.0;
@@ -68,7 +68,7 @@ fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
     let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
     let Some(ghost) = shown else { return };
     let (ball, colour) = match ghost.is_own {
-        true => (arm::ELBOW_BALL, scene.palette.text),
+        true => (BodyPart::JOINT_BALL, scene.palette.text),
         false => (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference)),
     };
     let at = arm.root + ghost.pose.elbow;

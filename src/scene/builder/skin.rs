@@ -114,7 +114,7 @@ impl<'a> ShownSkin<'a> {
                 scene.shadows.extend(above_ground(limb));
             }
         }
-        if overlays.selection.contains(&joint) || overlays.hovered == Some(joint) {
+        if overlays.selection.contains(&joint) || overlays.hovered == Some(joint.into()) {
             let colour = drawn.colour(scene, joint, overlays);
             let plain = drawn.radius(joint);
             let radius = plain.min(0.4 * thickness.max(plain));

@@ -2,11 +2,11 @@
 
 use egui::{Color32, Painter, Pos2, Ui};
 
-use super::rotate::RotateRing;
+use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::shape::bright;
 use super::translate::TranslateHandles;
 use super::twist::TwistRing;
-use crate::document::TwistReferenceKind;
+use crate::document::{Overlay, TwistReferenceKind};
 use crate::session::{ArmJoint, Grip, PointHandle, Session};
 use crate::ui::style;
 use crate::ui::viewport::projection::ScreenProjection;
@@ -31,7 +31,11 @@ impl ArmGizmo {
         let is_led = arm.uses_ik();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
-        let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?);
+        let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, RADIUS);
+        let is_hand_selected = session.selected_arm_joint() == Some(ArmJoint::Hand)
+            && session.shown().display.shows(Overlay::Hand);
+        let of_hand = (0..3).map(Grip::HandRing).filter(|_| is_hand_selected);
+        let outer = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, OUTER_RADIUS);
         Self {
             hand: is_led
                 .then(|| TranslateHandles::new(screen, arm.cursor_in_world(), hand))
@@ -42,7 +46,7 @@ impl ArmGizmo {
             root: TranslateHandles::new(screen, arm.root, None),
             is_root_selected: session.selected_arm_joint() == Some(ArmJoint::Root),
             twist: TwistRing::new(screen, session),
-            rings: angles.filter_map(ring).collect(),
+            rings: angles.filter_map(ring).chain(of_hand.filter_map(outer)).collect(),
         }
     }
 
@@ -80,13 +84,13 @@ impl ArmGizmo {
         paint(self.hand.as_ref(), painter, ui, [pointed, dragged].map(of_hand), dragged);
         let palette = style::palette(ui);
         if let Some(twist) = &self.twist {
-            let stands_out = dragged.or(pointed) == Some(Grip::Twist);
+            let stands_out = matches!(dragged.or(pointed), Some(Grip::Twist | Grip::Limb));
             let colour = style::colour(palette.accent);
             twist.paint(painter, look(colour, stands_out, dragged.is_some()), stands_out);
         }
         for ring in &self.rings {
             let colour = style::colour(match ring.grip {
-                Grip::Shoulder(axis) => palette.axes[axis.min(2)],
+                Grip::Shoulder(axis) | Grip::HandRing(axis) => palette.axes[axis.min(2)],
                 _ => palette.accent,
             });
             let stands_out = dragged.or(pointed) == Some(ring.grip);

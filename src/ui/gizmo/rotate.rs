@@ -9,8 +9,10 @@ use super::shape::to_segment;
 use crate::session::{Grip, GripRing};
 use crate::ui::viewport::projection::ScreenProjection;
 
-/// Radius of the ring in points.
-const RADIUS: f32 = 56.0;
+/// Radius of a ring in points.
+pub(in crate::ui) const RADIUS: f32 = 56.0;
+/// Radius of a ring in points around a point with arrows: outside their names.
+pub(in crate::ui) const OUTER_RADIUS: f32 = 104.0;
 /// Maximum distance in points at which the mouse hits a ring.
 const HIT: f32 = 7.0;
 /// Number of line segments of the ring.
@@ -25,11 +27,11 @@ pub(in crate::ui) struct RotateRing {
 }
 
 impl RotateRing {
-    /// Screen positions of `ring` with a constant size on screen; `None` if its centre is behind
-    /// the eye.
-    pub fn new(screen: &ScreenProjection, grip: Grip, ring: GripRing) -> Option<Self> {
+    /// Screen positions of `ring` with a constant `radius` on screen, in points; `None` if its
+    /// centre is behind the eye.
+    pub fn new(screen: &ScreenProjection, grip: Grip, ring: GripRing, radius: f32) -> Option<Self> {
         let GripRing { centre, axis } = ring;
-        let radius = RADIUS * screen.units_per_point(centre);
+        let radius = radius * screen.units_per_point(centre);
         let (u, v) = axis.any_orthonormal_pair();
         let middle = screen.place(centre)?;
         Self::sampled(screen, grip, centre, [u * radius, v * radius], |aside| {
@@ -75,12 +77,16 @@ impl RotateRing {
     /// The handle of the ring nearest to a screen position; `None` if every ring is farther than
     /// `HIT`.
     pub fn at(rings: &[Self], mouse: Pos2) -> Option<Grip> {
+        Self::nearest(rings, mouse).map(|(_, grip)| grip)
+    }
+
+    /// As [`Self::at`], with the distance of the ring in points.
+    pub fn nearest(rings: &[Self], mouse: Pos2) -> Option<(f32, Grip)> {
         rings
             .iter()
-            .map(|ring| (ring.distance(mouse), ring))
+            .map(|ring| (ring.distance(mouse), ring.grip))
             .filter(|(distance, _)| *distance <= HIT)
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, ring)| ring.grip)
     }
 
     fn distance(&self, mouse: Pos2) -> f32 {

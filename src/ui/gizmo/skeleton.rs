@@ -1,12 +1,13 @@
-//! The gizmo of the skeleton: targets, bone tips, and rings of the selected joint.
+//! The gizmo of the skeleton: targets, bone tips, and rings of the selected joint and of its
+//! target.
 
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
-use super::rotate::RotateRing;
+use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::shape::{bright, to_segment};
 use super::translate::TranslateHandles;
-use crate::document::{PathKind, Target};
+use crate::document::Target;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
@@ -23,6 +24,8 @@ const TARGET: f32 = 9.0;
 const TARGET_HIT: f32 = 12.0;
 /// Maximum distance in points at which the mouse hits a bone.
 const BONE_HIT: f32 = 8.0;
+/// A circle wins over a ring if its centre is nearer to the mouse by this distance in points.
+const CLEARLY: f32 = 3.0;
 
 /// Screen positions of the skeleton's handles.
 pub(in crate::ui) struct SkeletonGizmo {
@@ -38,7 +41,8 @@ struct ScreenBone {
     base: Pos2,
     tip: Pos2,
     depth: f32,
-    can_be_posed: bool,
+    /// Whether its tip can be dragged by a circle around it, which is hidden with the bones.
+    has_circle: bool,
     is_selected: bool,
 }
 
@@ -70,35 +74,44 @@ impl SkeletonGizmo {
     }
 
     /// The handle at a screen position; `None` if there is no handle. The handles of the selected
-    /// joint's target come first, then targets, then tips, then rings.
+    /// joint come first, then rings, then targets, then tips. A target or tip wins over a ring if
+    /// its centre is clearly nearer.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
-        let of_handles = self.handles.iter().find_map(|of| of.at(mouse));
-        of_handles
-            .or_else(|| self.mark_at(mouse))
-            .or_else(|| RotateRing::at(&self.rings, mouse).filter(|_| self.tip_at(mouse).is_none()))
-            .or_else(|| self.tip_at(mouse))
+        self.handles.iter().find_map(|of| of.at(mouse)).or_else(|| {
+            let circle = self.mark_at(mouse).or_else(|| self.tip_at(mouse));
+            match (RotateRing::nearest(&self.rings, mouse), circle) {
+                (Some((to_ring, _)), Some((to_centre, grip))) if to_centre + CLEARLY < to_ring => {
+                    Some(grip)
+                }
+                (Some((_, ring)), _) => Some(ring),
+                (None, circle) => circle.map(|(_, grip)| grip),
+            }
+        })
     }
 
-    fn mark_at(&self, mouse: Pos2) -> Option<Grip> {
-        let hit = self.marks.iter().find(|mark| mark.at.distance(mouse) <= TARGET_HIT)?;
-        Some(hit.grip)
+    /// The target or head at a screen position, with the distance of its centre in points; `None`
+    /// if there is none.
+    fn mark_at(&self, mouse: Pos2) -> Option<(f32, Grip)> {
+        let marks = self.marks.iter().map(|mark| (mark.at.distance(mouse), mark.grip));
+        marks.into_iter().find(|(distance, _)| *distance <= TARGET_HIT)
     }
 
-    /// The tip at a screen position; `None` if there is no tip. Among several tips, it
-    /// prefers one of a selected joint, then the nearest to the mouse, then the one of the joint with
-    /// the highest index.
-    fn tip_at(&self, mouse: Pos2) -> Option<Grip> {
+    /// The tip at a screen position, with its distance in points; `None` if there is no tip. Among
+    /// several tips, it prefers one of a selected joint, then the nearest to the mouse, then the
+    /// one of the joint with the highest index.
+    fn tip_at(&self, mouse: Pos2) -> Option<(f32, Grip)> {
         let tips = self
             .bones
             .iter()
             .enumerate()
-            .filter(|(_, bone)| bone.can_be_posed && bone.tip.distance(mouse) <= TIP_HIT);
-        let (joint, _) = tips.max_by(|(_, a), (_, b)| {
+            .filter(|(_, bone)| bone.has_circle && bone.tip.distance(mouse) <= TIP_HIT);
+        let (joint, bone) = tips.max_by(|(_, a), (_, b)| {
             let rank = |bone: &ScreenBone| (bone.is_selected, -bone.tip.distance(mouse));
             let ((a_selected, a_near), (b_selected, b_near)) = (rank(a), rank(b));
             a_selected.cmp(&b_selected).then(a_near.total_cmp(&b_near))
         })?;
-        Some(Grip::Tip(JointId::new(joint), PointHandle::Free))
+        let grip = Grip::Tip(JointId::new(joint), PointHandle::Free);
+        Some((bone.tip.distance(mouse), grip))
     }
 
     /// The joint whose bone is at a screen position; of several, the one nearest to the eye. `None`
@@ -123,7 +136,7 @@ impl SkeletonGizmo {
         let axes = style::palette(ui).axes.map(style::colour);
         for ring in &self.rings {
             let colour = match ring.grip {
-                Grip::Ring(_, axis) => axes[axis],
+                Grip::Ring(_, axis) | Grip::Orientation(_, axis) => axes[axis],
                 _ => continue,
             };
             ring.paint(painter, faded(ring.grip, colour), stand_out(ring.grip));
@@ -156,7 +169,10 @@ impl JointHandles {
 
     /// The handle of a grip; `None` if it belongs to another point.
     fn handle(&self, grip: Grip) -> Option<PointHandle> {
-        let (Grip::Target(_, handle) | Grip::LimbPole(_, handle) | Grip::Head(_, handle)) = grip
+        let (Grip::Target(_, handle)
+        | Grip::LimbPole(_, handle)
+        | Grip::Head(_, handle)
+        | Grip::Tip(_, handle)) = grip
         else {
             return None;
         };
@@ -166,18 +182,20 @@ impl JointHandles {
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
+    let hides_bones = session.hides_bones();
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
-        let is_root_point =
-            rig.skeleton[joint].parent.is_none() && rig.skeleton[joint].axis == Vec3::ZERO;
+        let has_tip = session.is_root_point(joint) || rig.skeleton[joint].axis != Vec3::ZERO;
+        let is_selected = session.selection().contains(&joint);
         let nowhere = Pos2::new(f32::INFINITY, f32::INFINITY);
         ScreenBone {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
-            can_be_posed: !rig.is_joint_on_path(joint, session.time())
-                && (is_root_point || rig.skeleton[joint].axis != Vec3::ZERO),
-            is_selected: session.selection().contains(&joint),
+            has_circle: has_tip
+                && !rig.is_joint_on_path(joint, session.time())
+                && (is_selected || !hides_bones),
+            is_selected,
         }
     };
     pose.ids().map(bone).collect()
@@ -199,12 +217,7 @@ fn heads(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
         let at = screen.place(session.evaluated_skeleton().fk.base(head))?;
         Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
     };
-    draggable_heads(session).filter_map(mark).collect()
-}
-
-fn draggable_heads(session: &Session) -> impl Iterator<Item = JointId> {
-    let paths = session.skeleton_rig().follow_paths.iter();
-    paths.filter(|path| path.kind == PathKind::Head).map(|path| path.root)
+    session.draggable_heads().filter_map(mark).collect()
 }
 
 fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
@@ -212,10 +225,12 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let Some(selected) = session.selected() else { return Vec::new() };
     let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
     let report = target.and_then(|joint| session.target_report(joint));
-    let head = draggable_heads(session).find(|head| *head == selected);
-    let points: [(JointId, GripOfJoint, Option<Vec3>); 3] = [
+    let head = session.draggable_heads().find(|head| *head == selected);
+    let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
+    let points: [(JointId, GripOfJoint, Option<Vec3>); 4] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
+        (selected, Grip::Tip, root),
         (selected, Grip::Head, head.map(|head| session.evaluated_skeleton().fk.base(head))),
     ];
     let handles = |(joint, grip, point): (JointId, GripOfJoint, Option<Vec3>)| {
@@ -225,11 +240,29 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     points.into_iter().filter_map(handles).collect()
 }
 
-/// The rings of the selected joint; empty if no joint is selected or it follows a path.
+/// Whether a joint is a root without a bone that can be dragged; it has arrows while it is
+/// selected.
+fn is_dragged_root(session: &Session, joint: JointId) -> bool {
+    session.is_root_point(joint) && session.can_drag_tip(joint)
+}
+
+/// The rings of the selected joint, and those of the orientation that its target holds; empty if no
+/// joint is selected. A joint on a path has none.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let is_free =
-        |joint: &JointId| !session.skeleton_rig().is_joint_on_path(*joint, session.time());
-    let Some(joint) = session.selected().filter(is_free) else { return Vec::new() };
-    let ring = |axis| RotateRing::new(screen, Grip::Ring(joint, axis), session.ring(joint, axis)?);
-    (0..3).filter_map(ring).collect()
+    let Some(joint) = session.selected() else { return Vec::new() };
+    let rig = session.skeleton_rig();
+    let target = rig.target_of_end(joint).map(|index| rig.targets[index].joint);
+    let has_arrows = is_dragged_root(session, joint) || target.is_some_and(|it| it != joint);
+    let radius = if has_arrows { OUTER_RADIUS } else { RADIUS };
+    let is_on_path = rig.is_joint_on_path(joint, session.time());
+    let own = |axis| {
+        let ring = session.ring(joint, axis).filter(|_| !is_on_path)?;
+        RotateRing::new(screen, Grip::Ring(joint, axis), ring, radius)
+    };
+    let of_target = |axis| {
+        let target = target?;
+        let ring = session.orientation_ring(target, axis)?;
+        RotateRing::new(screen, Grip::Orientation(target, axis), ring, OUTER_RADIUS)
+    };
+    (0..3).filter_map(own).chain((0..3).filter_map(of_target)).collect()
 }

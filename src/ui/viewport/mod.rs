@@ -9,15 +9,15 @@ mod why_note;
 use projection::ScreenProjection;
 
 use egui::{
-    Event, EventFilter, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui,
+    Event, EventFilter, Id, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui,
     WidgetInfo, pos2, vec2,
 };
 
 use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::session::{
-    Action, Actions, ArmJoint, CameraMotion, Drag, DragInput, EditAction, Grip, PlaybackAction,
-    SelectAction, Session, TransactionAction, ViewAction,
+    Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, EditAction, Grip,
+    PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
 };
 use crate::ui::gizmo::{Gizmo, locked_axis, view_axes};
 use crate::ui::keyboard::{self, focus};
@@ -47,8 +47,15 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
 
     let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
     let over = response.contains_pointer() && !on_view_axes;
-    let pointed = mouse.filter(|_| over).and_then(|at| gizmo.at(at));
+    let is_held = (held_grip.is_some() || session.view_drag().is_some())
+        && !ui.input(|input| input.pointer.any_released());
+    let pointed = mouse.filter(|_| over && !is_held);
+    let pointed = pointed.map(|at| pointed_at(session, &screen, &gizmo, at));
+    let Pointed { grip: pointed, lit } = pointed.unwrap_or_default();
     mouse_hints::set_pointed(ui, pointed);
+    if held_grip.is_none() && session.view_drag().is_none() {
+        light_up(ui, session, lit, actions);
+    }
     drag_hint::ui(ui, session, &screen);
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
@@ -72,11 +79,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     if response.contains_pointer() {
         wheel(ui, session, &screen, mouse, actions);
     }
-    if over && matches!(drag, ViewportDrag::Nothing) {
-        point(session, joint_at(session, &screen, &gizmo, mouse), actions);
-    }
     if has_joints(session) && response.clicked() && !on_view_axes {
         select(ui, session, &screen, &gizmo, mouse, actions);
+    }
+    let has_hand = session.shown().display.shows(Overlay::Hand);
+    if response.clicked() && lit == Some(BodyPart::Hand) && has_hand {
+        actions.push(SelectAction::ArmJoint(Some(ArmJoint::Hand)));
     }
     let is_beside = pointed.is_none() && held_grip.is_none();
     if response.clicked() && is_beside && session.selected_arm_joint().is_some() {
@@ -102,8 +110,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     rect
 }
 
-/// Tooltip of a handle that is hidden until the mouse is over it; `None` for other handles, while
-/// its joint is selected, and during a drag.
+/// Tooltip of a handle or part of the arm that shows more when it is clicked; `None` for others,
+/// while its joint is selected, and during a drag.
 fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
     let selected = session.selected_arm_joint();
     match grip {
@@ -111,8 +119,13 @@ fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
         Grip::Root(_) if selected != Some(ArmJoint::Root) => {
             Some("Move the Root; click to show its arrows")
         }
-        Grip::Twist if selected != Some(ArmJoint::Elbow) => {
+        Grip::Twist | Grip::Limb if selected != Some(ArmJoint::Elbow) => {
             Some("Turn the elbow about the Pointer (Socket twist)")
+        }
+        Grip::Hand(PointHandle::Free)
+            if selected != Some(ArmJoint::Hand) && session.shown().display.shows(Overlay::Hand) =>
+        {
+            Some("Move the hand; click to show the rings that turn it")
         }
         _ => None,
     }
@@ -130,17 +143,50 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
-/// The joint at the mouse: that of the bone there or, if only the skin is shown, of the skin there.
+/// What the mouse is over: what a press would drag, and the part of a body that lights up.
+#[derive(Clone, Copy, Default)]
+struct Pointed {
+    grip: Option<Grip>,
+    lit: Option<BodyPart>,
+}
+
+/// The handle at the mouse, or else the part of a body there that can be dragged.
+fn pointed_at(session: &Session, screen: &ScreenProjection, gizmo: &Gizmo, mouse: Pos2) -> Pointed {
+    let can_drag = |grip: &Grip| match grip {
+        Grip::Tip(joint, _) => session.can_drag_tip(*joint),
+        _ => true,
+    };
+    if let Some(grip) = gizmo.at(mouse).filter(can_drag) {
+        return Pointed { grip: Some(grip), lit: part_of(grip) };
+    }
+    let part = match session.rig() {
+        _ if session.crowd().is_some() => None,
+        RigKind::Arm => session.arm_part_at(screen.ray(mouse)),
+        RigKind::Skeleton => joint_at(session, screen, gizmo, mouse).map(BodyPart::Joint),
+    };
+    let grip = part.and_then(|part| session.grip_of(part));
+    Pointed { grip, lit: part.filter(|_| grip.is_some()) }
+}
+
+/// The part of a body that a handle stands for; `None` for a handle beside it.
+fn part_of(grip: Grip) -> Option<BodyPart> {
+    match grip {
+        Grip::Hand(PointHandle::Free) => Some(BodyPart::Hand),
+        Grip::Root(PointHandle::Free) => Some(BodyPart::Root),
+        Grip::Tip(joint, PointHandle::Free) => Some(BodyPart::Joint(joint)),
+        _ => None,
+    }
+}
+
+/// The joint at the mouse: that of the bone there if bones are shown, or else of the skin.
 fn joint_at(
     session: &Session,
     screen: &ScreenProjection,
     gizmo: &Gizmo,
     mouse: Pos2,
 ) -> Option<JointId> {
-    if !has_joints(session) || session.shown().display.shows(Overlay::Bones) {
-        return gizmo.joint_at(mouse);
-    }
-    session.joint_on_skin(screen.ray(mouse)).or_else(|| gizmo.joint_at(mouse))
+    let of_bone = gizmo.joint_at(mouse).filter(|_| !session.hides_bones());
+    of_bone.or_else(|| session.joint_on_skin(screen.ray(mouse)))
 }
 
 /// Lets the angle swing whose ring is at the mouse while Alt is held and no button is.
@@ -155,11 +201,17 @@ fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actio
     }
 }
 
-/// Pushes an action if the hovered joint has changed.
-fn point(session: &Session, joint: Option<JointId>, actions: &mut Actions) {
-    if session.hovered() != joint {
-        actions.push(SelectAction::Hover(joint));
+/// Lights up the part at the mouse. Away from all parts, puts out only the light of the viewport:
+/// the outliner lights up joints, too.
+fn light_up(ui: &Ui, session: &Session, lit: Option<BodyPart>, actions: &mut Actions) {
+    let id = Id::unique("part lit in the viewport");
+    let hovered = session.hovered_part();
+    let before = ui.data(|data| data.get_temp::<Option<BodyPart>>(id)).flatten();
+    let own = lit.or(before.filter(|before| hovered == Some(*before)));
+    if own.is_some() && hovered != lit {
+        actions.push(SelectAction::Hover(lit));
     }
+    ui.data_mut(|data| data.insert_temp(id, own));
 }
 
 /// Handles a click in the viewport. A click selects the joint at the mouse, and with Shift adds it
@@ -176,7 +228,7 @@ fn select(
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match gizmo.at(mouse) {
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
-        Some(Grip::Ring(..)) => return,
+        Some(Grip::Ring(..) | Grip::Orientation(..)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
     let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
@@ -272,7 +324,7 @@ fn press(
         let can_take = button == PointerButton::Primary && !modifiers.alt && !on_view_axes;
         // Ctrl and Shift clicks select and add joints.
         let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);
-        let grip = gizmo.at(pos).filter(|_| can_take && !is_click);
+        let grip = pointed_at(session, screen, gizmo, pos).grip.filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
             None if on_view_axes && button == PointerButton::Primary => Some(CameraMotion::Orbit),
             motion => motion,

@@ -163,13 +163,14 @@ kinds! {
     }
     Select(SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
-        Hover: Look 2, |v| SelectAction::Hover(if v.coin() { None } else { Some(v.joint()) });
+        Hover: Look 2, |v| SelectAction::Hover(v.body_part());
         Wiggle: Look 1, |v| {
             let axis = v.one_of(&RotationAxis::ALL);
             SelectAction::Wiggle(if v.coin() { None } else { Some((v.joint(), axis)) })
         };
         ArmJoint: Look 1, |v| {
-            let joints = [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow)];
+            let joints =
+                [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow), Some(ArmJoint::Hand)];
             SelectAction::ArmJoint(v.one_of(&joints))
         };
         Figure: Look 1, |v| {

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, EditAction, SelectAction, Session};
+use crate::session::{Actions, BodyPart, EditAction, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
 use crate::ui::{commands, style};
@@ -59,7 +59,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let said = ui.make_persistent_id("pointed in the tree");
     let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
     if pointed.is_some() && pointed != session.hovered() || was && pointed.is_none() {
-        actions.push(SelectAction::Hover(pointed));
+        actions.push(SelectAction::Hover(pointed.map(BodyPart::Joint)));
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
     if rows.is_empty() {

@@ -4,7 +4,9 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Overlay, Ray};
-use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, PointDrag, PointHandle};
+use ik_arm::session::{
+    BodyPart, CameraMotion, Constraint, DragInput, Grip, PointDrag, PointHandle,
+};
 
 use super::Values;
 
@@ -60,7 +62,7 @@ impl Values<'_> {
 
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
-        match self.random.below(11) {
+        match self.random.below(15) {
             0 | 1 => Grip::Hand(self.handle()),
             2 => Grip::Pole(self.handle()),
             3 => Grip::Shoulder(self.axis()),
@@ -70,8 +72,17 @@ impl Values<'_> {
             7 => Grip::Root(self.handle()),
             8 => Grip::Twist,
             9 => Grip::Head(joint, self.handle()),
+            10 => Grip::Limb,
+            11 => Grip::UpperLimb,
+            12 => Grip::HandRing(self.axis()),
+            13 => Grip::Orientation(self.aimed(), self.axis()),
             _ => Grip::Ring(joint, self.axis()),
         }
+    }
+
+    pub fn body_part(&mut self) -> Option<BodyPart> {
+        let joint = BodyPart::Joint(self.joint());
+        self.one_of(&[None, Some(BodyPart::Root), Some(BodyPart::LowerLimb), Some(joint)])
     }
 
     fn handle(&mut self) -> PointHandle {

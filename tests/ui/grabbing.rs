@@ -1,0 +1,412 @@
+//! Bodies in the viewport: what lights up under the mouse can be dragged, and nothing else.
+
+use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use glam::Vec3;
+use ik_arm::document::{Overlay, RigKind, Target};
+use ik_arm::io::Example;
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::session::{
+    Drag, EditAction, FileAction, Grip, PoseMode, SelectAction, TransactionAction,
+};
+
+use crate::bench::{Bench, bits};
+
+const LEFT: PointerButton = PointerButton::Primary;
+
+fn example(name: &str) -> Bench {
+    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
+}
+
+fn human() -> Bench {
+    let mut bench = example("human");
+    bench.apply([SelectAction::Joints(Vec::new())]);
+    bench
+}
+
+fn show(bench: &mut Bench, skin: bool, bones: bool) {
+    bench.apply([EditAction::ShowSkin { skin, bones }]);
+}
+
+fn joint(bench: &Bench, name: &str) -> JointId {
+    bench.session().skeleton().find(name).expect("a joint of that name")
+}
+
+fn name(bench: &Bench, joint: JointId) -> String {
+    bench.session().skeleton()[joint].name.clone()
+}
+
+fn tip(bench: &Bench, name: &str) -> Vec3 {
+    bench.session().skeleton_pose().tip(joint(bench, name))
+}
+
+/// The middle of a bone, on screen.
+fn middle(bench: &Bench, name: &str) -> Pos2 {
+    let (pose, joint) = (bench.session().skeleton_pose(), joint(bench, name));
+    bench.on_screen(pose.base(joint).midpoint(pose.tip(joint)))
+}
+
+fn home(bench: &Bench, joint_with_target: &str) -> Vec3 {
+    let rig = bench.session().skeleton_rig();
+    rig.targets[rig.target(joint(bench, joint_with_target)).expect("a target")].home
+}
+
+fn icon(bench: &Bench) -> CursorIcon {
+    bench.harness.output().platform_output.cursor_icon
+}
+
+/// Points of the viewport, clear of its edges and of the axes in its corner.
+fn grid(bench: &Bench, step: f32) -> Vec<Pos2> {
+    let room = bench.viewport().shrink(24.0);
+    let corner = bench.viewport().right_bottom() - vec2(140.0, 140.0);
+    let columns = (room.width() / step) as usize;
+    let rows = (room.height() / step) as usize;
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let points = cells.map(|(x, y)| room.left_top() + vec2(x as f32, y as f32) * step);
+    points.filter(|at| at.x < corner.x || at.y < corner.y).collect()
+}
+
+/// Presses at points of the viewport. At each, the cursor of a grip and the light are there exactly
+/// if a drag of something starts there; elsewhere the view is dragged. Returns the number of points
+/// at which something is dragged.
+fn press_everywhere(bench: &mut Bench, step: f32) -> usize {
+    let before = bench.session().document().clone();
+    let mut count = 0;
+    for at in grid(bench, step) {
+        bench.move_to(at);
+        let is_lit = bench.session().hovered().is_some();
+        let is_offered = icon(bench) == CursorIcon::Grab;
+        bench.press(LEFT);
+        let drag = bench.session().drag().map(Drag::grip);
+        assert_eq!(is_offered, drag.is_some(), "{at}: {drag:?}");
+        assert!(!is_lit || drag.is_some(), "{at} is lit and orbits");
+        assert_ne!(drag.is_some(), bench.session().view_drag().is_some(), "{at}: {drag:?}");
+        count += usize::from(drag.is_some());
+        bench.key(Key::Escape);
+        bench.release(LEFT);
+    }
+    assert_eq!(bench.session().document(), &before, "a press alone changes nothing");
+    count
+}
+
+#[test]
+fn what_lights_up_on_a_figure_can_be_dragged_and_nothing_else_lights_up() {
+    for (skin, bones) in [(true, false), (false, true), (true, true)] {
+        let mut bench = human();
+        show(&mut bench, skin, bones);
+        let count = press_everywhere(&mut bench, 31.0);
+        assert!(count > 15, "{count} points of the figure with skin {skin}, bones {bones}");
+    }
+    let mut bench = example("two-targets");
+    assert!(press_everywhere(&mut bench, 31.0) > 3, "a figure of bones alone");
+}
+
+#[test]
+fn a_snake_on_its_path_lights_up_only_where_it_can_be_dragged() {
+    let mut bench = example("snake");
+    press_everywhere(&mut bench, 37.0);
+}
+
+#[test]
+fn every_lit_part_of_a_figure_follows_its_drag() {
+    let mut bench = human();
+    for at in grid(&bench, 29.0) {
+        bench.move_to(at);
+        if bench.session().hovered().is_none() {
+            continue;
+        }
+        let lit = name(&bench, bench.session().hovered().expect("lit"));
+        let before = bench.session().skeleton_pose().clone();
+        bench.drag(LEFT, at, at + vec2(24.0, -30.0));
+        let pose = bench.session().skeleton_pose();
+        let moved = before
+            .ids()
+            .map(|joint| pose.tip(joint).distance(before.tip(joint)))
+            .fold(0.0, f32::max);
+        assert!(moved > 5e-3, "{lit} at {at} moves by {moved}");
+        bench.key(Key::Escape);
+        bench.release(LEFT);
+        assert_eq!(bench.session().skeleton_pose(), &before, "{lit}");
+    }
+}
+
+#[test]
+fn the_pelvis_is_called_pelvis_and_moves_by_its_skin_its_point_and_its_arrows() {
+    for (skin, bones) in [(true, false), (false, true)] {
+        let mut bench = human();
+        show(&mut bench, skin, bones);
+        let (pelvis, before) = (joint(&bench, "pelvis"), tip(&bench, "pelvis"));
+        let at = bench.on_screen(before);
+        bench.move_to(at);
+        assert_eq!(bench.session().hovered(), Some(pelvis), "skin {skin}");
+        assert!(bench.says("left drag: drag pelvis"));
+        let toes = tip(&bench, "left_foot");
+        bench.drag(LEFT, at, at + vec2(6.0, 14.0));
+        assert!(bench.says("Move pelvis freely"));
+        bench.release(LEFT);
+        let moved = tip(&bench, "pelvis");
+        assert!(bench.on_screen(moved).distance(at + vec2(6.0, 14.0)) < 1.0);
+        assert!(tip(&bench, "left_foot").distance(toes) < 1e-3, "the feet stay");
+        bench.apply([TransactionAction::Undo]);
+
+        bench.click_at(at);
+        assert_eq!(bench.session().selection(), [pelvis]);
+        let up = at - vec2(0.0, 70.0);
+        bench.drag_and_drop(LEFT, up, up + vec2(3.0, 25.0));
+        let moved = tip(&bench, "pelvis");
+        assert_eq!([moved.x, moved.z].map(f32::to_bits), [before.x, before.z].map(f32::to_bits));
+        assert!(moved.y < before.y - 0.02, "{moved} was {before}");
+    }
+}
+
+#[test]
+fn hands_and_feet_drag_their_targets_by_the_skin() {
+    for (end, lower) in [("left_hand", "left_forearm"), ("right_foot", "right_shin")] {
+        let mut bench = human();
+        let (at, before) = (middle(&bench, end), home(&bench, lower));
+        bench.move_to(at);
+        assert_eq!(bench.session().hovered(), Some(joint(&bench, end)));
+        assert!(bench.says(&format!("left drag: drag the target of {end}")));
+        let start = bench.on_screen(before);
+        let by = vec2(-18.0, -26.0);
+        bench.drag_and_drop(LEFT, at, at + by);
+        let seen = bench.on_screen(home(&bench, lower));
+        assert!(seen.distance(start + by) < 0.5, "the target of {end} is at {seen}");
+        assert_eq!(bench.session().undo_label(), Some("Move target"));
+    }
+}
+
+#[test]
+fn both_bones_of_a_limb_with_a_target_turn_its_elbow_and_the_hand_stays() {
+    for bone in ["right_upper_arm", "right_forearm"] {
+        let mut bench = human();
+        let (at, wrist) = (middle(&bench, bone), tip(&bench, "right_forearm"));
+        let elbow = tip(&bench, "right_upper_arm");
+        bench.move_to(at);
+        assert_eq!(bench.session().hovered(), Some(joint(&bench, bone)));
+        assert!(bench.says("left drag: drag the limb of right_hand"));
+        bench.drag_and_drop(LEFT, at, at + vec2(-6.0, -34.0));
+        assert!(tip(&bench, "right_upper_arm").distance(elbow) > 0.03, "{bone}");
+        assert!(tip(&bench, "right_forearm").distance(wrist) < 1e-4, "{bone}");
+        bench.apply([TransactionAction::Undo]);
+        assert_eq!(bits(tip(&bench, "right_upper_arm")), bits(elbow));
+    }
+}
+
+#[test]
+fn a_segment_without_a_target_poses_the_joints_above_it() {
+    let mut bench = human();
+    let (at, before) = (middle(&bench, "chest"), tip(&bench, "chest"));
+    let wrist = tip(&bench, "right_forearm");
+    bench.move_to(at);
+    assert_eq!(bench.session().hovered(), Some(joint(&bench, "chest")));
+    bench.drag_and_drop(LEFT, at, at + vec2(30.0, 0.0));
+    let by = bench.on_screen(tip(&bench, "chest")) - bench.on_screen(before);
+    assert!(by.x > 15.0, "{by}");
+    assert!(tip(&bench, "right_forearm").distance(wrist) < 1e-3, "its target holds the hand");
+}
+
+#[test]
+fn bones_that_a_target_poses_alone_drag_the_target() {
+    let mut bench = example("two-targets");
+    let target = bench.session().skeleton_rig().targets[0];
+    bench.apply([EditAction::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
+    let rig = bench.session().skeleton_rig();
+    let bone = rig.skeleton[target.joint].parent.expect("a bone above it");
+    let (target, bone) = (target.joint, name(&bench, bone));
+    let at = middle(&bench, &bone);
+    bench.move_to(at);
+    bench.press(LEFT);
+    let grip = bench.session().drag().map(Drag::grip);
+    assert!(matches!(grip, Some(Grip::Target(joint, _)) if joint == target), "{bone}: {grip:?}");
+    bench.release(LEFT);
+}
+
+#[test]
+fn hidden_points_of_joints_take_no_press_from_the_skin() {
+    let mut bench = human();
+    let pose = bench.session().skeleton_pose().clone();
+    let rig = bench.session().skeleton_rig();
+    let targets: Vec<Pos2> = rig.targets.iter().map(|it| bench.on_screen(it.home)).collect();
+    let mut on_skin = 0;
+    for joint in pose.ids() {
+        for aside in [vec2(0.0, -8.0), vec2(7.0, 0.0), vec2(0.0, 8.0), vec2(-7.0, 0.0)] {
+            let at = bench.on_screen(pose.tip(joint)) + aside;
+            if targets.iter().any(|target| target.distance(at) < 16.0) {
+                continue;
+            }
+            let seen = bench.session().joint_on_skin(bench.ray(at));
+            bench.move_to(at);
+            assert_eq!(bench.session().hovered(), seen, "beside the tip of {joint}");
+            bench.press(LEFT);
+            assert_eq!(bench.session().drag().is_some(), seen.is_some(), "{joint} at {at}");
+            bench.release(LEFT);
+            // The click has selected the joint, whose handles are shown. The next press is no
+            // double click.
+            bench.apply([SelectAction::Joints(Vec::new())]);
+            bench.skip(1.0);
+            on_skin += usize::from(seen.is_some());
+        }
+    }
+    assert!(on_skin > 30, "{on_skin}");
+}
+
+#[test]
+fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
+    for rig in [RigKind::Arm, RigKind::Skeleton] {
+        let mut bench = human();
+        bench.apply([EditAction::ShowRig(rig)]);
+        let at = match rig {
+            RigKind::Arm => limb_place(&bench, Limb::Lower, 0.5),
+            RigKind::Skeleton => middle(&bench, "chest"),
+        };
+        let before = bench.session().document().clone();
+        for (button, modifiers) in [
+            (LEFT, Modifiers::ALT),
+            (PointerButton::Middle, Modifiers::NONE),
+            (PointerButton::Secondary, Modifiers::NONE),
+        ] {
+            bench.move_to(at);
+            bench.hold(modifiers);
+            bench.press(button);
+            assert!(bench.session().view_drag().is_some(), "{rig:?} {button:?}");
+            assert!(bench.session().drag().is_none());
+            bench.release(button);
+            bench.hold(Modifiers::NONE);
+        }
+        assert_eq!(bench.session().document().skeleton_rig, before.skeleton_rig);
+        assert_eq!(bench.session().document().arm, before.arm);
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Limb {
+    Upper,
+    Lower,
+}
+
+/// A point on the axis of a limb of the arm, a fraction of its length from its base, in the world.
+fn limb_point(bench: &Bench, limb: Limb, part: f32) -> Vec3 {
+    let (arm, pose) = (bench.session().arm(), bench.session().pose());
+    let (base, tip) = match limb {
+        Limb::Upper => (Vec3::ZERO, pose.elbow),
+        Limb::Lower => (pose.elbow, pose.hand),
+    };
+    arm.root + base.lerp(tip, part)
+}
+
+fn limb_place(bench: &Bench, limb: Limb, part: f32) -> Pos2 {
+    bench.on_screen(limb_point(bench, limb, part))
+}
+
+/// A point of the fingers, on screen.
+fn fingers(bench: &Bench) -> Pos2 {
+    let (arm, pose) = (bench.session().arm(), bench.session().pose());
+    let forwards = arm.hand_rotation(pose).x_axis.as_vec3();
+    bench.on_screen(arm.root + pose.hand + 60.0 * forwards)
+}
+
+#[test]
+fn what_is_offered_on_the_arm_can_be_dragged_in_ik_and_in_fk() {
+    for mode in [PoseMode::Hand, PoseMode::Angles] {
+        let mut bench = Bench::after([EditAction::SwitchPoseMode(mode)]);
+        let count = press_everywhere(&mut bench, 31.0);
+        assert!(count > 15, "{mode:?}: {count}");
+    }
+}
+
+#[test]
+fn a_limb_of_the_arm_turns_the_elbow_about_the_pointer_under_the_mouse() {
+    for (limb, part) in [(Limb::Upper, 0.6), (Limb::Lower, 0.3), (Limb::Lower, 0.6)] {
+        for radians in [0.3_f32, -0.5] {
+            let mut bench = Bench::new();
+            let from = limb_point(&bench, limb, part);
+            let hand = bench.session().pose().hand;
+            let ring = bench.session().arm_ring(Grip::Twist).expect("a ring");
+            let turn = glam::Quat::from_axis_angle(ring.axis, radians);
+            let to = bench.on_screen(turn * from);
+            let from = bench.on_screen(from);
+            bench.move_to(from);
+            assert!(bench.says("left drag: turn the elbow"));
+            bench.drag(LEFT, from, to);
+            assert!(bench.says("Socket twist:"));
+            bench.release(LEFT);
+            let seen = limb_place(&bench, limb, part);
+            assert!(seen.distance(to) < 0.5, "{limb:?} {part}: {seen} is not at {to}");
+            assert!(bench.session().pose().hand.distance(hand) < 1e-3);
+            assert_eq!(bench.session().undo_label(), Some("Set Socket twist"));
+            bench.apply([TransactionAction::Undo]);
+            assert_eq!((bench.session().arm().twist, bench.session().undo_label()), (0.0, None));
+        }
+    }
+}
+
+#[test]
+fn the_fingers_drag_the_cursor() {
+    let mut bench = Bench::new();
+    let (at, cursor) = (fingers(&bench), bench.cursor_on_screen());
+    bench.move_to(at);
+    assert!(bench.says("left drag: drag the hand"));
+    let by = vec2(22.0, -31.0);
+    bench.drag_and_drop(LEFT, at, at + by);
+    assert!(bench.cursor_on_screen().distance(cursor + by) < 0.5);
+    assert_eq!(bench.session().undo_label(), Some("Move hand"));
+}
+
+#[test]
+fn a_straight_arm_is_dragged_by_its_cursor() {
+    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(499.9, 0.0, 0.0))]);
+    let (at, twist) = (limb_place(&bench, Limb::Lower, 0.5), bench.session().arm().twist);
+    let cursor = bench.hand();
+    bench.drag_and_drop(LEFT, at, at + vec2(0.0, -60.0));
+    assert!(bench.hand().distance(cursor) > 20.0);
+    assert_eq!(bench.session().arm().twist, twist, "there is no elbow to turn");
+}
+
+#[test]
+fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() {
+    let mut bench = Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+    let before = *bench.session().arm();
+    let at = limb_place(&bench, Limb::Upper, 0.7);
+    let to = at + vec2(40.0, 15.0);
+    bench.drag(LEFT, at, to);
+    assert!(bench.says("Upper limb"));
+    bench.release(LEFT);
+    let (fk, was) = (bench.session().arm().fk, before.fk);
+    assert!(fk.shoulder.distance(was.shoulder) > 0.05, "{}", fk.shoulder);
+    assert_eq!((fk.bend, fk.stretch), (was.bend, was.stretch));
+    let seen = (bench.on_screen(bench.session().arm().root) - limb_place(&bench, Limb::Upper, 0.7))
+        .normalized();
+    let asked = (bench.on_screen(bench.session().arm().root) - to).normalized();
+    assert!(seen.dot(asked) > 0.999, "the limb points at the mouse: {seen} and {asked}");
+    assert_eq!(bench.session().undo_label(), Some("Turn shoulder"));
+    bench.apply([TransactionAction::Undo]);
+    assert_eq!(bench.session().arm(), &before);
+
+    let at = limb_place(&bench, Limb::Lower, 0.6);
+    bench.drag_and_drop(LEFT, at, at + vec2(10.0, -40.0));
+    let (fk, was) = (bench.session().arm().fk, before.fk);
+    assert!((fk.bend - was.bend).abs() > 0.05);
+    assert_eq!(fk.shoulder, was.shoulder);
+    assert_eq!(bench.session().undo_label(), Some("Bend elbow"));
+}
+
+#[test]
+fn the_light_goes_out_when_the_mouse_leaves_the_view() {
+    let mut bench = human();
+    let at = middle(&bench, "chest");
+    bench.move_to(at);
+    assert!(bench.session().hovered().is_some());
+    bench.move_to(pos2(6.0, 794.0));
+    bench.settle();
+    assert_eq!(bench.session().hovered(), None);
+}
+
+#[test]
+fn without_its_hand_the_arm_is_still_dragged_by_its_wrist() {
+    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::Hand, false)]);
+    let at = fingers(&bench);
+    bench.move_to(at);
+    bench.press(LEFT);
+    assert!(bench.session().drag().is_none(), "there are no fingers to take");
+    bench.release(LEFT);
+}
