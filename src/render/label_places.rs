@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn no_label_of_the_arm_covers_another() {
-        let kinds = [TwistReferenceKind::Limb, TwistReferenceKind::Pole];
+        let kinds = [TwistReferenceKind::Up, TwistReferenceKind::Pole];
         for (overlay, count) in [(Overlay::Frames, 9), (Overlay::TwistReferences, 3)] {
             for kind in kinds {
                 for cursor in [[250.0, 120.0, 60.0], [440.0, 320.0, 60.0], [10.0, 220.0, -200.0]] {

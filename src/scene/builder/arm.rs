@@ -44,7 +44,7 @@ pub(super) fn add(
             add_pin(scene, arm.cursor_in_world(), thickness);
         }
         if pose.reach != Some(Reach::Reached) {
-            add_gap(scene, &rig, arm, thickness, has_handles);
+            add_gap(scene, &rig, arm, thickness, overlays.has_handles);
         }
     }
     if arm.twist_reference == TwistReferenceKind::Pole && arm.uses_ik() {
