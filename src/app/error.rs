@@ -15,8 +15,13 @@ pub enum AppError {
     )]
     NoDisplay(#[source] EventLoopError),
     /// The connection to the display server broke.
-    #[error("the display server closed the window: {0}")]
-    EventLoop(EventLoopError),
+    #[error("the display server closed the window: {source}\n{recovery}")]
+    EventLoop {
+        /// Error of the event loop.
+        source: EventLoopError,
+        /// Sentence that tells whether unsaved changes are kept, and in which file.
+        recovery: String,
+    },
     /// The display server refused to open a window.
     #[error("the window could not be opened: {0}")]
     Window(#[from] winit::error::OsError),

@@ -49,9 +49,13 @@ pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), A
         settings,
         recovery,
         recovered,
+        has_quit: false,
         state: AppState::Suspended,
     };
-    event_loop.run_app(&mut app).map_err(AppError::EventLoop)?;
+    if let Err(source) = event_loop.run_app(&mut app) {
+        let recovery = app.keep_changes();
+        return Err(AppError::EventLoop { source, recovery });
+    }
     match app.state {
         AppState::Failed(error) => Err(error),
         AppState::Suspended | AppState::Active(_) => Ok(()),
@@ -70,6 +74,8 @@ struct App {
     recovery: Recovery,
     /// Unsaved document of an earlier run that did not end cleanly.
     recovered: Option<RecoveredFile>,
+    /// Whether the user has quit: unsaved changes are to be dropped.
+    has_quit: bool,
     state: AppState,
 }
 
@@ -91,7 +97,7 @@ impl App {
         let backup = self.recovery.update(self.session.own(), &self.proxy);
         self.remove_settled_recovery();
         let again = match drawn {
-            Repaint::Quit => return event_loop.exit(),
+            Repaint::Quit => return self.quit(event_loop),
             Repaint::Failed(error) => return self.give_up(event_loop, error),
             Repaint::At(time) => Some(time),
             Repaint::OnInput => None,
@@ -124,17 +130,27 @@ impl App {
     /// Ends the program after the graphics device is lost for good; unsaved changes are kept for
     /// the next start.
     fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
-        let recovery = match self.recovery.leave(self.session.own()) {
+        let recovery = self.keep_changes();
+        self.close();
+        self.state = AppState::Failed(AppError::GraphicsLost { source, recovery });
+        event_loop.exit();
+    }
+
+    fn quit(&mut self, event_loop: &ActiveEventLoop) {
+        self.has_quit = true;
+        event_loop.exit();
+    }
+
+    /// Backs up unsaved changes for the next start. Returns a sentence that tells where they are.
+    fn keep_changes(&mut self) -> String {
+        match self.recovery.leave(self.session.own()) {
             Ok(None) => "All changes are saved".to_owned(),
             Ok(Some(path)) => format!(
                 "Unsaved changes are in {}\nik-arm offers to open them at its next start",
                 path.display()
             ),
             Err(error) => format!("Unsaved changes are lost: {error}"),
-        };
-        self.close();
-        self.state = AppState::Failed(AppError::GraphicsLost { source, recovery });
-        event_loop.exit();
+        }
     }
 
     /// Cancels an export, saves the settings and drops the graphics.
@@ -201,7 +217,7 @@ impl ApplicationHandler<UserEvent> for App {
         match &event {
             WindowEvent::CloseRequested => {
                 match self.session.apply(FileAction::Quit) {
-                    Some(_) => event_loop.exit(),
+                    Some(_) => self.quit(event_loop),
                     None => window.request_redraw(),
                 }
                 return;
@@ -250,11 +266,14 @@ impl ApplicationHandler<UserEvent> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        if !matches!(self.state, AppState::Failed(_)) {
-            // What was recovered is saved now, or the user gave it up.
-            self.remove_recovered_if(self.session.has_settled_recovery());
+        // The event loop also ends when the connection to the display server breaks.
+        if self.has_quit || !self.session.own().is_unsaved() {
+            if !matches!(self.state, AppState::Failed(_)) {
+                // What was recovered is saved now, or the user gave it up.
+                self.remove_recovered_if(self.session.has_settled_recovery());
+            }
+            self.recovery.end();
         }
-        self.recovery.end();
         self.close();
     }
 }

@@ -1,6 +1,7 @@
-//! Recovery of unsaved changes: the document is backed up every half minute and at a crash, and a
-//! later start of the program finds the backups of runs that did not end cleanly.
+//! Recovery of unsaved changes: the document is backed up a few seconds after a change and at a
+//! crash, and a later start of the program finds the backups of runs that did not end cleanly.
 
+use std::cell::RefCell;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ use crate::io::{self as files, OpenOptions, SaveError};
 use crate::session::Session;
 
 /// Time from a change of the document to its backup.
-const INTERVAL: Duration = Duration::from_secs(30);
+const INTERVAL: Duration = Duration::from_secs(5);
 
 /// A document and its file.
 #[derive(Clone)]
@@ -61,7 +62,7 @@ struct BackupSlot {
 /// Backs up the document of this run.
 pub(super) struct Recovery {
     slot: Option<Arc<BackupSlot>>,
-    /// Backup to write at a crash; `None` if there are no unsaved changes.
+    /// Backup to write at a crash; `None` if there are no unsaved changes, or they are written.
     newest: Arc<Mutex<Option<Backup>>>,
     /// Revision of the document in `newest`.
     newest_revision: Option<u64>,
@@ -153,7 +154,8 @@ impl Recovery {
             self.set_newest(session);
         }
         self.since = None;
-        let backup = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let backup = newest.unwrap_or_else(|| Backup::of(session));
         let proxy = proxy.clone();
         let writing = thread::spawn(move || {
             let written = backup.write(&slot.path);
@@ -172,9 +174,7 @@ impl Recovery {
     /// Makes the current document the backup to write at a crash.
     fn set_newest(&mut self, session: &Session) {
         self.newest_revision = Some(session.revision());
-        let file = session.file().map(Path::to_owned);
-        let backup = Backup { document: session.document().clone(), file };
-        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(backup);
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Backup::of(session));
     }
 
     /// Records the revision as written if the writing thread has succeeded; after a failure, the
@@ -221,8 +221,10 @@ impl Recovery {
         self.set_newest(session);
         // Without a slot, `end` does not remove the backup.
         let slot = self.slot.take().ok_or(BackupError::NoFolder)?;
-        if let Some(backup) = self.newest.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
+        let mut newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(backup) = newest.as_ref() {
             backup.write(&slot.path)?;
+            *newest = None;
         }
         Ok(Some(slot.path.clone()))
     }
@@ -250,6 +252,11 @@ impl BackupSlot {
 }
 
 impl Backup {
+    fn of(session: &Session) -> Self {
+        let file = session.file().map(Path::to_owned);
+        Self { document: session.document().clone(), file }
+    }
+
     fn read(path: &Path) -> Result<Self, Box<dyn std::error::Error>> {
         let BackupFile { file, document } = serde_json::from_str(&fs::read_to_string(path)?)?;
         let name = path.display().to_string();
@@ -285,20 +292,14 @@ pub(super) fn remove(path: &Path) {
     let _ = fs::remove_file(path.with_extension("lock"));
 }
 
-/// Writes the newest backup at a panic and at a termination signal.
+thread_local! {
+    static AT_EXIT: RefCell<Option<WriteAtExit>> = const { RefCell::new(None) };
+}
+
+/// Writes the newest backup at a panic, at a termination signal, and when the calling thread ends
+/// the process.
 fn write_at_crash(slot: Arc<BackupSlot>, newest: Arc<Mutex<Option<Backup>>>) {
-    let write = move || {
-        // Not `lock`, which would deadlock if this thread panicked while it held the mutex.
-        if let Ok(backup) = newest.try_lock()
-            && let Some(backup) = backup.as_ref()
-        {
-            match backup.write(&slot.path) {
-                Ok(()) => log::error!("unsaved changes are in {}", slot.path.display()),
-                Err(error) => log::error!("unsaved changes are lost: {error}"),
-            }
-        }
-    };
-    let write = Arc::new(write);
+    let write = Arc::new(move || write_newest(&slot, &newest));
     let at_signal = Arc::clone(&write);
     let handled = ctrlc::set_handler(move || {
         at_signal();
@@ -307,11 +308,38 @@ fn write_at_crash(slot: Arc<BackupSlot>, newest: Arc<Mutex<Option<Backup>>>) {
     if let Err(error) = handled {
         log::warn!("termination signals cannot be handled: {error}");
     }
+    let at_panic = Arc::clone(&write);
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        write();
+        at_panic();
         report(panic);
     }));
+    AT_EXIT.set(Some(WriteAtExit(Box::new(move || write()))));
+}
+
+/// Writes the newest backup when it is dropped with its thread. Xlib calls `exit` on this thread when
+/// the display server is gone: nothing returns to the event loop then, but thread-local values are
+/// still dropped.
+struct WriteAtExit(Box<dyn Fn()>);
+
+impl Drop for WriteAtExit {
+    fn drop(&mut self) {
+        (self.0)();
+    }
+}
+
+/// Writes the newest backup, unless it is written already.
+fn write_newest(slot: &BackupSlot, newest: &Mutex<Option<Backup>>) {
+    // Not `lock`, which would deadlock if this thread panicked while it held the mutex.
+    let Ok(mut newest) = newest.try_lock() else { return };
+    let Some(backup) = newest.as_ref() else { return };
+    match backup.write(&slot.path) {
+        Ok(()) => {
+            *newest = None;
+            log::error!("unsaved changes are in {}", slot.path.display());
+        }
+        Err(error) => log::error!("unsaved changes are lost: {error}"),
+    }
 }
 
 fn folder() -> Option<PathBuf> {

@@ -4,6 +4,7 @@
 //! starts such a display; within one, `cargo test --test window -- --ignored` runs the tests.
 #![cfg(all(feature = "app", target_os = "linux"))]
 
+mod display;
 mod drag;
 mod keyboard;
 mod loss;

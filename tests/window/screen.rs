@@ -16,6 +16,8 @@ use image::RgbImage;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
+use crate::display::Display;
+
 /// Size of screen and window, in pixels.
 pub const SIZE: (u32, u32) = (1280, 800);
 pub const PATIENCE: Duration = Duration::from_secs(60);
@@ -26,6 +28,7 @@ const POLL: Duration = Duration::from_millis(50);
 /// The running program with its window, killed when dropped.
 pub struct Program {
     child: RefCell<Child>,
+    display: Display,
     /// Lines of standard error.
     log: Arc<Mutex<Vec<String>>>,
     listener: RefCell<Option<JoinHandle<()>>>,
@@ -39,20 +42,26 @@ impl Program {
 
     /// Also sets `IK_ARM_DEBUG`.
     pub fn open_to_debug(settings: &Path, debug: &str) -> Self {
-        Self::start(settings, debug, None)
+        Self::start(settings, debug, None, Display::shared())
+    }
+
+    /// Opens the window on a display of its own.
+    pub fn open_on(settings: &Path, display: Display) -> Self {
+        Self::start(settings, "", None, display)
     }
 
     /// Also opens a document.
     pub fn open_file(settings: &Path, file: &Path) -> Self {
-        Self::start(settings, "", Some(file))
+        Self::start(settings, "", Some(file), Display::shared())
     }
 
-    fn start(settings: &Path, debug: &str, file: Option<&Path>) -> Self {
+    fn start(settings: &Path, debug: &str, file: Option<&Path>, display: Display) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_ik-arm"))
             .args(file)
             .env("XDG_CONFIG_HOME", settings)
             .env("XDG_DATA_HOME", settings)
             .env("IK_ARM_DEBUG", debug)
+            .env("DISPLAY", display.name())
             .env("RUST_LOG", "error,ik_arm::app::window=trace")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("XDG_RUNTIME_DIR")
@@ -70,7 +79,7 @@ impl Program {
             }
         });
         let (child, listener) = (RefCell::new(child), RefCell::new(Some(listener)));
-        let program = Self { child, log, listener };
+        let program = Self { child, display, log, listener };
         program.place_window();
         program.at_rest();
         program
@@ -81,11 +90,13 @@ impl Program {
     fn place_window(&self) {
         let window = wait_for("the window", || {
             assert!(!self.has_ended(), "{}", self.errors());
-            let found = xdotool(&["search", "--onlyvisible", "--name", "ik-arm"]);
+            let found = self.display.xdotool(&["search", "--onlyvisible", "--name", "ik-arm"]);
             found.lines().next().map(str::to_owned)
         });
-        xdotool(&["windowmove", &window, "0", "0", "windowfocus", &window]);
-        wait_for("the keyboard's focus", || (xdotool(&["getwindowfocus"]) == window).then_some(()));
+        self.display.xdotool(&["windowmove", &window, "0", "0", "windowfocus", &window]);
+        wait_for("the keyboard's focus", || {
+            (self.display.xdotool(&["getwindowfocus"]) == window).then_some(())
+        });
     }
 
     // Keyboard and mouse. Each waits until the program has drawn a frame, or has ended.
@@ -104,7 +115,7 @@ impl Program {
     pub fn mouse_to(&self, at: Pos2) {
         let (x, y) = (at.x.round(), at.y.round());
         // No event follows if the mouse is there already.
-        if !xdotool(&["getmouselocation"]).starts_with(&format!("x:{x} y:{y} ")) {
+        if !self.display.xdotool(&["getmouselocation"]).starts_with(&format!("x:{x} y:{y} ")) {
             self.input(&["mousemove", &x.to_string(), &y.to_string()]);
         }
     }
@@ -138,7 +149,7 @@ impl Program {
 
     fn input(&self, arguments: &[&str]) {
         let before = self.frames();
-        xdotool(arguments);
+        self.display.xdotool(arguments);
         wait_for(&format!("a frame after {arguments:?}"), || {
             (self.frames() > before || self.has_ended()).then_some(())
         });
@@ -148,9 +159,9 @@ impl Program {
 
     /// Waits until the program has drawn something, and the screen has not changed for a while.
     pub fn at_rest(&self) -> RgbImage {
-        let mut last = (self.frames(), screenshot());
+        let mut last = (self.frames(), self.display.picture());
         let mut since = Instant::now();
-        wait_for_screen("the screen at rest", |screen| {
+        self.wait_until("the screen at rest", |screen| {
             let now = (self.frames(), screen.clone());
             if now != last {
                 (last, since) = (now, Instant::now());
@@ -161,12 +172,12 @@ impl Program {
 
     /// Waits until the screen differs from a picture of it.
     pub fn wait_for_change(&self, before: &RgbImage) -> RgbImage {
-        wait_for_screen("another picture", |screen| screen != before)
+        self.wait_until("another picture", |screen| screen != before)
     }
 
     /// Waits for a picture of the screen that meets a condition.
-    pub fn wait_until(&self, what: &str, holds: impl Fn(&RgbImage) -> bool) -> RgbImage {
-        wait_for_screen(what, holds)
+    pub fn wait_until(&self, what: &str, mut holds: impl FnMut(&RgbImage) -> bool) -> RgbImage {
+        wait_for(what, || Some(self.display.picture()).filter(&mut holds))
     }
 
     /// Number of frames drawn.
@@ -246,25 +257,11 @@ pub fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
             return found;
         }
         if Instant::now() > deadline {
-            let file = keep(&screenshot(), what);
+            let file = keep(&Display::shared().picture(), what);
             panic!("waited {PATIENCE:?} for {what}; the screen is in {}", file.display());
         }
         sleep(POLL);
     }
-}
-
-fn wait_for_screen(what: &str, mut holds: impl FnMut(&RgbImage) -> bool) -> RgbImage {
-    wait_for(what, || Some(screenshot()).filter(&mut holds))
-}
-
-pub fn screenshot() -> RgbImage {
-    let part = format!("{}x{}+0+0", SIZE.0, SIZE.1);
-    let taken = Command::new("import")
-        .args(["-window", "root", "-crop", &part, "-depth", "8", "rgb:-"])
-        .output()
-        .expect("import runs");
-    assert!(taken.status.success(), "{}", String::from_utf8_lossy(&taken.stderr));
-    RgbImage::from_raw(SIZE.0, SIZE.1, taken.stdout).expect("the screen is as large as the window")
 }
 
 /// Writes a picture to a file named after `what`.
@@ -283,9 +280,4 @@ pub fn changed(a: &RgbImage, b: &RgbImage, at: Pos2, radius: f32) -> usize {
     };
     let pixels = a.enumerate_pixels().zip(b.pixels());
     pixels.filter(|((x, y, a), b)| near(*x, *y) && differs(a, b)).count()
-}
-
-fn xdotool(arguments: &[&str]) -> String {
-    let output = Command::new("xdotool").args(arguments).output().expect("xdotool runs");
-    String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
