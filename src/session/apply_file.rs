@@ -31,6 +31,11 @@ impl Session {
         Some(own.or_else(imported)?.to_string_lossy().into_owned())
     }
 
+    /// Whether another program has changed the document's file since it was last opened or saved.
+    pub fn has_changed_file(&self) -> bool {
+        self.files.has_changed()
+    }
+
     /// Files that were opened or saved, the most recent first.
     pub fn recent(&self) -> &[PathBuf] {
         self.files.recent()
@@ -87,13 +92,17 @@ impl Session {
     }
 
     /// Returns the effect that saves the document to its file, or that asks for a path if the
-    /// document has no file.
-    pub(super) fn save(&mut self) -> Effect {
+    /// document has no file. Asks first if another program has changed the file.
+    pub(super) fn save(&mut self) -> Option<Effect> {
         self.end_glide();
-        match self.files.file() {
-            Some(path) => Effect::Save(path.to_owned()),
-            None => Effect::ChoosePath(self.save_as_dialog()),
+        let Some(path) = self.files.file().map(Path::to_owned) else {
+            return Some(Effect::ChoosePath(self.save_as_dialog()));
+        };
+        if self.has_changed_file() {
+            self.open_dialog(Dialog::FileChanged { path });
+            return None;
         }
+        Some(Effect::Save(path))
     }
 
     /// Marks the document as saved and applies the action that waited for the save.
@@ -102,7 +111,7 @@ impl Session {
         self.commit_edit();
         self.editing.mark_saved();
         self.files.remember(path.clone());
-        self.files.set_file(path);
+        self.files.set_saved_file(path);
         self.files.take_after_save().and_then(|then: Box<FileAction>| self.apply_file(*then))
     }
 
@@ -193,6 +202,7 @@ impl Session {
                 if !matches!(self.shell.path_dialog(), Some(PathDialog::Open { .. })) {
                     self.shell.take_dialog();
                 }
+                self.files.set_opening(&path);
                 return Some(Effect::Open { path, options });
             }
             FileAction::Opened { document, file, contents } => {
@@ -217,7 +227,7 @@ impl Session {
             }
             FileAction::Save => {
                 self.files.take_after_save();
-                return Some(self.save());
+                return self.save();
             }
             FileAction::SaveAs(path) => {
                 self.shell.take_dialog();
@@ -230,7 +240,7 @@ impl Session {
             FileAction::SaveAnd(then) => {
                 self.shell.take_dialog();
                 self.files.set_after_save(then);
-                return Some(self.save());
+                return self.save();
             }
             FileAction::Discard(then) => {
                 self.shell.take_dialog();

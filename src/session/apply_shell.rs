@@ -32,6 +32,7 @@ impl Session {
         let is_saving = match &dialog {
             Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
             Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
+            Dialog::FileChanged { .. } => true,
             _ => false,
         };
         if !is_saving {

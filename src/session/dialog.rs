@@ -31,6 +31,11 @@ pub enum Dialog {
         /// The action that waits for the answer.
         then: Box<FileAction>,
     },
+    /// Asks before the document's file is overwritten, which another program has changed.
+    FileChanged {
+        /// The document's file.
+        path: PathBuf,
+    },
     /// Asks before quitting while an export runs.
     Exporting,
     /// Asks before a file is overwritten.

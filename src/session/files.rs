@@ -3,12 +3,14 @@ use std::path::{Path, PathBuf};
 use super::export::ExportJob;
 use super::file_action::FileAction;
 use super::file_contents::FileContents;
-use crate::io::Upwards;
+use crate::io::{FileStamp, Upwards};
 
 /// The document's file, recent files, the running export and pending requests.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Files {
     file: Option<PathBuf>,
+    /// The stamp of `file` when it was last opened or saved; `None` if there was no such file.
+    stamp: Option<FileStamp>,
     recent: Vec<PathBuf>,
     export_folder: Option<PathBuf>,
     job: Option<ExportJob>,
@@ -16,6 +18,8 @@ pub(super) struct Files {
     recovery_settled: bool,
     /// What to say once the file is open that was read.
     remark: Option<String>,
+    /// The file that the user chose to open, with its stamp from before it was read.
+    opening_stamp: Option<(PathBuf, FileStamp)>,
     /// What else the file of another program has that the document comes from.
     contents: Option<Box<FileContents>>,
     /// Whether z seems to point up in the document's file, and this was not settled yet.
@@ -31,13 +35,18 @@ impl Files {
     /// The state after another document was opened: `file` is its file, pending requests are
     /// dropped, and the rest is kept.
     pub fn replaced(&mut self, file: Option<PathBuf>) -> Self {
+        let opening = self.opening_stamp.take().filter(|(path, _)| file.as_ref() == Some(path));
+        let stamp = opening.map(|(_, stamp)| stamp);
+        let stamp = stamp.or_else(|| FileStamp::of(file.as_deref()?));
         Self {
             file,
+            stamp,
             recent: std::mem::take(&mut self.recent),
             export_folder: self.export_folder.take(),
             job: self.job.take(),
             recovery_settled: self.recovery_settled,
             remark: None,
+            opening_stamp: None,
             contents: None,
             seems_z_up: false,
             after_save: None,
@@ -88,8 +97,16 @@ impl Files {
         self.recovery_settled
     }
 
-    pub fn set_file(&mut self, file: PathBuf) {
+    /// Makes a file that was just written the document's file.
+    pub fn set_saved_file(&mut self, file: PathBuf) {
+        self.stamp = FileStamp::of(&file);
         self.file = Some(file);
+    }
+
+    /// Whether another program has changed the document's file since it was last opened or saved.
+    pub fn has_changed(&self) -> bool {
+        let now = self.file.as_deref().and_then(FileStamp::of);
+        now.is_some() && now != self.stamp
     }
 
     pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
@@ -143,6 +160,10 @@ impl Files {
 
     pub fn take_remark(&mut self) -> Option<String> {
         self.remark.take()
+    }
+
+    pub fn set_opening(&mut self, path: &Path) {
+        self.opening_stamp = FileStamp::of(path).map(|stamp| (path.to_owned(), stamp));
     }
 
     pub fn set_after_save(&mut self, action: Box<FileAction>) {

@@ -400,6 +400,90 @@ fn saving_as_over_another_file_asks_too() {
     assert_eq!(bench.effects(), [Effect::Save(there)]);
 }
 
+/// The bench with a document that was opened from `there`, and changed.
+fn opened_and_changed(there: &std::path::Path) -> Bench {
+    let document = ik_arm::io::new_document();
+    ik_arm::io::save(&document, there).expect("saved");
+    let mut bench = Bench::after([FileAction::Opened {
+        document: Box::new(document),
+        file: Some(there.to_owned()),
+        contents: None,
+    }]);
+    bench.apply([EditAction::SetHand(Vec3::new(100.0, 50.0, 0.0))]);
+    bench
+}
+
+#[test]
+fn saving_over_a_file_that_another_program_has_changed_asks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let there = folder.path().join("shared.json");
+    let mut bench = opened_and_changed(&there);
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    assert_eq!(bench.effects(), [Effect::Save(there.clone())], "an unchanged file is saved");
+
+    std::fs::write(&there, "the work of another program").expect("written");
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    assert_eq!(bench.effects(), []);
+    assert!(bench.says("Another program has changed shared.json"));
+    bench.click(Role::Button, "Cancel");
+    bench.settle();
+    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.effects(), []);
+
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    bench.key(Key::Enter);
+    bench.settle();
+    let save_as = bench.session().dialog().cloned();
+    assert!(matches!(save_as, Some(Dialog::Path(PathDialog::SaveAs { .. }))), "{save_as:?}");
+    bench.click(Role::Button, "Save");
+    bench.settle();
+    assert!(bench.says("already exists"), "the same name asks, too");
+    bench.key(Key::Escape);
+    bench.key(Key::Escape);
+    bench.settle();
+
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    bench.click(Role::Button, "Overwrite");
+    bench.settle();
+    assert_eq!(bench.effects(), [Effect::Save(there.clone())]);
+    bench.tell(FileAction::Saved(there.clone()));
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    assert_eq!(bench.effects(), [Effect::Save(there)], "what this program wrote is no change");
+}
+
+#[test]
+fn quitting_goes_on_after_a_changed_file_is_overwritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let there = folder.path().join("shared.json");
+    let mut bench = opened_and_changed(&there);
+    std::fs::write(&there, "the work of another program").expect("written");
+    bench.key_with(CTRL, Key::Q);
+    bench.settle();
+    bench.click(Role::Button, "Save");
+    bench.settle();
+    assert_eq!(bench.effects(), []);
+    bench.click(Role::Button, "Overwrite");
+    bench.settle();
+    assert_eq!(bench.effects(), [Effect::Save(there.clone())]);
+    assert_eq!(bench.tell(FileAction::Saved(there)), Some(Effect::Quit));
+}
+
+#[test]
+fn a_file_that_is_gone_is_saved_again_without_a_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let there = folder.path().join("shared.json");
+    let mut bench = opened_and_changed(&there);
+    std::fs::remove_file(&there).expect("it was there");
+    bench.key_with(CTRL, Key::S);
+    bench.settle();
+    assert_eq!(bench.effects(), [Effect::Save(there)]);
+}
+
 #[test]
 fn quitting_during_an_export_asks() {
     let mut bench = Bench::new();

@@ -40,6 +40,7 @@ pub(in crate::ui) fn ui(
         Dialog::Statistics => "Statistics",
         Dialog::Recover { .. } => "Recover unsaved changes?",
         Dialog::Unsaved { .. } => "Save changes?",
+        Dialog::FileChanged { .. } => "Overwrite the changed file?",
         Dialog::Exporting => "Quit while exporting?",
         Dialog::Replace { .. } => "Replace the file?",
         Dialog::Path(PathDialog::SavePicture { .. }) => "Save picture",
@@ -67,6 +68,7 @@ pub(in crate::ui) fn ui(
             unsaved::recover(ui, document, file.as_deref(), actions);
         }
         Dialog::Unsaved { then } => unsaved::unsaved(ui, session, then, actions),
+        Dialog::FileChanged { path } => unsaved::file_changed(ui, path, actions),
         Dialog::Exporting => unsaved::quit_during_export(ui, session, actions),
         Dialog::Replace { path, then, .. } => unsaved::replace(ui, path, then, actions),
         Dialog::Path(PathDialog::SavePicture { path }) => {

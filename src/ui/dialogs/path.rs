@@ -100,7 +100,7 @@ pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog)
 }
 
 /// Returns `action`, which writes the file at `path`. If that would overwrite a file other than the
-/// open one, returns the action that opens a dialog to ask first; cancelling that dialog leads back
+/// open one, or the open one after another program has changed it, returns the action that opens a dialog to ask first; cancelling that dialog leads back
 /// to `back`.
 pub(in crate::ui) fn unless_there(
     session: &Session,
@@ -108,7 +108,7 @@ pub(in crate::ui) fn unless_there(
     action: FileAction,
     back: PathDialog,
 ) -> Action {
-    let is_own = session.file() == Some(path.as_path());
+    let is_own = session.file() == Some(path.as_path()) && !session.has_changed_file();
     match existing(&path).filter(|_| !is_own) {
         Some(path) => {
             let then = Box::new(action);

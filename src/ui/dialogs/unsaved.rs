@@ -6,7 +6,7 @@ use egui::Ui;
 
 use super::first_button::first_button;
 use crate::document::Document;
-use crate::session::{Actions, FileAction, Session, ShellAction};
+use crate::session::{Actions, FileAction, PathDialog, Session, ShellAction};
 
 pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut Actions) {
     ui.set_width(380.0);
@@ -21,6 +21,30 @@ pub(super) fn replace(ui: &mut Ui, path: &Path, then: &FileAction, actions: &mut
         }
         if ui.button("Replace").on_hover_text("Overwrite the existing file").clicked() {
             actions.push(then.clone());
+        }
+    });
+}
+
+pub(super) fn file_changed(ui: &mut Ui, path: &Path, actions: &mut Actions) {
+    ui.set_width(420.0);
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    ui.label(format!(
+        "Another program has changed {name} since it was opened or saved here. Overwriting loses \
+         those changes."
+    ));
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        // The default button is harmless, so a repeated Enter overwrites nothing.
+        if first_button(ui, "Save as…") {
+            let path = path.display().to_string();
+            let dialog = PathDialog::SaveAs { path, problem: None };
+            actions.push(ShellAction::OpenDialog(dialog.into()));
+        }
+        if ui.button("Overwrite").on_hover_text("Replace the changed file").clicked() {
+            actions.push(FileAction::SaveAs(path.to_owned()));
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(ShellAction::CloseDialog);
         }
     });
 }

@@ -110,6 +110,7 @@ impl Values<'_> {
                 animations: Vec::new(),
                 animation: None,
             })),
+            9 if self.coin() => Dialog::FileChanged { path: self.path() },
             9 => Dialog::Exporting,
             10 => Dialog::DeleteJoints { joints: self.some_joints() },
             11 => {
