@@ -24,12 +24,15 @@ pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), A
     let started = Instant::now();
     let event_loop =
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
-    let settings = Settings::load();
+    let (settings, problem) = Settings::load();
     let mut session = Session::new(settings.preferences);
     session.set_recent(settings.recent.clone());
     session.set_export_folder(settings.export_folder.clone());
     if let Some(opened) = opened {
         session.apply(opened);
+    }
+    if let Some(problem) = problem {
+        session.apply(ShellAction::Fail(problem));
     }
     let recovery = Recovery::start();
     let recovered = recovery.find();

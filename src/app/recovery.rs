@@ -41,6 +41,8 @@ pub(super) struct RecoveredFile {
     pub backup: Backup,
     /// Path of the backup file.
     pub path: PathBuf,
+    /// Lock file of the ended run, held so that no other window offers this backup.
+    _claim: File,
 }
 
 /// Reasons why a backup cannot be written.
@@ -105,19 +107,23 @@ impl Recovery {
             .ok()?
             .filter_map(|entry| {
                 let entry = entry.ok()?;
+                // Reading a pipe or a device would never end.
+                let metadata = entry.metadata().ok().filter(fs::Metadata::is_file)?;
                 let path = entry.path();
                 remove_stale_lock(&path);
                 let is_backup = path.extension().is_some_and(|extension| extension == "json");
-                let modified = entry.metadata().ok()?.modified().ok()?;
-                (is_backup && !is_held(&path.with_extension("lock"))).then_some((modified, path))
+                is_backup.then_some((metadata.modified().ok()?, path))
             })
             .collect();
         backups.sort();
-        let read = |path: PathBuf| match Backup::read(&path) {
-            Ok(backup) => Some(RecoveredFile { backup, path }),
-            Err(error) => {
-                log::warn!("the backup {} cannot be opened: {error}", path.display());
-                None
+        let read = |path: PathBuf| {
+            let claim = claim(&path.with_extension("lock"))?;
+            match Backup::read(&path) {
+                Ok(backup) => Some(RecoveredFile { backup, path, _claim: claim }),
+                Err(error) => {
+                    log::warn!("the backup {} cannot be opened: {error}", path.display());
+                    None
+                }
             }
         };
         backups.into_iter().rev().find_map(|(_, path)| read(path))
@@ -258,7 +264,7 @@ impl Backup {
     }
 
     fn read(path: &Path) -> Result<Self, Box<dyn std::error::Error>> {
-        let BackupFile { file, document } = serde_json::from_str(&fs::read_to_string(path)?)?;
+        let BackupFile { file, document } = serde_json::from_str(&files::read_text(path)?)?;
         let name = path.display().to_string();
         Ok(Self {
             document: files::parse(&name, &document, &OpenOptions::default())?.document,
@@ -273,15 +279,20 @@ impl Backup {
     }
 }
 
-/// Whether a running program holds a lock file.
-fn is_held(lock: &Path) -> bool {
-    File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)))
+/// Takes the lock file of an ended run; `None` if a running program holds it.
+fn claim(lock: &Path) -> Option<File> {
+    let is_regular = fs::metadata(lock).map_or(true, |lock| lock.is_file());
+    let file = is_regular.then(|| File::options().append(true).create(true).open(lock))?.ok()?;
+    file.try_lock().is_ok().then_some(file)
 }
 
 /// Removes `lock` if it is the lock file of a run that ended without a backup.
 fn remove_stale_lock(lock: &Path) {
     let is_lock = lock.extension().is_some_and(|extension| extension == "lock");
-    if is_lock && !lock.with_extension("json").exists() && !is_held(lock) {
+    if is_lock
+        && !lock.with_extension("json").exists()
+        && let Some(_claim) = claim(lock)
+    {
         let _ = fs::remove_file(lock);
     }
 }

@@ -23,17 +23,21 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// Loads the settings; if they cannot be read, logs the reason and returns the defaults.
-    pub fn load() -> Self {
+    /// Loads the settings. If they cannot be read, returns the defaults and the reason, which names
+    /// the file.
+    pub fn load() -> (Self, Option<String>) {
         let Some(path) = path().filter(|path| path.exists()) else {
-            return Self::default();
+            return (Self::default(), None);
         };
-        let read = std::fs::read_to_string(&path).map_err(|error| error.to_string());
-        read.and_then(|text| ron::from_str(&text).map_err(|error| error.to_string()))
-            .unwrap_or_else(|error| {
-                log::warn!("cannot read {}: {error}", path.display());
-                Self::default()
-            })
+        let read = io::read_text(&path).map_err(|error| error.to_string());
+        match read.and_then(|text| ron::from_str(&text).map_err(|error| error.to_string())) {
+            Ok(settings) => (settings, None),
+            Err(error) => {
+                let reason = format!("the settings in {} cannot be read: {error}", path.display());
+                log::warn!("{reason}");
+                (Self::default(), Some(format!("{reason}; defaults are used")))
+            }
+        }
     }
 
     /// Saves the settings, or logs the reason why they cannot be saved.

@@ -4,10 +4,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use tempfile::TempDir;
-
 use super::WriteError;
-use super::write::{failed, folder_of};
+use super::temporary_file::{REPLACED, TemporaryFolder};
+use super::write::{check_writable, failed, folder_of, take_over};
 
 /// Files of one folder that are written all together or not at all. They are first written to a
 /// temporary folder inside that folder.
@@ -17,14 +16,11 @@ use super::write::{failed, folder_of};
 #[derive(Debug)]
 pub struct FileBatch {
     folder: PathBuf,
-    /// Temporary folder of the new files, with the subfolder [`BACKUP`] for the files that they
+    /// Temporary folder of the new files, with the subfolder [`REPLACED`] for the files that they
     /// replace. Deleted when the batch is dropped.
-    temporary: TempDir,
+    temporary: TemporaryFolder,
     names: Mutex<Vec<OsString>>,
 }
-
-/// Name of the subfolder that holds the replaced files.
-const BACKUP: &str = "before";
 
 impl FileBatch {
     /// Returns a batch without files, for the folder that contains the file `path`.
@@ -34,11 +30,7 @@ impl FileBatch {
     /// Fails if the folder cannot be written to.
     pub fn beside(path: &Path) -> Result<Self, WriteError> {
         let folder = folder_of(path)?;
-        let temporary = tempfile::Builder::new()
-            .prefix(".ik-arm-")
-            .tempdir_in(&folder)
-            .map_err(|source| failed(path, source))?;
-        fs::create_dir(temporary.path().join(BACKUP)).map_err(|source| failed(path, source))?;
+        let temporary = TemporaryFolder::new(&folder).map_err(|source| failed(path, source))?;
         Ok(Self { folder, temporary, names: Mutex::default() })
     }
 
@@ -75,7 +67,13 @@ impl FileBatch {
         let (path, backup) = (self.folder.join(name), self.backup_path(name));
         match fs::symlink_metadata(&path) {
             Ok(existing) if existing.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-            Ok(_) => fs::rename(&path, &backup)?,
+            Ok(existing) => {
+                if existing.is_file() {
+                    check_writable(&path, &existing)?;
+                    take_over(&fs::File::open(self.new_path(name))?, &existing)?;
+                }
+                fs::rename(&path, &backup)?;
+            }
             Err(_) => {}
         }
         fs::rename(self.new_path(name), &path).inspect_err(|_| {
@@ -91,10 +89,10 @@ impl FileBatch {
     }
 
     fn new_path(&self, name: &OsStr) -> PathBuf {
-        self.temporary.path().join(name)
+        self.temporary.folder.path().join(name)
     }
 
     fn backup_path(&self, name: &OsStr) -> PathBuf {
-        self.temporary.path().join(BACKUP).join(name)
+        self.temporary.folder.path().join(REPLACED).join(name)
     }
 }

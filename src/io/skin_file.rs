@@ -55,10 +55,6 @@ fn read(
     path: &Path,
     skeleton: Option<&str>,
 ) -> Result<Option<(Shared<FileMesh>, SkinFile)>, OpenError> {
-    // Reading a device or a pipe would never end.
-    if path.metadata().is_ok_and(|file| !file.is_file()) {
-        return Ok(None);
-    }
     let source = Source::open(path)?;
     let options = skeleton.map_or_else(OpenOptions::default, OpenOptions::of_skeleton);
     let opened = match FileFormat::detect(&source)? {

@@ -9,6 +9,7 @@ use super::field_error::{FieldError, FieldWarnings};
 use super::foreign::ForeignFormat;
 use super::gltf::chunks::{self, Chunks};
 use super::json_path::{JsonPath, byte_at, line_and_column};
+use super::regular_file::open_regular;
 use super::translation::Translation;
 
 /// The text of a file, and the file's name for errors.
@@ -28,7 +29,11 @@ pub struct Source {
 impl Source {
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let name = path.display().to_string();
-        let opened = File::open(path).and_then(|mut file| Ok((most_bytes(&mut file)?, file)));
+        let opened = open_regular(path).and_then(|file| {
+            let length = file.limit();
+            let mut file = file.into_inner();
+            Ok((most_bytes(&mut file, length)?, file.take(length)))
+        });
         match opened {
             Ok((Some(most), _)) => Err(too_large(&name, most)),
             Ok((None, file)) => {
@@ -50,19 +55,27 @@ impl Source {
         if bytes.starts_with(chunks::MAGIC) {
             let Chunks { json, binary } =
                 chunks::split(bytes).map_err(|reason| invalid_chunks(file, reason))?;
-            return Ok(Self { binary: Some(binary), checksum, ..Self::new(name, &json) });
+            return Ok(Self { binary: Some(binary), checksum, ..Self::of_text(name, json) });
         }
         match String::from_utf8(bytes) {
-            Ok(text) => Ok(Self { checksum, ..Self::new(name, &text) }),
+            Ok(text) => Ok(Self { checksum, ..Self::of_text(name, text) }),
             Err(error) => Err(not_utf8(file, error.as_bytes())),
         }
     }
 
     pub fn new(name: &str, text: &str) -> Self {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        Self::of_text(name, text.to_owned())
+    }
+
+    /// Takes the text, which may be large, without a copy.
+    fn of_text(name: &str, mut text: String) -> Self {
+        const BYTE_ORDER_MARK: char = '\u{feff}';
+        if text.starts_with(BYTE_ORDER_MARK) {
+            text.drain(..BYTE_ORDER_MARK.len_utf8());
+        }
         Self {
             name: name.to_owned(),
-            text: text.to_owned(),
+            text,
             translated: None,
             binary: None,
             path: None,
@@ -189,8 +202,7 @@ impl Source {
 }
 
 /// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be read.
-fn most_bytes(file: &mut File) -> io::Result<Option<u64>> {
-    let length = file.metadata()?.len();
+fn most_bytes(file: &mut File, length: u64) -> io::Result<Option<u64>> {
     if length <= OpenError::MAX_BYTES {
         return Ok(None);
     }

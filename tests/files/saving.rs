@@ -172,3 +172,105 @@ fn messages_tell_the_reason_of_the_system_without_its_number() {
     let read = io::open(folder.path(), &options).expect_err("a folder");
     assert!(!read.to_string().contains("os error"), "{read}");
 }
+
+#[test]
+fn a_write_protected_file_is_not_replaced_and_the_message_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("kept.json");
+    fs::write(&path, "kept").expect("written");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).expect("write-protected");
+    // Holds for root, too.
+    let (_, message) = not_saved(&path);
+    assert!(message.ends_with("kept.json could not be written: the file is write-protected"));
+    let batch = io::FileBatch::beside(&path).expect("a folder");
+    batch.add(std::ffi::OsStr::new("kept.json"), b"new").expect("added");
+    let message = batch.finish().expect_err("it is write-protected").to_string();
+    assert!(message.ends_with("the file is write-protected"), "{message}");
+    assert_eq!(fs::read_to_string(&path).expect("there"), "kept");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left");
+}
+
+/// Only root may give files away; another user cannot make the case.
+#[test]
+fn a_replaced_file_keeps_owner_and_mode() {
+    use std::os::unix::fs::{MetadataExt as _, chown};
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("theirs.json");
+    fs::write(&path, "old").expect("written");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).expect("mode");
+    let is_theirs = chown(&path, Some(12_345), Some(12_346)).is_ok();
+    let before = fs::metadata(&path).expect("there");
+    let owner = |file: &fs::Metadata| (file.uid(), file.gid(), file.mode());
+    io::write(&path, b"new").expect("written");
+    let after = fs::metadata(&path).expect("there");
+    assert_eq!(owner(&after), owner(&before), "given away: {is_theirs}");
+    assert_eq!(fs::read(&path).expect("there"), b"new");
+
+    let batch = io::FileBatch::beside(&path).expect("a folder");
+    batch.add(std::ffi::OsStr::new("theirs.json"), b"newer").expect("added");
+    batch.finish().expect("written");
+    assert_eq!(owner(&fs::metadata(&path).expect("there")), owner(&before));
+    assert_eq!(fs::read(&path).expect("there"), b"newer");
+}
+
+#[test]
+fn a_link_to_a_file_that_is_not_there_yet_stays_a_link() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir(folder.path().join("inner")).expect("a folder");
+    let (first, second) = (folder.path().join("first.json"), folder.path().join("second.json"));
+    std::os::unix::fs::symlink("second.json", &first).expect("a link");
+    std::os::unix::fs::symlink("inner/real.json", &second).expect("a link");
+    io::write(&first, b"content").expect("written");
+    for link in [&first, &second] {
+        assert!(fs::symlink_metadata(link).expect("there").is_symlink(), "{}", link.display());
+    }
+    assert_eq!(fs::read(folder.path().join("inner/real.json")).expect("there"), b"content");
+
+    let lost = folder.path().join("lost.json");
+    std::os::unix::fs::symlink("no-folder/real.json", &lost).expect("a link");
+    let message = io::write(&lost, b"content").expect_err("no folder").to_string();
+    assert!(message.contains("there is no folder") && message.contains("no-folder"), "{message}");
+}
+
+#[test]
+fn temporary_files_of_killed_programs_are_removed_by_the_next_write_and_those_of_others_stay() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("document.json");
+    let others = folder.path().join("others.json");
+    let hidden = || {
+        let names = fs::read_dir(folder.path()).expect("a folder").flatten();
+        let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.filter(|name| name.starts_with(".ik-arm-")).collect::<Vec<_>>()
+    };
+    // Kills it until it has left something behind.
+    let given_up = Instant::now() + Duration::from_secs(60);
+    while hidden().is_empty() {
+        assert!(Instant::now() < given_up, "it is never killed while it writes");
+        let saver = Saver::start(&path);
+        sleep(Duration::from_millis(60));
+        drop(saver);
+    }
+    // A folder as a killed export of pictures leaves it, with a file that it was about to replace.
+    let pictures = folder.path().join(".ik-arm-pictures");
+    fs::create_dir_all(pictures.join("before")).expect("a folder");
+    fs::write(pictures.join(".lock"), "").expect("written");
+    fs::write(pictures.join("a.png"), "new").expect("written");
+    fs::write(pictures.join("before/a.png"), "the only copy").expect("written");
+
+    let batch = io::FileBatch::beside(&path).expect("a folder");
+    let of_batch = hidden();
+    assert_eq!(of_batch.len(), 1, "only the folder of the running batch is left: {of_batch:?}");
+    assert_eq!(fs::read(folder.path().join("a.png")).expect("put back"), b"the only copy");
+    io::write_with(&others, |file| {
+        io::write(&path, b"another").expect("written");
+        assert_eq!(hidden().len(), 2, "files that are being written stay: {:?}", hidden());
+        file.write_all(b"other").expect("written");
+        Ok::<(), io::WriteError>(())
+    })
+    .expect("written");
+    batch.add(std::ffi::OsStr::new("b.png"), b"picture").expect("added");
+    batch.finish().expect("written");
+    assert_eq!(hidden(), [""; 0]);
+    assert_eq!(fs::read(&others).expect("there"), b"other");
+    assert_eq!(fs::read(folder.path().join("b.png")).expect("there"), b"picture");
+}

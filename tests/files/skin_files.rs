@@ -324,5 +324,9 @@ fn a_document_cannot_make_the_program_read_a_device() {
     fs::write(project.path("scene.json"), text.replace("models/figure.glb", "/dev/zero"))
         .expect("a file");
     let opened = project.open();
-    assert!(warnings(&opened)[0].contains("/dev/zero has no mesh"), "{:?}", warnings(&opened));
+    assert!(
+        warnings(&opened)[0].contains("/dev/zero cannot be read: it must be a regular file"),
+        "{:?}",
+        warnings(&opened)
+    );
 }

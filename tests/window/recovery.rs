@@ -120,3 +120,66 @@ fn unsaved_changes_are_kept_when_the_display_server_dies() {
     let errors = program.errors();
     assert!(errors.contains(&file.display().to_string()), "{errors}");
 }
+
+/// The middle of the window, where dialogs are.
+const MIDDLE: egui::Pos2 = egui::pos2(640.0, 400.0);
+/// A point of the status line.
+const STATUS: egui::Pos2 = egui::pos2(150.0, 788.0);
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn two_windows_do_not_offer_the_same_backup() {
+    let (folder, places, program) = open();
+    let without_dialog = program.at_rest();
+    change(&program, &places);
+    program.terminate();
+    program.end();
+
+    let first = Program::open(folder.path());
+    let offered = first.at_rest();
+    assert!(changed(&without_dialog, &offered, MIDDLE, 150.0) > 1000, "it is offered");
+    let server = DisplayServer::start();
+    let second = Program::open_on(folder.path(), server.display());
+    let not_offered = second.at_rest();
+    assert!(changed(&without_dialog, &not_offered, MIDDLE, 150.0) < 100, "it is offered twice");
+    second.kill();
+    first.kill();
+    // A window that ended without an answer leaves it for the next.
+    let third = Program::open(folder.path());
+    assert!(changed(&without_dialog, &third.at_rest(), MIDDLE, 150.0) > 1000);
+    third.kill();
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn pipes_among_the_backups_do_not_keep_the_window_from_opening() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let recovery = folder.path().join("ik-arm/recovery");
+    std::fs::create_dir_all(&recovery).expect("a folder");
+    for name in ["1.json", "1.lock", "2.lock"] {
+        let pipe = recovery.join(name);
+        let made = std::process::Command::new("mkfifo").arg(pipe).status().expect("mkfifo runs");
+        assert!(made.success());
+    }
+    Program::open(folder.path()).kill();
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn damaged_settings_are_told_once_in_the_status_line() {
+    let (folder, _, program) = open();
+    let usual = program.at_rest();
+    program.key("ctrl+q");
+    assert_eq!(program.end(), Some(0));
+    let settings = folder.path().join("ik-arm/settings.ron");
+    std::fs::write(&settings, "(preferences: (theme: \"none").expect("written");
+
+    let program = Program::open(folder.path());
+    let told = program.at_rest();
+    assert!(changed(&usual, &told, STATUS, 120.0) > 200, "nothing is told");
+    program.key("ctrl+q");
+    assert_eq!(program.end(), Some(0));
+    let program = Program::open(folder.path());
+    assert!(changed(&usual, &program.at_rest(), STATUS, 120.0) < 50, "it is told again");
+    program.kill();
+}

@@ -824,3 +824,48 @@ fn errors_in_a_binary_file_have_no_line() {
         assert!(said(bytes).contains(expected), "{}", said(bytes));
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_link_that_leads_out_of_the_files_folder_is_refused_and_one_inside_is_followed() {
+    let text = moving();
+    let outside = tempfile::tempdir().expect("a folder");
+    let secret = outside.path().join("secret.bin");
+    std::fs::write(&secret, text.bytes()).expect("written");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.gltf");
+    std::os::unix::fs::symlink(&secret, folder.path().join("out.bin")).expect("a link");
+    std::fs::write(&path, text.with_uri("out.bin")).expect("written");
+    let error =
+        io::open(&path, &io::OpenOptions::default()).expect_err("it is refused").to_string();
+    assert!(error.contains("must be in the file's own folder, got "), "{error}");
+    assert!(error.contains("out.bin, a link to ") && error.contains("secret.bin"), "{error}");
+
+    std::fs::write(folder.path().join("real.bin"), text.bytes()).expect("written");
+    std::os::unix::fs::symlink("real.bin", folder.path().join("in.bin")).expect("a link");
+    std::fs::write(&path, text.with_uri("in.bin")).expect("written");
+    io::open(&path, &io::OpenOptions::default()).expect("it opens");
+}
+
+#[test]
+fn a_file_that_needs_a_later_version_is_refused_and_unread_extensions_are_told_by_name() {
+    let with = |more: &dyn Fn(&mut Value)| {
+        let mut json: Value = serde_json::from_str(&Text::chain().embedded()).expect("JSON");
+        more(&mut json);
+        json.to_string()
+    };
+    let later = with(&|json| json["asset"]["minVersion"] = json!("2.1"));
+    let error = refusal(&later);
+    assert!(error.contains("asset.minVersion: must be 2.0, the version that is read, got \"2.1\""));
+    let read = with(&|json| json["asset"]["minVersion"] = json!("2.0"));
+    io::parse("x.gltf", &read, &io::OpenOptions::default()).expect("it opens");
+
+    let required = with(&|json| {
+        json["extensionsRequired"] = json!(["KHR_mesh_quantization", "VENDOR_everything_else"]);
+    });
+    let opened = io::parse("x.gltf", &required, &io::OpenOptions::default()).expect("it opens");
+    let told: Vec<_> = opened.warnings.iter().map(ToString::to_string).collect();
+    let told: Vec<_> = told.iter().filter(|it| it.contains("extensionsRequired")).collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].ends_with("VENDOR_everything_else is not read: what it changes is missing"));
+}

@@ -9,6 +9,7 @@ use crate::io::base64;
 use crate::io::error::{OpenError, system_reason};
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
+use crate::io::regular_file::open_regular;
 use crate::io::source::Source;
 
 /// The bytes of the buffers that the import reads; `None` for all other buffers.
@@ -120,11 +121,13 @@ fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, Strin
     }
     let path = folder.join(name);
     let failed = |error| format!("{} cannot be read: {}", path.display(), system_reason(&error));
-    if !fs::metadata(&path).map_err(failed)?.is_file() {
-        return Err(format!("must be a file, got {}", path.display()));
+    let target = fs::canonicalize(&path).map_err(failed)?;
+    if !target.starts_with(fs::canonicalize(folder).map_err(failed)?) {
+        let (link, target) = (path.display(), target.display());
+        return Err(format!("must be in the file's own folder, got {link}, a link to {target}"));
     }
+    let file = open_regular(&path).map_err(failed)?;
     let mut bytes = Vec::new();
-    let file = fs::File::open(&path).map_err(failed)?;
     file.take(length as u64).read_to_end(&mut bytes).map_err(failed)?;
     Ok(bytes)
 }

@@ -59,6 +59,14 @@ impl GltfFile {
         Some(format!("its data are compressed by {name}, which is not read{advice}"))
     }
 
+    /// Names of required extensions that are not read, except for those that compress data.
+    pub fn unread_extensions(&self) -> impl Iterator<Item = &str> {
+        /// Extensions that need nothing beyond what is read.
+        const READ: [&str; 1] = ["KHR_mesh_quantization"];
+        let names = self.required.iter().map(String::as_str);
+        names.filter(|name| !READ.contains(name) && !name.ends_with("_compression"))
+    }
+
     /// The error, or for a file with compressed data the reason behind it.
     pub fn blamed(&self, error: FieldError) -> FieldError {
         match self.compression() {
@@ -71,6 +79,8 @@ impl GltfFile {
 #[derive(Deserialize)]
 pub struct GltfAsset {
     pub version: String,
+    #[serde(rename = "minVersion")]
+    pub min_version: Option<String>,
     generator: Option<String>,
 }
 

@@ -80,6 +80,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let described: Vec<FileAnimation> = scans.iter().map(|scan| scan.described(&joints)).collect();
     let animation = animations::choose(source, &described, options.animation.as_deref())?;
     let mut warnings = FieldWarnings::default();
+    for name in file.unread_extensions() {
+        let reason = format!("{name} is not read: what it changes is missing");
+        warnings.push(JsonPath::root().key("extensionsRequired"), reason);
+    }
     if let (Some(chosen), true) = (animation, described.len() > 1) {
         let reason = format!("{:?} is read, one of {}", described[chosen].name, described.len());
         warnings.push(at_animation(chosen), reason);
@@ -116,6 +120,10 @@ fn check(file: &GltfFile) -> Result<(), FieldError> {
     if asset.version.split('.').next() != Some("2") {
         let reason = format!("must be 2 or 2.x, got {:?}", asset.version);
         return Err(FieldError::new(JsonPath::root().key("asset").key("version"), reason));
+    }
+    if let Some(least) = asset.min_version.as_deref().filter(|least| *least != "2.0") {
+        let reason = format!("must be 2.0, the version that is read, got {least:?}");
+        return Err(FieldError::new(JsonPath::root().key("asset").key("minVersion"), reason));
     }
     Ok(())
 }
