@@ -10,6 +10,7 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::time_limit::TimeLimitArgs;
 use crate::document::{Bake, BakeError, Baked, Document, Timeline};
 use crate::io::{OpenError, SaveError, save};
 
@@ -37,6 +38,8 @@ pub struct BakeArgs {
     /// 0.00001 to 1 [default: 0.001]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     tolerance: Option<NumberArgument>,
+    #[command(flatten)]
+    time_limit: TimeLimitArgs,
 }
 
 /// Reasons why no file is written.
@@ -78,9 +81,10 @@ impl BakeArgs {
         if !open::is_document(&self.output) {
             return Err(BakeCommandError::Extension(self.output.display().to_string()));
         }
+        let limit = self.time_limit.start_long(&self.file);
         let document = open::open(&self.file, &self.open.options())?.document;
         let settings = self.settings(&document);
-        let baked = run_with_bar(|progress| {
+        let baked = run_with_bar(&limit, |progress| {
             settings.run(&document, |done, total| progress.step(done, total).is_ok())
         })?;
         let baked = baked

@@ -6,11 +6,12 @@ use std::process::ExitCode;
 use thiserror::Error;
 
 use super::argument::FrameRateArgument;
-use super::export::UnitName;
+use super::export::{UnitName, named};
 use super::open;
 use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::time_limit::TimeLimitArgs;
 use crate::export::{ExportError, ExportOptions, Format, export};
 use crate::io::{OpenError, SaveError, save};
 
@@ -36,6 +37,8 @@ pub struct ConvertArgs {
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
     unit: Option<UnitName>,
+    #[command(flatten)]
+    time_limit: TimeLimitArgs,
 }
 
 /// Reasons why no file is written.
@@ -43,10 +46,12 @@ pub struct ConvertArgs {
 enum ConvertError {
     #[error(transparent)]
     Open(#[from] OpenError),
+    #[error("{file}: {error}")]
+    Save { file: String, error: SaveError },
     #[error(transparent)]
-    Save(#[from] SaveError),
-    #[error(transparent)]
-    Export(#[from] ExportError),
+    Output(ExportError),
+    #[error("{file}: {error}")]
+    Input { file: String, error: ExportError },
     #[error("Ctrl+C cannot be handled: {0}")]
     Interrupt(#[from] ctrlc::Error),
     #[error("OUT must end in .json, .glb or .bvh, got {0}; ik-arm export writes other formats")]
@@ -68,7 +73,7 @@ pub fn run(args: &ConvertArgs) -> ExitCode {
             notes.iter().for_each(|note| say(note));
             ExitCode::SUCCESS
         }
-        Err(ConvertError::Export(ExportError::Cancelled(cancelled))) => {
+        Err(ConvertError::Output(ExportError::Cancelled(cancelled))) => {
             say(&format_args!("{cancelled}; {} is not written", args.output.display()));
             ExitCode::from(INTERRUPTED)
         }
@@ -91,9 +96,11 @@ impl ConvertArgs {
                 return Err(ConvertError::Argument(argument));
             }
         }
+        let limit = self.time_limit.start_long(&self.file);
         let document = open::open(&self.file, &self.open.options())?.document;
         if output == Output::Document {
-            save(&document, &self.output)?;
+            save(&document, &self.output)
+                .map_err(|error| ConvertError::Save { file: open::name(&self.file), error })?;
             return Ok(Vec::new());
         }
         let options = ExportOptions {
@@ -102,7 +109,11 @@ impl ConvertArgs {
             ..ExportOptions::default()
         };
         let write = |progress: &_| export(&document, &self.output, &options, progress);
-        Ok(run_with_bar(write)??)
+        let exported = run_with_bar(&limit, write)?;
+        named(&self.file, exported).map_err(|(file, error)| match error.is_about_output() {
+            true => ConvertError::Output(error),
+            false => ConvertError::Input { file, error },
+        })
     }
 
     fn output(&self) -> Result<Output, ConvertError> {

@@ -1,6 +1,6 @@
 //! `ik-arm export`: a file's motion or pictures, for other programs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
@@ -11,6 +11,7 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::time_limit::TimeLimitArgs;
 use super::view_name::ViewName;
 use crate::document::Document;
 use crate::export::{ExportError, ExportOptions, Format, export};
@@ -61,6 +62,8 @@ pub struct ExportArgs {
     /// file's]
     #[arg(long, value_name = "WAY")]
     skinning: Option<Skinning>,
+    #[command(flatten)]
+    time_limit: TimeLimitArgs,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -80,7 +83,9 @@ enum ExportCommandError {
     #[error("cannot handle Ctrl+C: {0}")]
     Signal(#[from] ctrlc::Error),
     #[error(transparent)]
-    Export(#[from] ExportError),
+    Output(ExportError),
+    #[error("{file}: {error}")]
+    Input { file: String, error: ExportError },
 }
 
 pub fn run(args: &ExportArgs) -> ExitCode {
@@ -89,7 +94,7 @@ pub fn run(args: &ExportArgs) -> ExitCode {
             notes.iter().for_each(|note| say(note));
             ExitCode::SUCCESS
         }
-        Err(ExportCommandError::Export(ExportError::Cancelled(cancelled))) => {
+        Err(ExportCommandError::Output(ExportError::Cancelled(cancelled))) => {
             say(&format_args!("{cancelled}; {} is not written", args.output.display()));
             ExitCode::from(INTERRUPTED)
         }
@@ -104,13 +109,18 @@ pub fn run(args: &ExportArgs) -> ExitCode {
 impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
         // Checks the arguments first, so that no file is read if one of them does not apply.
-        self.check(Format::of(&self.output).map_err(ExportError::from)?)?;
+        let format = Format::of(&self.output).map_err(ExportError::from);
+        self.check(format.map_err(ExportCommandError::Output)?)?;
+        let limit = self.time_limit.start_long(&self.file);
         let mut document = open::open(&self.file, &self.open.options())?.document;
         if let Some(view) = self.view {
             document.camera = view.framing(&document, self.size());
         }
-        let notes = run_with_bar(|progress| self.write(&document, progress))??;
-        Ok(notes)
+        let notes = run_with_bar(&limit, |progress| self.write(&document, progress))?;
+        named(&self.file, notes).map_err(|(file, error)| match error.is_about_output() {
+            true => ExportCommandError::Output(error),
+            false => ExportCommandError::Input { file, error },
+        })
     }
 
     fn write(&self, document: &Document, progress: &Progress) -> Result<Vec<String>, ExportError> {
@@ -152,6 +162,18 @@ impl ExportArgs {
             unit: self.unit.map_or(defaults.unit, UnitName::into),
             skinning: self.skinning,
         }
+    }
+}
+
+/// The notes and the error of an export, with the name of the file that they are about.
+pub fn named(
+    file: &Path,
+    exported: Result<Vec<String>, ExportError>,
+) -> Result<Vec<String>, (String, ExportError)> {
+    let name = open::name(file);
+    match exported {
+        Ok(notes) => Ok(notes.iter().map(|note| format!("{name}: {note}")).collect()),
+        Err(error) => Err((name, error)),
     }
 }
 

@@ -17,9 +17,11 @@ mod render;
 mod report;
 mod skin;
 mod solve;
+mod time_limit;
 mod tour;
 mod view_name;
 
+use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -81,7 +83,10 @@ pub fn run() -> ExitCode {
     // rfd logs an error where the system has no file dialog; the program's own dialog asks instead.
     let filter = env_logger::Env::default().default_filter_or("error,rfd=off");
     env_logger::Builder::from_env(filter).init();
-    let Cli { command, window } = Cli::parse();
+    let Cli { command, window } = match Cli::try_parse() {
+        Ok(parsed) => parsed,
+        Err(message) => return print_message(&message),
+    };
     if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
         quiet::restart_without_device_select();
     }
@@ -99,5 +104,17 @@ pub fn run() -> ExitCode {
         Some(Command::Manual(args)) => manual::run(&args, Cli::command()),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&window),
+    }
+}
+
+/// Prints the help, the version or a usage error, and returns the exit code.
+fn print_message(message: &clap::Error) -> ExitCode {
+    let printed = message.print().and_then(|()| io::stdout().flush());
+    match printed {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe && !message.use_stderr() => {
+            report::say(&format_args!("cannot write to standard output: {error}"));
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(report::USAGE)),
     }
 }

@@ -42,6 +42,7 @@ impl OpenArgs {
             skeleton: self.skeleton.clone(),
             animation: self.animation.clone(),
             up: self.up.map(UpName::into),
+            without_camera: false,
         }
     }
 }

@@ -43,6 +43,22 @@ pub enum ExportError {
     Write(#[from] WriteError),
 }
 
+impl ExportError {
+    /// Whether the error is about the file to write, or about no file, rather than about the document.
+    pub fn is_about_output(&self) -> bool {
+        match self {
+            Self::Cancelled(_) | Self::Format(_) | Self::Gpu(_) | Self::Write(_) => true,
+            Self::Glb(_)
+            | Self::Motion(_)
+            | Self::Obj(_)
+            | Self::Time(_)
+            | Self::Draw(_)
+            | Self::Png(_)
+            | Self::Frames(_) => false,
+        }
+    }
+}
+
 /// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
 impl From<GlbError> for ExportError {
     fn from(error: GlbError) -> Self {

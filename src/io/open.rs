@@ -80,7 +80,7 @@ fn read_format(
         (FileFormat::Gltf, _) => return gltf::read(source, options),
         (FileFormat::Scene, skeleton) => js3d::read(source, skeleton)?,
         (FileFormat::Motion, skeleton) => bvh::read(source, skeleton)?,
-        (FileFormat::Document, None) => format::read(source)?,
+        (FileFormat::Document, None) => format::read(source, options)?,
         (FileFormat::Document, Some(name)) => {
             return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: Vec::new() });
         }

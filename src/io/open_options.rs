@@ -10,6 +10,9 @@ pub struct OpenOptions {
     pub animation: Option<String>,
     /// The axis that points up; `None` for y, with a remark if it seems to be z.
     pub up: Option<Upwards>,
+    /// Whether a document that has no camera gets the default one, instead of one that frames the
+    /// skeleton: to frame it, its targets are solved for.
+    pub without_camera: bool,
 }
 
 impl OpenOptions {

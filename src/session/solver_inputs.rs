@@ -1,6 +1,6 @@
 use crate::document::{Document, RigKind};
 use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::{SolverOptions, TipTarget};
+use crate::kinematics::chain_ik::{ChainSolver, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::skeleton::Skeleton;
 
 /// What a solver run solves: the FK pose, the targets and the options of a document at a time.
@@ -30,5 +30,11 @@ impl SolverInputs {
             return Err("There is no target to solve for; add one to a joint");
         }
         Ok(Self { fk: rig.fk_at(time), targets, options: rig.solver })
+    }
+
+    /// A solver with the bound of a pose, so that the window stays responsive.
+    pub fn solver(&self) -> Result<ChainSolver, SolveError> {
+        let Self { fk, targets, options } = self;
+        ChainSolver::bounded(fk, targets, options, ChainSolver::POSE_WORK)
     }
 }

@@ -33,7 +33,7 @@ impl SolverRun {
     const MOST_ANEW: u32 = 1000;
 
     pub(super) fn new(inputs: SolverInputs) -> Result<Self, SolveError> {
-        let solver = ChainSolver::new(&inputs.fk, &inputs.targets, &inputs.options)?;
+        let solver = inputs.solver()?;
         let skeleton = Skeleton::clone(&inputs.fk);
         Ok(Self {
             inputs,
@@ -140,15 +140,14 @@ impl SolverRun {
 
     /// Makes an iteration again and returns its parts.
     fn replay(&self, iteration: u32) -> Vec<SubStep> {
-        let SolverInputs { fk, targets, options } = &self.inputs;
-        let solver = ChainSolver::new(fk, targets, options);
+        let solver = self.inputs.solver();
         let (Ok(mut solver), Some(before)) = (solver, iteration.checked_sub(1)) else {
             return Vec::new();
         };
         for _ in 0..before {
             solver.step();
         }
-        solver.step_inside(fk).1
+        solver.step_inside(&self.inputs.fk).1
     }
 
     /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at the

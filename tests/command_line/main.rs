@@ -7,6 +7,7 @@ mod common;
 mod convert;
 mod examples;
 mod export;
+mod limits;
 mod pose;
 mod render;
 mod shell;

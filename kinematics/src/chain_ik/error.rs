@@ -3,6 +3,7 @@ use core::fmt;
 use glam::Vec3;
 use thiserror::Error;
 
+use super::Method;
 use crate::skeleton::JointId;
 
 /// A skeleton, target or option that cannot be solved.
@@ -30,6 +31,19 @@ pub enum SolveError {
         joint: JointId,
         /// The weight.
         weight: f32,
+    },
+    /// One iteration is more work than [`ChainSolver::bounded`](super::ChainSolver::bounded) allows.
+    #[error(
+        "{targets} targets and {links} joints are more work for {method} than a pose may take; \
+         fabrik takes the least"
+    )]
+    TooMuchWork {
+        /// The method.
+        method: Method,
+        /// Number of targets.
+        targets: usize,
+        /// Number of joints that move.
+        links: usize,
     },
     /// An option is out of range.
     #[error("{field} must be finite and {}, got {value}", field.bound())]

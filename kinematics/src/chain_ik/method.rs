@@ -3,6 +3,8 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
+use super::problem::{Link, Problem};
+
 /// Method of a [`ChainSolver`](super::ChainSolver).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
@@ -64,6 +66,25 @@ impl Method {
             Self::Fabrik => "fabrik",
             Self::Relaxation => "relaxation",
             Self::TwoBone => "two-bone",
+        }
+    }
+
+    /// Work of one iteration: the joints and the pairs of a joint and a target that it visits. Damped
+    /// least squares factors a matrix with three rows for each target, too.
+    pub(super) fn work(self, problem: &Problem) -> u64 {
+        /// Multiplications that take as long as a visit of a joint.
+        const MULTIPLICATIONS: u64 = 64;
+        let visits = problem.links.len() as u64 + problem.below.len() as u64;
+        match self {
+            Self::Fabrik | Self::Ccd | Self::Transpose | Self::TransposeFixed | Self::TwoBone => {
+                visits
+            }
+            Self::DampedLeastSquares => {
+                let pairs = |link: &Link| (problem.below(link).len() as u64).pow(2);
+                let rows = 3 * problem.effectors.len() as u64;
+                let factor = rows.saturating_pow(3) / (3 * MULTIPLICATIONS);
+                visits + problem.links.iter().map(pairs).sum::<u64>() + factor
+            }
         }
     }
 

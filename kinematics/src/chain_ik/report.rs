@@ -40,9 +40,13 @@ pub enum Status {
     Stalled,
     /// The maximum number of iterations has been made.
     OutOfIterations,
+    /// The work that [`ChainSolver::bounded`](super::ChainSolver::bounded) allows has been done, and
+    /// iterations are left.
+    Bounded,
 }
 
-/// Writes the state in words: "iterating", "converged", "stalled" or "out of iterations".
+/// Writes the state in words: "iterating", "converged", "stalled", "out of iterations" or
+/// "stopped at the bound on work".
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
@@ -50,6 +54,7 @@ impl fmt::Display for Status {
             Self::Converged => "converged",
             Self::Stalled => "stalled",
             Self::OutOfIterations => "out of iterations",
+            Self::Bounded => "stopped at the bound on work",
         })
     }
 }

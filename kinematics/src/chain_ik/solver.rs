@@ -31,6 +31,8 @@ use crate::skeleton::Skeleton;
 pub struct ChainSolver {
     report: Report,
     max_iterations: u32,
+    /// Number of iterations after which a bounded solver stops; `None` for others.
+    bound: Option<u32>,
     /// In world units.
     tolerance: f64,
     problem: Problem,
@@ -43,6 +45,10 @@ pub struct ChainSolver {
 }
 
 impl ChainSolver {
+    /// Maximum work for one pose of a rig, in the units of [`ChainSolver::bounded`]: less than about
+    /// a third of a second.
+    pub const POSE_WORK: u64 = 1 << 23;
+
     /// Prepares a solver without making an iteration.
     ///
     /// # Errors
@@ -54,7 +60,40 @@ impl ChainSolver {
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         options.check()?;
+        Self::of_problem(problem::build(skeleton, targets, options)?, skeleton, targets, options)
+    }
+
+    /// Prepares a solver that stops with [`Status::Bounded`] after at most `work`, so that the time
+    /// of [`ChainSolver::run`] has a bound. The unit of work is a joint, or a pair of a joint and a
+    /// target, in one iteration: some 10 to 50 ns.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::TooMuchWork`] if not even one iteration is allowed; see also [`SolveError`].
+    pub fn bounded(
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+        work: u64,
+    ) -> Result<Self, SolveError> {
+        options.check()?;
         let problem = problem::build(skeleton, targets, options)?;
+        let (method, of_iteration) = (options.method, options.method.work(&problem));
+        if of_iteration > work {
+            let (targets, links) = (targets.len(), problem.links.len());
+            return Err(SolveError::TooMuchWork { method, targets, links });
+        }
+        let bound = u32::try_from(work / of_iteration.max(1)).unwrap_or(u32::MAX);
+        let solver = Self::of_problem(problem, skeleton, targets, options)?;
+        Ok(Self { bound: Some(bound), ..solver })
+    }
+
+    fn of_problem(
+        problem: Problem,
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
         let tolerance = options.tolerance.map_or(1e-4 * problem.world_length(), f64::from);
         let state = MethodState::new(&problem, skeleton, options)?;
         let mut config = Configuration::new(&problem);
@@ -70,6 +109,7 @@ impl ChainSolver {
         let mut solver = Self {
             report,
             max_iterations,
+            bound: None,
             tolerance,
             problem,
             config,
@@ -80,6 +120,12 @@ impl ChainSolver {
         };
         solver.set_targets(targets);
         Ok(solver)
+    }
+
+    /// Work of the iterations so far, in the units of [`ChainSolver::bounded`].
+    pub(crate) fn work(&self) -> u64 {
+        let of_iteration = self.report.method.work(&self.problem);
+        of_iteration.saturating_mul(u64::from(self.report.iterations.max(1)))
     }
 
     /// Progress so far.
@@ -131,7 +177,7 @@ impl ChainSolver {
             self.escape_or_stall();
             recorder.record_change(&self.config, Event::Restart);
         }
-        if self.report.status == Status::OutOfIterations {
+        if matches!(self.report.status, Status::OutOfIterations | Status::Bounded) {
             self.escape.restore_best(&self.problem, &mut self.config);
             recorder.record_change(&self.config, Event::Restart);
             self.measure();
@@ -139,7 +185,8 @@ impl ChainSolver {
         self.report
     }
 
-    /// Iterates until the solver has converged, has stalled or is out of iterations.
+    /// Iterates until the solver has converged, has stalled, is out of iterations or has come to its
+    /// bound.
     pub fn run(&mut self) -> Report {
         while !self.is_over() {
             self.step();
@@ -147,7 +194,7 @@ impl ChainSolver {
         self.report
     }
 
-    /// Whether the solver has converged, has stalled or is out of iterations.
+    /// Whether the solver has converged, has stalled, is out of iterations or has come to its bound.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.report.status != Status::Iterating
@@ -229,6 +276,8 @@ impl ChainSolver {
             Status::Converged
         } else if self.report.iterations >= self.max_iterations {
             Status::OutOfIterations
+        } else if self.bound.is_some_and(|bound| self.report.iterations >= bound) {
+            Status::Bounded
         } else {
             Status::Iterating
         };

@@ -70,7 +70,8 @@ impl SkeletonRig {
     ///
     /// The whole-body targets are solved together, from the FK pose; the limb targets then one after
     /// the other, in the order of their joints, but each after those that move the joints that it is
-    /// on.
+    /// on. The work of the solver is bounded: see [`Status::Bounded`](crate::chain_ik::Status::Bounded)
+    /// and [`SolveError::TooMuchWork`].
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
@@ -140,16 +141,17 @@ impl SkeletonRig {
             return;
         }
         let tips: Vec<TipTarget> = active.iter().map(|it| it.tip_target(solved, time)).collect();
-        let outcome = match ChainSolver::new(solved, &tips, &self.solver) {
-            Ok(mut solver) => {
-                let report = solver.run();
-                let mut full = Skeleton::clone(solved);
-                solver.write(&mut full);
-                blend(solved, &full, &active);
-                TargetOutcome::WholeBody(report)
-            }
-            Err(error) => TargetOutcome::Refused(error),
-        };
+        let outcome =
+            match ChainSolver::bounded(solved, &tips, &self.solver, ChainSolver::POSE_WORK) {
+                Ok(mut solver) => {
+                    let report = solver.run();
+                    let mut full = Skeleton::clone(solved);
+                    solver.write(&mut full);
+                    blend(solved, &full, &active);
+                    TargetOutcome::WholeBody(report)
+                }
+                Err(error) => TargetOutcome::Refused(error),
+            };
         for (target, slot) in self.targets.iter().zip(outcomes) {
             if is_active(&target) {
                 *slot = outcome.clone();

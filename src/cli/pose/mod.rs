@@ -19,8 +19,9 @@ use super::argument::TimeArgument;
 use super::open;
 use super::open_args::OpenArgs;
 use super::report::{fail, say};
+use super::time_limit::TimeLimitArgs;
 use crate::document::{RigKind, SkeletonRig};
-use crate::io::{OpenError, Opened, system_reason};
+use crate::io::{OpenError, OpenOptions, Opened, system_reason};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
 use given_target::{GivenTarget, SetTargetsError};
@@ -88,6 +89,8 @@ pub struct PoseArgs {
         value_parser = tolerance
     )]
     tolerance: Option<f32>,
+    #[command(flatten)]
+    time_limit: TimeLimitArgs,
 }
 
 fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
@@ -131,12 +134,15 @@ pub fn run(args: &PoseArgs) -> ExitCode {
 
 fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let file = open::name(&args.file);
-    let opened = open::open(&args.file, &args.open.options())?;
+    args.time_limit.start_short(&args.file);
+    // A list needs no camera, and a skeleton is solved to be framed by one.
+    let options = OpenOptions { without_camera: args.list, ..args.open.options() };
+    let opened = open::open(&args.file, &options)?;
     if opened.document.rig == RigKind::Arm {
         return Err(PoseCommandError::Arm(file));
     }
     if args.list {
-        let list = FileList::new(&opened, args.open.options().skeleton.as_deref());
+        let list = FileList::new(&opened, options.skeleton.as_deref());
         let text = serde_json::to_string_pretty(&list).map_err(io::Error::from)?;
         return Ok(writeln!(io::stdout(), "{text}")?);
     }
@@ -146,6 +152,9 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     given_target::set_targets(&mut rig, &args.targets, time, &order)
         .map_err(|error| PoseCommandError::Target { file: file.clone(), error })?;
     let posed = posed(&rig, args, &order, &file)?;
+    if let Some(remark) = &posed.remark {
+        say(&format_args!("{file}: {remark}"));
+    }
     let line = PoseLine::new(&rig, &posed, &order, time)
         .map_err(|name| PoseCommandError::Overflow { file, name: name.to_owned() })?;
     let line = serde_json::to_string(&line).map_err(io::Error::from)?;

@@ -7,6 +7,7 @@ use crate::cli::argument::{
     TimeArgument,
 };
 use crate::cli::open_args::OpenArgs;
+use crate::cli::time_limit::TimeLimitArgs;
 use crate::cli::view_name::ViewName;
 use crate::rig::{Crowd, Processor};
 
@@ -24,6 +25,8 @@ pub struct RenderArgs {
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub open: OpenArgs,
+    #[command(flatten)]
+    pub time_limit: TimeLimitArgs,
     /// Time of the picture in seconds, at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
     pub time: TimeArgument,

@@ -62,6 +62,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     let time = args.time.0;
     let mut document = match &args.file {
         Some(file) => {
+            args.time_limit.start_long(file);
             let opened = open::open(file, &args.open.options())?;
             opened.document.evaluate(time)
         }

@@ -42,6 +42,11 @@ pub struct DocumentFields {
 }
 
 impl DocumentFields {
+    /// Whether the file has a camera for its rig.
+    pub fn has_camera(&self) -> bool {
+        self.camera.is_some()
+    }
+
     pub fn new(document: &Document) -> Self {
         let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
@@ -103,9 +108,6 @@ impl DocumentFields {
             animation_name: self.animation_name,
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document)?;
-        if camera.is_none() && document.rig == RigKind::Skeleton {
-            document.camera = document.framing_camera();
-        }
         Ok(document)
     }
 }

@@ -1,34 +1,43 @@
 use super::file::DocumentFields;
 use super::header::{Header, VERSION};
 use super::version_1;
+use crate::document::RigKind;
 use crate::io::error::OpenError;
 use crate::io::field_error::FieldWarnings;
 use crate::io::json_path::JsonPath;
+use crate::io::open_options::OpenOptions;
 use crate::io::opened::Opened;
 use crate::io::skin_file::load_skin;
 use crate::io::source::Source;
 use crate::io::value::JsonObject;
 
 /// Reads a document of any supported version.
-pub fn read(source: &Source) -> Result<Opened, OpenError> {
+pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     match source.parse::<JsonObject<Header>>(|_| {}) {
         Ok(JsonObject(header)) => match header.version().map_err(|error| source.error(&error))? {
-            1 => read_fields(&source.translated(version_1::translated(source.text()))),
-            _ => read_fields(source),
+            1 => {
+                let translation = version_1::translated(source.text());
+                read_fields(&source.translated(translation), options)
+            }
+            _ => read_fields(source, options),
         },
         // The header is invalid. Reading all fields fails, too, and its error names the exact
         // field.
-        Err(_) => read_fields(source),
+        Err(_) => read_fields(source, options),
     }
 }
 
-fn read_fields(source: &Source) -> Result<Opened, OpenError> {
+fn read_fields(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let mut warnings = FieldWarnings::default();
     let JsonObject(fields) = source.parse::<JsonObject<DocumentFields>>(|field| {
         let reason = unknown(&field);
         warnings.push(field, reason);
     })?;
+    let has_camera = fields.has_camera();
     let mut document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
+    if !has_camera && !options.without_camera && document.rig == RigKind::Skeleton {
+        document.camera = document.framing_camera();
+    }
     load_skin(&mut document, source.folder(), &mut warnings);
     Ok(Opened {
         order: document.skeleton().ids().collect(),

@@ -20,6 +20,8 @@
 //!
 //! - A target in a hole of the reach that limits make is found as *limits*; whether a pose within
 //!   the limits exists is not proved, only not found.
+//! - The work has a bound: of many missed targets only the farthest are examined, and none if one
+//!   solve takes as long as a pose may.
 //! - For three targets that conflict only all together, no pair is found.
 
 mod chain_reach;
@@ -90,7 +92,17 @@ pub fn diagnose_targets(
     let is_missed = |(_, residual): &(JointId, f32)| *residual > solved.tolerance;
     let mut missed: Vec<_> = joints.iter().map(residual).filter(is_missed).collect();
     missed.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+    missed.truncate(most_examined(solved.work));
     let examination = Examination::new(inputs, solved);
     let found = missed.into_iter().map(|(joint, residual)| examination.examine(joint, residual));
     Ok(in_turn(found.collect()))
+}
+
+/// Number of targets that are examined if one solve takes `work`.
+fn most_examined(work: u64) -> usize {
+    /// Work of all solves, some seconds.
+    const MOST_WORK: u64 = 1 << 26;
+    /// Solves for one target, roughly.
+    const SOLVES: u64 = 20;
+    usize::try_from(MOST_WORK / work.saturating_mul(SOLVES).max(1)).unwrap_or(usize::MAX)
 }

@@ -15,15 +15,19 @@ pub(super) struct Solved {
     pub skeleton: Skeleton,
     pub report: Report,
     pub tolerance: f32,
+    /// Work of the solve, in the units of [`ChainSolver::bounded`].
+    pub work: u64,
 }
 
 impl SolveInputs {
     pub fn solve(&self) -> Result<Solved, SolveError> {
-        let mut solver = ChainSolver::new(&self.skeleton, &self.targets, &self.options)?;
+        let Self { skeleton, targets, options } = self;
+        let most = ChainSolver::POSE_WORK;
+        let mut solver = ChainSolver::bounded(skeleton, targets, options, most)?;
         let report = solver.run();
         let mut skeleton = self.skeleton.clone();
         solver.write(&mut skeleton);
-        Ok(Solved { skeleton, report, tolerance: solver.tolerance() })
+        Ok(Solved { skeleton, report, tolerance: solver.tolerance(), work: solver.work() })
     }
 
     /// These inputs after a remedy; `None` if it cannot be applied.

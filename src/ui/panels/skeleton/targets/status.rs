@@ -87,7 +87,7 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
         }
         TargetOutcome::WholeBody(report) => match report.status {
             Status::Converged => format!("Reached after {} iterations", report.iterations),
-            Status::Iterating | Status::Stalled | Status::OutOfIterations => {
+            Status::Iterating | Status::Stalled | Status::OutOfIterations | Status::Bounded => {
                 format!("Not reached: {gap} away, {}", report.status)
             }
         },
