@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use crate::{program, run, stderr};
 
 /// Far more than a bounded command takes, and far less than an unbounded one.
-const SOON: Duration = Duration::from_secs(30);
+const SOON: Duration = Duration::from_secs(60);
 
 struct Desk(TempDir);
 

@@ -2,11 +2,12 @@ use crate::chain_ik::{SolveError, TipTarget};
 use crate::skeleton::Skeleton;
 
 pub(super) fn check_targets(skeleton: &Skeleton, targets: &[TipTarget]) -> Result<(), SolveError> {
-    for (index, target) in targets.iter().enumerate() {
+    let mut targeted = vec![false; skeleton.joints().len()];
+    for target in targets {
         if skeleton.joint(target.joint).is_none() {
             return Err(SolveError::NoJoint(target.joint));
         }
-        if targets[..index].iter().any(|other| other.joint == target.joint) {
+        if std::mem::replace(&mut targeted[target.joint.index()], true) {
             return Err(SolveError::TwoTargets(target.joint));
         }
         check_target(target)?;

@@ -29,7 +29,8 @@ impl SkeletonRig {
     /// If there is no target with one of the indices.
     pub fn diagnose_targets(&self, targets: &[usize], time: f64) -> Vec<Diagnosis> {
         let evaluated = self.evaluate(time);
-        let is_missed = |index: &usize| self.is_missed(*index, &evaluated);
+        let tolerance = self.tolerance();
+        let is_missed = |index: &usize| self.is_missed(*index, &evaluated, tolerance);
         let mut missed: Vec<usize> = targets.iter().copied().filter(is_missed).collect();
         if missed.is_empty() {
             return Vec::new();
@@ -40,8 +41,11 @@ impl SkeletonRig {
         let mut full = self.clone();
         missed.iter().for_each(|index| full.targets[*index].influence = 1.0);
         let evaluated_full = full.evaluate(time);
-        let still_missed: Vec<usize> =
-            missed.iter().copied().filter(|it| full.is_missed(*it, &evaluated_full)).collect();
+        let still_missed: Vec<usize> = missed
+            .iter()
+            .copied()
+            .filter(|it| full.is_missed(*it, &evaluated_full, tolerance))
+            .collect();
         let whole_body = full.diagnose_whole_body(&still_missed, &evaluated_full, time);
 
         let examine = |index: usize| {
@@ -49,7 +53,7 @@ impl SkeletonRig {
                 rig: self,
                 full: &full,
                 time,
-                tolerance: self.tolerance(),
+                tolerance,
                 target: &self.targets[index],
                 residual: evaluated.targets[index].error,
                 rotation_residual: evaluated.targets[index].rotation_error.unwrap_or_default(),
@@ -66,13 +70,14 @@ impl SkeletonRig {
     }
 
     /// Whether the place or the rotation of an enabled target is not reached in the evaluated pose.
-    fn is_missed(&self, index: usize, evaluated: &EvaluatedSkeleton) -> bool {
+    fn is_missed(&self, index: usize, evaluated: &EvaluatedSkeleton, tolerance: f32) -> bool {
         let (target, report) = (&self.targets[index], &evaluated.targets[index]);
         let has_converged = match &report.outcome {
             TargetOutcome::WholeBody(report) => target.influence == 1.0 && report.converged(),
             _ => false,
         };
-        target.enabled && !has_converged && !self.is_reached(report)
+        let is_reached = report.error <= tolerance && !report.misses_rotation();
+        target.enabled && !has_converged && !is_reached
     }
 
     /// The causes for the whole-body targets among those with the indices `missed`.

@@ -1,5 +1,7 @@
 //! The signed distance of a body, near a box.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use super::body::{Body, Group, Member, Part};
@@ -161,17 +163,28 @@ impl Field {
 
 /// The groups that are no part of another one, whose distance is never greater.
 fn without_subsets(groups: Vec<(f64, Group)>) -> Vec<Group> {
-    let mut kept: Vec<Group> = Vec::new();
     let is_part = |one: &Group, other: &Group| {
         one.members.iter().all(|member| other.members.contains(member))
     };
+    let mut kept: Vec<Option<Group>> = Vec::new();
+    // Only groups with a member in common are compared: comparing each with each takes most of the time
+    // for a long chain.
+    let mut with_part: HashMap<usize, Vec<usize>> = HashMap::new();
     for (_, group) in groups {
-        if !kept.iter().any(|other| is_part(&group, other)) {
-            kept.retain(|other| !is_part(other, &group));
-            kept.push(group);
+        let parts = || group.members.iter().filter_map(|member| member.parts().last());
+        let others = parts().filter_map(|part| with_part.get(&part)).flatten();
+        let others: Vec<usize> = others.copied().filter(|other| kept[*other].is_some()).collect();
+        let of_kept = |other: &usize| kept[*other].as_ref();
+        if others.iter().filter_map(of_kept).any(|other| is_part(&group, other)) {
+            continue;
         }
+        for other in others {
+            kept[other].take_if(|other| is_part(other, &group));
+        }
+        parts().for_each(|part| with_part.entry(part).or_default().push(kept.len()));
+        kept.push(Some(group));
     }
-    kept
+    kept.into_iter().flatten().collect()
 }
 
 /// The quadratic smooth minimum: min(a, b) where they differ by more than `width`, and at most
@@ -266,6 +279,49 @@ impl Member {
         match *self {
             Self::Part(part) => Self::Part(index[part]),
             Self::Bend(first, second, width) => Self::Bend(index[first], index[second], width),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Group, Member, without_subsets};
+
+    /// The groups that are no part of another one, each compared with each.
+    fn by_all_pairs(groups: &[Group]) -> Vec<Vec<Member>> {
+        let is_part = |one: &Group, other: &Group| {
+            one.members.iter().all(|member| other.members.contains(member))
+        };
+        let mut kept: Vec<&Group> = Vec::new();
+        for group in groups {
+            if !kept.iter().any(|other| is_part(group, other)) {
+                kept.retain(|other| !is_part(other, group));
+                kept.push(group);
+            }
+        }
+        kept.into_iter().map(|group| group.members.clone()).collect()
+    }
+
+    #[test]
+    fn the_same_groups_are_kept_as_by_comparing_each_with_each() {
+        let mut state = 7_u64;
+        let mut below = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) % most
+        };
+        for case in 0..2_000 {
+            let mut member = |parts: u64| match below(3) {
+                0 => Member::Bend(below(parts) as usize, below(parts) as usize, 0.5),
+                _ => Member::Part(below(parts) as usize),
+            };
+            let groups: Vec<Group> = (0..12)
+                .map(|index| Group {
+                    members: (0..1 + (index + case) % 3).map(|_| member(4)).collect(),
+                })
+                .collect();
+            let kept = without_subsets(groups.iter().map(|group| (0.0, group.clone())).collect());
+            let kept: Vec<_> = kept.into_iter().map(|group| group.members).collect();
+            assert_eq!(kept, by_all_pairs(&groups));
         }
     }
 }
