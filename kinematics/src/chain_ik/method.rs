@@ -76,9 +76,12 @@ impl Method {
         const MULTIPLICATIONS: u64 = 64;
         let visits = problem.links.len() as u64 + problem.below.len() as u64;
         match self {
-            Self::Fabrik | Self::Ccd | Self::Transpose | Self::TransposeFixed | Self::TwoBone => {
-                visits
-            }
+            Self::Fabrik
+            | Self::Relaxation
+            | Self::Ccd
+            | Self::Transpose
+            | Self::TransposeFixed
+            | Self::TwoBone => visits,
             Self::DampedLeastSquares => {
                 let pairs = |link: &Link| (problem.below(link).len() as u64).pow(2);
                 let rows = 3 * problem.effectors.len() as u64;

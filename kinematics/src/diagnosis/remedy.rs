@@ -106,7 +106,7 @@ impl Remedy {
         match self {
             Self::SetRoot(root) => options.root = *root,
             Self::UseMethod(method) => options.method = *method,
-            Self::AllowIterations(iterations) => options.iterations = Some((*iterations).max(1)),
+            Self::AllowIterations(iterations) => options.iterations = Some(*iterations),
             _ => {}
         }
     }
