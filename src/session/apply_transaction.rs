@@ -35,6 +35,11 @@ impl Session {
         self.editing.revision()
     }
 
+    /// The revision with which the document was opened: another number for each opened document.
+    pub fn first_revision(&self) -> u64 {
+        self.editing.first_revision()
+    }
+
     /// Label of the step that Undo undoes; `None` if there is none.
     pub fn undo_label(&self) -> Option<&'static str> {
         self.editing.undo_label()

@@ -22,6 +22,8 @@ pub(super) struct Editing {
     /// Revision of the document: documents with the same revision differ at most in their cameras.
     revision: u64,
     newest_revision: u64,
+    /// The revision with which the document was opened.
+    first_revision: u64,
     /// Revision of the document's content: documents with the same one differ at most in their
     /// cameras, shown rig and overlays.
     content: u64,
@@ -47,6 +49,7 @@ impl Editing {
             history: History::default(),
             revision: 0,
             newest_revision: 0,
+            first_revision: 0,
             content: 0,
             saved_content: 0,
         }
@@ -58,6 +61,7 @@ impl Editing {
         Self {
             revision,
             newest_revision: revision,
+            first_revision: revision,
             content: revision,
             saved_content: revision,
             ..Self::new(document)
@@ -78,6 +82,10 @@ impl Editing {
 
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+
+    pub fn first_revision(&self) -> u64 {
+        self.first_revision
     }
 
     /// Whether a transaction is open.

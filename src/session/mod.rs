@@ -6,6 +6,7 @@ mod apply;
 mod apply_bake;
 mod apply_edit;
 mod apply_file;
+mod apply_follow_mouse;
 mod apply_playback;
 mod apply_select;
 mod apply_shell;

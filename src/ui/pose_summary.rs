@@ -5,6 +5,7 @@ use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::Crowd;
 use crate::session::{Session, ShownIteration};
+use crate::ui::labels::count_of_keys;
 use crate::ui::widgets::format::{decimals_of_cell, grouped};
 
 /// One sentence about the reach of the arm.
@@ -34,10 +35,15 @@ pub(in crate::ui) fn describe(session: &Session) -> String {
     if let Some(crowd) = session.crowd() {
         return describe_crowd(&crowd);
     }
-    match session.rig() {
+    let mut line = match session.rig() {
         RigKind::Arm => describe_pose(session),
         RigKind::Skeleton => describe_skeleton(session),
+    };
+    let keys = session.selected_keys().len();
+    if keys > 0 {
+        line += &format!(" · {} selected", count_of_keys(keys));
     }
+    line
 }
 
 fn describe_crowd(crowd: &Crowd) -> String {
@@ -60,7 +66,13 @@ fn describe_skeleton(session: &Session) -> String {
     let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
     line.extend(describe_solver(session));
     match session.selected().and_then(|joint| joints.get(joint.index())) {
-        Some(joint) => line.insert(0, joint.name.clone()),
+        Some(joint) => line.insert(
+            0,
+            match session.selection().len() {
+                1 => joint.name.clone(),
+                selected => format!("{} and {} more selected", joint.name, selected - 1),
+            },
+        ),
         None if rig.follow_paths.iter().any(|path| path.kind == PathKind::Head) => {
             line.push("drag the circle at the head: the body follows".to_owned());
         }

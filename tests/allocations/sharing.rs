@@ -85,6 +85,7 @@ fn keying_many_channels_takes_the_memory_of_the_keys() {
     assert_eq!(session.document().keys.count(), KEYED);
 
     // An unkeyed edit becomes a key: what is shown copies the skeleton, the document does not.
+    session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(turn(JointId::new(3), 0.4));
     let taken = counted(&mut session, key()).bytes_total;

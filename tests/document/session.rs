@@ -757,7 +757,8 @@ fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay()
     session.apply(EditAction::SetHand(Vec3::X));
     assert!(session.message().is_some_and(|it| it.starts_with("Unkeyed change")));
     session.apply(PlaybackAction::SetTime(0.25));
-    assert_eq!(session.message(), None, "the change is lost, and so is what to do about it");
+    let discarded = "The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back";
+    assert_eq!(session.message(), Some(discarded));
     session.apply(ShellAction::Report("Saved".to_owned()));
     session.apply(PlaybackAction::SetTime(0.3));
     assert_eq!(session.message(), Some("Saved"));

@@ -11,7 +11,8 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{
-    Action, EditAction, FileAction, PlaybackAction, SelectAction, TransactionAction, ViewAction,
+    Action, EditAction, FileAction, PlaybackAction, SelectAction, ShellAction, TransactionAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
@@ -551,4 +552,36 @@ fn zooming_out_ends_at_four_times_the_timeline() {
     }
     bench.settle();
     assert!((second(&bench) - 0.25 * before).abs() < 0.02 * before, "{}", second(&bench));
+}
+
+#[test]
+fn the_zoom_of_the_timeline_is_that_of_one_document() {
+    let opened = || FileAction::OpenExample(Example::find("keyframes").expect("an example"));
+    let keys = |bench: &Bench| key_of_hand(bench, 2.0).x - key_of_hand(bench, 1.0).x;
+    let mut bench = keyed();
+    let was = keys(&bench);
+    bench.move_to(key_of_hand(&bench, 2.0) + vec2(0.0, 12.0));
+    bench.wheel(3.0);
+    bench.settle();
+    assert!(keys(&bench) > 1.5 * was);
+    bench.apply([FileAction::Discard(Box::new(opened()))]);
+    let ruler = |bench: &Bench| bench.rect(Role::Slider, "Timeline ruler");
+    let first = |bench: &Bench| key_of_hand(bench, 0.0).x - ruler(bench).left();
+    let mut fresh = Bench::with_timeline(LARGE);
+    fresh.apply([opened()]);
+    assert!((first(&bench) - first(&fresh)).abs() < 0.6, "the whole timeline is shown");
+}
+
+#[test]
+fn the_status_line_says_how_many_keys_and_joints_are_selected() {
+    let mut bench = keyed();
+    bench.apply([SelectAction::Keys(vec![(Channel::Hand, 1.0), (Channel::Hand, 2.0)])]);
+    bench.apply([ShellAction::ClearMessage]);
+    assert!(bench.says("2 keys selected"));
+    let mut bench = Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))]);
+    bench.apply([
+        Action::from(SelectAction::Joints([1, 2, 3].map(JointId::new).to_vec())),
+        ShellAction::ClearMessage.into(),
+    ]);
+    assert!(bench.says("and 2 more selected"));
 }

@@ -61,7 +61,7 @@ impl<'a> PathChain<'a> {
     ) -> Option<Self> {
         let bones = bones(skeleton, target.joint);
         let body = posed(skeleton, &bones)?;
-        let to_skeleton = skeleton.transform().inverse() * target.space.to_world(skeleton);
+        let to_skeleton = target.space.to_skeleton(skeleton);
         let to_target = to_skeleton.inverse();
         let body = body.into_iter().map(|bone| to_target.transform_vector3(bone)).collect();
         let path = head_path::of_target(target, keys, time, body);

@@ -28,6 +28,16 @@ impl TargetSpace {
         joint.map_or(Affine3A::IDENTITY, |joint| pose.full_transform(joint))
     }
 
+    /// Transform from this space to skeleton space, for a pose of the skeleton. That of the world is not
+    /// finite if the skeleton's own transform is singular.
+    pub(super) fn to_skeleton(self, pose: &Skeleton) -> Affine3A {
+        let Some(joint) = self.joint().filter(|joint| pose.joint(*joint).is_some()) else {
+            return pose.transform().inverse();
+        };
+        let below = |above: Affine3A, joint: JointId| pose[joint].local() * above;
+        pose.ancestors(joint).fold(Affine3A::IDENTITY, below)
+    }
+
     /// Rotation from this space to the world, for a pose of the skeleton.
     pub fn rotation(self, pose: &Skeleton) -> Quat {
         let joint = self.joint().filter(|joint| pose.joint(*joint).is_some());

@@ -92,7 +92,7 @@ pub(super) fn add(
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
             drawn.add_target(scene, target, report);
-            if target.enabled && target.is_moving() {
+            if target.enabled && target.is_moving() && !rig.leads_path(target) {
                 targets::add_trail(scene, target, &evaluated.solved, overlays.time);
             }
             if target.enabled && overlays.ghosts.is_empty() && !rig.leads_path(target) {

@@ -18,6 +18,8 @@ use crate::ui::{labels, style};
 
 /// Distance in points from the centre of a key's diamond to a corner.
 const SIZE: f32 = 5.0;
+/// Half the height of a diamond among dense keys, in points.
+const SMALLEST: f32 = 2.0;
 /// A key that is closer than this distance, in points, to the key at its left has no tooltip.
 const NEAR: f32 = 5.0;
 
@@ -149,8 +151,13 @@ impl DopeSheet<'_> {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let (from, to) = self.scale.range();
         let mut last = f32::NEG_INFINITY;
-        for time in row.times(self.session, from, to) {
+        let times: Vec<f64> = row.times(self.session, from, to);
+        for (index, &time) in times.iter().enumerate() {
             let x = self.scale.x(time);
+            let neighbours = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
+            let gaps =
+                neighbours.filter_map(|other| Some((self.scale.x(*times.get(other)?) - x).abs()));
+            let room = SMALLEST.max(0.5 * gaps.fold(f32::INFINITY, f32::min));
             let picked = self.picked.has(row, time);
             if x - last < 1.0 && !picked {
                 continue;
@@ -170,7 +177,7 @@ impl DopeSheet<'_> {
                 }
                 false => (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color)),
             };
-            let size = if hovered { size + 1.0 } else { size };
+            let size = if hovered { size + 1.0 } else { size.min(room) };
             painter.add(diamond(at, size, fill, rim));
         }
     }

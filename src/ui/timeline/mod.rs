@@ -44,7 +44,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let areas = TimelineAreas::new(ui.available_rect_before_wrap(), beside);
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
-    let mut scale = TimeScale::load(ui, timeline, areas.keys.x_range());
+    let mut scale = TimeScale::load(ui, session, areas.keys.x_range());
     let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
     let wheeled = Rect::from_min_max(areas.ruler.min, areas.keys.max);
     scale.follow_input(ui, session, wheeled, curves.then_some(areas.keys), is_panning);

@@ -31,19 +31,35 @@ pub(in crate::ui) struct TimeScale {
 /// of [`TimeScale`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StoredRange {
-    /// Start and end of the timeline for which the range was stored, in seconds.
-    of: (f64, f64),
+    of: RangeOwner,
     from: f64,
     to: f64,
 }
 
+/// What a range was stored for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct RangeOwner {
+    /// The open document.
+    document: u64,
+    /// Start and end of its timeline, in seconds.
+    timeline: (f64, f64),
+}
+
+impl RangeOwner {
+    fn of(session: &Session) -> Self {
+        let Timeline { start, end, .. } = session.document().timeline;
+        Self { document: session.first_revision(), timeline: (start, end) }
+    }
+}
+
 impl TimeScale {
-    /// The scale that shows the stored range or, if none is stored or the timeline's start or end
-    /// has changed since, the whole timeline. `seen` is the range of x on screen in points.
-    pub fn load(ui: &Ui, timeline: Timeline, seen: Rangef) -> Self {
-        let of = (timeline.start, timeline.end);
+    /// The scale that shows the stored range or, if none is stored, or if another document was opened
+    /// or the timeline's start or end has changed since, the whole timeline. `seen` is the range of x on
+    /// screen in points.
+    pub fn load(ui: &Ui, session: &Session, seen: Rangef) -> Self {
+        let of = RangeOwner::of(session);
         let zoom = ui.data(|data| data.get_temp::<StoredRange>(id())).filter(|zoom| zoom.of == of);
-        let (from, to) = zoom.map_or(of, |zoom| (zoom.from, zoom.to));
+        let (from, to) = zoom.map_or(of.timeline, |zoom| (zoom.from, zoom.to));
         Self { seen, from, to }
     }
 
@@ -52,8 +68,8 @@ impl TimeScale {
         Self { seen, from, to }
     }
 
-    fn keep(self, ui: &Ui, timeline: Timeline) {
-        let zoom = StoredRange { of: (timeline.start, timeline.end), from: self.from, to: self.to };
+    fn keep(self, ui: &Ui, session: &Session) {
+        let zoom = StoredRange { of: RangeOwner::of(session), from: self.from, to: self.to };
         ui.data_mut(|data| data.insert_temp(id(), zoom));
     }
 
@@ -97,12 +113,11 @@ impl TimeScale {
         is_panning: bool,
     ) {
         let before = *self;
-        let timeline = session.document().timeline;
         if session.is_playing() {
             self.reveal(session.time());
         }
         let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
-            self.keep_if_other(ui, before, timeline);
+            self.keep_if_other(ui, before, session);
             return;
         };
         if is_panning {
@@ -126,12 +141,12 @@ impl TimeScale {
                 }
             }
         }
-        self.keep_if_other(ui, before, timeline);
+        self.keep_if_other(ui, before, session);
     }
 
-    fn keep_if_other(self, ui: &Ui, before: Self, timeline: Timeline) {
+    fn keep_if_other(self, ui: &Ui, before: Self, session: &Session) {
         if self != before {
-            self.keep(ui, timeline);
+            self.keep(ui, session);
         }
     }
 
