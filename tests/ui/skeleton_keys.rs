@@ -10,7 +10,7 @@ use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::session::{
-    Action, EditAction, Effect, FileAction, PanelTab, SelectAction, SolverAction,
+    Action, EditAction, Effect, FileAction, PanelTab, PlaybackAction, SelectAction, SolverAction,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -225,8 +225,11 @@ fn a_file_that_is_dropped_on_the_window_is_opened() {
 fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
     for example in Example::ALL {
         let mut bench = Bench::of_size(SMALL);
-        bench.apply([FileAction::OpenExample(example)]);
-        bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
+        bench.apply_moving([FileAction::OpenExample(example)]);
+        bench.apply([
+            Action::from(PlaybackAction::Play(false)),
+            SelectAction::Joints(vec![JointId::new(0)]).into(),
+        ]);
         bench.harness.check_accessibility();
         let joint = bench.session().skeleton_rig().targets.first().map(|target| target.joint);
         bench.apply([

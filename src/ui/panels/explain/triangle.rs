@@ -161,6 +161,7 @@ impl TriangleDrawing {
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
         labels.write_always("Upper d_1", self.upper, ArmFigure::Upper, &beside(shoulder, elbow));
         labels.write_always("Lower d_2", self.lower, ArmFigure::Lower, &beside(elbow, hand));
+        labels.write_always("Distance D", self.text, ArmFigure::Distance, &beside(hand, shoulder));
         let angle = self.angle.min(TAU / 4.0);
         let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             [0.5, 0.65, 0.8, 0.35].map(|part| Place {
@@ -169,8 +170,10 @@ impl TriangleDrawing {
             })
         });
         let below = vec2(0.0, 1.0);
-        let beneath = Place { at: shoulder + below * 6.0, away: below };
-        let in_angle: Vec<_> = in_angle.chain([beneath]).collect();
+        let beneath = [6.0, 20.0].map(|down| Place { at: shoulder + below * down, away: below });
+        let left = vec2(-1.0, 0.0);
+        let beside_it = Place { at: shoulder + left * 10.0, away: left };
+        let in_angle: Vec<_> = in_angle.chain(beneath).chain([beside_it]).collect();
         labels.write("Shoulder θ_e", self.accent, ArmFigure::ShoulderAngle, &in_angle);
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
@@ -179,7 +182,6 @@ impl TriangleDrawing {
             .map(|(side, up)| Place { at: elbow + vec2(side * 12.0, up), away: vec2(side, 0.0) });
         let at_elbow = [at_elbow, above.to_vec()].concat();
         labels.write("Elbow φ", self.accent, ArmFigure::ElbowAngle, &at_elbow);
-        labels.write_always("Distance D", self.text, ArmFigure::Distance, &beside(hand, shoulder));
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
         labels.write("Out o_e", self.weak, ArmFigure::Out, &heights);
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
