@@ -48,7 +48,7 @@ pub fn keys(track: &Spline<Vec3>, times: &[f64], node: NodeRotation) -> Vec<Quat
             match keys.last_mut() {
                 Some(last) => last.leaving = leaving,
                 None => {
-                    keys.push(QuaternionKey { time: turn.start, value, arriving: ZERO, leaving })
+                    keys.push(QuaternionKey { time: turn.start, value, arriving: ZERO, leaving });
                 }
             }
             value = turn.near(end, value);
