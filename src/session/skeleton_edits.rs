@@ -158,6 +158,10 @@ impl Session {
     pub(super) fn add_target(&mut self, joint: JointId) {
         let pose = &self.evaluated_skeleton().solved;
         let Some(target) = self.skeleton_rig().new_target(joint, pose) else { return };
+        if !target.home.is_finite() {
+            let home = target.home;
+            return self.fail(format!("The position of a target must be finite, got {home}"));
+        }
         self.edit_skeleton(|rig| {
             rig.targets.push(target);
             Ok(())

@@ -374,3 +374,16 @@ fn a_remedy_that_allows_no_iterations_is_refused() {
     assert_eq!(session.message(), Some("The solver's iterations must be above 0, got 0"));
     assert_eq!(session.document(), &before);
 }
+
+#[test]
+fn a_target_at_a_tip_that_overflows_is_refused() {
+    let mut session = session();
+    session.apply(EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) });
+    session.apply(EditAction::SetAxis { joint: JointId::new(1), axis: Vec3::splat(f32::MAX) });
+    session.apply(EditAction::SetTranslation(Vec3::splat(f32::MAX)));
+    let before = session.document().clone();
+    session.apply(EditAction::AddTarget(JointId::new(1)));
+    let message = session.message().unwrap_or_default();
+    assert!(message.starts_with("The position of a target must be finite, got"), "{message}");
+    assert_eq!(session.document(), &before);
+}
