@@ -109,7 +109,11 @@ fn export_message(
 /// Reads a file on a thread of its own, because the file may be large.
 pub(super) fn open(path: PathBuf, options: OpenOptions, proxy: EventLoopProxy<UserEvent>) {
     thread::spawn(move || {
-        let read = Box::new(io::open(&path, &options));
+        let read = io::open(&path, &options).map(|mut opened| {
+            opened.warnings.extend(io::undrawn_textures(&opened.document));
+            opened
+        });
+        let read = Box::new(read);
         send(&proxy, UserEvent::Opened { path, options, read });
     });
 }

@@ -32,7 +32,7 @@ pub fn run(args: &GuiArgs) -> ExitCode {
     let mut document = None;
     if let Some(path) = &args.file {
         let options = args.open.options();
-        match open::open(path, &options) {
+        match open::open_to_draw(path, &options) {
             Ok(opened) => document = Some(FileAction::opened(path.clone(), options, opened)),
             Err(error) => return fail(&error),
         }

@@ -2,7 +2,9 @@ use std::io;
 use std::path::Path;
 
 use super::report::say;
-use crate::io::{OpenError, OpenOptions, Opened, open as open_file, read};
+use crate::io::{
+    OpenError, OpenOptions, Opened, Remark, open as open_file, read, undrawn_textures,
+};
 
 const STANDARD_INPUT: &str = "-";
 
@@ -19,6 +21,13 @@ pub fn is_document(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
+/// Opens a file, or standard input for `-`, to draw its skin, too, and prints its warnings.
+pub fn open_to_draw(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
+    let opened = open(path, options)?;
+    warn(path, &undrawn_textures(&opened.document));
+    Ok(opened)
+}
+
 /// Opens a file, or standard input for `-`, and prints its warnings.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
     let opened = if path == Path::new(STANDARD_INPUT) {
@@ -26,8 +35,12 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
     } else {
         open_file(path, options)?
     };
-    for warning in &opened.warnings {
+    warn(path, &opened.warnings);
+    Ok(opened)
+}
+
+fn warn(path: &Path, warnings: &[Remark]) {
+    for warning in warnings {
         say(&format_args!("{}, {warning}", name(path)));
     }
-    Ok(opened)
 }

@@ -85,6 +85,13 @@ pub struct Remark {
     pub reason: String,
 }
 
+impl Remark {
+    /// A message about a whole file.
+    pub(super) fn new(reason: String) -> Self {
+        Self { line: 0, column: 0, field: String::new(), reason }
+    }
+}
+
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, column, field, reason } = self;

@@ -69,5 +69,6 @@ pub use progress::{Cancelled, Progress};
 #[cfg(feature = "app")]
 pub(crate) use regular_file::read_text;
 pub use skin_file::relocated_skin;
+pub use texture::{texture_pixels, undrawn_textures};
 pub use turn_up::Upwards;
 pub use write::{write, write_with};

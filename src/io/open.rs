@@ -66,7 +66,7 @@ fn one_of_several(names: &[String]) -> Option<Remark> {
     let more = if names.len() > MOST { " …" } else { "" };
     let (count, list) = (names.len(), quoted.join(", "));
     let reason = format!("the skeleton {first:?} is read, one of {count}: {list}{more}");
-    Some(Remark { line: 0, column: 0, field: String::new(), reason })
+    Some(Remark::new(reason))
 }
 
 fn read_format(

@@ -251,7 +251,7 @@ const OUT_OF_RANGE: &str = "number out of range";
 
 /// The error of a binary file, without line, column and field.
 fn invalid_chunks(file: String, reason: String) -> OpenError {
-    OpenError::Content { file, remark: Remark { line: 0, column: 0, field: String::new(), reason } }
+    OpenError::Content { file, remark: Remark::new(reason) }
 }
 
 fn not_utf8(file: String, bytes: &[u8]) -> OpenError {

@@ -4,6 +4,7 @@ use glam::Vec3;
 use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
+use crate::io::texture_pixels;
 use crate::kinematics::Shared;
 use crate::rig::{SkinPart, SkinTexture};
 
@@ -71,16 +72,19 @@ impl SkinMaterials {
         for part in parts {
             let start = end;
             end = (start + part.triangles).min(triangles);
-            let view = part.texture.as_ref().map(|texture| {
+            let view = part.texture.as_ref().and_then(|texture| {
                 let known = views.iter().position(|(other, _)| other.is_same(texture));
-                known.unwrap_or_else(|| {
-                    views.push((texture, texture_view(gpu, texture.size, &texture.pixels)));
-                    views.len() - 1
+                known.or_else(|| {
+                    // Where a file is opened to be drawn, broken images were told.
+                    let pixels = texture_pixels(texture).ok()?;
+                    views.push((texture, texture_view(gpu, texture.size, pixels)));
+                    Some(views.len() - 1)
                 })
             });
+            let is_textured = view.is_some();
             let view = view.map_or(&self.white, |view| &views[view].1);
             let corners = 3 * start as u32..3 * end as u32;
-            let (group, is_textured) = (self.group(gpu, part, view), part.texture.is_some());
+            let group = self.group(gpu, part, view);
             materials.push(SkinMaterial { corners, group, is_textured });
         }
         materials

@@ -57,11 +57,7 @@ fn texture() -> SkinTexture {
     let pixel = |x, y| image::Rgba([x as u8 * 30, y as u8 * 40, 7, 255]);
     let image = image::RgbaImage::from_fn(4, 3, pixel);
     image.write_to(&mut file, image::ImageFormat::Png).expect("an image");
-    SkinTexture {
-        file: file.into_inner(),
-        size: [4, 3],
-        pixels: image.pixels().map(|pixel| pixel.0).collect(),
-    }
+    SkinTexture::new(file.into_inner(), [4, 3])
 }
 
 fn write_glb(document: &Document, path: &Path) {

@@ -119,7 +119,8 @@ fn each_part_has_its_colour_and_its_texture_the_right_way_up() {
             }
         })
         .collect();
-    let texture = SkinTexture { file: Vec::new(), size: [8, 8], pixels };
+    let texture = SkinTexture::new(Vec::new(), [8, 8]);
+    texture.pixels(|_| Ok(pixels)).expect("pixels");
     let texture = Shared::from(texture);
     let textured =
         square(vec![part([1.0; 3], Some(texture.clone())), part([1.0; 3], Some(texture))]);

@@ -63,7 +63,7 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     let mut document = match &args.file {
         Some(file) => {
             args.time_limit.start_long(file);
-            let opened = open::open(file, &args.open.options())?;
+            let opened = open::open_to_draw(file, &args.open.options())?;
             opened.document.evaluate(time)
         }
         None => Document { arm: arm(args)?, ..Document::default() },

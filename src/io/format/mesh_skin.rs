@@ -11,7 +11,7 @@ use crate::io::base64;
 use crate::io::field_error::FieldError;
 use crate::io::json_path::JsonPath;
 use crate::io::little_endian;
-use crate::io::texture::TextureDecoder;
+use crate::io::texture::TextureReader;
 use crate::io::value::{JsonNumbers, JsonObject, Whole};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -240,12 +240,12 @@ impl FileMeshFields {
     }
 }
 
-/// Decodes the textures of a mesh.
+/// Reads the textures of a mesh.
 fn textures(files: Vec<Bytes>, at: &JsonPath) -> Result<Vec<Shared<SkinTexture>>, FieldError> {
-    let mut decoder = TextureDecoder::default();
+    let mut reader = TextureReader::default();
     let texture = |(index, bytes): (usize, Bytes)| {
         let at = at.clone().index(index);
-        let texture = decoder.decode(bytes.decoded(&at)?);
+        let texture = reader.read(bytes.decoded(&at)?);
         Ok(texture.map_err(|reason| FieldError::new(at, reason))?.into())
     };
     files.into_iter().enumerate().map(texture).collect()

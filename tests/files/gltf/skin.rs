@@ -462,7 +462,8 @@ fn base_colours_and_their_textures_are_read_from_every_place() {
     for (part, colour) in parts.iter().zip([[10, 20, 30], [40, 50, 60], [200, 100, 50]]) {
         let texture = part.texture.as_ref().expect("a texture");
         assert_eq!(texture.size, [8, 4]);
-        assert!(texture.pixels.iter().all(|pixel| near(*pixel, colour)), "{colour:?}");
+        let pixels = io::texture_pixels(texture).expect("pixels");
+        assert!(pixels.iter().all(|pixel| near(*pixel, colour)), "{colour:?}");
         assert_eq!(part.colour, [1.0; 3]);
     }
     assert!(parts[3].texture.is_none());
@@ -504,6 +505,29 @@ fn a_texture_that_cannot_be_decoded_is_left_out_with_the_reason() {
     let warnings = warnings(&opened);
     assert!(warnings[0].starts_with("images[0]: not read: "), "{warnings:?}");
     assert!(attached(&opened).parts[0].texture.is_none());
+}
+
+#[test]
+fn a_texture_is_decoded_when_it_is_drawn_and_drawn_as_white_if_its_pixels_are_broken() {
+    // 400 MB of pixels, of which the file holds 32.
+    let mut file = png([10, 20, 30]);
+    file[16..24].copy_from_slice(&[16_384_u32.to_be_bytes(), 6_144_u32.to_be_bytes()].concat());
+    let checksum = crc32fast::hash(&file[12..29]).to_be_bytes();
+    file[29..33].copy_from_slice(&checksum);
+    let mut text = Strip::new().text();
+    primitive(&mut text)["material"] = json!(0);
+    text.json["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    text.json["textures"] = json!([{ "source": 0 }]);
+    let uri = format!("data:image/png;base64,{}", base64(&file));
+    text.json["images"] = json!([{ "uri": uri }]);
+    let read = opened(&text);
+    assert_eq!(warnings(&read), [""; 0]);
+    let texture = attached(&read).parts[0].texture.as_ref().expect("a texture");
+    assert_eq!((texture.size, &texture.file), ([16_384, 6_144], &file));
+    let told: Vec<_> =
+        io::undrawn_textures(&read.document).iter().map(ToString::to_string).collect();
+    assert!(told.len() == 1 && told[0].starts_with("a texture is drawn as white: "), "{told:?}");
 }
 
 // Skins

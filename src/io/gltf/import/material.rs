@@ -8,7 +8,7 @@ use crate::io::field_error::{FieldError, FieldWarnings};
 use crate::io::gltf::colour::srgb;
 use crate::io::json_path::JsonPath;
 use crate::io::source::Source;
-use crate::io::texture::TextureDecoder;
+use crate::io::texture::TextureReader;
 use crate::io::value::{JsonNumbers, JsonObject};
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
@@ -33,11 +33,11 @@ pub struct MaterialSource<'a> {
     pub buffers: &'a GltfBuffers<'a>,
 }
 
-/// The images of a skin that are decoded already, by their index; `None` for one that cannot be decoded.
+/// The images of a skin that were read, by their index; `None` for one that cannot be used.
 #[derive(Default)]
 pub struct ImageCache {
     images: BTreeMap<usize, Option<Shared<SkinTexture>>>,
-    decoder: TextureDecoder,
+    reader: TextureReader,
 }
 
 impl ImageCache {
@@ -82,7 +82,7 @@ impl ImageCache {
             checksum.update(&bytes);
         }
         let error = |reason| FieldError::new(at_image(index), reason);
-        let texture = Some(Shared::from(self.decoder.decode(bytes).map_err(error)?));
+        let texture = Some(Shared::from(self.reader.read(bytes).map_err(error)?));
         self.images.insert(index, texture.clone());
         Ok(texture)
     }
