@@ -4,6 +4,7 @@ use glam::{DMat3, Vec3};
 use ik_arm::document::Arm;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
+use ik_arm::rig::SkeletonRig;
 use ik_arm::session::{Drag, Grip, PointDrag, Session, SolverRun, TurnDrag};
 
 use crate::soak::{Broken, hold};
@@ -160,12 +161,15 @@ fn solver_run(run: &SolverRun) -> Result<(), Broken> {
     Ok(())
 }
 
-/// Joints outside all targets' chains have not been rotated by solvers.
-pub fn locked(before: &Skeleton, after: &Skeleton) -> Result<(), Broken> {
-    for (before, after) in before.joints().iter().zip(after.joints()) {
+/// An applied pose turns no locked joint, but those that follow a path.
+pub fn locked(before: &SkeletonRig, after: &Skeleton) -> Result<(), Broken> {
+    let heads = before.follow_paths.iter();
+    let following: Vec<JointId> = heads.flat_map(|path| before.path_joints(path.root)).collect();
+    for ((id, before), after) in before.skeleton.iter().zip(after.joints()) {
         let bits = |v: Vec3| v.to_array().map(f32::to_bits);
         let has_turned = bits(before.rotation) != bits(after.rotation);
-        hold!(!(before.locked && has_turned), "{:?} is locked and does not turn", before.name);
+        let is_held = before.locked && !following.contains(&id);
+        hold!(!(is_held && has_turned), "{:?} is locked and does not turn", before.name);
         let is_same = before.axis == after.axis && before.name == after.name;
         hold!(is_same && before.limits == after.limits, "a solver only turns {:?}", before.name);
     }

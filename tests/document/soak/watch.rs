@@ -189,8 +189,7 @@ impl Watch {
             || matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time);
         hold!(!is_view || is_left || before.follows_mouse, "it leaves the document alone");
         if *action == Action::Edit(EditAction::ApplyPose) {
-            let [was, is] = [&before.document, document].map(ik_arm::document::Document::skeleton);
-            posed::locked(was, is)?;
+            posed::locked(&before.document.skeleton_rig, document.skeleton())?;
         }
         let takes_back = matches!(
             action,
