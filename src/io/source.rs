@@ -2,7 +2,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
+use serde::Deserialize;
 
 use super::error::{OpenError, Remark, shortened};
 use super::field_error::{FieldError, FieldWarnings};
@@ -129,8 +129,8 @@ impl Source {
     }
 
     /// Parses the whole text, and calls `ignored` with each unknown field.
-    pub fn parse<T: DeserializeOwned>(
-        &self,
+    pub fn parse<'a, T: Deserialize<'a>>(
+        &'a self,
         mut ignored: impl FnMut(JsonPath),
     ) -> Result<T, OpenError> {
         let mut json = serde_json::Deserializer::from_str(&self.text);

@@ -35,7 +35,7 @@ pub fn at_animation(index: usize) -> JsonPath {
 }
 
 /// Looks through all animations. One that is damaged moves nothing here; reading it fails.
-pub fn scan(source: &Source, file: &GltfFile, nodes: &NodeTree) -> Vec<AnimationScan> {
+pub fn scan(source: &Source, file: &GltfFile<'_>, nodes: &NodeTree) -> Vec<AnimationScan> {
     let mut names = UniqueNames::default();
     let animations = file.animations.0.iter().enumerate();
     let scans = animations.map(|(index, animation)| {
@@ -49,7 +49,7 @@ pub fn scan(source: &Source, file: &GltfFile, nodes: &NodeTree) -> Vec<Animation
 
 fn scan_one(
     source: &Source,
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     nodes: &NodeTree,
     index: usize,
 ) -> Result<(BTreeSet<usize>, (f64, f64)), FieldError> {

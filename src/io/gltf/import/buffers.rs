@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Read;
 use std::path::{Component, Path};
 
-use super::file::{GltfBuffer, GltfFile, index_rule};
+use super::file::{GltfBuffer, GltfFile, Uri, index_rule};
 use crate::io::base64;
 use crate::io::error::{OpenError, system_reason};
 use crate::io::field_error::FieldError;
@@ -21,7 +21,7 @@ impl<'a> GltfBuffers<'a> {
     /// [`OpenError::MAX_GLTF_BYTES`] together.
     pub fn read(
         source: &'a Source,
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         needed: &BTreeSet<usize>,
     ) -> Result<Self, FieldError> {
         let mut buffers = Self(vec![None; file.buffers.0.len()]);
@@ -55,7 +55,7 @@ impl<'a> GltfBuffers<'a> {
 fn bytes<'a>(
     source: &'a Source,
     index: usize,
-    buffer: &GltfBuffer,
+    buffer: &GltfBuffer<'_>,
     at: &JsonPath,
 ) -> Result<Cow<'a, [u8]>, FieldError> {
     let length = buffer.length.0 as usize;
@@ -66,7 +66,7 @@ fn bytes<'a>(
             let reason = "must be given, except for the first buffer of a .glb file";
             return Err(FieldError::new(at_uri, reason));
         }
-        (Some(uri), _) => Cow::Owned(
+        (Some(Uri(uri)), _) => Cow::Owned(
             read_uri(source, uri, length).map_err(|reason| FieldError::new(at_uri, reason))?,
         ),
     };

@@ -47,7 +47,7 @@ pub struct ExactTracks<'a> {
     /// The timeline whose frames have the keys, as far as they are there; `None` if nothing moves.
     timeline: Option<Timeline>,
     /// The file, if this program has written it.
-    own: Option<&'a GltfFile>,
+    own: Option<&'a GltfFile<'a>>,
     worlds: Vec<DAffine3>,
     /// For each node, whether it and all nodes above it scale evenly and constantly.
     is_even: Vec<bool>,
@@ -62,7 +62,7 @@ impl<'a> ExactTracks<'a> {
         tracks: &'a NodeTracks<'a>,
         bind_pose: &'a [JointPlacement],
         timeline: Option<Timeline>,
-        own: Option<&'a GltfFile>,
+        own: Option<&'a GltfFile<'a>>,
     ) -> Self {
         let mut is_even = vec![false; nodes.parents.len()];
         for &node in &nodes.order {

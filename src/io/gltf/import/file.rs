@@ -1,5 +1,6 @@
 //! Those fields of a file that concern skeletons, their skins and their motions.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
@@ -14,7 +15,7 @@ use crate::io::json_path::JsonPath;
 use crate::io::value::{JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Deserialize)]
-pub struct GltfFile {
+pub struct GltfFile<'a> {
     pub asset: JsonObject<GltfAsset>,
     #[serde(default, rename = "extensionsRequired")]
     pub required: Vec<String>,
@@ -28,16 +29,16 @@ pub struct GltfFile {
     pub accessors: List<GltfAccessor>,
     #[serde(default, rename = "bufferViews")]
     pub views: List<GltfBufferView>,
-    #[serde(default)]
-    pub buffers: List<GltfBuffer>,
+    #[serde(borrow, default)]
+    pub buffers: List<GltfBuffer<'a>>,
     #[serde(default)]
     pub meshes: List<GltfMesh>,
     #[serde(default)]
     pub materials: List<GltfMaterial>,
     #[serde(default)]
     pub textures: List<GltfTexture>,
-    #[serde(default)]
-    pub images: List<GltfImage>,
+    #[serde(borrow, default)]
+    pub images: List<GltfImage<'a>>,
 }
 
 /// The version of a file, in which everything else may be as in another version.
@@ -46,7 +47,7 @@ pub struct VersionedFile {
     pub asset: GltfAsset,
 }
 
-impl GltfFile {
+impl GltfFile<'_> {
     /// Why compressed data cannot be read, and what makes them readable; `None` for a file whose data are all
     /// there without extensions.
     pub fn compression(&self) -> Option<String> {
@@ -178,8 +179,9 @@ pub struct GltfTexture {
 }
 
 #[derive(Deserialize)]
-pub struct GltfImage {
-    pub uri: Option<String>,
+pub struct GltfImage<'a> {
+    #[serde(borrow)]
+    pub uri: Option<Uri<'a>>,
     #[serde(rename = "bufferView")]
     pub view: Option<Whole>,
 }
@@ -265,11 +267,17 @@ pub struct GltfBufferView {
 }
 
 #[derive(Deserialize)]
-pub struct GltfBuffer {
+pub struct GltfBuffer<'a> {
     #[serde(rename = "byteLength")]
     pub length: Whole,
-    pub uri: Option<String>,
+    #[serde(borrow)]
+    pub uri: Option<Uri<'a>>,
 }
+
+/// The name of a file, or data, which may be most of the text. Borrows from the text, unless it has
+/// escapes.
+#[derive(Deserialize)]
+pub struct Uri<'a>(#[serde(borrow)] pub Cow<'a, str>);
 
 /// An array of objects. Its length is limited, so that a malicious file cannot exhaust the memory.
 pub struct List<T>(pub Vec<T>);

@@ -1,7 +1,9 @@
 use std::collections::BTreeMap;
 
 use super::buffers::{GltfBuffers, is_file, read_uri};
-use super::file::{GltfFile, GltfImage, GltfMaterial, GltfRoughness, GltfTextureUse, index_rule};
+use super::file::{
+    GltfFile, GltfImage, GltfMaterial, GltfRoughness, GltfTextureUse, Uri, index_rule,
+};
 use super::rows::view_bytes;
 use crate::io::error::OpenError;
 use crate::io::field_error::{FieldError, FieldWarnings};
@@ -29,7 +31,7 @@ impl PartMaterial {
 /// Where the images of materials are.
 pub struct MaterialSource<'a> {
     pub source: &'a Source,
-    pub file: &'a GltfFile,
+    pub file: &'a GltfFile<'a>,
     pub buffers: &'a GltfBuffers<'a>,
 }
 
@@ -78,7 +80,7 @@ impl ImageCache {
         }
         self.images.insert(index, None);
         let bytes = image_bytes(from, (index, image))?;
-        if image.uri.as_deref().is_some_and(is_file) {
+        if image.uri.as_ref().is_some_and(|Uri(uri)| is_file(uri)) {
             checksum.update(&bytes);
         }
         let error = |reason| FieldError::new(at_image(index), reason);
@@ -100,7 +102,7 @@ impl GltfMaterial {
     }
 
     /// Buffer view of the base colour's image, if it is in one.
-    pub fn image_view(&self, file: &GltfFile) -> Option<usize> {
+    pub fn image_view(&self, file: &GltfFile<'_>) -> Option<usize> {
         let (_, image) = image(file, self.texture_use()?).ok()?;
         Some(image.view?.0 as usize)
     }
@@ -131,9 +133,9 @@ fn at_image(index: usize) -> JsonPath {
 
 /// The image of a texture, with its index.
 fn image<'a>(
-    file: &'a GltfFile,
+    file: &'a GltfFile<'a>,
     used: &GltfTextureUse,
-) -> Result<(usize, &'a GltfImage), FieldError> {
+) -> Result<(usize, &'a GltfImage<'a>), FieldError> {
     let index = used.index.0 as usize;
     let at = JsonPath::root().key("textures").index(index);
     let Some(texture) = file.textures.0.get(index) else {
@@ -151,12 +153,12 @@ fn image<'a>(
 
 fn image_bytes(
     from: &MaterialSource<'_>,
-    (index, image): (usize, &GltfImage),
+    (index, image): (usize, &GltfImage<'_>),
 ) -> Result<Vec<u8>, FieldError> {
     let MaterialSource { source, file, buffers } = *from;
     let at = at_image(index);
     match (&image.uri, image.view) {
-        (Some(uri), _) => read_uri(source, uri, OpenError::MAX_BYTES as usize)
+        (Some(Uri(uri)), _) => read_uri(source, uri, OpenError::MAX_BYTES as usize)
             .map_err(|reason| FieldError::new(at.key("uri"), reason)),
         (None, Some(view)) => Ok(view_bytes(file, buffers, view.0 as usize, &at)?.to_vec()),
         (None, None) => Err(FieldError::new(at, "must have a uri or a buffer view")),

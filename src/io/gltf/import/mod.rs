@@ -52,7 +52,7 @@ const MOST_SAMPLES: usize = 4_000_000;
 /// Reads a skeleton and one of the animations: the skin's joints, or without a skin the nodes that
 /// the animations move.
 pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
-    let parsed = source.parse::<JsonObject<GltfFile>>(|_| {});
+    let parsed = source.parse::<JsonObject<GltfFile<'_>>>(|_| {});
     let JsonObject(file) = parsed.map_err(|error| gltf_1(source).unwrap_or(error))?;
     if file.asset.0.is_version_1() {
         return Err(is_gltf_1(source));
@@ -115,7 +115,7 @@ fn is_gltf_1(source: &Source) -> OpenError {
     OpenError::Foreign { file: source.name().to_owned(), what, advice }
 }
 
-fn check(file: &GltfFile) -> Result<(), FieldError> {
+fn check(file: &GltfFile<'_>) -> Result<(), FieldError> {
     let JsonObject(asset) = &file.asset;
     if asset.version.split('.').next() != Some("2") {
         let reason = format!("must be 2 or 2.x, got {:?}", asset.version);
@@ -134,7 +134,7 @@ fn no_skeleton() -> FieldError {
 }
 
 fn skin_joints(
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     nodes: &NodeTree,
     index: usize,
     moving: &BTreeSet<usize>,
@@ -165,7 +165,7 @@ fn warn_of_left_out(moving: &BTreeSet<usize>, joints: &SkinJoints, warnings: &mu
 /// A skeleton of a file that is imported.
 struct GltfImport<'a> {
     source: &'a Source,
-    file: &'a GltfFile,
+    file: &'a GltfFile<'a>,
     nodes: &'a NodeTree,
     /// Index of the skin; for a file without skins 0.
     index: usize,

@@ -47,7 +47,7 @@ pub fn at_node(index: usize) -> JsonPath {
 }
 
 impl NodeTree {
-    pub fn new(file: &GltfFile) -> Result<Self, FieldError> {
+    pub fn new(file: &GltfFile<'_>) -> Result<Self, FieldError> {
         let nodes = &file.nodes.0;
         let parents = parents(nodes)?;
         let order = order(nodes, &parents)?;

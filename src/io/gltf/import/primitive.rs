@@ -94,7 +94,7 @@ impl PrimitiveMesh {
     /// Reads a primitive, with the texture coordinates `set`. `at` is its path, and `joints` the number of
     /// joints of the skin.
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         buffers: &GltfBuffers<'_>,
         primitive: &GltfPrimitive,
         set: u32,
@@ -175,7 +175,7 @@ fn add_weights(
 }
 
 fn triangles(
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     buffers: &GltfBuffers<'_>,
     primitive: &GltfPrimitive,
     count: usize,

@@ -15,7 +15,11 @@ use crate::kinematics::spline::Spline;
 
 /// Returns all joints of a skin in the bind pose, with offsets and frames in world axes. The axes
 /// of their bones are zero until [`build`] sets them.
-pub fn joints(file: &GltfFile, joints: &SkinJoints, bind_pose: &[JointPlacement]) -> Vec<Joint> {
+pub fn joints(
+    file: &GltfFile<'_>,
+    joints: &SkinJoints,
+    bind_pose: &[JointPlacement],
+) -> Vec<Joint> {
     let mut names = UniqueNames::default();
     let joint = |(index, node): (usize, &usize)| {
         let name = file.nodes.0.get(*node).and_then(|node| node.name.as_deref());
@@ -55,7 +59,7 @@ impl BoneEnds {
     /// no joint and has nothing to draw, as many programs write for the tips of fingers and heads. Files of
     /// this program are complete.
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         nodes: &NodeTree,
         joints: &SkinJoints,
         bind_pose: &[JointPlacement],

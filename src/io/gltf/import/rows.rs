@@ -85,7 +85,7 @@ fn at_view(index: usize) -> JsonPath {
 }
 
 /// Finds the accessor `index`. Fails if it has no numbers.
-fn find_accessor(file: &GltfFile, index: usize) -> Result<&GltfAccessor, FieldError> {
+fn find_accessor<'a>(file: &'a GltfFile<'_>, index: usize) -> Result<&'a GltfAccessor, FieldError> {
     let accessor = file.accessors.0.get(index).ok_or_else(|| {
         let reason = index_rule("accessors", file.accessors.0.len(), index);
         FieldError::new(at_accessor(index), reason)
@@ -97,7 +97,7 @@ fn find_accessor(file: &GltfFile, index: usize) -> Result<&GltfAccessor, FieldEr
 }
 
 /// Returns the indices of the buffers that contain the accessor `index`.
-pub fn buffers_of(file: &GltfFile, index: usize) -> Result<Vec<usize>, FieldError> {
+pub fn buffers_of(file: &GltfFile<'_>, index: usize) -> Result<Vec<usize>, FieldError> {
     let GltfAccessor { view, sparse, .. } = find_accessor(file, index)?;
     let at = at_accessor(index);
     let mut views: Vec<(usize, JsonPath)> = Vec::new();
@@ -112,7 +112,7 @@ pub fn buffers_of(file: &GltfFile, index: usize) -> Result<Vec<usize>, FieldErro
 }
 
 /// Returns the index of the buffer that contains a view. `at` is the path of the view's index.
-pub fn buffer_of_view(file: &GltfFile, view: usize, at: JsonPath) -> Result<usize, FieldError> {
+pub fn buffer_of_view(file: &GltfFile<'_>, view: usize, at: JsonPath) -> Result<usize, FieldError> {
     let found =
         file.views.0.get(view).ok_or_else(|| {
             FieldError::new(at, index_rule("buffer views", file.views.0.len(), view))
@@ -129,7 +129,7 @@ impl<'a> AccessorRows<'a> {
     /// Returns the rows of the accessor `index`. Fails if its type is not `shape`, or if its buffer
     /// is too short.
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,
         index: usize,
         shape: &str,
@@ -224,7 +224,7 @@ impl<'a> Block<'a> {
     /// Finds `count` rows of `row` bytes that begin at byte `offset` of the view `index`. `at` is the path of
     /// what has these rows.
     fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,
         index: usize,
         offset: usize,
@@ -261,7 +261,7 @@ fn tight(bytes: &[u8], stride: usize, (count, row): (usize, usize)) -> Vec<u8> {
 /// Overwrites those of `count` rows of `row` bytes that a sparse accessor lists.
 fn overwrite(
     dense: &mut [u8],
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     buffers: &GltfBuffers<'_>,
     sparse: &GltfSparse,
     (count, row): (usize, usize),
@@ -296,7 +296,7 @@ fn overwrite(
 
 /// The bytes of a view. Fails if its buffer is too short. `at` is the path of what has the view.
 pub fn view_bytes<'a>(
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     buffers: &'a GltfBuffers<'_>,
     index: usize,
     at: &JsonPath,

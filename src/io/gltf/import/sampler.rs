@@ -56,7 +56,7 @@ const OUT_TANGENT: usize = 2;
 
 impl<'a> KeySampler<'a> {
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,
         [input, output]: [usize; 2],
         part: AnimatedPart,

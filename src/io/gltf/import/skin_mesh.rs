@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
-use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, index_rule};
+use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, Uri, index_rule};
 use super::material::{ImageCache, MaterialSource, PartMaterial};
 use super::node_poser::JointPlacement;
 use super::nodes::{NodeTree, at_node};
@@ -32,7 +32,7 @@ const MOST_PARTS: usize = 10_000;
 /// A skin of a file, with the joints that it becomes.
 pub struct MeshImport<'a> {
     pub source: &'a Source,
-    pub file: &'a GltfFile,
+    pub file: &'a GltfFile<'a>,
     pub nodes: &'a NodeTree,
     pub index: usize,
     pub skin: &'a GltfSkin,
@@ -83,8 +83,8 @@ impl MeshImport<'_> {
         let buffers = GltfBuffers::read(source, file, &needed)?;
         let mut checksum = source.checksum();
         for buffer in needed {
-            let uri = file.buffers.0.get(buffer).and_then(|buffer| buffer.uri.as_deref());
-            if uri.is_some_and(is_file) {
+            let uri = file.buffers.0.get(buffer).and_then(|buffer| buffer.uri.as_ref());
+            if uri.is_some_and(|Uri(uri)| is_file(uri)) {
                 checksum.update(buffers.get(buffer).unwrap_or_default());
             }
         }

@@ -24,7 +24,7 @@ pub struct SkinJoints {
 /// Returns a unique name for each skin: its own name, otherwise the name of the first node with the
 /// skin, otherwise `skin_` and its number. A file without skins has one skeleton if nodes move, with
 /// the name of the first root of the `moving` nodes.
-pub fn names(file: &GltfFile, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<String> {
+pub fn names(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<String> {
     if file.skins.0.is_empty() {
         let roots = nodes.roots();
         let root = moving.first().and_then(|node| file.nodes.0.get(roots[*node]));
@@ -54,7 +54,7 @@ pub fn at_skin(skin: usize) -> JsonPath {
 impl SkinJoints {
     /// The joints of a skin, and those `moving` nodes that have a root in common with one of them.
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         nodes: &NodeTree,
         index: usize,
         skin: &GltfSkin,

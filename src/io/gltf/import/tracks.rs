@@ -103,7 +103,7 @@ fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
 /// Reads the buffers that contain the times and values of the channels.
 pub fn buffers<'a>(
     source: &'a Source,
-    file: &GltfFile,
+    file: &GltfFile<'_>,
     channels: &[UsedChannel<'_>],
 ) -> Result<GltfBuffers<'a>, FieldError> {
     let accessors: BTreeSet<usize> =
@@ -117,7 +117,7 @@ pub fn buffers<'a>(
 
 impl<'a> NodeTracks<'a> {
     pub fn new(
-        file: &GltfFile,
+        file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,
         channels: &[UsedChannel<'a>],
         warnings: &mut FieldWarnings,
