@@ -47,7 +47,7 @@ fn evaluate(criterion: &mut Criterion) {
             let mut posed = walk.clone();
             let point = |frame: u32| {
                 let time = f64::from(frame) / 30.0;
-                posed.clone_from(&walk.evaluate(time));
+                posed.clone_from(&walk.at(time).into_document());
                 posed.skeleton_rig.skeleton_at(time).tip(hand)
             };
             (0..240).map(point).collect()

@@ -96,7 +96,7 @@ fn check_poses(document: &Document) {
     let timeline = document.timeline;
     assert!(timeline.is_valid(), "{timeline:?}");
     for time in [-1.0, 0.0, 0.3, 1e9, timeline.start, timeline.end] {
-        let at = document.evaluate(time);
+        let at = document.at(time).into_document();
         let pose = at.arm.pose();
         assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
         let skeleton = at.skeleton_rig.skeleton_at(time);

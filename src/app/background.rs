@@ -34,7 +34,7 @@ pub(super) fn save_picture(
 
 fn draw(picture: &ViewportPicture, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless()?;
-    let scene = Scene::new(&picture.document, &picture.overlays, picture.theme);
+    let scene = Scene::new(&picture.posed, &picture.overlays, picture.theme);
     let (width, height) = picture.size;
     let image = PictureRenderer::new(&gpu, width, height, picture.scale).draw(&scene)?;
     Ok(render::save(&image, path)?)
@@ -74,7 +74,7 @@ pub(super) fn export(
         fps: Some(export.frame_rate),
         size: export.size,
         theme: picture.theme,
-        time: Some(picture.overlays.time),
+        time: Some(picture.posed.time()),
         ..ExportOptions::default()
     };
     let thread = thread::spawn(move || {

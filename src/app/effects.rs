@@ -28,7 +28,7 @@ impl AppWindow {
     fn viewport_picture(&self, session: &Session) -> ViewportPicture {
         let scale = self.egui.egui_ctx().pixels_per_point();
         ViewportPicture {
-            document: session.shown().clone(),
+            posed: session.posed().clone(),
             overlays: session.overlays(),
             theme: session.preferences().theme,
             size: self.viewport_pixels(scale),

@@ -1,9 +1,9 @@
-use crate::document::{Document, Theme};
+use crate::document::{Posed, Theme};
 use crate::session::Overlays;
 
 /// Everything that a picture of the viewport shows.
 pub struct ViewportPicture {
-    pub document: Document,
+    pub posed: Posed,
     pub overlays: Overlays,
     pub theme: Theme,
     /// Width and height in pixels.

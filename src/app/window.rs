@@ -387,12 +387,12 @@ impl AppWindow {
             });
         }
         let mut lap = lap_timer();
-        let (document, theme) = (session.shown(), session.preferences().theme);
+        let (posed, theme) = (session.posed(), session.preferences().theme);
         session.write_overlays(&mut self.overlays);
         self.overlays.has_handles = true;
         match &mut self.scene {
-            Some(scene) => self.builder.refill(scene, document, &self.overlays, theme),
-            None => self.scene = Some(self.builder.build(document, &self.overlays, theme)),
+            Some(scene) => self.builder.refill(scene, posed, &self.overlays, theme),
+            None => self.scene = Some(self.builder.build(posed, &self.overlays, theme)),
         }
         let budget = session.preferences().frame_budget.time();
         let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());

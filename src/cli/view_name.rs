@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use glam::Vec3;
 
 use super::argument::SizeArgument;
-use crate::document::{Arm, AxisView, Camera, Display, Document, Overlay};
+use crate::document::{AxisView, Camera, Display, Document, Overlay, Posed};
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum ViewName {
@@ -29,7 +29,7 @@ impl ViewName {
     /// A camera that looks from this side and frames the shown rig over the timeline.
     pub fn framing(self, document: &Document, size: SizeArgument) -> Camera {
         let display = document.display;
-        let (centre, radius) = document.motion_bounds_by(|arm| arm_bounds(arm, display));
+        let (centre, radius) = document.motion_bounds_by(|posed| arm_bounds(posed, display));
         let aspect = size.width as f32 / size.height as f32;
         self.camera().framing(centre, radius, aspect)
     }
@@ -37,8 +37,9 @@ impl ViewName {
 
 /// Centre and radius of a bounding sphere of the arm, in world space. The sphere contains the outer
 /// limit if that is shown, otherwise the Cursor if that is shown.
-fn arm_bounds(arm: &Arm, display: Display) -> (Vec3, f32) {
-    let (centre, radius) = arm.bounds(&arm.pose());
+fn arm_bounds(posed: &Posed, display: Display) -> (Vec3, f32) {
+    let arm = posed.arm();
+    let (centre, radius) = arm.bounds(posed.arm_pose());
     if display.shows(Overlay::OuterLimit) {
         (arm.root, arm.reach_limits().outer.max(arm.root.distance(centre) + radius))
     } else if display.shows(Overlay::Cursor) {

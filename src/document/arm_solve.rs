@@ -60,7 +60,7 @@ impl Arm {
     }
 
     /// Blends the FK pose with an IK pose by the influence.
-    fn blended_with(&self, solved: &TwoBonePose) -> TwoBonePose {
+    pub(super) fn blended_with(&self, solved: &TwoBonePose) -> TwoBonePose {
         blended(self.fk, solved, self.influence, self.bones, self.cursor_in_root())
     }
 

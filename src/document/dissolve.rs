@@ -3,6 +3,7 @@ use glam::Vec3;
 use super::channel::Channel;
 use super::document::Document;
 use super::keys::Keys;
+use super::track::Track;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};
 use crate::kinematics::spline::{Interpolation, Knot, Spline};
 
@@ -39,22 +40,19 @@ impl Document {
         let times = |(index, orphan): (usize, &Orphan)| {
             orphan.key_times(&self.keys).into_iter().map(move |time| (time, index))
         };
-        let mut keyed: Vec<(f64, usize)> = orphans.iter().enumerate().flat_map(times).collect();
-        keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for at_time in keyed.chunk_by(|a, b| a.0 == b.0) {
+        let mut key_times: Vec<(f64, usize)> = orphans.iter().enumerate().flat_map(times).collect();
+        key_times.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let track = Track::new(self);
+        for at_time in key_times.chunk_by(|a, b| a.0 == b.0) {
             let (time, _) = at_time[0];
-            let evaluated = self.evaluate(time);
-            let pose = evaluated.skeleton().pose_in_skeleton();
+            let keyed = track.at(time).into_document();
+            let pose = keyed.skeleton().pose_in_skeleton();
             for (_, index) in at_time {
                 let (orphan, angles) = (&orphans[*index], &mut angles[*index]);
                 let Some(joint) = remap.get(orphan.joint) else { continue };
                 let offset;
-                (offset, *angles) = evaluated.skeleton().placed_under_in(
-                    &pose,
-                    orphan.joint,
-                    orphan.parent,
-                    *angles,
-                );
+                (offset, *angles) =
+                    keyed.skeleton().placed_under_in(&pose, orphan.joint, orphan.parent, *angles);
                 let mut key = |channel: fn(JointId) -> Channel, value| {
                     let key = orphan.key(&self.keys, channel, time);
                     after.keys.insert_key(channel(joint), Knot { time, value, ..key });

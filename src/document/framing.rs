@@ -6,6 +6,7 @@ use super::arm::Arm;
 use super::camera::Camera;
 use super::document::Document;
 use super::rig_kind::RigKind;
+use super::track::{Posed, Track};
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::rig::Target;
 
@@ -15,22 +16,21 @@ impl Document {
     ///
     /// A long motion is sampled: at most 1,000 times, or 100 if targets pose the skeleton.
     pub fn motion_bounds(&self) -> (Vec3, f32) {
-        self.motion_bounds_by(|arm| arm.bounds(&arm.pose()))
+        self.motion_bounds_by(|posed| posed.arm().bounds(posed.arm_pose()))
     }
 
-    /// [`Document::motion_bounds`] with another sphere for the arm, which is evaluated at each time.
-    pub(crate) fn motion_bounds_by(&self, arm: impl Fn(&Arm) -> (Vec3, f32)) -> (Vec3, f32) {
-        let mut evaluated = self.clone();
+    /// [`Document::motion_bounds`] with another sphere for the posed arm.
+    pub(crate) fn motion_bounds_by(&self, arm: impl Fn(&Posed) -> (Vec3, f32)) -> (Vec3, f32) {
+        let track = Track::new(self);
         let mut pose = SkeletonPose::default();
         let reach = self.skeleton_rig.reach();
         let sphere_at = |time| {
-            evaluated.apply_keys(time);
-            match evaluated.rig {
-                RigKind::Arm => arm(&evaluated.arm),
+            let posed = track.at(time);
+            match self.rig {
+                RigKind::Arm => arm(&posed),
                 RigKind::Skeleton => {
-                    let rig = &evaluated.skeleton_rig;
-                    rig.write_pose(time, &mut pose);
-                    rig.bounds_with_reach(reach, &pose, time)
+                    posed.skeleton().write_pose(&mut pose);
+                    posed.document().skeleton_rig.bounds_with_reach(reach, &pose, time)
                 }
             }
         };

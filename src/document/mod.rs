@@ -1,13 +1,14 @@
 //! The document, everything that a document file stores: the arm, the skeleton with its targets,
 //! their keys, the timeline, the cameras and the set of visible overlays.
 //!
-//! A pose is a function of the document and the time alone: [`Document::evaluate`]. State from
-//! which a solve continues (the previous Pointer, the transported frame, the forearm's roll) is
-//! therefore part of the document too.
+//! A pose is a function of the document and the time alone, and a [`Track`] is the only way to it.
+//! State from which a solve continues (the previous Pointer, the transported frame, the forearm's
+//! roll) is therefore part of the document too.
 //!
 //! Large parts are [`Shared`](crate::kinematics::Shared): clones of a document share them, and an
 //! edit copies only the parts that it changes.
 
+mod animation;
 mod arm;
 mod arm_diagnosis;
 mod arm_solve;
@@ -21,7 +22,6 @@ mod display;
 mod dissolve;
 #[expect(clippy::module_inception, reason = "the type Document, in the file of its name")]
 mod document;
-mod evaluate;
 mod framing;
 mod hand_orientation;
 mod keys;
@@ -31,6 +31,7 @@ mod rekey;
 mod rig_kind;
 mod target_space;
 mod timeline;
+mod track;
 mod turn;
 
 pub use crate::kinematics::twist::TwistReferenceKind;
@@ -51,3 +52,4 @@ pub use keys::Keys;
 pub use projection::{Projection, Ray};
 pub use rig_kind::RigKind;
 pub use timeline::Timeline;
+pub use track::{Posed, Track};

@@ -3,6 +3,7 @@ use glam::Vec3;
 use super::channel::Channel;
 use super::document::Document;
 use super::hand_orientation::HandSpace;
+use super::track::Track;
 use crate::kinematics::angle;
 use crate::kinematics::spline::Spline;
 use crate::kinematics::twist::TwistReferenceKind;
@@ -14,12 +15,13 @@ impl Document {
     #[must_use]
     pub fn with_twist_reference(&self, kind: TwistReferenceKind) -> Self {
         let mut after = Self { arm: self.arm.with_twist_reference(kind), ..self.clone() };
-        let Some(track) = self.keys.track(Channel::Twist) else {
+        let Some(keys) = self.keys.track(Channel::Twist) else {
             return after;
         };
+        let track = Track::new(self);
         let mut shift = 0.0;
-        for knot in track.knots() {
-            let mut arm = self.arm_at(knot.time);
+        for knot in keys.knots() {
+            let mut arm = *track.at(knot.time).arm();
             arm.ik_state.transported = None;
             let measured = arm.with_twist_reference(kind).keyed_twist();
             let (old, turned) = (knot.value.x, measured - knot.value.x);
@@ -35,14 +37,15 @@ impl Document {
     pub fn with_hand_space(&self, space: HandSpace) -> Self {
         let mut after = self.clone();
         after.arm.hand_orientation = self.arm.hand_orientation.in_space(space, &self.arm.pose());
+        let track = Track::new(self);
         let mut last = None;
-        let track = self.keys.track(Channel::HandOrientation);
-        for knot in track.into_iter().flat_map(Spline::knots) {
-            let arm = self.arm_at(knot.time);
-            let orientation = arm.hand_orientation;
+        let keys = self.keys.track(Channel::HandOrientation);
+        for knot in keys.into_iter().flat_map(Spline::knots) {
+            let posed = track.at(knot.time);
+            let orientation = posed.arm().hand_orientation;
             // Each key has the equivalent angles nearest to those of the previous key.
             let near = last.unwrap_or(orientation.angles);
-            let angles = orientation.in_space_near(space, &arm.pose(), near).angles;
+            let angles = orientation.in_space_near(space, posed.arm_pose(), near).angles;
             last = Some(angles);
             after.keys.insert(Channel::HandOrientation, knot.time, angles);
         }

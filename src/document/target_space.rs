@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::channel::Channel;
 use super::document::Document;
+use super::track::{Posed, Track};
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
 use crate::rig::{Target, TargetSpace};
 
@@ -36,23 +37,26 @@ impl Document {
         converted: impl Fn(Target, &Skeleton, f64, Option<Vec3>) -> Target,
     ) {
         let Some(index) = self.skeleton_rig.target(joint) else { return };
-        let before = self.clone();
-        let convert = |document: &Self, time: f64, near: Option<Vec3>| {
-            let pose = document.skeleton_rig.skeleton_at(time);
-            converted(document.skeleton_rig.targets[index], &pose, time, near)
+        let track = Track::new(self);
+        let convert = |posed: &Posed, near: Option<Vec3>| {
+            let target = posed.document().skeleton_rig.targets[index];
+            converted(target, posed.skeleton(), posed.time(), near)
         };
         for channel in channels {
             let mut last = None;
-            for knot in before.keys.track(channel).map_or(&[][..], |track| track.knots()) {
-                let mut document = before.evaluate(knot.time);
-                document.skeleton_rig.targets[index] = convert(&document, knot.time, last);
+            for knot in track.document().keys.track(channel).map_or(&[][..], |track| track.knots())
+            {
+                let posed = track.at(knot.time);
+                let target = convert(&posed, last);
+                let mut document = posed.into_document();
+                document.skeleton_rig.targets[index] = target;
                 if let Some(value) = channel.value(&document) {
                     last = Some(value);
                     self.keys.insert(channel, knot.time, value);
                 }
             }
         }
-        self.skeleton_rig.targets[index] = convert(&before, time, None);
+        self.skeleton_rig.targets[index] = convert(&track.pose(self.clone(), time), None);
     }
 
     /// Moves the targets and poles that are on joints which `remap` removes to the world, where they

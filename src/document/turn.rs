@@ -22,9 +22,8 @@ impl Document {
         }
         let bind = UpAxis::of(self.skeleton(), &self.skeleton().bind_pose());
         bind == Some(UpAxis::Z) && {
-            let start = self.timeline.start;
-            let posed = self.evaluate(start).skeleton_rig.skeleton_at(start);
-            UpAxis::of(&posed, &posed.pose()) != Some(UpAxis::Y)
+            let start = self.at(self.timeline.start);
+            UpAxis::of(start.skeleton(), &start.skeleton().pose()) != Some(UpAxis::Y)
         }
     }
 

@@ -6,8 +6,8 @@ use super::error::ExportError;
 use super::frame_writers::{Frame, FrameWriters};
 use super::numbered_name::NumberedName;
 use super::options::ExportOptions;
-use crate::document::{Document, Theme};
-use crate::io::{self, ExportFrames, Exported, FileBatch, FrameEvaluator, Progress};
+use crate::document::{Document, Theme, Track};
+use crate::io::{self, ExportFrames, Exported, FileBatch, Progress};
 use crate::render::{Gpu, PictureRenderer};
 use crate::scene::SceneBuilder;
 use crate::session::Overlays;
@@ -90,7 +90,7 @@ pub fn animation(
 
 /// Draws a document at successive times.
 struct FrameRenderer<'a> {
-    evaluator: FrameEvaluator,
+    track: Track,
     overlays: Overlays,
     builder: SceneBuilder,
     picture: PictureRenderer<'a>,
@@ -104,9 +104,10 @@ impl<'a> FrameRenderer<'a> {
         gpu: &'a Gpu,
     ) -> Result<Self, ExportError> {
         let (width, height) = options.size;
+        let track = Track::new(document);
         Ok(Self {
-            evaluator: FrameEvaluator::new(document),
-            overlays: Overlays::new(document, document.timeline.start),
+            overlays: Overlays::new(&track, &track.at(document.timeline.start)),
+            track,
             builder: SceneBuilder::default(),
             picture: PictureRenderer::of_size(gpu, width, height)?,
             theme: options.theme,
@@ -115,9 +116,9 @@ impl<'a> FrameRenderer<'a> {
 
     /// Draws the document at `time`, in seconds. Returns the RGBA pixels in rows from the top.
     fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
-        let document = self.evaluator.at(time);
-        self.overlays = std::mem::take(&mut self.overlays).at(document, time);
-        let scene = self.builder.build(document, &self.overlays, self.theme);
+        let posed = self.track.at(time);
+        self.overlays.follow(&self.track, &posed);
+        let scene = self.builder.build(&posed, &self.overlays, self.theme);
         Ok(self.picture.draw(&scene)?.into_raw())
     }
 }

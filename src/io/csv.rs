@@ -1,9 +1,9 @@
 use glam::Vec3;
 
 use super::Progress;
-use super::frames::{ExportFrames, FrameEvaluator};
+use super::frames::ExportFrames;
 use super::motion::{Exported, MotionError};
-use crate::document::{Document, RigKind};
+use crate::document::{Document, Posed, RigKind, Track};
 use crate::kinematics::skeleton::is_within_numbers;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 
@@ -25,7 +25,7 @@ pub fn to_csv(
     let frames = ExportFrames::of_pose(document, fps)?;
     let columns = Columns::new(document);
     MotionError::check_size(frames.count(), 2 + 3 * columns.names.len())?;
-    let mut playback = FrameEvaluator::new(document);
+    let track = Track::new(document);
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.header())?;
     for frame in 0..frames.count() {
@@ -33,7 +33,7 @@ pub fn to_csv(
         let time = frames.time(frame);
         table.write_field(frame.to_string())?;
         table.write_field(frames.time(frame).to_string())?;
-        for (name, point) in columns.names.iter().zip(columns.points(playback.at(time), time)) {
+        for (name, point) in columns.names.iter().zip(columns.points(&track.at(time))) {
             if !is_within_numbers(point) {
                 return Err(MotionError::TooFar { joint: name.clone() });
             }
@@ -85,15 +85,14 @@ impl Columns {
         ["frame", "time"].map(str::to_owned).into_iter().chain(points)
     }
 
-    fn points(&self, document: &Document, time: f64) -> Vec<Vec3> {
-        match document.rig {
+    fn points(&self, posed: &Posed) -> Vec<Vec3> {
+        match posed.document().rig {
             RigKind::Arm => {
-                let arm = &document.arm;
-                let pose = arm.pose();
+                let (arm, pose) = (posed.arm(), posed.arm_pose());
                 vec![arm.root, arm.root + pose.elbow, arm.root + pose.hand]
             }
             RigKind::Skeleton => {
-                let pose = document.skeleton_rig.skeleton_at(time).pose();
+                let pose = posed.skeleton().pose();
                 let bases = pose.ids().map(|joint| pose.base(joint));
                 bases
                     .chain(self.leaves.iter().map(|joint| pose.tip(JointId::new(*joint))))

@@ -60,21 +60,3 @@ impl ExportFrames {
         frame as f64 / self.rate()
     }
 }
-
-/// Evaluates a document at many times without copying the document each time.
-pub struct FrameEvaluator {
-    document: Document,
-}
-
-impl FrameEvaluator {
-    /// An evaluator of a copy of the document.
-    pub fn new(document: &Document) -> Self {
-        Self { document: document.clone() }
-    }
-
-    /// Returns the document at `time` in seconds, equal to the result of [`Document::evaluate`].
-    pub fn at(&mut self, time: f64) -> &Document {
-        self.document.apply_keys(time);
-        &self.document
-    }
-}

@@ -57,7 +57,7 @@ pub use file_animation::FileAnimation;
 pub use file_batch::FileBatch;
 pub use file_stamp::FileStamp;
 pub use format::{save, to_json};
-pub use frames::{ExportFrames, FrameEvaluator};
+pub use frames::ExportFrames;
 pub use gltf::{GlbError, glb};
 pub use line::{Answer, LineError, PreviousLine, solve_line};
 pub use motion::{Exported, MotionError};

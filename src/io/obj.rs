@@ -40,12 +40,11 @@ pub fn to_obj(
     if !time.is_finite() {
         return Err(ObjError::Time(time));
     }
-    let shown = document.evaluate(time);
-    let skin = shown.skeleton_rig.skin.as_ref();
-    let skin = skin.filter(|_| shown.rig == RigKind::Skeleton).ok_or(ObjError::NoSkin)?;
+    let skin = document.skeleton_rig.skin.as_ref();
+    let skin = skin.filter(|_| document.rig == RigKind::Skeleton).ok_or(ObjError::NoSkin)?;
     let skinning = skinning.unwrap_or(skin.skinning);
     let mesh = &skin.mesh()?.mesh;
-    let posed = mesh.posed(&mesh.pose(&shown.skeleton_rig.skeleton_at(time)), skinning);
+    let posed = mesh.posed(&mesh.pose(document.at(time).skeleton()), skinning);
     if let Some(vertex) = posed.positions.iter().position(|at| !is_within_numbers(*at)) {
         return Err(ObjError::TooFar(vertex));
     }

@@ -110,7 +110,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::document::{Document, Overlay, Theme, TwistReferenceKind};
+    use crate::document::{Document, Overlay, Theme, Track, TwistReferenceKind};
     use crate::scene::Scene;
     use crate::session::Overlays;
 
@@ -137,7 +137,9 @@ mod tests {
                     document.arm.set_cursor(Vec3::from(cursor));
                     document.arm.twist_reference = kind;
                     document.display = document.display.with(overlay, true);
-                    let scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+                    let posed = document.at(0.0);
+                    let overlays = Overlays::new(&Track::new(&document), &posed);
+                    let scene = Scene::new(&posed, &overlays, Theme::Dark);
                     let texts = placed(&scene);
                     assert!(texts.len() >= count, "{overlay:?}: {}", texts.len());
                     for (index, text) in texts.iter().enumerate() {
@@ -161,7 +163,7 @@ mod tests {
             document.arm.set_cursor(Vec3::from(cursor));
             document.camera = document.camera.framing(Vec3::ZERO, 900.0, SIZE.x / SIZE.y);
             let overlays = Overlays { has_handles: true, ..Overlays::default() };
-            let scene = Scene::new(&document, &overlays, Theme::Dark);
+            let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
             let gap = scene.labels.iter().position(|it| scene.text(it).parse::<f32>().is_ok());
             let [low, high] = placed(&scene)[gap.expect("the length of the gap")];
             let projection = scene.camera.projection(SIZE.x / SIZE.y);

@@ -84,7 +84,7 @@ impl Session {
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();
-        self.evaluated.reset_pops(&self.editing.shown().arm, self.playback.time());
+        self.evaluated.reset_pops(self.editing.posed());
         self.forget_trail();
         if let Some(file) = file {
             self.files.remember(file);

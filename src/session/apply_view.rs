@@ -70,8 +70,9 @@ impl Session {
             let (centre, radius) = crowd.bounds();
             return self.settled_camera().framing(centre, radius, ASPECT);
         }
-        let (centre, radius) =
-            self.shown().motion_bounds_by(|arm| (arm.root, arm.reach_limits().outer));
+        let (centre, radius) = self
+            .shown()
+            .motion_bounds_by(|posed| (posed.arm().root, posed.arm().reach_limits().outer));
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 

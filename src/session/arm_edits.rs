@@ -45,7 +45,7 @@ impl Session {
         self.commit(self.shown().with_twist_reference(twist_reference));
         // If the converted keys give the shown twist at the playhead, there is no unkeyed edit.
         let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
-        let keyed = twist(&self.document().evaluate(self.time()));
+        let keyed = twist(self.document().at(self.time()).document());
         let apart = wrapped(keyed - twist(self.shown()) + SAME);
         if !was_overridden && apart < 2.0 * SAME && self.document().keys.has(Channel::Twist) {
             self.editing.forget_override(Channel::Twist);

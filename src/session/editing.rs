@@ -7,14 +7,15 @@ use super::playback::Playback;
 use super::snapshot::{Overrides, Snapshot};
 use super::transaction::Transaction;
 use super::tree_change::TreeChange;
-use crate::document::{Arm, Camera, Channel, Document, PathKind, TwistReferenceKind};
+use crate::document::{Arm, Camera, Channel, Document, PathKind, Posed, Track, TwistReferenceKind};
 
 /// The document, its values at the playhead, the open transaction and the history.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Editing {
     document: Document,
-    /// The document evaluated at the playhead, with unkeyed edits.
-    shown: Document,
+    track: Track,
+    /// The document posed at the playhead, with unkeyed edits.
+    posed: Posed,
     /// Unkeyed edits, discarded when the time changes.
     overrides: Overrides,
     transaction: Option<Transaction>,
@@ -41,8 +42,10 @@ pub(super) struct WriteOutcome {
 
 impl Editing {
     pub fn new(document: Document) -> Self {
+        let track = Track::new(&document);
         Self {
-            shown: document.clone(),
+            posed: track.pose(document.clone(), 0.0),
+            track,
             document,
             overrides: Overrides::default(),
             transaction: None,
@@ -72,8 +75,16 @@ impl Editing {
         &self.document
     }
 
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    pub fn posed(&self) -> &Posed {
+        &self.posed
+    }
+
     pub fn shown(&self) -> &Document {
-        &self.shown
+        self.posed.document()
     }
 
     pub fn overrides(&self) -> &Overrides {
@@ -100,7 +111,16 @@ impl Editing {
 
     /// The document as shown before the open transaction, or as shown now if none is open.
     pub fn shown_before(&self) -> &Document {
-        self.transaction.as_ref().map_or(&self.shown, |transaction| &transaction.shown)
+        self.transaction.as_ref().map_or(self.shown(), |transaction| &transaction.shown)
+    }
+
+    /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
+    /// none is open.
+    pub fn posed_before(&self) -> Posed {
+        match &self.transaction {
+            Some(transaction) => self.track.pose(transaction.shown.clone(), self.posed.time()),
+            None => self.posed.clone(),
+        }
     }
 
     pub fn drag(&self) -> Option<&Drag> {
@@ -146,7 +166,7 @@ impl Editing {
 
     pub fn set_camera(&mut self, camera: Camera) {
         self.document.camera = camera;
-        self.shown.camera = camera;
+        self.posed.set_camera(camera);
     }
 
     /// Removes a channel's unkeyed edit.
@@ -172,23 +192,24 @@ impl Editing {
         true
     }
 
-    /// Evaluates the document at `time`, in seconds, and applies the unkeyed edits.
+    /// Poses the document at `time`, in seconds, with the unkeyed edits.
     pub fn evaluate(&mut self, time: f64) {
-        self.shown.clone_from(&self.document);
-        self.shown.apply_keys(time);
+        self.track = Track::new(&self.document);
+        let mut shown = self.track.at(time).into_document();
         for (channel, value) in &self.overrides {
-            channel.set(&mut self.shown, *value);
+            channel.set(&mut shown, *value);
         }
+        self.posed = self.track.pose(shown, time);
     }
 
     /// Replaces the shown document. With auto-key, changed channels get keys; otherwise, changed
     /// channels with keys get unkeyed edits. Returns `None` if nothing has changed.
     pub fn write(&mut self, mut after: Document, playback: &Playback) -> Option<WriteOutcome> {
-        if after == self.shown {
+        if after == *self.shown() {
             return None;
         }
-        let [joints_before, joints] = [&self.shown, &after].map(|it| it.skeleton().joints().len());
-        let change = TreeChange::between(self.shown.skeleton(), after.skeleton());
+        let [joints_before, joints] = [self.shown(), &after].map(|it| it.skeleton().joints().len());
+        let change = TreeChange::between(self.shown().skeleton(), after.skeleton());
         let is_rebuilt = change != TreeChange::Kept;
         let has_other_joints = is_rebuilt || joints != joints_before;
         let mut outcome = WriteOutcome::default();
@@ -219,7 +240,7 @@ impl Editing {
         let Some(transaction) = &mut self.transaction else { return };
         if has_other_joints {
             transaction.drag = None;
-            transaction.shown.clone_from(&self.shown);
+            transaction.shown.clone_from(self.posed.document());
         } else if transaction.shown.keys != self.document.keys {
             transaction.shown.keys.clone_from(&self.document.keys);
         }
@@ -238,14 +259,14 @@ impl Editing {
     fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> WriteOutcome {
         let changed = |channel: &Channel| {
             let value = channel.value(after);
-            value.is_some() && value != channel.value(&self.shown)
+            value.is_some() && value != channel.value(self.shown())
         };
         let channels: Vec<Channel> = match playback.is_auto_key() {
             true => self.channels_to_auto_key(after),
             false => after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect(),
         };
         if !playback.is_auto_key() && is_transported(after) {
-            if after.arm.cursor_in_root() != self.shown.arm.cursor_in_root() {
+            if after.arm.cursor_in_root() != self.shown().arm.cursor_in_root() {
                 // The transported twist is an unkeyed edit, too, discarded together with that of
                 // the hand.
                 let twist = Channel::Twist.value(after).unwrap_or_default();
@@ -257,7 +278,7 @@ impl Editing {
         let mut outcome = WriteOutcome::default();
         for channel in channels {
             if playback.is_auto_key() {
-                after.key_before_switch(channel, &self.shown, playback.time());
+                after.key_before_switch(channel, self.shown(), playback.time());
                 after.key(channel, playback.time());
                 self.overrides.remove(&channel);
                 outcome.has_auto_keyed = true;
@@ -273,14 +294,14 @@ impl Editing {
     /// that shape the rig before or after it, and changed switches that have keys. A switch between
     /// FK and IK keys the channels of both; a switch of the pin keys the point that comes into use.
     fn channels_to_auto_key(&self, after: &Document) -> Vec<Channel> {
-        let changed = |channel: &Channel| channel.value(after) != channel.value(&self.shown);
+        let changed = |channel: &Channel| channel.value(after) != channel.value(self.shown());
         let (has_mode, has_pinned) = (changed(&Channel::Influence), changed(&Channel::Pinned));
         let comes_into_use = |channel: &Channel| {
             let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
             has_mode && is_posing || has_pinned && *channel == Channel::of_cursor(&after.arm)
         };
         let switches = after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-        let all: BTreeSet<Channel> = [after, &self.shown]
+        let all: BTreeSet<Channel> = [after, self.shown()]
             .into_iter()
             .flat_map(Channel::of_rig)
             .chain(switches)
@@ -296,7 +317,7 @@ impl Editing {
         let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
         let skeleton = &mut after.skeleton_rig.skeleton;
         let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
-        if skeleton.is_same(&self.shown.skeleton_rig.skeleton)
+        if skeleton.is_same(&self.shown().skeleton_rig.skeleton)
             && keyed_before.all(|channel| after.keys.has(channel))
         {
             *skeleton = self.document.skeleton_rig.skeleton.clone();
@@ -367,7 +388,7 @@ impl Editing {
     }
 
     pub fn begin(&mut self, drag: Option<Drag>, time: f64) {
-        let (before, shown) = (self.state(time), self.shown.clone());
+        let (before, shown) = (self.state(time), self.shown().clone());
         self.transaction = Some(Transaction { before, shown, label: None, drag });
     }
 
@@ -376,7 +397,8 @@ impl Editing {
         if let Some(transaction) = self.transaction.take() {
             // Not during a drag, which would stop for the time that it takes.
             self.document.skeleton_rig.refresh_skin();
-            self.shown.skeleton_rig.skin.clone_from(&self.document.skeleton_rig.skin);
+            self.track = Track::new(&self.document);
+            self.posed.set_skin(self.document.skeleton_rig.skin.clone());
             self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
         }
     }

@@ -4,19 +4,14 @@ use super::cached::Cached;
 use super::pops::{CursorMove, Pops};
 use super::skin_areas::SkinAreas;
 use super::transport::TransportPath;
-use crate::document::{Arm, Document};
-use crate::kinematics::Shared;
+use crate::document::Posed;
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::kinematics::skin::TriangleMesh;
-use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::EvaluatedSkeleton;
 
-/// Poses at the playhead and values derived from them.
+/// Values derived from the poses at the playhead.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Evaluated {
-    pose: TwoBonePose,
-    skeleton: Shared<EvaluatedSkeleton>,
     skeleton_pose: SkeletonPose,
     transport_path: TransportPath,
     pops: Pops,
@@ -28,28 +23,16 @@ pub(super) struct Evaluated {
 }
 
 impl Evaluated {
-    pub fn new(document: &Document) -> Self {
-        let pose = document.arm.pose();
-        let skeleton = Shared::from(document.skeleton_rig.evaluate(0.0));
+    pub fn new(posed: &Posed) -> Self {
         Self {
-            pose,
-            skeleton_pose: skeleton.solved.pose(),
-            skeleton,
-            transport_path: TransportPath::new(&document.arm),
-            pops: Pops::new(&document.arm, pose, 0.0),
+            skeleton_pose: posed.skeleton().pose(),
+            transport_path: TransportPath::new(posed),
+            pops: Pops::new(posed),
             why: Cached::default(),
             trail: Cached::default(),
             posed_skin: Cached::default(),
             skin_areas: Cached::default(),
         }
-    }
-
-    pub fn pose(&self) -> &TwoBonePose {
-        &self.pose
-    }
-
-    pub fn skeleton(&self) -> &Shared<EvaluatedSkeleton> {
-        &self.skeleton
     }
 
     pub fn skeleton_pose(&self) -> &SkeletonPose {
@@ -64,9 +47,13 @@ impl Evaluated {
         &self.pops
     }
 
-    /// The diagnoses of the target with this index, which the skeleton has.
-    pub fn why(&self, index: usize, diagnose: impl FnOnce() -> Vec<Diagnosis>) -> &[Diagnosis] {
-        let targets = self.skeleton.targets.len();
+    /// The diagnoses of the target with this index, of as many as the skeleton has.
+    pub fn why(
+        &self,
+        index: usize,
+        targets: usize,
+        diagnose: impl FnOnce() -> Vec<Diagnosis>,
+    ) -> &[Diagnosis] {
         let why = self.why.get(|| vec![Cached::default(); targets]);
         why.get(index).map_or(&[], |why| why.get(diagnose))
     }
@@ -96,27 +83,25 @@ impl Evaluated {
         self.skin_areas.get(compute).as_ref()
     }
 
-    /// Updates the poses, and the values derived from them, to a document that was evaluated at
-    /// `time`, in seconds.
-    pub fn update(&mut self, shown: &Document, time: f64, cause: CursorMove) {
-        self.pose = shown.arm.pose();
-        self.transport_path.advance(&shown.arm);
-        self.pops.record(&shown.arm, self.pose, cause, time);
-        self.skeleton = Shared::from(shown.skeleton_rig.evaluate(time));
-        self.skeleton.solved.write_pose(&mut self.skeleton_pose);
+    /// Updates the values to other poses.
+    pub fn update(&mut self, posed: &Posed, cause: CursorMove) {
+        self.transport_path.advance(posed.arm());
+        self.pops.record(posed, cause);
+        posed.skeleton().write_pose(&mut self.skeleton_pose);
         self.posed_skin.clear();
         self.why.clear();
     }
 
-    pub fn reset_transport(&mut self, arm: &Arm) {
-        self.transport_path = TransportPath::new(arm);
+    pub fn reset_transport(&mut self, posed: &Posed) {
+        self.transport_path = TransportPath::new(posed);
     }
 
-    pub fn reset_pops(&mut self, arm: &Arm, time: f64) {
-        self.pops = Pops::new(arm, self.pose, time);
+    pub fn reset_pops(&mut self, posed: &Posed) {
+        self.pops = Pops::new(posed);
     }
 
-    /// Discards the trail and the areas of the skin; they are computed again when they are next needed.
+    /// Discards the trail and the areas of the skin; both are computed again
+    /// when they are next needed.
     pub fn forget_trail(&mut self) {
         self.trail.clear();
         self.skin_areas.clear();

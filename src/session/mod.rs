@@ -103,7 +103,7 @@ pub use inside_layer::{InsideLayer, InsideLayers};
 pub use iterates::{Iterate, Iterates};
 pub use key::Key;
 pub use onion_skins::OnionSkin;
-pub use overlays::{InsideView, Overlays, SolverGhost};
+pub use overlays::{InsideView, Overlays, SolverGhost, TwistReferencePose};
 pub use panel_tab::PanelTab;
 pub use path_dialog::PathDialog;
 pub use playback_action::PlaybackAction;

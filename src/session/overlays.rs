@@ -6,20 +6,17 @@ use super::inside_layer::InsideLayers;
 use super::onion_skins::{OnionSkin, write_onion_skins};
 use super::trail::{has_trail, sample_trail};
 use super::wiggle::WiggleView;
-use crate::document::Document;
+use crate::document::{Overlay, Posed, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{Method, SubStep, TipTarget};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
-use crate::rig::{Crowd, EvaluatedSkeleton};
+use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::Crowd;
 
 /// State that a picture shows in addition to the document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlays {
-    /// Time of the playhead, in seconds.
-    pub time: f64,
-    /// The skeleton evaluated at that time; `None` to evaluate it for the picture.
-    pub evaluated: Option<Shared<EvaluatedSkeleton>>,
     /// Selected joints; the last of them is the active joint.
     pub selection: Vec<JointId>,
     /// The part of a body under the mouse, which lights up.
@@ -34,8 +31,9 @@ pub struct Overlays {
     pub inside: Option<InsideView>,
     /// An angle that swings.
     pub wiggle: Option<WiggleView>,
-    /// The frame transported along the Pointer's path; `None` if the Pointer has no path yet.
-    pub transported: Option<TransportedFrame>,
+    /// Poses of the arm with the same twist, measured from references of each kind; `None` if twist
+    /// references are hidden or FK alone poses the arm.
+    pub twist_references: Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]>,
     /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
     /// is hidden.
     pub trail: Vec<Vec3>,
@@ -45,6 +43,15 @@ pub struct Overlays {
     pub has_handles: bool,
     /// The crowd that is shown instead of the rig; `None` to show the rig.
     pub crowd: Option<Crowd>,
+}
+
+/// The arm's pose by IK with its twist measured from a reference of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistReferencePose {
+    /// Kind of the twist reference.
+    pub kind: TwistReferenceKind,
+    /// The pose.
+    pub pose: TwoBonePose,
 }
 
 /// A part of an iteration, as the view shows it.
@@ -76,30 +83,40 @@ pub struct SolverGhost {
 }
 
 impl Overlays {
-    /// Overlays for a document at a time in seconds: its motion trail and onion skins, if its
+    /// Overlays for a pose of a track: its motion trail, onion skins and twist references, if its
     /// display shows them.
-    pub fn new(document: &Document, time: f64) -> Self {
-        let shown = document.evaluate(time);
-        let has_trail = has_trail(document, &shown);
+    pub fn new(track: &Track, posed: &Posed) -> Self {
+        let has_trail = has_trail(track.document(), posed.document());
         let mut overlays = Self {
-            trail: if has_trail { sample_trail(document, None) } else { Vec::new() },
+            trail: if has_trail { sample_trail(track, None) } else { Vec::new() },
             ..Self::default()
         };
-        overlays.evaluate(&shown, time);
+        overlays.follow(track, posed);
         overlays
     }
 
-    /// The overlays at another time in seconds, at which `document` is evaluated already.
-    #[must_use]
-    pub fn at(mut self, document: &Document, time: f64) -> Self {
-        self.evaluate(document, time);
-        self
+    /// Updates onion skins and twist references to another pose of the track.
+    pub fn follow(&mut self, track: &Track, posed: &Posed) {
+        write_onion_skins(track, posed, &mut self.onion_skins);
+        self.twist_references = twist_reference_poses(posed, None);
     }
+}
 
-    /// Sets the time, the skeleton and the onion skins; `document` is evaluated at that time.
-    fn evaluate(&mut self, document: &Document, time: f64) {
-        self.time = time;
-        self.evaluated = Some(Shared::from(document.skeleton_rig.evaluate(time)));
-        write_onion_skins(document, document, time, &mut self.onion_skins);
-    }
+/// Poses of the arm for [`Overlays::twist_references`]. A pose with transport that is not the arm's
+/// own continues from the frame `transported`.
+pub(super) fn twist_reference_poses(
+    posed: &Posed,
+    transported: Option<TransportedFrame>,
+) -> Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]> {
+    let arm = posed.arm();
+    let is_shown = posed.document().display.shows(Overlay::TwistReferences) && arm.uses_ik();
+    let pose = |kind| {
+        if kind == arm.twist_reference {
+            posed.arm_solution().pose
+        } else {
+            arm.pose_with_reference(kind, transported)
+        }
+    };
+    is_shown
+        .then(|| TwistReferenceKind::ALL.map(|kind| TwistReferencePose { kind, pose: pose(kind) }))
 }

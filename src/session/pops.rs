@@ -1,9 +1,8 @@
 use std::collections::VecDeque;
 
-use crate::document::Arm;
+use crate::document::{Arm, Posed};
 use crate::kinematics::ik::Ik;
 use crate::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
-use crate::kinematics::two_bone::TwoBonePose;
 
 /// Ratios of elbow speed to Cursor speed in the latest dragged or played steps. Neither saved nor
 /// undone.
@@ -70,9 +69,10 @@ impl Pops {
     /// Maximum number of samples.
     const MOST: usize = 600;
 
-    /// Starts without samples; the first step is compared to this arm at `time`, in seconds.
-    pub(super) fn new(arm: &Arm, pose: TwoBonePose, time: f64) -> Self {
-        let previous = PreviousMoment { moment: moment(arm, pose), cause: CursorMove::Set, time };
+    /// Starts without samples; the first step is compared to this pose.
+    pub(super) fn new(posed: &Posed) -> Self {
+        let (moment, time) = (moment(posed), posed.time());
+        let previous = PreviousMoment { moment, cause: CursorMove::Set, time };
         Self { samples: VecDeque::new(), previous, run: 0 }
     }
 
@@ -108,8 +108,8 @@ impl Pops {
     }
 
     /// Records the step from the previous arm to this one.
-    pub(super) fn record(&mut self, arm: &Arm, pose: TwoBonePose, cause: CursorMove, time: f64) {
-        self.record_moment(moment(arm, pose), cause, time);
+    pub(super) fn record(&mut self, posed: &Posed, cause: CursorMove) {
+        self.record_moment(moment(posed), cause, posed.time());
     }
 
     fn record_moment(&mut self, moment: PosedArm, cause: CursorMove, time: f64) {
@@ -183,9 +183,10 @@ impl Spike {
     }
 }
 
-fn moment(arm: &Arm, pose: TwoBonePose) -> PosedArm {
+fn moment(posed: &Posed) -> PosedArm {
+    let arm = posed.arm();
     PosedArm {
-        pose,
+        pose: *posed.arm_pose(),
         cursor: arm.cursor_in_root(),
         ik: arm.ik(),
         twist: arm.twist,

@@ -12,9 +12,8 @@ use super::tour::TourState;
 use super::transport::TransportPath;
 use super::view::View;
 use super::wiggle::Wiggle;
-use crate::document::{Arm, Camera, Document, RigKind, SkeletonRig};
+use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
 use crate::io;
-use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{EvaluatedSkeleton, TargetReport};
@@ -62,7 +61,7 @@ impl Session {
         let mut editing = Editing::new(document);
         editing.evaluate(Playback::default().time());
         Self {
-            evaluated: Evaluated::new(editing.shown()),
+            evaluated: Evaluated::new(editing.posed()),
             editing,
             selection: Selection::default(),
             wiggle: None,
@@ -82,6 +81,11 @@ impl Session {
     /// channels.
     pub fn document(&self) -> &Document {
         self.editing.document()
+    }
+
+    /// The document posed at the playhead, with unkeyed edits.
+    pub fn posed(&self) -> &Posed {
+        self.editing.posed()
     }
 
     /// The document evaluated at the playhead, with unkeyed edits.
@@ -111,12 +115,12 @@ impl Session {
 
     /// The pose of the arm at the playhead.
     pub fn pose(&self) -> &TwoBonePose {
-        self.evaluated.pose()
+        self.posed().arm_pose()
     }
 
     /// The skeleton at the playhead, posed by FK and by its targets, with a report for each target.
-    pub fn evaluated_skeleton(&self) -> &Shared<EvaluatedSkeleton> {
-        self.evaluated.skeleton()
+    pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
+        self.posed().evaluated_skeleton()
     }
 
     /// The report of a joint's target at the playhead; `None` if the joint has none.
@@ -161,7 +165,7 @@ impl Session {
             None if self.playback.is_playing() => CursorMove::Played,
             None => CursorMove::Set,
         };
-        self.evaluated.update(self.editing.shown(), self.playback.time(), cause);
+        self.evaluated.update(self.editing.posed(), cause);
         self.selection.retain_joints(self.evaluated.skeleton_pose().len());
         self.update_solvers();
         self.selection.retain_keys(self.editing.document());
@@ -175,7 +179,7 @@ impl Session {
     }
 
     pub(super) fn reset_transport(&mut self) {
-        self.evaluated.reset_transport(&self.editing.shown().arm);
+        self.evaluated.reset_transport(self.editing.posed());
     }
 
     pub(super) fn forget_trail(&mut self) {

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::onion_skins::write_onion_skins;
-use super::overlays::{InsideView, Overlays, SolverGhost};
+use super::overlays::{InsideView, Overlays, SolverGhost, twist_reference_poses};
 use super::session::Session;
 use super::solver_run::SolverRun;
 use super::trail::{has_trail, sample_trail};
@@ -18,8 +18,6 @@ impl Session {
     /// Writes [`Session::overlays`] into `overlays` and reuses its memory. Allocates nothing,
     /// except for onion skins, which copy a document with keys.
     pub fn write_overlays(&self, overlays: &mut Overlays) {
-        overlays.time = self.time();
-        overlays.evaluated = Some(self.evaluated_skeleton().clone());
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection());
@@ -33,11 +31,12 @@ impl Session {
         }
         overlays.inside = self.inside();
         overlays.wiggle = self.wiggle_view();
-        overlays.transported = Some(self.transport_path().transported());
+        let transported = Some(self.transport_path().transported());
+        overlays.twist_references = twist_reference_poses(self.posed(), transported);
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());
         write_ghosts(self.solvers.runs(), &mut overlays.ghosts);
-        write_onion_skins(self.document(), self.shown(), self.time(), &mut overlays.onion_skins);
+        write_onion_skins(self.editing.track(), self.posed(), &mut overlays.onion_skins);
     }
 
     /// The part of the shown iteration that is looked at.
@@ -54,7 +53,7 @@ impl Session {
     /// trail is hidden.
     fn trail(&self) -> &[Vec3] {
         if has_trail(self.document(), self.shown()) {
-            self.evaluated.trail(|| sample_trail(self.document(), self.selected()))
+            self.evaluated.trail(|| sample_trail(self.editing.track(), self.selected()))
         } else {
             &[]
         }

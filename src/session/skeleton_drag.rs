@@ -129,7 +129,7 @@ impl Session {
         if limit.is_some_and(|limit| limit.min == limit.max) {
             return None;
         }
-        let EvaluatedSkeleton { fk, solved, .. } = &**self.evaluated_skeleton();
+        let EvaluatedSkeleton { fk, solved, .. } = self.evaluated_skeleton();
         // A hand that follows the bone above it keeps its own angles.
         let is_following = |target: &Target| {
             let follows = target.limb().is_some_and(|limb| limb.orientation.is_none());

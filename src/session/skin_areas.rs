@@ -1,4 +1,4 @@
-use crate::document::{Document, Overlay};
+use crate::document::{Overlay, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{MeshSection, SkinPose, SkinnedMesh, Skinning};
 
@@ -19,8 +19,9 @@ impl SkinAreas {
     /// The areas of the skin of a document; `None` if the display does not compare ways of blending, or
     /// there is no closed section. Without a joint, the section is at the one with the greatest roll in the
     /// timeline.
-    pub(super) fn new(document: &Document, joint: Option<JointId>) -> Option<Self> {
+    pub(super) fn new(track: &Track, joint: Option<JointId>) -> Option<Self> {
         const MOST_TIMES: usize = 121;
+        let document = track.document();
         let skin = document.skeleton_rig.skin.as_ref();
         let skin = skin.filter(|_| document.display.shows(Overlay::CompareSkinning))?;
         let mesh = &skin.mesh().ok()?.mesh;
@@ -29,12 +30,8 @@ impl SkinAreas {
         let time =
             |index: usize| timeline.start + timeline.duration() * index as f64 / (count - 1) as f64;
         let times: Vec<f64> = (0..count).map(time).collect();
-        let mut evaluated = document.clone();
-        let mut pose = |time: &f64| {
-            evaluated.apply_keys(*time);
-            mesh.pose(&evaluated.skeleton_rig.skeleton_at(*time))
-        };
-        let poses: Vec<SkinPose> = times.iter().map(&mut pose).collect();
+        let pose = |time: &f64| mesh.pose(track.at(*time).skeleton());
+        let poses: Vec<SkinPose> = times.iter().map(pose).collect();
         let joint = joint.or_else(|| most_rolled(&poses))?;
         let section = section(mesh, document.skeleton(), joint)?;
         let plain = section.area(|vertex| mesh.mesh().positions[vertex as usize]);

@@ -42,7 +42,7 @@ impl Session {
     /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
     /// skins are not compared or have no section there.
     pub fn skin_areas(&self) -> Option<&SkinAreas> {
-        self.evaluated.skin_areas(|| SkinAreas::new(self.document(), self.selected()))
+        self.evaluated.skin_areas(|| SkinAreas::new(self.editing.track(), self.selected()))
     }
 
     /// Gives the skeleton a skin from its bones, and shows it.

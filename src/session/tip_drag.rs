@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::session::Session;
-use crate::document::{SkeletonRig, Target};
+use crate::document::{Posed, Target, Track};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
@@ -22,7 +22,8 @@ impl Session {
         if !self.is_editing() {
             return;
         }
-        let before = self.editing.shown_before().skeleton_rig.clone();
+        let start = self.editing.posed_before();
+        let before = &start.document().skeleton_rig;
         let Some(dragged) = before.skeleton.joint(joint) else { return };
         if dragged.parent.is_none() && dragged.axis == Vec3::ZERO {
             let (transform, offset) = (before.skeleton.transform(), dragged.offset);
@@ -32,13 +33,12 @@ impl Session {
         let target = before.target_that_turns(joint).filter(|it| it.influence >= 1.0).copied();
         match target {
             Some(target) if target.joint == joint => {
-                let pose = before.skeleton_at(self.time());
-                self.set_target(target.placed(&pose, self.time(), to));
+                self.set_target(target.placed(start.skeleton(), start.time(), to));
             }
             Some(target) if is_elbow(&before.skeleton, &target, joint) => {
-                self.drag_elbow(&before, target, moved);
+                self.drag_elbow(&start, target, moved);
             }
-            _ => self.drag_fk(before, joint, moved),
+            _ => self.drag_fk(&start, joint, moved),
         }
     }
 
@@ -79,9 +79,9 @@ impl Session {
     }
 
     /// Turns a limb about the line from its base to its tip, as far as the elbow moves around it.
-    fn drag_elbow(&mut self, before: &SkeletonRig, mut target: Target, moved: Vec3) {
-        let pose = before.skeleton_at(self.time());
-        let Ok(limb) = Limb::ending_at(&pose, target.joint) else { return };
+    fn drag_elbow(&mut self, before: &Posed, mut target: Target, moved: Vec3) {
+        let pose = before.skeleton();
+        let Ok(limb) = Limb::ending_at(pose, target.joint) else { return };
         let to_skeleton = pose.transform().inverse();
         let [base, elbow, tip, to] = [
             pose.base(limb.upper),
@@ -100,8 +100,9 @@ impl Session {
     }
 
     /// Solves for the tip of `joint` and writes the angles of the joints that no target poses alone.
-    fn drag_fk(&mut self, before: SkeletonRig, joint: JointId, moved: Vec3) {
-        let start = fk_start(&before, self.time());
+    fn drag_fk(&mut self, posed: &Posed, joint: JointId, moved: Vec3) {
+        let start = fk_start(self.editing.track(), posed);
+        let before = &posed.document().skeleton_rig;
         let chain = before.skeleton.ancestors(joint);
         let is_free = |joint: JointId| !start[joint].locked;
         if !chain.into_iter().any(is_free) {
@@ -133,11 +134,13 @@ impl Session {
 
 /// The pose from which a drag solves for FK angles: that of FK and of the targets with full influence,
 /// with the joints that such a target turns locked.
-fn fk_start(rig: &SkeletonRig, time: f64) -> Skeleton {
-    let mut full = rig.clone();
-    full.targets.retain(|target| target.influence >= 1.0);
-    let mut pose = Skeleton::clone(&full.skeleton_at(time));
-    for (joint, influence) in rig.skeleton.ids().zip(full.influences()) {
+fn fk_start(track: &Track, before: &Posed) -> Skeleton {
+    let mut document = before.document().clone();
+    document.skeleton_rig.targets.retain(|target| target.influence >= 1.0);
+    let full = track.pose(document, before.time());
+    let mut pose = Skeleton::clone(full.skeleton());
+    let influences = full.document().skeleton_rig.influences();
+    for (joint, influence) in pose.ids().zip(influences) {
         if influence > 0.0 {
             pose.write_local(joint, |joint| joint.locked = true);
         }

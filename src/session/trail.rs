@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use crate::document::{Document, Overlay, RigKind};
+use crate::document::{Document, Overlay, RigKind, Track};
 use crate::kinematics::skeleton::JointId;
 
 /// Whether a document is animated and shows its motion trail.
@@ -10,10 +10,11 @@ pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
 
 /// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
 /// frames for a long timeline or a large skeleton. Empty for a skeleton without a `joint`.
-pub(super) fn sample_trail(document: &Document, joint: Option<JointId>) -> Vec<Vec3> {
+pub(super) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Maximum of the number of joints times the number of points.
     const MOST_POSES: usize = 100_000;
+    let document = track.document();
     let timeline = document.timeline;
     let joints = match (document.rig, joint) {
         (RigKind::Arm, _) => 1,
@@ -22,13 +23,11 @@ pub(super) fn sample_trail(document: &Document, joint: Option<JointId>) -> Vec<V
     };
     let frames = timeline.frames();
     let stride = frames.div_ceil((MOST_POSES / joints.max(1)).clamp(1, MOST_POINTS));
-    let mut posed = document.clone();
     let point = |frame| {
-        let time = timeline.time(frame);
-        posed.apply_keys(time);
+        let posed = track.at(timeline.time(frame));
         match document.rig {
-            RigKind::Arm => Some(posed.arm.root + posed.arm.pose().hand),
-            RigKind::Skeleton => Some(posed.skeleton_rig.skeleton_at(time).tip(joint?)),
+            RigKind::Arm => Some(posed.arm().root + posed.arm_pose().hand),
+            RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
         }
     };
     (0..frames).step_by(stride).filter_map(point).collect()

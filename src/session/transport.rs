@@ -1,4 +1,4 @@
-use crate::document::Arm;
+use crate::document::{Arm, Posed};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::Pointer;
 
@@ -11,8 +11,8 @@ pub struct TransportPath {
 
 impl TransportPath {
     /// A path that starts at the frame from which the arm's twist is measured.
-    pub(super) fn new(arm: &Arm) -> Self {
-        let start = arm.solve().transported;
+    pub(super) fn new(posed: &Posed) -> Self {
+        let start = posed.arm_solution().transported;
         Self { start, now: start }
     }
 

@@ -29,7 +29,8 @@ impl Session {
         if !self.can_examine() || index >= rig.targets.len() {
             return &[];
         }
-        self.evaluated.why(index, || rig.diagnose_targets(&[index], self.time()))
+        let targets = rig.targets.len();
+        self.evaluated.why(index, targets, || rig.diagnose_targets(&[index], self.time()))
     }
 
     /// [`Session::why_target`] without finding it out.

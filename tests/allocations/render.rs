@@ -16,7 +16,7 @@ fn scene(hand: Vec3, more: usize) -> Scene {
     let arm = Arm { cursor: Cursor::unpinned(hand), ..Arm::default() };
     let display: Display = Overlay::all().collect();
     let document = Document { arm, display, ..Document::default() };
-    let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+    let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
     let colour = scene.palette.joint;
     for index in 0..more {
         let at = hand + Vec3::splat(index as f32 / more as f32);
@@ -82,7 +82,7 @@ fn named(name: &str) -> Scene {
     let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
     *document.skeleton_mut() = Skeleton::with_root(name);
     let overlays = Overlays { selection: vec![JointId::new(0)], ..Overlays::default() };
-    Scene::new(&document, &overlays, Theme::Dark)
+    Scene::new(&document.at(0.0), &overlays, Theme::Dark)
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use allocation_counter::measure;
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Display, Document, Overlay, TargetPath, Theme, TwistReferenceKind,
+    Channel, Display, Document, Overlay, TargetPath, Theme, Track, TwistReferenceKind,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
@@ -27,7 +27,7 @@ impl Bench {
         let session = Session::with_document(Preferences::default(), document);
         let overlays = session.overlays();
         let mut builder = SceneBuilder::default();
-        let scene = builder.build(session.shown(), &overlays, Theme::Dark);
+        let scene = builder.build(session.posed(), &overlays, Theme::Dark);
         Self { session, overlays, builder, shown: scene.clone(), scene }
     }
 
@@ -39,7 +39,7 @@ impl Bench {
         self.session.overlays();
         let counted = measure(|| {
             self.session.write_overlays(&mut self.overlays);
-            self.builder.refill(&mut self.scene, self.session.shown(), &self.overlays, Theme::Dark);
+            self.builder.refill(&mut self.scene, self.session.posed(), &self.overlays, Theme::Dark);
         });
         let has_changed = self.scene != self.shown;
         std::mem::swap(&mut self.scene, &mut self.shown);
@@ -145,10 +145,11 @@ fn a_scene_built_in_reused_memory_equals_a_new_one() {
         for overlays in [document.display, Overlay::all().collect(), Display::from_iter([])] {
             document.display = overlays;
             for theme in [Theme::Dark, Theme::Light] {
-                let overlays = Overlays::new(&document, 0.3);
-                let anew = Scene::new(&document, &overlays, theme);
+                let (track, posed) = (Track::new(&document), document.at(0.3));
+                let overlays = Overlays::new(&track, &posed);
+                let anew = Scene::new(&posed, &overlays, theme);
                 let scene = scene.get_or_insert_with(|| anew.clone());
-                builder.refill(scene, &document, &overlays, theme);
+                builder.refill(scene, &posed, &overlays, theme);
                 assert_eq!(*scene, anew, "{}", example.name);
                 for (label, same) in scene.labels.iter().zip(&anew.labels) {
                     assert_eq!(scene.text(label), anew.text(same));

@@ -91,7 +91,7 @@ fn leg(max_stretch: f32) -> Document {
 /// Largest distance between the tips of all joints in two documents, over the frames of one.
 fn largest_distance(one: &Document, other: &Document) -> f32 {
     let tips = |document: &Document, time: f64| {
-        let pose = document.evaluate(time).skeleton_rig.skeleton_at(time).pose();
+        let pose = document.at(time).skeleton().pose();
         pose.ids().map(|joint| pose.tip(joint)).collect::<Vec<_>>()
     };
     let frames = (0..one.timeline.frames()).map(|frame| one.timeline.time(frame));

@@ -64,7 +64,7 @@ fn a_file_of_another_program_becomes_a_document_and_goes_on_from_there() {
     let end = before.timeline.end;
     for time in [0.0, 0.5 * end, end] {
         let at = |document: &ik_arm::document::Document, scale: f32| {
-            let skeleton = document.evaluate(time).skeleton_rig.skeleton_at(time);
+            let skeleton = document.at(time).skeleton().clone();
             let hand = skeleton.find("left_hand").expect("a joint");
             skeleton.base(hand) * scale
         };

@@ -548,7 +548,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
     let document = keyed_chain();
     let scene = Scene::new(&io::to_json(&document).expect("written"));
     for time in ["-2", "-0.25", "0", "1.3", "2", "1e9"] {
-        let posed = document.evaluate(time.parse().expect("a number"));
+        let posed = document.at(time.parse().expect("a number")).into_document();
         let pose = posed.skeleton().pose();
         let answer = scene.pose(&["--time", time]);
         for (index, joint) in answer.joints.iter().enumerate() {
@@ -567,7 +567,7 @@ fn a_time_moves_the_last_joint_where_the_spline_says() {
 fn a_time_moves_path_followers_and_targets() {
     let document = crate::common::documents::keyed_snake();
     let snake = Scene::new(&io::to_json(&document).expect("written"));
-    let pose = document.evaluate(2.5).skeleton_rig.skeleton_at(2.5).pose();
+    let pose = document.at(2.5).skeleton().pose();
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 
     let mut document = keyed_chain();

@@ -308,7 +308,7 @@ fn a_time_moves_keyed_channels() {
     let json = |document: &Document| ik_arm::io::to_json(document).expect("written");
     let moving = file(&folder, "moving.json", &json(&document));
     for time in [-0.5, 0.0, 1.0] {
-        let mut posed = document.evaluate(time);
+        let mut posed = document.at(time).into_document();
         posed.keys = Default::default();
         let still = file(&folder, "still.json", &json(&posed));
         assert_eq!(picture(&[&moving, "--time", &time.to_string()]), picture(&[&still]), "{time}");

@@ -119,7 +119,7 @@ fn an_obj_holds_the_posed_mesh_in_world_space_closed_with_outward_normals() {
         let output = run(&arguments, &[&out, &skinned]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let (positions, normals, triangles) = read_obj(&out);
-        let rig = document.evaluate(0.5).skeleton_rig;
+        let rig = document.at(0.5).into_document().skeleton_rig;
         let mesh = rig.skin.as_ref().expect("skin").mesh().expect("mesh").mesh.clone();
         let posed = mesh.posed(&mesh.pose(&rig.skeleton_at(0.5)), skinning);
         assert_eq!(positions, posed.positions, "{argument}");

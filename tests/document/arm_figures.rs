@@ -3,7 +3,7 @@
 use core::f32::consts::TAU;
 
 use glam::{DMat3, DVec3, Vec3};
-use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, Theme, TwistReferenceKind};
+use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, Theme, Track, TwistReferenceKind};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::scene::{Line, Scene, Solid};
@@ -39,8 +39,9 @@ struct Lit {
 fn scene(arm: Arm, display: &[Overlay], figure: Option<ArmFigure>) -> Scene {
     let display = Display::from_iter(display.iter().copied());
     let document = Document { arm, display, ..Document::default() };
-    let overlays = Overlays { figure, ..Overlays::new(&document, 0.0) };
-    Scene::new(&document, &overlays, Theme::Dark)
+    let posed = document.at(0.0);
+    let overlays = Overlays { figure, ..Overlays::new(&Track::new(&document), &posed) };
+    Scene::new(&posed, &overlays, Theme::Dark)
 }
 
 fn added(with: &Scene, without: &Scene) -> Lit {

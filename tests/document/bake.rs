@@ -105,7 +105,7 @@ fn bake(document: &Document, settings: &Bake) -> Baked {
 }
 
 fn pose_at(document: &Document, time: f64) -> SkeletonPose {
-    document.evaluate(time).skeleton_rig.skeleton_at(time).pose()
+    document.at(time).skeleton().pose()
 }
 
 /// The document without its targets.
@@ -138,7 +138,7 @@ fn largest_distance(
 
 /// Asserts that a document's bake moves as the document does, with its targets and without them.
 fn assert_moves_as_before(name: &str, document: &Document, settings: &Bake, baked: &Baked) {
-    let reach = document.evaluate(settings.frames.start).skeleton_rig.reach();
+    let reach = document.at(settings.frames.start).into_document().skeleton_rig.reach();
     let tolerance = settings.tolerance * reach;
     let shortened: Vec<JointId> = baked.shortened.iter().map(|bone| bone.joint).collect();
     for after in [&baked.document, &untargeted(&baked.document)] {
@@ -258,7 +258,7 @@ fn a_bake_of_a_part_leaves_the_rest_to_the_targets() {
     let baked = bake(&document, &settings).document;
     for frame in 0..WHOLE.frames() {
         let time = WHOLE.time(frame);
-        let influence = baked.evaluate(time).skeleton_rig.targets[0].influence;
+        let influence = baked.at(time).into_document().skeleton_rig.targets[0].influence;
         let is_baked = (PART.start..=PART.end).contains(&time);
         assert_eq!(influence, if is_baked { 0.0 } else { 1.0 }, "at {time}");
         if !is_baked {

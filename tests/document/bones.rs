@@ -1,7 +1,7 @@
 //! The bones of imported rigs: from joint to joint, and nothing floats.
 
 use glam::Vec3;
-use ik_arm::document::{Document, RigKind, SkeletonRig, Theme};
+use ik_arm::document::{Document, RigKind, SkeletonRig, Theme, Track};
 use ik_arm::io::{self, OpenOptions};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::{Scene, Solid};
@@ -171,7 +171,7 @@ fn the_bone_of_a_joint_follows_a_child_that_moves() {
             io::parse("x.bvh", &text, &OpenOptions::default()).expect("it opens").document;
         for _ in 0..20 {
             let time = f64::from(random.within(-0.05..0.3));
-            let pose = document.evaluate(time).skeleton_rig.skeleton_at(time).pose();
+            let pose = document.at(time).skeleton().pose();
             // The root's child moves, so that the root is an origin without a bone.
             for joint in 1..4 {
                 let (tip, base) =
@@ -194,7 +194,8 @@ fn every_joint_is_drawn_in_touch_with_its_parent() {
         let (skeleton, _) = skeletons::tree(&mut random, 4, 1.0);
         let skeleton_rig = SkeletonRig::new(skeleton);
         let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
-        let scene = Scene::new(&document, &Overlays::new(&document, 0.0), Theme::Dark);
+        let posed = document.at(0.0);
+        let scene = Scene::new(&posed, &Overlays::new(&Track::new(&document), &posed), Theme::Dark);
         let pose = document.skeleton().pose();
         for (joint, parent) in
             document.skeleton().iter().filter_map(|(id, joint)| Some((id, joint.parent?)))

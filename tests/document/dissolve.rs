@@ -7,7 +7,7 @@ use ik_arm::kinematics::skeleton::JointId;
 
 /// Positions of bases and tips in world space, by joint name.
 fn positions(document: &Document, time: f64) -> Vec<(String, Vec3, Vec3)> {
-    let evaluated = document.evaluate(time);
+    let evaluated = document.at(time).into_document();
     let pose = evaluated.skeleton_rig.skeleton_at(time).pose();
     let joints = evaluated.skeleton().iter();
     joints.map(|(at, joint)| (joint.name.clone(), pose.base(at), pose.tip(at))).collect()

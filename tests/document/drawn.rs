@@ -26,7 +26,7 @@ fn chain(bones: usize) -> Document {
 }
 
 fn scene(document: &Document) -> Scene {
-    Scene::new(document, &Overlays::default(), Theme::Dark)
+    Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark)
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
         shown.apply(PlaybackAction::SetTime(0.5));
         let overlays = shown.overlays();
         let [.., skin] = &overlays.onion_skins[..] else { panic!("onion skins") };
-        let scene = Scene::new(shown.shown(), &overlays, Theme::Dark);
+        let scene = Scene::new(shown.posed(), &overlays, Theme::Dark);
         let skeleton = shown.skeleton();
         let joint = |name: &str| skeleton.find(name).expect("a joint");
         // The legs start beside the pelvis: a rod leads to each.

@@ -3,7 +3,9 @@
 use core::f32::consts::TAU;
 
 use glam::{DQuat, DVec3, Vec3};
-use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, Ray, Theme, TwistReferenceKind};
+use ik_arm::document::{
+    Arm, Cursor, Display, Document, Overlay, Ray, Theme, Track, TwistReferenceKind,
+};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::scene::{Palette, Scene};
 use ik_arm::session::{DragInput, Grip, Overlays, Preferences, Session, TransactionAction};
@@ -34,7 +36,8 @@ fn arm(random: &mut Random) -> Arm {
 fn scene_of(arm: Arm) -> Scene {
     let display = Display::from_iter([Overlay::ElbowCircle]);
     let document = Document { arm, display, ..Document::default() };
-    Scene::new(&document, &Overlays::new(&document, 0.0), Theme::Dark)
+    let posed = document.at(0.0);
+    Scene::new(&posed, &Overlays::new(&Track::new(&document), &posed), Theme::Dark)
 }
 
 #[test]

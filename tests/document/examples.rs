@@ -20,7 +20,7 @@ fn opened(name: &str) -> Document {
 }
 
 fn evaluated(document: &Document, time: f64) -> EvaluatedSkeleton {
-    document.evaluate(time).skeleton_rig.evaluate(time)
+    document.at(time).evaluated_skeleton().clone()
 }
 
 /// The skeleton at a time, with its joints by name.
@@ -330,7 +330,7 @@ fn hands_and_feet_of_all_examples_turn_as_their_targets_ask() {
         let (from, to) = (document.timeline.start, document.timeline.end);
         for step in 0..=24 {
             let time = from + (to - from) * f64::from(step) / 24.0;
-            let rig = document.evaluate(time).skeleton_rig;
+            let rig = document.at(time).into_document().skeleton_rig;
             for (target, report) in rig.targets.iter().zip(&rig.evaluate(time).targets) {
                 let is_posed = target.is_posing() && !target.is_blended();
                 assert!(

@@ -26,7 +26,7 @@ fn walk(random: &mut Random) -> Document {
 }
 
 fn pose_at(document: &Document, time: f64) -> SkeletonPose {
-    document.evaluate(time).skeleton_rig.skeleton_at(time).pose()
+    document.at(time).skeleton().pose()
 }
 
 fn is_seen(projection: &Projection, point: Vec3) -> bool {

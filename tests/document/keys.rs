@@ -38,7 +38,7 @@ fn setting_a_channel_changes_its_value_alone() {
     ] {
         let mut keyed = document.clone();
         keyed.keys.insert(channel, 1.0, value);
-        let mut posed = keyed.evaluate(7.0);
+        let mut posed = keyed.at(7.0).into_document();
         assert_eq!(channel.value(&posed), Some(value), "{channel:?}");
         channel.set(&mut posed, channel.value(&document).expect("there"));
         posed.keys = Keys::default();
@@ -49,7 +49,7 @@ fn setting_a_channel_changes_its_value_alone() {
 #[test]
 fn a_document_without_keys_is_the_same_at_every_time() {
     let document = human();
-    assert_eq!(document.evaluate(3.0), document);
+    assert_eq!(document.at(3.0).into_document(), document);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_keyed_hand_goes_along_a_spline() {
         document.keys.insert(Channel::Hand, time, Vec3::new(x, 2.0 * x, 5.0));
     }
     // 8/3 · 100: see the spline's tests.
-    let hand = document.evaluate(2.0).arm.cursor_in_root();
+    let hand = document.at(2.0).into_document().arm.cursor_in_root();
     assert!(hand.distance(Vec3::new(266.666_67, 533.333_3, 5.0)) < 1e-3, "{hand}");
 }
 
@@ -69,11 +69,11 @@ fn lengths_stay_above_0_where_their_spline_does_not() {
     for (time, length) in [(0.0, 1000.0), (1.0, 10.0), (2.0, 10.0), (3.0, 1000.0)] {
         document.keys.insert(Channel::Upper, time, number(length));
     }
-    let upper = |time| document.evaluate(time).arm.bones.upper();
+    let upper = |time| document.at(time).into_document().arm.bones.upper();
     assert_eq!(upper(1.5), 1.0);
     assert_eq!((upper(0.0), upper(1.0), upper(9.0)), (1000.0, 10.0, 1000.0));
     for step in 0..400 {
-        let arm = document.evaluate(f64::from(step) * 0.01).arm;
+        let arm = document.at(f64::from(step) * 0.01).into_document().arm;
         assert!(arm.bones.upper() > 0.0 && arm.pose().elbow.is_finite());
     }
 }
@@ -87,7 +87,7 @@ fn angles_stay_within_the_limits_of_their_joint() {
         .change(JointId::new(1), |joint| joint.limits = limits)
         .expect("possible");
     document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::new(3.0, 30.0, -3.0));
-    let joint = document.evaluate(0.0).skeleton().joints()[1].clone();
+    let joint = document.at(0.0).into_document().skeleton().joints()[1].clone();
     assert_eq!(joint.rotation, Vec3::new(0.5, 30.0, -3.0));
 }
 
@@ -98,7 +98,7 @@ fn switches_step() {
     for (time, on) in [(1.0, 1.0), (2.0, 0.0)] {
         document.keys.insert(limit, time, number(on));
     }
-    let shown = |time| document.evaluate(time).display.shows(Overlay::OuterLimit);
+    let shown = |time| document.at(time).into_document().display.shows(Overlay::OuterLimit);
     assert_eq!([0.0, 1.0, 1.99, 2.0].map(shown), [true, true, true, false]);
 }
 
@@ -111,7 +111,7 @@ fn huge_values_stay_finite() {
         document.keys.insert(Channel::Upper, time, number(x.abs()));
     }
     for step in 0..100 {
-        let arm = document.evaluate(f64::from(step) * 0.03).arm;
+        let arm = document.at(f64::from(step) * 0.03).into_document().arm;
         assert!(arm.cursor_in_root().is_finite() && arm.twist.is_finite(), "{arm:?}");
         assert!(arm.pose().hand.is_finite());
     }

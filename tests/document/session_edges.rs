@@ -193,7 +193,7 @@ fn a_comparison_is_made_anew_when_the_joints_change() {
         for ghost in session.overlays().ghosts {
             assert_eq!(ghost.pose.len(), session.skeleton_pose().len());
         }
-        let _ = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+        let _ = Scene::new(session.posed(), &session.overlays(), Theme::Dark);
     }
 }
 
@@ -255,7 +255,7 @@ fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
         for camera in [session.framing_all(), session.framing_selection()] {
             assert!(camera.is_valid(), "{camera:?}");
         }
-        let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+        let scene = Scene::new(session.posed(), &session.overlays(), Theme::Dark);
         assert!(scene.planes.centre.is_finite() && scene.planes.radius.is_finite());
         assert!(scene.balls.iter().all(|ball| ball.centre.is_finite() && ball.radius.is_finite()));
         assert!(scene.solids.iter().all(|solid| solid.transform.is_finite()));

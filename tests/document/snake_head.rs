@@ -46,7 +46,7 @@ fn keyed_snake(random: &mut Random) -> Document {
 }
 
 fn posed(document: &Document, time: f64) -> Skeleton {
-    Skeleton::clone(&document.evaluate(time).skeleton_rig.skeleton_at(time))
+    Skeleton::clone(&document.at(time).skeleton().clone())
 }
 
 /// The bases of all joints and the last tip.
@@ -88,7 +88,7 @@ fn without_keys_and_up_to_the_first_key_the_body_has_its_own_angles() {
         let mut document = keyed_snake(&mut random);
         let first = document.keys.track(Channel::Offset(HEAD)).expect("keys").knots()[0].time;
         for time in [f64::MIN, 0.0, first] {
-            assert_eq!(posed(&document, time), *document.evaluate(time).skeleton());
+            assert_eq!(posed(&document, time), *document.at(time).into_document().skeleton());
         }
         document.keys.clear(Channel::Offset(HEAD));
         assert_eq!(posed(&document, 1.0), *document.skeleton());
@@ -361,6 +361,6 @@ fn joints_can_be_posed_by_their_own_angles_up_to_the_first_key_of_the_head() {
     let document = keyed_snake(&mut random);
     let first = document.keys.track(Channel::Offset(HEAD)).expect("keys").knots()[0].time;
     for (time, is_on_path) in [(first - 0.1, false), (first, false), (first + 0.1, true)] {
-        assert_eq!(document.evaluate(time).skeleton_rig.is_on_path(time), is_on_path);
+        assert_eq!(document.at(time).into_document().skeleton_rig.is_on_path(time), is_on_path);
     }
 }

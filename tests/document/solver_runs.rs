@@ -425,6 +425,6 @@ fn the_labels_in_the_view_tell_the_shown_iteration_and_its_gaps() {
 }
 
 fn labels(session: &Session) -> Vec<String> {
-    let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+    let scene = Scene::new(session.posed(), &session.overlays(), Theme::Dark);
     scene.labels.iter().map(|label| scene.text(label).to_owned()).collect()
 }

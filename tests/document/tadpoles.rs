@@ -55,7 +55,7 @@ fn distance(line: &[DVec3], point: DVec3) -> f64 {
 
 /// Joints of a head's chain with their distances from the path, relative to the chain's length.
 fn beside_path(document: &Document, head: JointId, time: f64) -> Vec<f64> {
-    let rig = document.evaluate(time).skeleton_rig;
+    let rig = document.at(time).into_document().skeleton_rig;
     let skeleton = rig.skeleton_at(time);
     let length: f32 = rig.path_joints(head).map(|joint| rig.skeleton[joint].axis.length()).sum();
     let path = path(document, head, time);
@@ -77,9 +77,9 @@ fn tadpoles_play_when_opened_and_every_tail_is_on_the_path_of_its_head() {
             let worst = beside_path(document, *head, time).into_iter().fold(0.0, f64::max);
             assert!(worst < 1e-3, "{worst} at {time} s");
         }
-        let rig = document.evaluate(time).skeleton_rig;
+        let rig = document.at(time).into_document().skeleton_rig;
         let evaluated = rig.evaluate(time);
-        assert_eq!(evaluated, again.evaluate(time).skeleton_rig.evaluate(time));
+        assert_eq!(evaluated, again.at(time).evaluated_skeleton().clone());
         for (report, target) in evaluated.targets.iter().zip(&rig.targets) {
             assert_eq!(report.outcome, TargetOutcome::Leads);
             assert!(report.error < 1e-6, "the head is at its target");
@@ -133,7 +133,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     let recorded = session.document().clone();
     let heads = heads(&recorded);
     let middle = |time: f64| {
-        let rig = recorded.evaluate(time).skeleton_rig;
+        let rig = recorded.at(time).into_document().skeleton_rig;
         let homes = heads.iter().map(|head| rig.targets[rig.target(*head).expect("one")].home);
         homes.sum::<Vec3>() / heads.len() as f32
     };
@@ -146,7 +146,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
             let worst = beside_path(&recorded, *head, time).into_iter().fold(0.0, f64::max);
             assert!(worst < 1e-3, "{worst} at {time} s");
         }
-        let posed = |document: &Document| document.evaluate(time).skeleton_rig.skeleton_at(time);
+        let posed = |document: &Document| document.at(time).skeleton().clone();
         assert_eq!(posed(&again), posed(&recorded));
     }
     session.apply(TransactionAction::Undo);

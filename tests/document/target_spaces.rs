@@ -188,7 +188,7 @@ fn keyed(random: &mut Random) -> (Document, JointId) {
 
 /// Position, orientation and pole of the document's target in the world at a time.
 fn in_world(document: &Document, time: f64) -> (Vec3, Quat, Vec3) {
-    let rig = document.evaluate(time).skeleton_rig;
+    let rig = document.at(time).into_document().skeleton_rig;
     let pose = rig.skeleton_at(time);
     let target = &rig.targets[0];
     let limb = target.limb().expect("a limb");
@@ -264,7 +264,7 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
         }
         for time in [0.0, 0.7, 1.0, 3.0] {
             let value = |channel| document.keys.value(channel, time).expect("keys");
-            let mut rig = document.evaluate(time).skeleton_rig;
+            let mut rig = document.at(time).into_document().skeleton_rig;
             let target = &mut rig.targets[0];
             target.home = value(Channel::Target(joint));
             target.influence = value(Channel::TargetInfluence(joint)).x;
@@ -272,7 +272,7 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
             limb.twist = value(Channel::TargetTwist(joint)).x;
             limb.orientation = Some(value(Channel::TargetOrientation(joint)));
             limb.reference = ElbowReference::Pole(value(Channel::TargetPole(joint)));
-            let solved = document.evaluate(time).skeleton_rig.skeleton_at(time);
+            let solved = document.at(time).skeleton().clone();
             assert_eq!(solved, rig.skeleton_at(time));
         }
     }

@@ -95,7 +95,7 @@ fn nameless(joints: &[(&'static str, usize, [f32; 3])]) -> Vec<(&'static str, us
 fn poses(document: &Document) -> Vec<SkeletonPose> {
     let pose = |frame| {
         let time = document.timeline.time(frame);
-        document.evaluate(time).skeleton_rig.skeleton_at(time).pose()
+        document.at(time).skeleton().pose()
     };
     (0..document.timeline.frames()).map(pose).collect()
 }
@@ -232,7 +232,8 @@ fn everything_in_the_world_turns_with_the_skeleton() {
         // Between the keys, too, except for angles, which are interpolated one by one.
         for step in 0..=30 {
             let time = f64::from(step) * 0.1;
-            let evaluated = [&before, &after].map(|document| document.evaluate(time).skeleton_rig);
+            let evaluated =
+                [&before, &after].map(|document| document.at(time).into_document().skeleton_rig);
             let [points, turned] = evaluated.clone().map(|rig| {
                 let target = rig.targets[0];
                 let pole = target.limb().and_then(LimbSettings::pole).expect("a pole").1;

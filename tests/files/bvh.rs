@@ -39,7 +39,7 @@ fn shown(skeleton: Skeleton) -> Document {
 
 /// Positions of bases at a time, and of the tips of leaves.
 fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
-    let document = document.evaluate(time);
+    let document = document.at(time).into_document();
     let skeleton = document.skeleton_rig.skeleton_at(time);
     let pose = skeleton.pose();
     let mut points = HashMap::new();
@@ -149,7 +149,7 @@ fn the_arm_round_trips() {
     let read = open(text(&exported)).document;
     for frame in 0..31 {
         let time = f64::from(frame) / 30.0;
-        let arm = document.evaluate(time).arm;
+        let arm = document.at(time).into_document().arm;
         let pose = arm.pose();
         let found = points(&read, time);
         for (name, point) in
@@ -542,7 +542,7 @@ fn a_joint_rotates_by_the_product_of_its_channels_in_file_order() {
         let document = open(&text).document;
         // Without channels all frames are equal.
         for frame in 0..2 {
-            let pose = document.evaluate(frame as f64 * 0.5).skeleton().pose();
+            let pose = document.at(frame as f64 * 0.5).into_document().skeleton().pose();
             let size = 400.0 * joints as f64;
             for joint in 0..joints {
                 let expected = expected[frame][joint + 1];

@@ -51,7 +51,7 @@ fn the_arm_is_shoulder_elbow_and_hand() {
     for (frame, row) in rows.deserialize::<[f64; 11]>().enumerate() {
         let row = row.expect("numbers");
         let time = frame as f64 / 4.0;
-        let arm = document.evaluate(time).arm;
+        let arm = document.at(time).into_document().arm;
         let pose = arm.pose();
         assert_eq!((row[0], row[1]), (frame as f64, time));
         let points = [Vec3::ZERO, pose.elbow, pose.hand].map(|point| (arm.root + point).to_array());
@@ -70,7 +70,7 @@ fn a_path_follower_moves_in_the_table() {
     for (frame, row) in rows.records().enumerate().step_by(60) {
         let row = row.expect("a row");
         let time = document.timeline.time(frame);
-        let rig = document.evaluate(time).skeleton_rig;
+        let rig = document.at(time).into_document().skeleton_rig;
         let head = rig.skeleton_at(time).pose().base(JointId::new(0));
         let found = [2, 3, 4].map(|column| row[column].parse::<f32>().expect("a number"));
         assert_eq!(Vec3::from_array(found), head);

@@ -87,7 +87,7 @@ fn skeletons_of_older_files_have_the_pose_of_their_joint_angles() {
     for (path, _) in versions() {
         let document = open(&path).document;
         for time in [0.0, 0.7, 2.0] {
-            let rig = document.evaluate(time).skeleton_rig;
+            let rig = document.at(time).into_document().skeleton_rig;
             let evaluated = rig.evaluate(time);
             assert_eq!(evaluated.solved, evaluated.fk, "{}", path.display());
             if rig.follow_paths.is_empty() {

@@ -33,7 +33,7 @@ fn motion(random: &mut Random) -> Document {
 /// Where the joints are in a frame, in metres, by their names.
 fn joints_at(document: &Document, frames: &ExportFrames, frame: usize) -> Vec<(String, Vec3)> {
     let time = frames.time(frame);
-    let skeleton = document.evaluate(time).skeleton_rig.skeleton_at(time);
+    let skeleton = document.at(time).skeleton().clone();
     let (pose, metres) = (skeleton.pose(), document.metres_per_unit());
     let named = skeleton.iter().map(|(id, joint)| (joint.name.clone(), pose.base(id) * metres));
     named.collect()

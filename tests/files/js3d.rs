@@ -131,7 +131,7 @@ fn the_splines_of_a_skeleton_become_keys_with_the_same_curves() {
         assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.8, frame_rate: 30.0 });
         for step in -2..=28 {
             let frame = f64::from(step) * 0.97;
-            let evaluated = document.evaluate(frame / 30.0);
+            let evaluated = document.at(frame / 30.0).into_document();
             let joints = evaluated.skeleton().joints();
             let near = |found: Vec3, expected: DVec3, size: f64| {
                 assert!(

@@ -261,7 +261,7 @@ fn draw_without(picture: &mut PictureRenderer<'_>, camera: Camera) -> RgbaImage 
 fn scene(crowd: &Crowd, camera: Camera) -> Scene {
     let document = Document { camera, ..Document::default() };
     let overlays = Overlays { crowd: Some(*crowd), ..Overlays::default() };
-    Scene::new(&document, &overlays, Theme::Dark)
+    Scene::new(&document.at(0.0), &overlays, Theme::Dark)
 }
 
 #[test]
@@ -271,7 +271,7 @@ fn a_crowd_whose_squared_lengths_overflow_is_not_drawn() {
         let overlays =
             Overlays { crowd: Some(Crowd { bones, ..crowd(10) }), ..Overlays::default() };
         assert_eq!(
-            Scene::new(&Document::default(), &overlays, Theme::Dark).crowd,
+            Scene::new(&Document::default().at(0.0), &overlays, Theme::Dark).crowd,
             None,
             "{length}"
         );

@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, AxisView, Camera, Cursor, Document, HandOrientation, HandSpace, Overlay, Theme,
+    Arm, AxisView, Camera, Cursor, Document, HandOrientation, HandSpace, Overlay, Theme, Track,
     TwistReferenceKind,
 };
 use ik_arm::io::Example;
@@ -19,7 +19,9 @@ use ik_arm::session::{Overlays, SolverGhost};
 use crate::pictures::{self, GPU, SIZE, compare, draw, kept};
 
 fn scene(document: &Document, theme: Theme) -> Scene {
-    Scene::new(document, &Overlays::default(), theme)
+    let posed = document.at(0.0);
+    let twist_references = Overlays::new(&Track::new(document), &posed).twist_references;
+    Scene::new(&posed, &Overlays { twist_references, ..Overlays::default() }, theme)
 }
 
 fn check(name: &str, document: &Document, theme: Theme) {
@@ -200,21 +202,19 @@ fn figures_and_an_arm_whose_hands_and_feet_stay() {
 
 #[test]
 fn the_snake_along_its_path() {
-    check("snake", &snake().evaluate(0.0), Theme::Dark);
+    check("snake", &snake(), Theme::Dark);
 }
 
 #[test]
 fn tadpoles_on_the_paths_of_their_targets() {
-    let document = example("tadpoles").evaluate(1.3);
-    let later = Overlays { time: 1.3, ..Overlays::default() };
-    pictures::check("tadpoles", &Scene::new(&document, &later, Theme::Light));
+    let posed = example("tadpoles").at(1.3);
+    pictures::check("tadpoles", &Scene::new(&posed, &Overlays::default(), Theme::Light));
 }
 
 #[test]
 fn the_snake_some_seconds_later_is_another_picture() {
-    let document = snake();
-    let later = Overlays { time: 1.5, ..Overlays::default() };
-    let drawn = draw(&Scene::new(&document.evaluate(1.5), &later, Theme::Dark));
+    let posed = snake().at(1.5);
+    let drawn = draw(&Scene::new(&posed, &Overlays::default(), Theme::Dark));
     assert!(compare(&drawn, &kept("snake")).is_err());
 }
 
@@ -222,12 +222,15 @@ fn the_snake_some_seconds_later_is_another_picture() {
 fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     let document = example("human");
     let selected = Overlays { selection: vec![JointId::new(6)], ..Overlays::default() };
-    let drawn = draw(&Scene::new(&document, &selected, Theme::Dark));
+    let drawn = draw(&Scene::new(&document.at(0.0), &selected, Theme::Dark));
     assert!(compare(&drawn, &kept("human")).is_err(), "a selected joint");
     let bind = document.skeleton().bind_pose();
     let ghosts = vec![SolverGhost { method: Method::Ccd, pose: bind, ..SolverGhost::default() }];
-    let drawn =
-        draw(&Scene::new(&document, &Overlays { ghosts, ..Overlays::default() }, Theme::Dark));
+    let drawn = draw(&Scene::new(
+        &document.at(0.0),
+        &Overlays { ghosts, ..Overlays::default() },
+        Theme::Dark,
+    ));
     assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");
     let mut unsolved = document;
     for target in &mut unsolved.skeleton_rig.targets {
@@ -297,7 +300,10 @@ fn the_arm_with_all_overlays_of_an_animator() {
 }
 
 fn with_selection(document: &Document, joint: usize) -> Overlays {
-    Overlays { selection: vec![JointId::new(joint)], ..Overlays::new(document, 0.0) }
+    Overlays {
+        selection: vec![JointId::new(joint)],
+        ..Overlays::new(&Track::new(document), &document.at(0.0))
+    }
 }
 
 /// The Human in its bind pose.
@@ -321,7 +327,10 @@ fn the_skin_of_the_human_in_its_bind_pose() {
 fn the_weights_of_a_joint_colour_the_skin() {
     let document = showing(bind_pose(), &[Overlay::SkinWeights]);
     for (name, theme) in [("skin_weights", Theme::Dark), ("skin_weights-light", Theme::Light)] {
-        pictures::check(name, &Scene::new(&document, &with_selection(&document, 13), theme));
+        pictures::check(
+            name,
+            &Scene::new(&document.at(0.0), &with_selection(&document, 13), theme),
+        );
     }
 }
 
@@ -341,7 +350,8 @@ fn the_candy_wrapper_half_way_and_at_its_end() {
     for (name, time, theme) in
         [("candy_wrapper", 3.0, Theme::Dark), ("candy_wrapper-light", 2.0, Theme::Light)]
     {
-        let scene = Scene::new(&document.evaluate(time), &Overlays::new(&document, time), theme);
+        let posed = document.at(time);
+        let scene = Scene::new(&posed, &Overlays::new(&Track::new(&document), &posed), theme);
         pictures::check(name, &scene);
     }
 }

@@ -29,7 +29,7 @@ fn inside(name: &str, part: usize) -> Session {
 
 fn check(name: &str, session: &Session) {
     for (name, theme) in [(name.to_owned(), Theme::Dark), (format!("{name}-light"), Theme::Light)] {
-        pictures::check(&name, &Scene::new(session.shown(), &session.overlays(), theme));
+        pictures::check(&name, &Scene::new(session.posed(), &session.overlays(), theme));
     }
 }
 

@@ -19,7 +19,7 @@ use crate::pictures::{GPU, check, compare, draw, kept};
 const POLE: Vec3 = Vec3::new(180.0, 260.0, 200.0);
 
 fn scene(document: &Document, theme: Theme) -> Scene {
-    Scene::new(document, &Overlays::default(), theme)
+    Scene::new(&document.at(0.0), &Overlays::default(), theme)
 }
 
 fn globe(reference: TwistReference) -> Globe {

@@ -19,7 +19,7 @@ fn timed(
     gpu_timer: &mut GpuTimer,
     frame: u64,
 ) -> (Duration, Option<(u64, Duration)>) {
-    let scene = Scene::new(&Document::default(), &Overlays::default(), Theme::Dark);
+    let scene = Scene::new(&Document::default().at(0.0), &Overlays::default(), Theme::Dark);
     let canvas = Canvas::new(gpu, SIZE.0, SIZE.1);
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("idle");
     let started = Instant::now();

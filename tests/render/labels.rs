@@ -27,7 +27,7 @@ fn named(names: &[&str]) -> Scene {
     document.display = Display::from_iter([Overlay::Labels]);
     let selection = (0..names.len()).map(JointId::new).collect();
     let mut scene =
-        Scene::new(&document, &Overlays { selection, ..Overlays::default() }, Theme::Dark);
+        Scene::new(&document.at(0.0), &Overlays { selection, ..Overlays::default() }, Theme::Dark);
     assert_eq!(scene.labels.len(), names.len());
     scene.solids.clear();
     scene.balls.clear();
@@ -128,7 +128,7 @@ fn names_of_the_arm_are_on_a_side_without_limbs() {
         document.arm.set_cursor(Vec3::from([0; 3].map(|_| number(-350.0, 350.0))));
         document.arm.twist = number(-3.0, 3.0);
         (document.camera.yaw, document.camera.pitch) = (number(-3.0, 3.0), number(-1.4, 1.4));
-        let scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+        let scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
         let pose = document.arm.pose();
         let projection = document.camera.projection(1.0);
         let [right, up] = [projection.right, projection.up].map(Vec3::normalize);
@@ -159,7 +159,7 @@ fn a_hand_with_handles_has_no_name_and_the_others_keep_theirs() {
     let document = Document::default();
     let names = |has_handles| {
         let overlays = Overlays { has_handles, ..Overlays::default() };
-        let scene = Scene::new(&document, &overlays, Theme::Dark);
+        let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
         scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
     };
     assert_eq!(names(false), ["Root", "Elbow", "Hand"]);

@@ -34,12 +34,8 @@ fn shells() -> Vec<SphereShell> {
 
 /// Nothing but shells before an empty sky.
 fn scene(shells: Vec<SphereShell>) -> Scene {
-    let document = Document::default();
-    let mut scene = Scene::new(
-        &Document { display: [].into_iter().collect(), ..document },
-        &Overlays::default(),
-        Theme::Dark,
-    );
+    let document = Document { display: [].into_iter().collect(), ..Document::default() };
+    let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
     scene.solids.clear();
     scene.balls.clear();
     scene.camera =

@@ -41,9 +41,11 @@ fn the_device_moves_the_skins_of_all_examples_as_the_cpu_does() {
         let Some(skin) = &document.skeleton_rig.skin else { continue };
         let mesh = &skin.mesh().expect("a mesh").mesh;
         for time in [0.0, 0.7] {
-            let shown = document.evaluate(time);
-            let posed = shown.skeleton_rig.skeleton_at(time);
-            assert_agrees(&posed, mesh, &format!("{} at {time} s", example.name));
+            assert_agrees(
+                document.at(time).skeleton(),
+                mesh,
+                &format!("{} at {time} s", example.name),
+            );
         }
         skins += 1;
     }
@@ -124,11 +126,11 @@ fn each_part_has_its_colour_and_its_texture_the_right_way_up() {
     let texture = Shared::from(texture);
     let textured =
         square(vec![part([1.0; 3], Some(texture.clone())), part([1.0; 3], Some(texture))]);
-    let picture = draw(&Scene::new(&textured, &Overlays::default(), Theme::Dark));
+    let picture = draw(&Scene::new(&textured.at(0.0), &Overlays::default(), Theme::Dark));
     for (x, y, expected) in [(-0.6, 0.6, 0), (0.6, 0.6, 1), (-0.6, -0.6, 2), (0.6, -0.6, 2)] {
         assert_eq!(channel_at(&picture, x, y), expected, "at {x}, {y}");
     }
     let coloured = square(vec![part([1.0, 0.1, 0.1], None), part([0.1, 1.0, 0.1], None)]);
-    let picture = draw(&Scene::new(&coloured, &Overlays::default(), Theme::Dark));
+    let picture = draw(&Scene::new(&coloured.at(0.0), &Overlays::default(), Theme::Dark));
     assert_eq!((channel_at(&picture, 0.6, -0.6), channel_at(&picture, -0.6, 0.6)), (0, 1));
 }

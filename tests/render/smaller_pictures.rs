@@ -37,7 +37,7 @@ impl Bench {
 
 fn scene(theme: Theme, overlays: impl IntoIterator<Item = Overlay>) -> Scene {
     let document = Document { display: Display::from_iter(overlays), ..Document::default() };
-    Scene::new(&document, &Overlays::default(), theme)
+    Scene::new(&document.at(0.0), &Overlays::default(), theme)
 }
 
 const GUIDES: [Overlay; 12] = [
@@ -111,7 +111,7 @@ fn far_arms_of_a_crowd_are_as_dense_as_in_full() {
         let camera = Camera::default().framing(centre, radius, 1.0);
         let document = Document { camera, ..Document::default() };
         let overlays = Overlays { crowd: Some(crowd), ..Overlays::default() };
-        let mut scene = Scene::new(&document, &overlays, Theme::Dark);
+        let mut scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
         let with = [1.0, 0.5].map(|scale| bench.draw(&scene, scale));
         scene.crowd = None;
         let without = [1.0, 0.5].map(|scale| bench.draw(&scene, scale));

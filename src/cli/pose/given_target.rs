@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::joint_name::{self, JointNameError};
 use crate::cli::argument::PointArgument;
-use crate::document::SkeletonRig;
+use crate::document::{Document, Posed, Track};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::TargetSpace;
@@ -41,45 +41,50 @@ impl FromStr for GivenTarget {
     }
 }
 
-/// Adds targets to a rig, or moves those that their joints have, to be at the given positions at
-/// `time`, in seconds. `order` has the rig's joints in the file's order.
+/// The document of a track at `time`, in seconds, with targets at the given positions: those that
+/// their joints have are moved, others are added. `order` has the rig's joints in the file's order.
 ///
 /// # Errors
 ///
 /// [`SetTargetsError`] if a joint is not there or has two of the targets.
-pub fn set_targets(
-    rig: &mut SkeletonRig,
-    targets: &[GivenTarget],
+pub fn with_targets(
+    track: &Track,
     time: f64,
+    targets: &[GivenTarget],
     order: &[JointId],
-) -> Result<(), SetTargetsError> {
+) -> Result<Posed, SetTargetsError> {
+    let mut posed = track.at(time);
     let mut set = Vec::new();
     for GivenTarget { joint: name, point } in targets {
-        let joint = joint_name::find(name, &rig.skeleton, order)?;
-        let index = place(rig, joint, *point, time);
+        let skeleton = posed.document().skeleton();
+        let joint = joint_name::find(name, skeleton, order)?;
+        let (document, index) = place(&posed, joint, *point);
         if set.contains(&index) {
-            return Err(SetTargetsError::Two(rig.skeleton[joint].name.clone()));
+            return Err(SetTargetsError::Two(skeleton[joint].name.clone()));
         }
         set.push(index);
+        posed = track.pose(document, time);
     }
-    Ok(())
+    Ok(posed)
 }
 
-/// Moves the joint's target, or adds one; returns its index.
-fn place(rig: &mut SkeletonRig, joint: JointId, point: Vec3, time: f64) -> usize {
-    let pose = rig.skeleton_at(time);
-    let posed = Limb::for_end(&rig.skeleton, joint).map_or(joint, |limb| limb.lower);
-    let existing = rig.target_of_end(joint).or_else(|| rig.target(posed));
+/// Moves the joint's target, or adds one; returns the document and the target's index.
+fn place(posed: &Posed, joint: JointId, point: Vec3) -> (Document, usize) {
+    let mut document = posed.document().clone();
+    let (rig, pose) = (&mut document.skeleton_rig, posed.skeleton());
+    let lower = Limb::for_end(&rig.skeleton, joint).map_or(joint, |limb| limb.lower);
+    let existing = rig.target_of_end(joint).or_else(|| rig.target(lower));
     let index = existing.unwrap_or_else(|| {
-        rig.targets.extend(rig.new_target(joint, &pose));
+        rig.targets.extend(rig.new_target(joint, pose));
         rig.targets.len() - 1
     });
     let target = &mut rig.targets[index];
     // On a joint, it would move with the joint when the targets are solved.
-    *target = target.in_space(TargetSpace::World, &pose, time, None).placed(&pose, time, point);
+    let in_world = target.in_space(TargetSpace::World, pose, posed.time(), None);
+    *target = in_world.placed(pose, posed.time(), point);
     target.enabled = true;
     if target.influence == 0.0 {
         target.influence = 1.0;
     }
-    index
+    (document, index)
 }

@@ -1,10 +1,10 @@
 //! `ik-arm pose`: the pose of a file's skeleton at a time, as one line of JSON.
 
+mod answered_pose;
 mod given_target;
 mod joint_name;
 mod list;
 mod pose_line;
-mod posed;
 mod why_line;
 
 use std::io::{self, Write as _};
@@ -20,13 +20,13 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::report::{fail, say};
 use super::time_limit::TimeLimitArgs;
-use crate::document::{RigKind, SkeletonRig};
+use crate::document::{Posed, RigKind, Track};
 use crate::io::{OpenError, OpenOptions, Opened, system_reason};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
+use answered_pose::AnsweredPose;
 use given_target::{GivenTarget, SetTargetsError};
 use pose_line::PoseLine;
-use posed::Posed;
 
 #[derive(clap::Args)]
 #[command(
@@ -148,35 +148,35 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     }
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;
-    let mut rig = document.evaluate(time).skeleton_rig;
-    given_target::set_targets(&mut rig, &args.targets, time, &order)
+    let posed = given_target::with_targets(&Track::new(&document), time, &args.targets, &order)
         .map_err(|error| PoseCommandError::Target { file: file.clone(), error })?;
-    let posed = posed(&rig, args, &order, &file)?;
-    if let Some(remark) = &posed.remark {
+    let answer = answer(&posed, args, &order, &file)?;
+    if let Some(remark) = &answer.remark {
         say(&format_args!("{file}: {remark}"));
     }
-    let line = PoseLine::new(&rig, &posed, &order, time)
+    let line = PoseLine::new(&posed.document().skeleton_rig, &answer, &order, time)
         .map_err(|name| PoseCommandError::Overflow { file, name: name.to_owned() })?;
     let line = serde_json::to_string(&line).map_err(io::Error::from)?;
     Ok(writeln!(io::stdout(), "{line}")?)
 }
 
 /// The pose that the arguments ask for.
-fn posed(
-    rig: &SkeletonRig,
+fn answer(
+    posed: &Posed,
     args: &PoseArgs,
     order: &[JointId],
     file: &str,
-) -> Result<Posed, PoseCommandError> {
-    let TimeArgument(time) = args.time;
+) -> Result<AnsweredPose, PoseCommandError> {
+    let (rig, time) = (&posed.document().skeleton_rig, posed.time());
     let Some(method) = args.solver else {
-        return Ok(if args.fk { Posed::fk(rig, time) } else { Posed::evaluated(rig, time) });
+        let answer = if args.fk { AnsweredPose::fk } else { AnsweredPose::by_targets };
+        return Ok(answer(posed));
     };
     if rig.targets_at(time).is_empty() {
         let reason =
             "has no enabled target, so there is nothing to solve: --target JOINT=x,y,z sets one";
         say(&format_args!("{file} {reason}"));
-        return Ok(Posed::fk(rig, time));
+        return Ok(AnsweredPose::fk(posed));
     }
     let options = SolverOptions {
         method,
@@ -184,7 +184,7 @@ fn posed(
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
-    Posed::solved(rig, time, &options).map_err(|error| {
+    AnsweredPose::solved(posed, &options).map_err(|error| {
         let file = file.to_owned();
         PoseCommandError::Solve { file, error: with_file_indices(error, order) }
     })

@@ -1,7 +1,7 @@
 use glam::{Mat4, Vec3};
 use serde::Serialize;
 
-use super::posed::Posed;
+use super::answered_pose::AnsweredPose;
 use super::why_line::WhyLine;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
@@ -56,7 +56,7 @@ impl<'a> PoseLine<'a> {
     /// Fails with the name of a joint whose position overflows.
     pub fn new(
         rig: &'a SkeletonRig,
-        posed: &'a Posed,
+        posed: &'a AnsweredPose,
         order: &[JointId],
         time: f64,
     ) -> Result<Self, &'a str> {

@@ -57,7 +57,7 @@ pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
 
 fn scene(document: &Document, crowd: Crowd, theme: Theme) -> Scene {
     let overlays = Overlays { crowd: Some(crowd), ..Overlays::default() };
-    Scene::new(document, &overlays, theme)
+    Scene::new(&document.at(0.0), &overlays, theme)
 }
 
 /// A document whose camera frames the whole crowd.

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use super::open;
 use super::report::fail;
 use super::view_name::ViewName;
-use crate::document::{Arm, Cursor, Document};
+use crate::document::{Arm, Cursor, Document, Posed, Track};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
@@ -35,12 +35,12 @@ fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
     if let Some(arms) = args.crowd {
         return crowd::render(args, arms);
     }
-    let document = document(args)?;
+    let (track, posed) = posed(args)?;
     let theme = args.theme.into();
-    let overlays = Overlays::new(&document, args.time.0);
+    let overlays = Overlays::new(&track, &posed);
     let gpu = Gpu::headless()?;
     let mut picture = PictureRenderer::of_size(&gpu, args.size.width, args.size.height)?;
-    let scene = || Scene::new(&document, &overlays, theme);
+    let scene = || Scene::new(&posed, &overlays, theme);
     if let Some(path) = &args.output {
         render::save(&picture.draw(&scene())?, path)?;
     }
@@ -56,18 +56,17 @@ fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
     Ok(())
 }
 
-/// Returns the document to draw: that of the file, evaluated at the time in `args`, or without a
-/// file a document with the arm that the arguments describe.
-fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
-    let time = args.time.0;
-    let mut document = match &args.file {
+/// Returns the pose to draw at the time in `args`, with its track: of the file, or without a file
+/// of a document with the arm that the arguments describe.
+fn posed(args: &RenderArgs) -> Result<(Track, Posed), RenderCommandError> {
+    let track = match &args.file {
         Some(file) => {
             args.time_limit.start_long(file);
-            let opened = open::open_to_draw(file, &args.open.options())?;
-            opened.document.evaluate(time)
+            Track::new(&open::open_to_draw(file, &args.open.options())?.document)
         }
-        None => Document { arm: arm(args)?, ..Document::default() },
+        None => Track::new(&Document { arm: arm(args)?, ..Document::default() }),
     };
+    let mut document = track.at(args.time.0).into_document();
     if let Some(guides) = &args.guides {
         document.display = guides.shown_in(document.display);
     }
@@ -75,7 +74,8 @@ fn document(args: &RenderArgs) -> Result<Document, RenderCommandError> {
     if let Some(view) = view {
         document.camera = view.framing(&document, args.size);
     }
-    Ok(document)
+    let posed = track.pose(document, args.time.0);
+    Ok((track, posed))
 }
 
 fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {

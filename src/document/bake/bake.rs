@@ -1,11 +1,11 @@
 use glam::Vec3;
 
 use super::baked::Baked;
+use super::baked_track::{BakedFrames, BakedTrack};
 use super::error::BakeError;
 use super::motion::Motion;
 use super::reduction::Reduction;
-use super::track::{BakedFrames, Track};
-use crate::document::{Channel, Document, RigKind, Timeline};
+use crate::document::{Channel, Document, RigKind, Timeline, Track};
 
 /// Settings of a bake.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,12 +67,13 @@ impl Bake {
         let evaluations = self.frames.frames();
         let total = 2 * evaluations;
         let mut go_on = |done| if step(done, total) { Ok(()) } else { Err(BakeError::Cancelled) };
-        let motion = Motion::record(document, &self.frames, &mut go_on)?;
+        let track = Track::new(document);
+        let motion = Motion::record(&track, &self.frames, &mut go_on)?;
         if !motion.is_posed() {
             return Err(BakeError::Nothing);
         }
-        let frames = BakedFrames::new(document, self.frames);
-        let tracks = motion.tracks(document, &frames);
+        let frames = BakedFrames::new(document.timeline, self.frames);
+        let tracks = motion.tracks(&track, &frames);
         let tolerance = self.tolerance * motion.reach;
         let keys_at_frames = tracks.len() * evaluations;
         let mut reduction = Reduction::new(&motion, frames, tracks);
@@ -83,24 +84,24 @@ impl Bake {
             keys: reduction.keys(),
             error: reduction.error(),
             shortened: motion.shortened(),
-            document: baked(document, &frames, &motion, &reduction.tracks),
+            document: baked(&track, &frames, &motion, &reduction.tracks),
         })
     }
 }
 
 /// The document with baked tracks, without what posed the skeleton.
-fn baked(document: &Document, frames: &BakedFrames, motion: &Motion, tracks: &[Track]) -> Document {
-    let mut baked = document.clone();
-    for track in tracks {
-        baked.keys.set_track(track.channel, track.spline.clone());
+fn baked(track: &Track, frames: &BakedFrames, motion: &Motion, tracks: &[BakedTrack]) -> Document {
+    let mut baked = track.document().clone();
+    for baked_track in tracks {
+        baked.keys.set_track(baked_track.channel, baked_track.spline.clone());
     }
     for target in motion.posed_targets() {
         let channel = Channel::TargetInfluence(target);
-        let mut track = frames.surroundings(document, channel);
+        let mut spline = frames.surroundings(track, channel);
         for frame in [0, frames.count() - 1] {
-            track.insert(frames.time(frame), Vec3::ZERO);
+            spline.insert(frames.time(frame), Vec3::ZERO);
         }
-        baked.keys.set_track(channel, track);
+        baked.keys.set_track(channel, spline);
     }
     baked.skeleton_rig.follow_paths.clear();
     baked

@@ -19,10 +19,10 @@
 #[expect(clippy::module_inception, reason = "the type Bake, in the file of its name")]
 mod bake;
 mod baked;
+mod baked_track;
 mod error;
 mod motion;
 mod reduction;
-mod track;
 
 pub use bake::Bake;
 pub use baked::{Baked, ShortenedBone};

@@ -1,9 +1,9 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
 use super::baked::ShortenedBone;
+use super::baked_track::{BakedFrames, BakedTrack};
 use super::error::BakeError;
-use super::track::{BakedFrames, Track};
-use crate::document::{Channel, Document, Timeline};
+use crate::document::{Channel, Posed, Timeline, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::Target;
 
@@ -43,39 +43,37 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Evaluates a document at all frames. `go_on` is called before each with its number.
+    /// Records a track at all frames. `go_on` is called before each with its number.
     pub fn record(
-        document: &Document,
+        track: &Track,
         frames: &Timeline,
         go_on: &mut impl FnMut(usize) -> Result<(), BakeError>,
     ) -> Result<Self, BakeError> {
-        let mut at = document.evaluate(frames.start);
-        let joints = at.skeleton().joints().len();
+        let first = track.at(frames.start);
+        let rig = &first.document().skeleton_rig;
+        let joints = rig.skeleton.joints().len();
         let mut motion = Self {
-            skeleton: at.skeleton().clone(),
-            reach: at.skeleton_rig.reach(),
+            skeleton: Skeleton::clone(&rig.skeleton),
+            reach: rig.reach(),
             keyed: Vec::with_capacity(frames.frames() * joints),
             solved: Vec::with_capacity(frames.frames() * joints),
             ends: Vec::with_capacity(frames.frames() * joints),
             lengthened: vec![0.0; joints],
             posed: Vec::new(),
-            follows_path: document.follows_path(),
+            follows_path: track.document().follows_path(),
         };
         for frame in 0..frames.frames() {
             go_on(frame)?;
-            let time = frames.time(frame);
-            at.apply_keys(time);
-            motion.add(&at, time);
+            motion.add(&track.at(frames.time(frame)));
         }
         Ok(motion)
     }
 
-    /// Appends a frame: the document with the values of its channels at a time in seconds.
-    fn add(&mut self, at: &Document, time: f64) {
-        let rig = &at.skeleton_rig;
-        let solved = rig.skeleton_at(time);
+    /// Appends a frame.
+    fn add(&mut self, posed: &Posed) {
+        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
         self.keyed.extend(placements(&rig.skeleton));
-        self.solved.extend(placements(&solved));
+        self.solved.extend(placements(solved));
         let pose = solved.pose_in_skeleton();
         for (joint, own) in rig.skeleton.iter() {
             let full = pose.full(joint);
@@ -117,17 +115,17 @@ impl Motion {
 
     /// Tracks with a key at every frame, for the rotations and offsets that keys and angles alone do
     /// not give.
-    pub fn tracks(&self, document: &Document, frames: &BakedFrames) -> Vec<Track> {
+    pub fn tracks(&self, track: &Track, frames: &BakedFrames) -> Vec<BakedTrack> {
         let mut tracks = Vec::new();
         for joint in self.skeleton.ids() {
             let both = || self.of_joint(&self.keyed, joint).zip(self.of_joint(&self.solved, joint));
             if both().any(|(keyed, solved)| keyed.rotation != solved.rotation) {
                 let values = self.unwrapped(joint);
-                tracks.push(track(document, frames, Channel::Rotation(joint), joint, values));
+                tracks.push(baked_track(track, frames, Channel::Rotation(joint), joint, values));
             }
             if both().any(|(keyed, solved)| keyed.offset != solved.offset) {
                 let values = self.of_joint(&self.solved, joint).map(|placement| placement.offset);
-                tracks.push(track(document, frames, Channel::Offset(joint), joint, values));
+                tracks.push(baked_track(track, frames, Channel::Offset(joint), joint, values));
             }
         }
         tracks
@@ -165,16 +163,16 @@ fn placements(skeleton: &Skeleton) -> impl Iterator<Item = Placement> + '_ {
     skeleton.iter().map(|(_, joint)| Placement { rotation: joint.rotation, offset: joint.offset })
 }
 
-fn track(
-    document: &Document,
+fn baked_track(
+    track: &Track,
     frames: &BakedFrames,
     channel: Channel,
     joint: JointId,
     values: impl Iterator<Item = Vec3>,
-) -> Track {
-    let mut spline = frames.surroundings(document, channel);
+) -> BakedTrack {
+    let mut spline = frames.surroundings(track, channel);
     for (frame, value) in values.enumerate() {
         spline.insert(frames.time(frame), value);
     }
-    Track { channel, joint, spline, frames: (0..frames.count()).collect() }
+    BakedTrack { channel, joint, spline, frames: (0..frames.count()).collect() }
 }

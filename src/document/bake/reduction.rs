@@ -2,9 +2,9 @@ use core::iter::once;
 
 use glam::{Affine3A, Vec3};
 
+use super::baked_track::{BakedFrames, BakedTrack};
 use super::error::BakeError;
 use super::motion::{Ends, Motion, Placement};
-use super::track::{BakedFrames, Track};
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 
@@ -12,7 +12,7 @@ use crate::kinematics::skeleton::JointId;
 pub(super) struct Reduction<'a> {
     motion: &'a Motion,
     frames: BakedFrames,
-    pub tracks: Vec<Track>,
+    pub tracks: Vec<BakedTrack>,
     /// Placements by the tracks, or else by keys and angles alone.
     placements: Vec<Placement>,
     /// Transforms of joints to their parents' spaces.
@@ -35,7 +35,7 @@ struct Trial {
 }
 
 impl<'a> Reduction<'a> {
-    pub fn new(motion: &'a Motion, frames: BakedFrames, tracks: Vec<Track>) -> Self {
+    pub fn new(motion: &'a Motion, frames: BakedFrames, tracks: Vec<BakedTrack>) -> Self {
         let joints = motion.skeleton.joints().len();
         let mut placements = motion.keyed.clone();
         for track in &tracks {
@@ -227,7 +227,7 @@ impl Trial {
     }
 }
 
-impl Track {
+impl BakedTrack {
     /// The placement with the track's value, as [`Channel::set`] sets it.
     fn changed(&self, placement: Placement, value: Vec3, motion: &Motion) -> Placement {
         match self.channel {

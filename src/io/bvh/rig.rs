@@ -2,7 +2,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::names::{distinct, word};
 use super::transform::SkeletonTransform;
-use crate::document::{Arm, Document, RigKind};
+use crate::document::{Document, Posed, RigKind};
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
@@ -87,13 +87,11 @@ impl BvhRig {
         longest
     }
 
-    /// The pose of the rig at `time` in seconds. `document` must be evaluated at this time.
-    pub fn pose(&self, document: &Document, transform: &SkeletonTransform, time: f64) -> BvhPose {
+    /// The pose of the rig in a frame.
+    pub fn pose(&self, posed: &Posed, transform: &SkeletonTransform) -> BvhPose {
         match &self.kind {
-            BvhRigKind::Arm => arm(&document.arm),
-            BvhRigKind::Skeleton(nodes) => {
-                self.skeleton(nodes, &document.skeleton_rig.skeleton_at(time), transform)
-            }
+            BvhRigKind::Arm => arm(posed),
+            BvhRigKind::Skeleton(nodes) => self.skeleton(nodes, posed.skeleton(), transform),
         }
     }
 
@@ -141,8 +139,8 @@ fn local_rotation(joint: &Joint) -> DMat3 {
 }
 
 /// The pose of the arm as two bones along +x, with the elbow as a hinge about z.
-fn arm(arm: &Arm) -> BvhPose {
-    let pose = arm.pose();
+fn arm(posed: &Posed) -> BvhPose {
+    let (arm, pose) = (posed.arm(), posed.arm_pose());
     let (along, out) = (f64::from(pose.along), f64::from(pose.out));
     let upper = out.atan2(along);
     let lower = (-out).atan2(f64::from(pose.distance) - along);

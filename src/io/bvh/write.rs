@@ -6,9 +6,9 @@ use super::note::BvhNote;
 use super::rig::{BvhPose, BvhRig};
 use super::transform::SkeletonTransform;
 use super::unit::BvhUnit;
-use crate::document::{Document, RigKind};
+use crate::document::{Document, RigKind, Track};
 use crate::io::Progress;
-use crate::io::frames::{ExportFrames, FrameEvaluator};
+use crate::io::frames::ExportFrames;
 use crate::io::motion::{Exported, MotionError};
 use crate::kinematics::skeleton::exact_angles;
 
@@ -31,15 +31,14 @@ pub fn to_bvh(
     let frames = ExportFrames::of_pose(document, fps)?;
     let rig = BvhRig::new(document).ok_or(MotionError::NoJoints)?;
     MotionError::check_size(frames.count(), WIDTH * rig.names.len())?;
-    let mut playback = FrameEvaluator::new(document);
+    let track = Track::new(document);
     let mut motion = BvhMotion::new(&rig, unit.per_unit(document));
     for frame in 0..frames.count() {
         progress.step(frame, frames.count())?;
-        let time = frames.time(frame);
-        let posed = playback.at(time);
-        let transform = SkeletonTransform::new(posed.skeleton().transform());
+        let posed = track.at(frames.time(frame));
+        let transform = SkeletonTransform::new(posed.document().skeleton().transform());
         motion.is_uneven |= document.rig == RigKind::Skeleton && !transform.is_even();
-        motion.add(rig.pose(posed, &transform, time))?;
+        motion.add(rig.pose(&posed, &transform))?;
     }
     let text = motion.text(&frames)?;
     progress.step(frames.count(), frames.count())?;

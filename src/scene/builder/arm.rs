@@ -1,7 +1,7 @@
 use glam::{Affine3A, Vec3};
 
 use super::shadow::above_ground;
-use crate::document::{Arm, Display, Overlay, ShownLength, TwistReferenceKind};
+use crate::document::{Arm, Display, Overlay, Posed, ShownLength, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 use crate::scene::{
@@ -16,15 +16,10 @@ const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the arm with the guides, labels and shadows that `display` shows. The part under the mouse
+/// Adds the arm with the guides, labels and shadows that the display shows. The part under the mouse
 /// lights up; a hand with handles has no label.
-pub(super) fn add(
-    scene: &mut Scene,
-    arm: &Arm,
-    pose: &TwoBonePose,
-    display: Display,
-    overlays: &Overlays,
-) {
+pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
+    let (arm, pose, display) = (posed.arm(), posed.arm_pose(), posed.document().display);
     let rig = arm.rig(pose);
     let thickness = ArmRig::thickness(arm.bones);
     let has_hand = display.shows(Overlay::Hand);

@@ -4,7 +4,7 @@ use core::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 
-use crate::document::Arm;
+use crate::document::{Arm, Posed};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::scene::{Colour, Label, LabelSide, Line, Scene};
 
@@ -21,7 +21,8 @@ const LEAST_TWIST: f32 = 1e-3;
 
 /// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of the
 /// twist between them. Where FK has a part in the pose, the elbow has no circle.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose) {
+pub(super) fn add(scene: &mut Scene, posed: &Posed) {
+    let (arm, pose) = (posed.arm(), posed.arm_pose());
     if arm.influence < 1.0 || pose.out < LEAST * arm.bones.outer_limit() {
         return;
     }

@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 
 use super::arc::add_arc;
-use crate::document::Arm;
+use crate::document::{Arm, Posed};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{ArmPart, ArmRig};
 use crate::scene::{Label, LabelSide, Line, Scene};
@@ -21,16 +21,16 @@ const THICK: f32 = 0.009;
 const SLEEVE: f32 = 1.06;
 
 /// Adds the axes of Root, Limb and Socket, with their names.
-pub(super) fn add_frames(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose) {
-    let drawing = FigureDrawing::new(arm, pose);
+pub(super) fn add_frames(scene: &mut Scene, posed: &Posed) {
+    let drawing = FigureDrawing::new(posed);
     for (part, _) in FRAMES {
         drawing.add_frame(scene, part);
     }
 }
 
-/// Adds a figure of an arm in a pose.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, pose: &TwoBonePose, figure: ArmFigure) {
-    FigureDrawing::new(arm, pose).add(scene, figure);
+/// Adds a figure of the posed arm.
+pub(super) fn add(scene: &mut Scene, posed: &Posed, figure: ArmFigure) {
+    FigureDrawing::new(posed).add(scene, figure);
 }
 
 /// World positions of what the figures consist of.
@@ -50,7 +50,8 @@ struct FigureDrawing<'a> {
 }
 
 impl<'a> FigureDrawing<'a> {
-    fn new(arm: &'a Arm, pose: &'a TwoBonePose) -> Self {
+    fn new(posed: &'a Posed) -> Self {
+        let (arm, pose) = (posed.arm(), posed.arm_pose());
         let shoulder = arm.root;
         Self {
             arm,

@@ -20,7 +20,7 @@ mod targets;
 mod wiggle;
 
 use super::{Palette, Planes, Scene};
-use crate::document::{Document, Overlay, RigKind, Theme};
+use crate::document::{Overlay, Posed, RigKind, Theme};
 use crate::session::Overlays;
 use scratch::Scratch;
 
@@ -32,30 +32,26 @@ pub struct SceneBuilder {
 }
 
 impl Scene {
-    /// The scene of a document with its overlays.
-    pub fn new(document: &Document, overlays: &Overlays, theme: Theme) -> Self {
-        SceneBuilder::default().build(document, overlays, theme)
+    /// The scene of a posed document with its overlays.
+    pub fn new(posed: &Posed, overlays: &Overlays, theme: Theme) -> Self {
+        SceneBuilder::default().build(posed, overlays, theme)
     }
 }
 
 impl SceneBuilder {
-    /// Returns the scene of a document with its overlays.
-    pub fn build(&mut self, document: &Document, overlays: &Overlays, theme: Theme) -> Scene {
+    /// Returns the scene of a posed document with its overlays.
+    pub fn build(&mut self, posed: &Posed, overlays: &Overlays, theme: Theme) -> Scene {
+        let document = posed.document();
         let mut scene = Scene::empty(document.camera, document.display, theme);
-        self.refill(&mut scene, document, overlays, theme);
+        self.refill(&mut scene, posed, overlays, theme);
         scene
     }
 
     /// Replaces the contents of a scene by those that [`build`](Self::build) returns, reusing its
     /// memory.
-    pub fn refill(
-        &mut self,
-        scene: &mut Scene,
-        document: &Document,
-        overlays: &Overlays,
-        theme: Theme,
-    ) {
+    pub fn refill(&mut self, scene: &mut Scene, posed: &Posed, overlays: &Overlays, theme: Theme) {
         scene.clear();
+        let document = posed.document();
         let display = document.display;
         let (centre, reach, cell) = match document.rig {
             RigKind::Arm => {
@@ -83,27 +79,23 @@ impl SceneBuilder {
         }
         match document.rig {
             RigKind::Arm => {
-                let pose = document.arm.pose();
-                arm::add(scene, &document.arm, &pose, display, overlays);
+                arm::add(scene, posed, overlays);
                 if display.shows(Overlay::ElbowCircle) {
-                    elbow_circle::add(scene, &document.arm, &pose);
+                    elbow_circle::add(scene, posed);
                 }
                 if display.shows(Overlay::Frames) {
-                    figure::add_frames(scene, &document.arm, &pose);
+                    figure::add_frames(scene, posed);
                 }
                 if let Some(figure) = overlays.figure {
-                    figure::add(scene, &document.arm, &pose, figure);
+                    figure::add(scene, posed, figure);
                 }
-                if display.shows(Overlay::TwistReferences) {
-                    references::add(scene, &document.arm, overlays.transported);
+                if let Some(poses) = overlays.twist_references {
+                    references::add(scene, posed, poses);
                 }
             }
-            RigKind::Skeleton => {
-                let rig = &document.skeleton_rig;
-                skeleton::add(scene, rig, overlays, display, &mut self.scratch);
-            }
+            RigKind::Skeleton => skeleton::add(scene, posed, overlays, &mut self.scratch),
         }
-        motion::add(scene, document, overlays, reach);
+        motion::add(scene, document.rig, overlays, reach);
         scene.spare_skin_pose = None;
         scene.remove_non_finite();
     }

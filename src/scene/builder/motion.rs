@@ -1,5 +1,4 @@
-use crate::document::{Arm, Document, RigKind};
-use crate::rig::ArmPart;
+use crate::document::RigKind;
 use crate::scene::{Ball, Colour, Line, Scene};
 use crate::session::{OnionSkin, Overlays};
 
@@ -13,12 +12,12 @@ const CONTRAST: f32 = 0.7;
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion skins of
 /// the arm. Those of a figure are added with the figure, whose sizes they have.
-pub(super) fn add(scene: &mut Scene, document: &Document, overlays: &Overlays, reach: f32) {
+pub(super) fn add(scene: &mut Scene, rig: RigKind, overlays: &Overlays, reach: f32) {
     add_trail(scene, overlays, DOT_RADIUS * reach);
-    if document.rig == RigKind::Arm {
+    if rig == RigKind::Arm {
         for skin in &overlays.onion_skins {
             let colour = onion_skin_colour(scene, skin);
-            add_arm(scene, &skin.arm, colour, BONE_RADIUS * reach);
+            add_arm(scene, skin, colour, BONE_RADIUS * reach);
         }
     }
 }
@@ -39,10 +38,8 @@ fn add_trail(scene: &mut Scene, overlays: &Overlays, radius: f32) {
     scene.balls.extend(dots);
 }
 
-fn add_arm(scene: &mut Scene, arm: &Arm, colour: Colour, radius: f32) {
-    let rig = arm.rig(&arm.pose());
-    let [root, elbow, hand] =
-        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+fn add_arm(scene: &mut Scene, skin: &OnionSkin, colour: Colour, radius: f32) {
+    let [root, elbow, hand] = skin.arm;
     for (base, tip) in [(root, elbow), (elbow, hand)] {
         if base != tip {
             scene.add_solid(base, tip, radius, radius, colour);

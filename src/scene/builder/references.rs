@@ -1,11 +1,10 @@
 use core::fmt::{self, Display, Formatter};
 
-use crate::document::{Arm, TwistReferenceKind};
-use crate::kinematics::twist::TransportedFrame;
+use crate::document::{Arm, Posed, TwistReferenceKind};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::ArmRig;
 use crate::scene::{Ball, Label, LabelSide, Scene};
-use crate::session::BodyPart;
+use crate::session::{BodyPart, TwistReferencePose};
 
 /// Radii of a ghost's limbs and of its elbow, on an arm of thickness 1.
 const LIMB_RADIUS: f32 = 7.0;
@@ -16,21 +15,18 @@ const ELBOW_RADIUS: f32 = 13.0;
 const SHARED_LABEL_ANGLE: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
 /// Adds ghosts of the arm: thin arms with the same twist, each measured from another kind of twist
-/// reference. Labels show the angles from the arm's elbow to those of the ghosts. The ghost with
-/// transport continues from the frame `transported`.
-pub(super) fn add(scene: &mut Scene, arm: &Arm, transported: Option<TransportedFrame>) {
-    if !arm.uses_ik() {
-        return;
-    }
-    let own = arm.solve().pose;
-    let mut ghosts = TwistReferenceKind::ALL.map(|twist_reference| {
-        let pose = arm.pose_with_reference(twist_reference, transported);
-        ReferenceGhost {
-            twist_reference,
-            pose,
-            turn: own.elbow_turn_to(&pose),
-            is_own: twist_reference == arm.twist_reference,
-        }
+/// reference. Labels show the angles from the arm's elbow to those of the ghosts.
+pub(super) fn add<const N: usize>(
+    scene: &mut Scene,
+    posed: &Posed,
+    poses: [TwistReferencePose; N],
+) {
+    let (arm, own) = (posed.arm(), posed.arm_solution().pose);
+    let mut ghosts = poses.map(|TwistReferencePose { kind, pose }| ReferenceGhost {
+        twist_reference: kind,
+        pose,
+        turn: own.elbow_turn_to(&pose),
+        is_own: kind == arm.twist_reference,
     });
     ghosts.sort_by(|a, b| a.turn.total_cmp(&b.turn));
     for ghost in ghosts.iter().filter(|ghost| !ghost.is_own) {

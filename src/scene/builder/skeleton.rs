@@ -7,7 +7,7 @@ use super::scratch::Scratch;
 use super::skin::ShownSkin;
 use super::targets;
 use super::wiggle;
-use crate::document::{Display, FollowPath, Overlay, PathKind, SkeletonRig, Target};
+use crate::document::{FollowPath, Overlay, PathKind, Posed, SkeletonRig, Target};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::scene::{Line, Scene};
@@ -29,20 +29,11 @@ pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f
 
 /// Adds the bones with their shadows, the ghosts of other solvers, the targets with their trails,
 /// the followed path, and labels.
-pub(super) fn add(
-    scene: &mut Scene,
-    rig: &SkeletonRig,
-    overlays: &Overlays,
-    display: Display,
-    scratch: &mut Scratch,
-) {
+pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch: &mut Scratch) {
+    let (rig, display) = (&posed.document().skeleton_rig, posed.document().display);
     let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled } = scratch;
     let skeleton = &*rig.skeleton;
-    let evaluated = match &overlays.evaluated {
-        Some(evaluated) => evaluated.clone(),
-        None => Shared::from(rig.evaluate(overlays.time)),
-    };
-    evaluated.solved.write_pose(pose);
+    posed.skeleton().write_pose(pose);
     read_tree(skeleton.joints(), depths, are_leaves);
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
@@ -62,7 +53,7 @@ pub(super) fn add(
         }
     }
     if let Some(skin) = skin {
-        skin.add(scene, &evaluated.solved, overlays, display);
+        skin.add(scene, posed.skeleton(), overlays, display);
     }
     for onion_skin in &overlays.onion_skins {
         let colour = motion::onion_skin_colour(scene, onion_skin);
@@ -71,7 +62,7 @@ pub(super) fn add(
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {
-        evaluated.fk.write_pose(fk_pose);
+        posed.evaluated_skeleton().fk.write_pose(fk_pose);
         rig.write_influences(influences);
         let is_blended = |influence: f32| influence > 0.0 && influence < 1.0;
         let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
@@ -90,10 +81,10 @@ pub(super) fn add(
         wiggle::add(scene, &drawn, skeleton, view);
     }
     if display.shows(Overlay::Cursor) {
-        for (target, report) in rig.targets.iter().zip(&evaluated.targets) {
+        for (target, report) in rig.targets.iter().zip(posed.targets()) {
             drawn.add_target(scene, target, report);
             if target.enabled && target.is_moving() && !rig.leads_path(target) {
-                targets::add_trail(scene, target, &evaluated.solved, overlays.time);
+                targets::add_trail(scene, target, posed.skeleton(), posed.time());
             }
             if target.enabled && overlays.ghosts.is_empty() && !rig.leads_path(target) {
                 let is_selected = overlays.selection.contains(&rig.end_of(target));
@@ -106,7 +97,7 @@ pub(super) fn add(
         rig.targets.iter().for_each(|target| drawn.add_elbow_circle(scene, target));
     }
     if display.shows(Overlay::Pointer) {
-        rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, overlays.time));
+        rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, posed.time()));
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled);

@@ -1,6 +1,6 @@
 //! Live numbers of the scene in the texts of the tour.
 
-use crate::document::{Arm, Document};
+use crate::document::{Arm, Track};
 use crate::kinematics::chain_ik::{Method, Status};
 use crate::kinematics::pop::ElbowStep;
 use crate::kinematics::soft_reach::SoftReach;
@@ -156,10 +156,12 @@ fn bow(session: &Session, influence: f32) -> Option<String> {
     const POINTS: u32 = 24;
     let document = session.document();
     let (from, to) = (document.timeline.start, 0.5 * document.timeline.end);
+    let track = Track::new(document);
     let hand = |time: f64| {
-        let Document { mut arm, .. } = document.evaluate(time);
-        arm.influence = influence;
-        arm.root + arm.pose().hand
+        let mut blended = track.at(time).into_document();
+        blended.arm.influence = influence;
+        let posed = track.pose(blended, time);
+        posed.arm().root + posed.arm_pose().hand
     };
     let (first, last) = (hand(from), hand(to));
     let along = (last - first).try_normalize()?;

@@ -39,7 +39,7 @@ fn times(document: &Document) -> impl Iterator<Item = f64> {
 
 /// The arm at every frame.
 fn arms(document: &Document) -> Vec<Arm> {
-    times(document).map(|time| document.evaluate(time).arm).collect()
+    times(document).map(|time| document.at(time).into_document().arm).collect()
 }
 
 /// The arm at every frame, checked against the f64 arm.

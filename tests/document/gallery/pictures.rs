@@ -1,7 +1,7 @@
 //! Scenes and pictures of the hard cases.
 
 use glam::Vec3;
-use ik_arm::document::{Document, Theme};
+use ik_arm::document::{Document, Theme, Track};
 use ik_arm::io::{Example, Group};
 use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::Scene;
@@ -14,9 +14,9 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
         for time in times(&document) {
-            let shown = document.evaluate(time);
-            let overlays = Overlays::new(&document, time);
-            let scene = Scene::new(&shown, &overlays, Theme::Dark);
+            let posed = document.at(time);
+            let overlays = Overlays::new(&Track::new(&document), &posed);
+            let scene = Scene::new(&posed, &overlays, Theme::Dark);
             let at = format!("{} at {time}", example.name);
             assert!(numbers(&scene).all(f32::is_finite), "{at}");
             let projection = scene.camera.projection(1.6);
@@ -37,7 +37,7 @@ fn grid_cells_scale_with_the_rig() {
     assert_eq!(Document::default().grid_cell(), 100.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
-        let planes = Scene::new(&document, &Overlays::default(), Theme::Dark).planes;
+        let planes = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark).planes;
         let cells = planes.radius / planes.cell;
         assert!((3.0..35.0).contains(&cells), "{}: {cells}", example.name);
     }
@@ -76,7 +76,7 @@ fn every_hard_case_is_drawn() {
     let mut picture = ik_arm::render::PictureRenderer::new(&gpu, 240, 150, 1.0);
     for example in Example::of(Group::HardCases) {
         let document = opened(example.name);
-        let mut scene = Scene::new(&document, &Overlays::default(), Theme::Dark);
+        let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
         let with = picture.draw(&scene).expect("drawn");
         scene.solids.clear();
         scene.balls.clear();

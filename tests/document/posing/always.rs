@@ -66,11 +66,11 @@ proptest! {
             session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
         }
         let poses: Vec<_> =
-            (0..hands.len()).map(|time| session.document().evaluate(time as f64).arm.pose()).collect();
+            (0..hands.len()).map(|time| session.document().at(time as f64).arm_pose().to_owned()).collect();
         for twist_reference in to {
             session.apply(EditAction::SetTwistReference(twist_reference));
             for (time, pose) in poses.iter().enumerate() {
-                let now = session.document().evaluate(time as f64).arm.pose();
+                let now = session.document().at(time as f64).arm_pose().to_owned();
                 prop_assert!(apart(pose, &now) < 2e-5, "{} at {} with {:?}", apart(pose, &now), time, twist_reference);
             }
         }
@@ -108,13 +108,13 @@ proptest! {
             session.apply(EditAction::Key(vec![Channel::Hand]));
         }
         let last = *times.last().expect("one");
-        let alone = session.document().evaluate(last).arm.pose();
+        let alone = session.document().at(last).arm_pose().to_owned();
         for time in times {
             session.apply(PlaybackAction::SetTime(time));
         }
         prop_assert_eq!(*session.pose(), alone);
         let again = ik_arm::io::parse("a", &ik_arm::io::to_json(session.document()).expect("json"), &ik_arm::io::OpenOptions::default());
-        prop_assert_eq!(again.expect("opened").document.evaluate(last).arm.pose(), alone);
+        prop_assert_eq!(again.expect("opened").document.at(last).arm_pose().to_owned(), alone);
     }
 
     #[test]
@@ -177,15 +177,15 @@ proptest! {
         session.apply(EditAction::Key(vec![Channel::Influence]));
         let bones = session.arm().bones;
         for frame in 0..=60 {
-            let posed = session.document().evaluate(f64::from(frame) / 30.0).arm;
+            let posed = session.document().at(f64::from(frame) / 30.0).into_document().arm;
             let pose = posed.pose();
             prop_assert!((0.0..=1.0).contains(&posed.influence));
             let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
             prop_assert!((elbow.length() - f64::from(bones.upper())).abs() < 1.5e-4);
             prop_assert!(((hand - elbow).length() - f64::from(bones.lower())).abs() < 2e-4);
         }
-        prop_assert_eq!(session.document().evaluate(0.0).arm.influence, 1.0);
-        prop_assert_eq!(session.document().evaluate(2.0).arm.influence, 0.0);
+        prop_assert_eq!(session.document().at(0.0).into_document().arm.influence, 1.0);
+        prop_assert_eq!(session.document().at(2.0).into_document().arm.influence, 0.0);
     }
 
     #[test]

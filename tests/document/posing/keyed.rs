@@ -71,7 +71,7 @@ fn a_keyed_hand_keeps_its_orientation_at_every_key_in_another_space() {
         session.apply(EditAction::Key(vec![Channel::Hand, Channel::HandOrientation]));
     }
     let turned = |session: &Session, time: f64| {
-        let arm = session.document().evaluate(time).arm;
+        let arm = session.document().at(time).into_document().arm;
         arm.hand_rotation(&arm.pose())
     };
     let before = [0.0, 2.0].map(|time| turned(&session, time));
@@ -174,7 +174,7 @@ fn a_forearm_keyed_to_roll_around_does_not_snap_between_keys() {
         session.apply(EditAction::Key(vec![Channel::HandOrientation]));
     }
     let roll = |frame: i32| {
-        let arm = session.document().evaluate(f64::from(frame) / 50.0).arm;
+        let arm = session.document().at(f64::from(frame) / 50.0).into_document().arm;
         arm.roll(&arm.pose())
     };
     for frame in 0..100 {

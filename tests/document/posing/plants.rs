@@ -52,7 +52,7 @@ impl Animator {
     }
 
     fn arm(&self, time: f64) -> Arm {
-        self.session.document().evaluate(time).arm
+        self.session.document().at(time).into_document().arm
     }
 
     fn track(&self, channel: Channel) -> Vec<(f64, Vec3)> {

@@ -8,7 +8,7 @@ use ik_arm::session::Session;
 use crate::soak::{Broken, hold};
 
 pub fn all(session: &Session) -> Result<(), Broken> {
-    let scene = Scene::new(session.shown(), &session.overlays(), Theme::Dark);
+    let scene = Scene::new(session.posed(), &session.overlays(), Theme::Dark);
     let planes = scene.planes;
     let are_planes =
         planes.centre.is_finite() && planes.radius.is_finite() && planes.cell.is_finite();

@@ -17,7 +17,7 @@ fn open(bytes: &[u8]) {
         Ok(opened) => {
             let document = opened.document;
             for time in [-1.0, 0.0, 0.3, 1.0, 1e9] {
-                let skeleton = document.evaluate(time).skeleton().clone();
+                let skeleton = document.at(time).into_document().skeleton().clone();
                 assert!(skeleton.joints().iter().all(|joint| joint.offset.is_finite()));
             }
         }

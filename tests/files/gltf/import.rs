@@ -26,7 +26,7 @@ fn refusal(text: &str) -> String {
 
 /// Base of a joint at a time, by the joint's name.
 fn base(opened: &Opened, time: f64, name: &str) -> Vec3 {
-    let document = opened.document.evaluate(time);
+    let document = opened.document.at(time).into_document();
     let skeleton = document.skeleton();
     skeleton.base(skeleton.find(name).expect("a joint"))
 }

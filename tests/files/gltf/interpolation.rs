@@ -176,7 +176,7 @@ fn every_curve_is_where_an_independent_reader_has_it_at_keys_and_between() {
         let file = File::random(&mut random, [kinds[case % 3], kinds[case / 3 % 3]]);
         let document = document(&file.text());
         for time in file.times(&mut random) {
-            let (expected, evaluated) = (file.worlds(time), document.evaluate(time));
+            let (expected, evaluated) = (file.worlds(time), document.at(time).into_document());
             let pose = evaluated.skeleton().pose();
             let size = expected.iter().map(|world| world.translation.length()).fold(1.0, f64::max);
             for (node, expected) in expected.iter().enumerate().skip(1) {
@@ -252,7 +252,7 @@ fn an_exported_file_keeps_the_keys_with_their_interpolation_and_the_curves_betwe
             (after.timeline.end - before.timeline.end).abs() < 1e-3 / before.timeline.frame_rate
         );
         for time in file.times(&mut random) {
-            let [was, is] = [&before, &after].map(|document| document.evaluate(time));
+            let [was, is] = [&before, &after].map(|document| document.at(time).into_document());
             let (old, new) = (was.skeleton().pose(), is.skeleton().pose());
             let size = old.points().map(Vec3::length).fold(1.0, f32::max);
             for joint in was.skeleton().ids() {
@@ -276,7 +276,7 @@ fn uneven_scales_above_a_joint_give_keys_at_every_frame_at_the_same_places() {
         let rate = document.timeline.frame_rate;
         assert!(document.keys.tracks().any(|(_, track)| track.knots().len() > 10), "{rate}");
         let start = document.timeline.start;
-        let (world, evaluated) = (file.worlds(start)[1], document.evaluate(start));
+        let (world, evaluated) = (file.worlds(start)[1], document.at(start).into_document());
         let inner = file.worlds(start)[0].inverse() * world;
         let (at, turn, scale) = file.nodes[0];
         let stretched = DVec3::new(1.0, 2.0, 0.5);
@@ -369,7 +369,7 @@ fn curves_of_keys_are_cubic_splines_of_the_file_and_its_joints_are_where_the_doc
             |node: usize| (0..glb.nodes().len()).find(|it| glb.children(*it).contains(&node));
         let between = (0..60).map(|_| f64::from(random.within(0.5..4.5)));
         for time in between.collect::<Vec<_>>() {
-            let evaluated = before.evaluate(time);
+            let evaluated = before.at(time).into_document();
             let pose = evaluated.skeleton().pose();
             let world = |mut node: usize| {
                 let mut world = DAffine3::IDENTITY;

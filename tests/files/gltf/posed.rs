@@ -6,7 +6,7 @@ use std::process::Command;
 use glam::{Mat4, Quat, Vec3};
 use ik_arm::document::{
     Channel, Document, FollowPath, PathKind, RigKind, SkeletonRig, Target, TargetMotion,
-    TargetPath, Theme, Timeline,
+    TargetPath, Theme, Timeline, Track,
 };
 use ik_arm::io::{self, Progress};
 use ik_arm::kinematics::chain_ik::Method;
@@ -210,9 +210,11 @@ fn by_pose(document: &Document, time: f64) -> Bases {
 
 /// The greatest distance of a base from the nearest ball of the picture.
 fn farthest_from_balls(document: &Document, time: f64, bases: &Bases) -> f32 {
-    let mut shown = document.evaluate(time);
+    let track = Track::new(document);
+    let mut shown = track.at(time).into_document();
     shown.skeleton_rig.skin = None;
-    let scene = Scene::new(&shown, &Overlays::new(document, time), Theme::Dark);
+    let posed = track.pose(shown, time);
+    let scene = Scene::new(&posed, &Overlays::new(&track, &posed), Theme::Dark);
     let nearest = |base: &Vec3| {
         let distances = scene.balls.iter().map(|ball| ball.centre.distance(*base));
         distances.fold(f32::INFINITY, f32::min)
@@ -227,7 +229,7 @@ fn farthest(one: &Bases, other: &Bases) -> f32 {
 
 /// The bases that the document gives, and the reach.
 fn expected(document: &Document, time: f64) -> Bases {
-    let posed = document.evaluate(time).skeleton_rig.skeleton_at(time).pose();
+    let posed = document.at(time).skeleton().pose();
     posed.ids().map(|joint| posed.base(joint)).collect()
 }
 

@@ -17,7 +17,7 @@ fn reopened(document: &Document) -> Opened {
 
 /// Bases of bones, and the arm's hand, in metres.
 fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
-    let document = document.evaluate(time);
+    let document = document.at(time).into_document();
     let named = match document.rig {
         RigKind::Skeleton => {
             let skeleton = document.skeleton_rig.skeleton_at(time);
@@ -41,7 +41,7 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
 /// The same of an imported document, in which an arm's hand is a joint only where the length of
 /// its bone has keys.
 fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
-    let document = document.evaluate(time);
+    let document = document.at(time).into_document();
     let skeleton = document.skeleton();
     let pose = skeleton.pose();
     let base = |name| skeleton.find(name).map(|joint| pose.base(joint));
@@ -164,7 +164,7 @@ fn a_chain_of_the_largest_number_of_joints_keeps_its_lengths() {
     assert!(
         opened.document.keys.tracks().all(|(channel, _)| matches!(channel, Channel::Rotation(_)))
     );
-    let (was, is) = (document.evaluate(0.125), opened.document.evaluate(0.125));
+    let (was, is) = (document.at(0.125).into_document(), opened.document.at(0.125).into_document());
     let (was, is) = (was.skeleton().pose(), is.skeleton().pose());
     let gap = (0..was.len())
         .map(|joint| was.base(JointId::new(joint)).distance(is.base(JointId::new(joint))));

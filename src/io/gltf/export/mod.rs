@@ -41,13 +41,13 @@ pub fn glb(
     let rate = frames_per_second.unwrap_or(document.timeline.frame_rate);
     let frame_rate = rate.clamp(Timeline::MIN_FRAME_RATE, Timeline::MAX_FRAME_RATE);
     let timeline = Timeline { frame_rate, ..document.timeline };
-    let mut rig = GltfRig::new(document)?;
+    let rig = GltfRig::new(document)?;
     let bones = JointNodes::new(&rig)?;
     let kept = match frames_per_second {
         None if timeline.is_valid() => KeptTracks::new(document, &rig, timeline),
         _ => KeptTracks::default(),
     };
-    let motion = JointAnimation::new(&mut rig, &bones, timeline, kept, progress)?;
+    let motion = JointAnimation::new(&rig, &bones, timeline, kept, progress)?;
     let mesh = match RigMesh::of_skin(document) {
         Some(skin) => skin,
         None => LimbMesh::new(&rig, &bones)?.into(),

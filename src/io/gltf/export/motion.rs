@@ -26,7 +26,7 @@ pub struct JointAnimation {
 impl JointAnimation {
     /// The tracks that are `kept`, and for all other nodes a key at every frame.
     pub fn new(
-        rig: &mut GltfRig,
+        rig: &GltfRig,
         bones: &JointNodes,
         timeline: Timeline,
         kept: KeptTracks,

@@ -1,7 +1,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::error::GlbError;
-use crate::document::{Arm, Channel, Document, RigKind};
+use crate::document::{Arm, Channel, Document, Posed, RigKind, Track};
 use crate::io::gltf::frame::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
@@ -12,7 +12,7 @@ use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 ///
 /// Computed in f64, so that a skeleton far from the origin is exact.
 pub struct GltfRig {
-    document: Document,
+    track: Track,
     pub metres_per_unit: f64,
     /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their joints.
     /// Nodes keep these directions where bones follow connected joints: the skin follows the nodes.
@@ -65,7 +65,7 @@ impl GltfRig {
     pub fn new(document: &Document) -> Result<Self, GlbError> {
         let metres_per_unit = f64::from(document.metres_per_unit());
         let mut rig = Self {
-            document: document.clone(),
+            track: Track::new(document),
             metres_per_unit,
             axes: document.skeleton().joints().iter().map(|joint| joint.axis.as_dvec3()).collect(),
             bones: Vec::new(),
@@ -86,22 +86,17 @@ impl GltfRig {
     }
 
     /// Placements of all bones at `time`, in seconds.
-    pub fn at(&mut self, time: f64) -> Vec<BonePlacement> {
-        // `Document::evaluate` would copy all keys for every frame.
-        self.document.apply_keys(time);
-        let document = &self.document;
-        self.metric(match document.rig {
-            RigKind::Arm => posed_arm(document),
-            RigKind::Skeleton => {
-                let skeleton = document.skeleton_rig.skeleton_at(time);
-                placements(&skeleton, &self.axes, local_rotation)
-            }
+    pub fn at(&self, time: f64) -> Vec<BonePlacement> {
+        let posed = self.track.at(time);
+        self.metric(match posed.document().rig {
+            RigKind::Arm => posed_arm(&posed),
+            RigKind::Skeleton => placements(posed.skeleton(), &self.axes, local_rotation),
         })
     }
 
     /// Whether the pose changes over time.
     pub fn is_moving(&self) -> bool {
-        self.document.is_animated()
+        self.track.document().is_animated()
     }
 
     /// Converts placements from the document's units to metres.
@@ -114,7 +109,7 @@ impl GltfRig {
     }
 
     fn limbs(&self) -> Vec<RigBone> {
-        let Document { arm, keys, .. } = &self.document;
+        let Document { arm, keys, .. } = self.track.document();
         let rig = arm.rig(&arm.pose());
         let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
         let radii = |limb: TaperedCylinder| {
@@ -143,9 +138,9 @@ impl GltfRig {
     }
 
     fn joints(&self, joints: &[Shared<Joint>]) -> Vec<RigBone> {
-        let scale = self.document.skeleton().transform().as_daffine3().matrix3;
+        let scale = self.track.document().skeleton().transform().as_daffine3().matrix3;
         let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
-        let reach = f64::from(self.document.skeleton_rig.reach()) * self.metres_per_unit;
+        let reach = f64::from(self.track.document().skeleton_rig.reach()) * self.metres_per_unit;
         let mut depths = vec![0_usize; joints.len()];
         let mut are_leaves = vec![true; joints.len()];
         let mut connected = vec![None; joints.len()];
@@ -238,10 +233,9 @@ fn straight_arm(document: &Document) -> Vec<BonePlacement> {
     limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
 }
 
-fn posed_arm(document: &Document) -> Vec<BonePlacement> {
-    let arm = &document.arm;
-    let pose = arm.pose();
-    let rig: ArmRig = arm.rig(&pose);
+fn posed_arm(posed: &Posed) -> Vec<BonePlacement> {
+    let (arm, pose) = (posed.arm(), posed.arm_pose());
+    let rig: ArmRig = arm.rig(pose);
     let socket = rig.local(ArmPart::Limb) * rig.local(ArmPart::Socket);
     let rotation = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
     let bones = arm.bones.stretched(pose.stretch);

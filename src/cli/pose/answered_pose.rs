@@ -1,4 +1,4 @@
-use crate::document::SkeletonRig;
+use crate::document::Posed;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{self, Report, SolveError, SolverOptions, Status};
 use crate::kinematics::diagnosis::Diagnosis;
@@ -6,7 +6,7 @@ use crate::kinematics::skeleton::Skeleton;
 use crate::rig::TargetOutcome;
 
 /// A pose of a rig's skeleton, with the report of the solver of several joints together, if any.
-pub struct Posed {
+pub struct AnsweredPose {
     pub skeleton: Shared<Skeleton>,
     pub report: Option<Report>,
     /// Why targets are not reached.
@@ -15,16 +15,16 @@ pub struct Posed {
     pub remark: Option<String>,
 }
 
-impl Posed {
+impl AnsweredPose {
     /// The FK pose.
-    pub fn fk(rig: &SkeletonRig, time: f64) -> Self {
-        Self { skeleton: rig.fk_at(time), report: None, why: Vec::new(), remark: None }
+    pub fn fk(posed: &Posed) -> Self {
+        let skeleton = posed.document().skeleton_rig.fk_at(posed.time());
+        Self { skeleton, report: None, why: Vec::new(), remark: None }
     }
 
     /// The pose by the rig's targets.
-    pub fn evaluated(rig: &SkeletonRig, time: f64) -> Self {
-        let evaluated = rig.evaluate(time);
-        let outcomes = || evaluated.targets.iter().map(|target| &target.outcome);
+    pub fn by_targets(posed: &Posed) -> Self {
+        let outcomes = || posed.targets().iter().map(|target| &target.outcome);
         let report = outcomes().find_map(|outcome| match outcome {
             TargetOutcome::WholeBody(report) => Some(*report),
             _ => None,
@@ -38,7 +38,8 @@ impl Posed {
             format!("{method} {status}, after {iterations} iterations")
         });
         let remark = refused.or(bounded);
-        Self { skeleton: evaluated.solved, report, why: rig.diagnose(time), remark }
+        let why = posed.document().skeleton_rig.diagnose(posed.time());
+        Self { skeleton: posed.skeleton().clone(), report, why, remark }
     }
 
     /// The FK pose after a solve for all enabled targets.
@@ -46,11 +47,8 @@ impl Posed {
     /// # Errors
     ///
     /// [`SolveError`] if the solver refuses a target.
-    pub fn solved(
-        rig: &SkeletonRig,
-        time: f64,
-        options: &SolverOptions,
-    ) -> Result<Self, SolveError> {
+    pub fn solved(posed: &Posed, options: &SolverOptions) -> Result<Self, SolveError> {
+        let (rig, time) = (&posed.document().skeleton_rig, posed.time());
         let mut skeleton = rig.fk_at(time);
         let targets = rig.targets_at(time);
         let why = chain_ik::diagnose(&skeleton, &targets, options)?;

@@ -1,12 +1,12 @@
 use glam::Vec3;
 
-use crate::document::{Channel, Document, Timeline};
+use crate::document::{Channel, Timeline, Track};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Spline;
 
 /// Keys of a baked channel.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
+pub(super) struct BakedTrack {
     /// [`Channel::Rotation`] or [`Channel::Offset`].
     pub channel: Channel,
     pub joint: JointId,
@@ -27,13 +27,9 @@ pub(super) struct BakedFrames {
 }
 
 impl BakedFrames {
-    pub fn new(document: &Document, timeline: Timeline) -> Self {
+    pub fn new(own: Timeline, timeline: Timeline) -> Self {
         let last = timeline.time(timeline.frames() - 1);
-        Self {
-            timeline,
-            starts_late: document.timeline.start < timeline.start,
-            ends_early: last < document.timeline.end,
-        }
+        Self { timeline, starts_late: own.start < timeline.start, ends_early: last < own.end }
     }
 
     pub fn count(&self) -> usize {
@@ -58,19 +54,20 @@ impl BakedFrames {
     /// The keys of a channel outside the range. Where the document's timeline goes on beyond the
     /// range, the two frames beyond it have keys too, which keep the channel as it was there: two,
     /// because a key shapes the curve up to the second key away from it.
-    pub fn surroundings(&self, document: &Document, channel: Channel) -> Spline<Vec3> {
+    pub fn surroundings(&self, track: &Track, channel: Channel) -> Spline<Vec3> {
         let (start, end) = (self.time(0), self.time(self.count() - 1));
         let is_outside = |time: f64| time < start || time > end;
-        let knots = document.keys.track(channel).into_iter().flat_map(Spline::knots);
-        let mut track: Spline<Vec3> = knots.filter(|knot| is_outside(knot.time)).copied().collect();
+        let knots = track.document().keys.track(channel).into_iter().flat_map(Spline::knots);
+        let mut spline: Spline<Vec3> =
+            knots.filter(|knot| is_outside(knot.time)).copied().collect();
         let frame = 1.0 / self.timeline.frame_rate;
         let before = [start - 2.0 * frame, start - frame].map(|time| (self.starts_late, time));
         let after = [end + frame, end + 2.0 * frame].map(|time| (self.ends_early, time));
         for (_, time) in before.into_iter().chain(after).filter(|(is_open, _)| *is_open) {
-            if let Some(value) = channel.value(&document.evaluate(time)) {
-                track.insert(time, value);
+            if let Some(value) = channel.value(track.at(time).document()) {
+                spline.insert(time, value);
             }
         }
-        track
+        spline
     }
 }

@@ -1,61 +1,13 @@
 use glam::Vec3;
 
-use super::arm::Arm;
 use super::channel::Channel;
 use super::document::Document;
 use super::rig_kind::RigKind;
 use crate::kinematics::angle;
 use crate::rig::{FollowPath, PathKind, SkeletonRig, Target};
 
-/// Keys applied to the document.
+/// Changes over time.
 impl Document {
-    /// The document at a time in seconds: every keyed channel has its interpolated value, and with
-    /// [`PathKind::Head`] the rig has the head's keys. [`SkeletonRig::evaluate`]
-    /// poses the skeleton.
-    #[must_use]
-    pub fn evaluate(&self, time: f64) -> Self {
-        let mut evaluated = self.clone();
-        evaluated.apply_keys(time);
-        evaluated
-    }
-
-    /// The arm at a time in seconds: [`Document::evaluate`] without the skeleton.
-    pub(super) fn arm_at(&self, time: f64) -> Arm {
-        let mut evaluated = self.clone();
-        evaluated.apply_keys_of(time, |channel| channel.rig() == Some(RigKind::Arm));
-        evaluated.arm
-    }
-
-    /// Sets every keyed channel to its interpolated value at a time in seconds.
-    pub(crate) fn apply_keys(&mut self, time: f64) {
-        self.apply_keys_of(time, |_| true);
-        let rig = &mut self.skeleton_rig;
-        rig.head_tracks.clear();
-        for path in &rig.follow_paths {
-            let channel = match path.kind {
-                PathKind::Ring(_) => continue,
-                PathKind::Head => Channel::Offset(path.root),
-                PathKind::Target => Channel::Target(path.root),
-            };
-            let track = self.keys.shared_track(channel);
-            rig.head_tracks.extend(track.map(|track| (path.root, track)));
-        }
-    }
-
-    fn apply_keys_of(&mut self, time: f64, includes: impl Fn(Channel) -> bool) {
-        let keys = self.keys.clone();
-        let cursor = [Channel::Hand, Channel::Pin, Channel::Pinned, Channel::Root];
-        if cursor.into_iter().any(|channel| keys.has(channel)) {
-            // A pose by keys depends on its time alone, so no frame is transported to it.
-            self.arm.end_transport();
-        }
-        for channel in keys.tracks().map(|(channel, _)| channel).filter(|it| includes(*it)) {
-            if let Some(value) = keys.value(channel, time) {
-                channel.set(self, value);
-            }
-        }
-    }
-
     /// Whether a chain follows a path at any time: a ring, a target, or the keys of its head.
     pub fn follows_path(&self) -> bool {
         self.skeleton_rig.follow_paths.iter().any(|path| match path.kind {

@@ -1,0 +1,174 @@
+use std::cell::OnceCell;
+
+use super::arm::Arm;
+use super::camera::Camera;
+use super::channel::Channel;
+use super::document::Document;
+use crate::kinematics::Shared;
+use crate::kinematics::ik::IkSolution;
+use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::{EvaluatedSkeleton, PathKind, Skin, TargetReport};
+
+/// The motion of a document: its pose at any time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    document: Document,
+}
+
+/// A document posed at a time. Each rig is solved when its pose is first read, and only once.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    /// Every keyed channel has its value at `time`.
+    document: Document,
+    time: f64,
+    arm: OnceCell<SolvedArm>,
+    skeleton: OnceCell<EvaluatedSkeleton>,
+}
+
+/// The arm's IK solution, and its blend with FK.
+#[derive(Clone, Copy, Debug)]
+struct SolvedArm {
+    solution: IkSolution,
+    pose: TwoBonePose,
+}
+
+impl Document {
+    /// The document posed at a time in seconds. A [`Track`] poses it at several times.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Posed {
+        Track::new(self).at(time)
+    }
+}
+
+impl Track {
+    /// The track of a document, whose large parts it shares.
+    pub fn new(document: &Document) -> Self {
+        Self { document: document.clone() }
+    }
+
+    /// The document of the track.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The document posed at a time in seconds: every keyed channel has its interpolated value, and
+    /// with [`PathKind::Head`] the rig has the head's keys.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Posed {
+        let mut document = self.document.clone();
+        document.apply_keys(time);
+        self.pose(document, time)
+    }
+
+    /// Poses an edited copy of the document that [`Track::at`] has at `time`, in seconds: channels
+    /// keep the values that they have in the copy.
+    #[must_use]
+    pub fn pose(&self, document: Document, time: f64) -> Posed {
+        Posed { document, time, arm: OnceCell::new(), skeleton: OnceCell::new() }
+    }
+}
+
+impl Posed {
+    /// The document with the values that its channels have at the time.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// [`Posed::document`] without the poses.
+    pub fn into_document(self) -> Document {
+        self.document
+    }
+
+    /// The time in seconds.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The arm at the time.
+    pub fn arm(&self) -> &Arm {
+        &self.document.arm
+    }
+
+    /// The pose of the arm: FK and IK, blended by the influence.
+    pub fn arm_pose(&self) -> &TwoBonePose {
+        &self.solved_arm().pose
+    }
+
+    /// The arm's pose by IK alone, with the state from which the next solve continues.
+    pub fn arm_solution(&self) -> &IkSolution {
+        &self.solved_arm().solution
+    }
+
+    /// The skeleton posed by its targets.
+    pub fn skeleton(&self) -> &Shared<Skeleton> {
+        &self.evaluated_skeleton().solved
+    }
+
+    /// Results for the rig's targets, in their order.
+    pub fn targets(&self) -> &[TargetReport] {
+        &self.evaluated_skeleton().targets
+    }
+
+    /// The skeleton posed by FK and by its targets, with a report for each target.
+    pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
+        self.skeleton.get_or_init(|| self.document.skeleton_rig.evaluate(self.time))
+    }
+
+    /// Sets the camera, on which no pose depends.
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.document.camera = camera;
+    }
+
+    /// Sets the skin, on which no pose depends.
+    pub(crate) fn set_skin(&mut self, skin: Option<Skin>) {
+        self.document.skeleton_rig.skin = skin;
+    }
+
+    fn solved_arm(&self) -> &SolvedArm {
+        self.arm.get_or_init(|| {
+            let solution = self.document.arm.solve();
+            SolvedArm { solution, pose: self.document.arm.blended_with(&solution.pose) }
+        })
+    }
+}
+
+impl PartialEq for Posed {
+    /// Compares document and time, of which the poses are a function.
+    fn eq(&self, other: &Self) -> bool {
+        self.time == other.time && self.document == other.document
+    }
+}
+
+impl Document {
+    /// Sets every keyed channel to its interpolated value at a time in seconds.
+    fn apply_keys(&mut self, time: f64) {
+        let keys = self.keys.clone();
+        let cursor = [Channel::Hand, Channel::Pin, Channel::Pinned, Channel::Root];
+        if cursor.into_iter().any(|channel| keys.has(channel)) {
+            // A pose by keys depends on its time alone, so no frame is transported to it.
+            self.arm.end_transport();
+        }
+        for (channel, _) in keys.tracks() {
+            if let Some(value) = keys.value(channel, time) {
+                channel.set(self, value);
+            }
+        }
+        self.apply_head_keys();
+    }
+
+    /// Gives the rig the keys of the heads that chains follow.
+    fn apply_head_keys(&mut self) {
+        let rig = &mut self.skeleton_rig;
+        rig.head_tracks.clear();
+        for path in &rig.follow_paths {
+            let channel = match path.kind {
+                PathKind::Ring(_) => continue,
+                PathKind::Head => Channel::Offset(path.root),
+                PathKind::Target => Channel::Target(path.root),
+            };
+            let track = self.keys.shared_track(channel);
+            rig.head_tracks.extend(track.map(|track| (path.root, track)));
+        }
+    }
+}
