@@ -1,10 +1,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
+use thiserror::Error;
 
 use super::compute::{self, BindingKind};
 use super::crowd_lod::{CrowdLod, CrowdLodData, DrawArguments};
 use super::readback::Readback;
-use super::{Canvas, CrowdError, CrowdSolver, Gpu, pipeline};
+use super::{Canvas, CrowdSolver, Gpu, pipeline};
 use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
 
@@ -350,4 +351,19 @@ fn frustum_planes(clip_from_world: Mat4) -> [Vec4; 5] {
         let length = plane.truncate().length();
         if length > 0.0 { plane / length } else { plane }
     })
+}
+
+/// Reasons why a crowd is not drawn.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CrowdError {
+    /// The adapter, named here, lacks a feature that crowds require.
+    #[error(
+        "the graphics adapter {0} cannot draw crowds: it lacks compute shaders, storage buffers in \
+         vertex shaders or indirect drawing"
+    )]
+    Unsupported(String),
+    /// The device failed or hung while it solved the crowd.
+    #[error("the graphics device did not solve the crowd: {0}")]
+    Device(String),
 }

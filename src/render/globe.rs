@@ -2,7 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
 use super::sphere_order::SphereSide;
-use super::uniforms::Uniforms;
+use super::view::Uniforms;
 use super::{Gpu, pipeline};
 use crate::scene::{Colour, Globe, Palette, Scene};
 

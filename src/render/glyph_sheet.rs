@@ -1,5 +1,5 @@
 use super::font::Font;
-use super::texture_sampler::TextureSampler;
+use super::texture::TextureSampler;
 use super::{Gpu, SystemFace};
 
 /// Height of a line in points.

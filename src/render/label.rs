@@ -4,10 +4,10 @@ use glam::Vec2;
 use super::Gpu;
 use super::font::Rectangle;
 use super::glyph_sheet::GlyphSheet;
+use super::instances::{QuadDescriptor, Quads};
 use super::label_places::LabelPlaces;
 use super::pipeline::Output;
-use super::quads::{self, Quads};
-use super::texture_sampler::TextureSampler;
+use super::texture::TextureSampler;
 use crate::scene::{Label, Scene};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/label.wgsl");
@@ -50,7 +50,7 @@ impl Labels {
         let sampler = TextureSampler::new(gpu, "glyphs");
         let glyphs = Quads::new(
             gpu,
-            &quads::QuadDescriptor {
+            &QuadDescriptor {
                 label: "label",
                 shader: SHADER,
                 layouts: &[&sampler.layout],

@@ -2,8 +2,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
+use super::instances::{QuadDescriptor, Quads};
 use super::pipeline::Output;
-use super::quads::{self, Quads};
 use crate::scene::{Line, Scene};
 
 pub(super) const SHADER: &str =
@@ -28,7 +28,7 @@ impl Lines {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::QuadDescriptor {
+            &QuadDescriptor {
                 label: "line",
                 shader: SHADER,
                 layouts: &[view],

@@ -9,7 +9,6 @@ mod backdrop;
 mod canvas;
 mod compute;
 mod crowd;
-mod crowd_error;
 mod crowd_lod;
 mod crowd_solver;
 mod font;
@@ -19,42 +18,57 @@ mod glyph_sheet;
 mod gpu;
 mod gpu_timer;
 mod ignored_letters;
-mod instance_buffer;
+mod instances;
 mod label;
 mod label_places;
 mod line;
 mod mesh;
 mod picture;
 mod pipeline;
-mod quads;
 mod readback;
 mod renderer;
-mod shaders;
 mod shadow;
 mod shell;
 mod skin;
-mod skin_deformer;
+mod skin_deform;
 mod skin_material;
 mod solid;
-mod solid_mesh;
 mod sphere_order;
 mod spheres;
 mod system_fonts;
-mod texture_painter;
-mod texture_sampler;
-mod triangle_painter;
-mod uniforms;
+mod texture;
+mod triangle;
 mod view;
 
 pub use canvas::{Canvas, ReadError};
-pub use crowd_error::CrowdError;
+pub use crowd::CrowdError;
 pub use crowd_solver::CrowdSolver;
 pub use gpu::{DeviceError, Gpu, GpuError};
 pub use gpu_timer::{GpuTimer, TimedPass};
 pub use picture::{DrawError, PictureRenderer, SavePictureError, Timings, save};
 pub use renderer::{Counts, Renderer};
-pub use shaders::shaders;
-pub use skin_deformer::SkinDeformer;
+pub use skin_deform::SkinDeformer;
 pub use system_fonts::SystemFace;
-pub use texture_painter::TexturePainter;
-pub use triangle_painter::{Corner, TrianglePainter};
+pub use texture::TexturePainter;
+pub use triangle::{Corner, TrianglePainter};
+
+/// Names and WGSL sources of all complete shaders.
+pub fn shaders() -> [(&'static str, &'static str); 15] {
+    [
+        ("backdrop", backdrop::SHADER),
+        ("crowd_arms", crowd_lod::ARMS),
+        ("crowd_cull", crowd::CULL),
+        ("crowd_far", crowd_lod::FAR),
+        ("crowd_solver", crowd_solver::SHADER),
+        ("globe", globe::SHADER),
+        ("label", label::SHADER),
+        ("line", line::SHADER),
+        ("shadow", shadow::SHADER),
+        ("shell", shell::SHADER),
+        ("skin", skin::SHADER),
+        ("skin_deform", skin_deform::SHADER),
+        ("solid", solid::SHADER),
+        ("texture", texture::SHADER),
+        ("triangle", triangle::SHADER),
+    ]
+}

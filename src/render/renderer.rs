@@ -6,7 +6,7 @@ use super::shadow::Shadows;
 use super::skin::Skins;
 use super::solid::Solids;
 use super::spheres::Spheres;
-use super::texture_painter::TexturePainter;
+use super::texture::TexturePainter;
 use super::view::ViewUniforms;
 use super::{Canvas, CrowdError, Gpu};
 use crate::rig::CrowdTimes;

@@ -2,8 +2,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
 use super::Gpu;
+use super::instances::{QuadDescriptor, Quads};
 use super::pipeline::Output;
-use super::quads::{self, Quads};
 use crate::scene::{Scene, Shadow};
 
 pub(super) const SHADER: &str =
@@ -26,7 +26,7 @@ impl Shadows {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::QuadDescriptor {
+            &QuadDescriptor {
                 label: "shadow",
                 shader: SHADER,
                 layouts: &[view],

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Gpu;
+use super::instances::{QuadDescriptor, Quads};
 use super::pipeline::Output;
-use super::quads::{self, Quads};
 use super::sphere_order::SphereSide;
 use crate::scene::SphereShell;
 
@@ -34,7 +34,7 @@ impl Shells {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         Self(Quads::new(
             gpu,
-            &quads::QuadDescriptor {
+            &QuadDescriptor {
                 label: "shell",
                 shader: SHADER,
                 layouts: &[view],

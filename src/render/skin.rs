@@ -2,9 +2,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt as _;
 
-use super::skin_deformer::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
+use super::skin_deform::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
 use super::skin_material::{SkinMaterial, SkinMaterials};
-use super::uniforms::Uniforms;
+use super::view::Uniforms;
 use super::{Gpu, pipeline};
 use crate::kinematics::Shared;
 use crate::kinematics::skin::TriangleMesh;

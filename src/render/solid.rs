@@ -1,9 +1,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
-use super::instance_buffer::InstanceBuffer;
-use super::mesh::MeshBuffers;
-use super::solid_mesh::{self, SolidVertex};
+use super::instances::InstanceBuffer;
+
+use super::mesh::{MeshBuffers, SolidVertex, ball, cone};
 use super::{Gpu, pipeline};
 use crate::scene::{Ball, Scene, Solid};
 
@@ -183,8 +183,8 @@ impl Solids {
 impl DetailMeshes {
     fn new(gpu: &Gpu, segments: u16) -> Self {
         Self {
-            cone: solid_mesh::cone(gpu, segments),
-            ball: solid_mesh::ball(gpu, segments),
+            cone: cone(gpu, segments),
+            ball: ball(gpu, segments),
             cones: InstanceBuffer::new("cones"),
             balls: InstanceBuffer::new("balls"),
             guide_cones: InstanceBuffer::new("guide cones"),

@@ -4,22 +4,16 @@
 //! they mean.
 
 mod builder;
-mod colour;
 mod globe;
 mod label;
 mod palette;
-mod planes;
 #[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod scene;
 mod shapes;
-mod skin_instance;
 
 pub use builder::SceneBuilder;
-pub use colour::Colour;
 pub use globe::Globe;
 pub use label::{Label, LabelSide};
-pub use palette::Palette;
-pub use planes::Planes;
+pub use palette::{Colour, Palette};
 pub use scene::Scene;
-pub use shapes::{Ball, Line, Shadow, Solid, SphereShell};
-pub use skin_instance::SkinInstance;
+pub use shapes::{Ball, Line, Planes, Shadow, SkinInstance, Solid, SphereShell};

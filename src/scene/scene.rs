@@ -1,16 +1,21 @@
+use core::f32::consts::TAU;
 use core::fmt::{Arguments, Write as _};
 use core::ops::Range;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::label::TextRange;
 use super::{
-    Ball, Colour, Globe, Label, Line, Palette, Planes, Shadow, SkinInstance, Solid, SphereShell,
+    Ball, Colour, Globe, Label, LabelSide, Line, Palette, Planes, Shadow, SkinInstance, Solid,
+    SphereShell,
 };
 use crate::document::{Camera, Display, Theme};
 use crate::kinematics::Shared;
 use crate::kinematics::skin::SkinPose;
 use crate::rig::{Crowd, TaperedCylinder};
+
+/// Ratio of the radius of a singular direction's mark to the radius of the globe.
+const MARK_RADIUS: f32 = 0.026;
 
 /// Everything that is drawn in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +58,9 @@ impl Scene {
     /// Range of the bounding radius of a crowd that is drawn, in world units. Outside this range
     /// squared lengths overflow or underflow on the CPU or the device.
     pub const CROWD_RADII: Range<f32> = 1e-12..1e15;
+
+    /// Number of lines of a whole circle.
+    pub(super) const CIRCLE: u16 = 64;
 
     /// A scene of the planes alone.
     pub(super) fn empty(camera: Camera, display: Display, theme: Theme) -> Self {
@@ -131,6 +139,43 @@ impl Scene {
     ) {
         let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
         self.guide_solids.push(Solid { transform, shape, colour, stripes: None });
+    }
+
+    /// Adds an arc that begins at `centre + start` and goes round `axis`.
+    pub(super) fn add_arc(
+        &mut self,
+        centre: Vec3,
+        start: Vec3,
+        axis: Vec3,
+        angle: f32,
+        colour: Colour,
+    ) {
+        let Some(axis) = axis.try_normalize() else { return };
+        let count = (f32::from(Self::CIRCLE) * angle.abs() / TAU).ceil().clamp(1.0, 256.0) as u16;
+        let point = |index: u16| {
+            centre
+                + Quat::from_axis_angle(axis, angle * f32::from(index) / f32::from(count)) * start
+        };
+        let line = |index| Line { from: point(index), to: point(index + 1), colour, dashed: false };
+        self.lines.extend((0..count).map(line));
+    }
+
+    /// Shows a globe and marks each singular direction with a ball and a label. Does nothing if the
+    /// globe cannot be drawn, see [`Globe::has_size`].
+    pub fn add_globe(&mut self, globe: Globe) {
+        if !globe.has_size() {
+            return;
+        }
+        self.globe = Some(globe);
+        let (ball, text) =
+            (self.palette.gain(Palette::MAX_GAIN).with_opacity(1.0), self.palette.text);
+        for direction in globe.singular() {
+            let (centre, radius) =
+                (globe.centre + direction * globe.radius, MARK_RADIUS * globe.radius);
+            self.balls.push(Ball { centre, radius, colour: ball });
+            let label = Label::new(centre, radius, LabelSide::Above, text);
+            self.add_label(label, format_args!("singular"));
+        }
     }
 
     /// Removes all shapes and labels with a position or size that is not finite.

@@ -1,6 +1,5 @@
 use glam::{Affine3A, Vec3};
 
-use super::shadow::above_ground;
 use crate::document::{Arm, Display, Overlay, Posed, ShownLength, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
@@ -217,11 +216,12 @@ fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
         (elbow, rig.lower().base_radius / thickness, hand, BodyPart::WRIST_BALL),
     ];
     scene.shadows.extend(limbs.into_iter().filter_map(|(base, base_radius, tip, tip_radius)| {
-        above_ground(Shadow {
+        Shadow {
             base,
             base_radius: base_radius * thickness,
             tip,
             tip_radius: tip_radius * thickness,
-        })
+        }
+        .above_ground()
     }));
 }

@@ -2,8 +2,6 @@ use core::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 
-use super::arc::add_arc;
-use super::shadow::above_ground;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
@@ -129,12 +127,12 @@ impl<'a> DrawnSkeleton<'a> {
         let axis = (tip - base).try_normalize().unwrap_or(Vec3::Y);
         let side = axis.any_orthonormal_vector();
         let radius = WIDER * self.radius(joint);
-        add_arc(scene, base, radius * side, axis, TAU, colour);
+        scene.add_arc(base, radius * side, axis, TAU, colour);
         if base == tip {
-            return add_arc(scene, base, radius * axis, side, TAU, colour);
+            return scene.add_arc(base, radius * axis, side, TAU, colour);
         }
         let tip_radius = WIDER * self.tip_radius(joint);
-        add_arc(scene, tip, tip_radius * side, axis, TAU, colour);
+        scene.add_arc(tip, tip_radius * side, axis, TAU, colour);
         for nth in 0..LINES {
             let around =
                 Quat::from_axis_angle(axis, TAU * f32::from(nth) / f32::from(LINES)) * side;
@@ -191,7 +189,7 @@ impl<'a> DrawnSkeleton<'a> {
         let (base, tip) = (self.pose.base(first), self.pose.tip(joint));
         let (base_radius, tip_radius) = (self.radius(first), self.tip_radius(joint));
         let limb = Shadow { base, base_radius, tip, tip_radius };
-        scene.shadows.extend((base != tip).then(|| above_ground(limb)).flatten());
+        scene.shadows.extend((base != tip).then(|| limb.above_ground()).flatten());
     }
 
     /// Whether a shadow ends at a joint's tip: every so many short bones, and at the end of a chain.

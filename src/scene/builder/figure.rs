@@ -2,7 +2,6 @@
 
 use glam::{Quat, Vec3};
 
-use super::arc::add_arc;
 use crate::document::{Arm, Posed};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{ArmPart, ArmRig};
@@ -184,7 +183,7 @@ impl<'a> FigureDrawing<'a> {
         let radius = ARC * self.length;
         // Three arcs side by side are a broad one.
         for part in [1.0, 0.985, 0.97] {
-            add_arc(scene, centre, part * radius * start, axis, angle, colour);
+            scene.add_arc(centre, part * radius * start, axis, angle, colour);
         }
         let Some(axis) = axis.try_normalize() else { return };
         let middle = Quat::from_axis_angle(axis, 0.5 * angle) * start;

@@ -1,28 +1,22 @@
 //! Fills a scene from a document, with one file for each group of parts.
 
-mod arc;
 mod arm;
-mod axes;
 mod drawn_skeleton;
-mod elbow_circle;
 mod figure;
-mod globe;
 mod hand;
-mod inside;
 mod motion;
-mod references;
-mod scratch;
-mod shadow;
 mod skeleton;
 mod skin;
-mod solver_ghosts;
+mod solver;
 mod targets;
-mod wiggle;
+mod twist;
+
+use glam::Vec3;
 
 use super::{Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, RigKind, Theme};
 use crate::session::Overlays;
-use scratch::Scratch;
+use skeleton::Scratch;
 
 /// Fills scenes from documents. The builder owns the buffers for intermediate results, so that
 /// refilling a scene allocates nothing once all buffers are large enough.
@@ -75,13 +69,13 @@ impl SceneBuilder {
         };
         scene.planes = Planes::around(centre, ground_reach, cell, display);
         if display.shows(Overlay::Axes) {
-            axes::add(scene, reach);
+            add_axes(scene, reach);
         }
         match document.rig {
             RigKind::Arm => {
                 arm::add(scene, posed, overlays);
                 if display.shows(Overlay::ElbowCircle) {
-                    elbow_circle::add(scene, posed);
+                    twist::add_circle(scene, posed);
                 }
                 if display.shows(Overlay::Frames) {
                     figure::add_frames(scene, posed);
@@ -90,7 +84,7 @@ impl SceneBuilder {
                     figure::add(scene, posed, figure);
                 }
                 if let Some(poses) = overlays.twist_references {
-                    references::add(scene, posed, poses);
+                    twist::add_references(scene, posed, poses);
                 }
             }
             RigKind::Skeleton => skeleton::add(scene, posed, overlays, &mut self.scratch),
@@ -98,5 +92,14 @@ impl SceneBuilder {
         motion::add(scene, document.rig, overlays, reach);
         scene.spare_skin_pose = None;
         scene.remove_non_finite();
+    }
+}
+
+/// Adds rods along the world's axes, half as long as the rig's reach. Arrowheads belong to handles.
+fn add_axes(scene: &mut Scene, reach: f32) {
+    let length = 0.5 * reach;
+    let radius = 0.009 * length;
+    for (axis, colour) in Vec3::AXES.into_iter().zip(scene.palette.axes) {
+        scene.add_solid(Vec3::ZERO, axis * length, radius, radius, colour);
     }
 }

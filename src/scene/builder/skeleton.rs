@@ -1,15 +1,13 @@
 use glam::Vec3;
 
 use super::drawn_skeleton::DrawnSkeleton;
-use super::inside::InsideDrawing;
 use super::motion;
-use super::scratch::Scratch;
 use super::skin::ShownSkin;
+use super::solver::{self, InsideDrawing};
 use super::targets;
-use super::wiggle;
 use crate::document::{FollowPath, Overlay, PathKind, Posed, SkeletonRig, Target};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Joint, JointId};
+use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::scene::{Line, Scene};
 use crate::session::Overlays;
 
@@ -17,6 +15,23 @@ use crate::session::Overlays;
 const LINES: usize = 2048;
 /// Greatest number of lines between two keys of a head.
 const MOST_STEPS: usize = 16;
+
+/// Buffers for intermediate results of a [`SceneBuilder`](super::SceneBuilder).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    pub pose: SkeletonPose,
+    pub fk_pose: SkeletonPose,
+    /// For each joint the influence of the targets that turn it.
+    pub influences: Vec<f32>,
+    /// Distance of each joint from its root along offsets, in skeleton space.
+    pub distances: Vec<f32>,
+    /// Number of bones above each joint, not counting bones of zero length.
+    pub depths: Vec<usize>,
+    /// Whether each joint has no child.
+    pub are_leaves: Vec<bool>,
+    /// Joints that get a label.
+    pub labelled: Vec<JointId>,
+}
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
 /// skeleton's reach or the radius of its bounding sphere at time 0, whichever is larger.
@@ -78,7 +93,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         InsideDrawing { view, targets, selection, reach }.add(scene);
     }
     if let Some(view) = &overlays.wiggle {
-        wiggle::add(scene, &drawn, skeleton, view);
+        solver::add_wiggle(scene, &drawn, skeleton, view);
     }
     if display.shows(Overlay::Cursor) {
         for (target, report) in rig.targets.iter().zip(posed.targets()) {

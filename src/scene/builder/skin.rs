@@ -1,7 +1,6 @@
 use glam::{Affine3A, Vec3};
 
 use super::drawn_skeleton::DrawnSkeleton;
-use super::shadow::above_ground;
 use crate::document::{Display, Overlay, SkeletonRig, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -111,7 +110,7 @@ impl<'a> ShownSkin<'a> {
             for offset in self.offsets() {
                 let (base, tip) = (base + offset, tip + offset);
                 let limb = Shadow { base, base_radius: thickness, tip, tip_radius: thickness };
-                scene.shadows.extend(above_ground(limb));
+                scene.shadows.extend(limb.above_ground());
             }
         }
         if overlays.selection.contains(&joint) || overlays.hovered == Some(joint.into()) {

@@ -2,7 +2,6 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::arc::add_arc;
 use super::drawn_skeleton::DrawnSkeleton;
 use crate::document::{ShownLength, Target, TwistReferenceKind};
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -74,7 +73,7 @@ impl DrawnSkeleton<'_> {
         let out = (elbow - base).reject_from_normalized(axis);
         if out.length() > LEAST * self.reach {
             let centre = elbow - out;
-            add_arc(scene, centre, out, axis, TAU, scene.palette.guide);
+            scene.add_arc(centre, out, axis, TAU, scene.palette.guide);
             let colour = scene.palette.accent;
             scene.lines.push(Line { from: centre, to: elbow, colour, dashed: false });
         }

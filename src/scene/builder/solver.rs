@@ -1,16 +1,18 @@
-//! What a solver computes in a part of an iteration, drawn where it acts.
+//! A solver at work: its shown iterates, the computations of a part of an iteration, drawn where
+//! they act, and an angle that swings.
 
 use core::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 
-use super::arc::{SEGMENTS, add_arc};
+use super::drawn_skeleton::{DrawnSkeleton, GHOST};
+use crate::document::{Display, Overlay};
 use crate::kinematics::chain_ik::{
     Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipTarget, Turn,
 };
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
-use crate::session::{InsideLayer, InsideView};
+use crate::session::{InsideLayer, InsideView, SolverGhost, WiggleTarget, WiggleView};
 
 /// Radius of thin and thick arrows, as fractions of the skeleton's reach.
 const THIN: f32 = 0.004;
@@ -138,7 +140,7 @@ impl InsideDrawing<'_> {
             let radius = axis.any_orthonormal_vector() * ARC * self.reach;
             let colour = scene.palette.axes[change.axis as usize];
             let centre = in_world.base(change.joint);
-            add_arc(scene, centre, radius, axis, change.by, colour);
+            scene.add_arc(centre, radius, axis, change.by, colour);
         }
     }
 
@@ -156,7 +158,7 @@ impl InsideDrawing<'_> {
             scene.lines.push(Line { from: base, to: from, colour: guide, dashed: true });
             scene.lines.push(Line { from: base, to: target, colour: accent, dashed: false });
             let start = PART * (from - base);
-            add_arc(scene, base, start, turn.axis, turn.angle, accent);
+            scene.add_arc(base, start, turn.axis, turn.angle, accent);
             let Some(axis) = turn.axis.try_normalize() else { continue };
             let middle = Quat::from_axis_angle(axis, 0.5 * turn.angle) * start;
             let label = Label::new(base + middle, 0.0, LabelSide::Above, scene.palette.text);
@@ -187,7 +189,7 @@ impl InsideDrawing<'_> {
         }
         let axis = (target.point - shoulder).normalize_or_zero();
         let out = (elbow - shoulder).reject_from(axis.try_normalize().unwrap_or(Vec3::X));
-        add_arc(scene, elbow - out, out, axis, TAU, guide);
+        scene.add_arc(elbow - out, out, axis, TAU, guide);
         self.add_point(scene, elbow, accent);
     }
 
@@ -222,10 +224,93 @@ fn ellipsoid_scale(ellipsoid: &Ellipsoid, reach: f32) -> f32 {
 fn add_ellipses(scene: &mut Scene, centre: Vec3, axes: [Vec3; 3], colour: Colour) {
     for (one, other) in [(0, 1), (1, 2), (2, 0)] {
         let point = |index: u16| {
-            let (sin, cos) = (TAU * f32::from(index) / f32::from(SEGMENTS)).sin_cos();
+            let (sin, cos) = (TAU * f32::from(index) / f32::from(Scene::CIRCLE)).sin_cos();
             centre + cos * axes[one] + sin * axes[other]
         };
         let line = |index| Line { from: point(index), to: point(index + 1), colour, dashed: false };
-        scene.lines.extend((0..SEGMENTS).map(line));
+        scene.lines.extend((0..Scene::CIRCLE).map(line));
+    }
+}
+
+impl DrawnSkeleton<'_> {
+    /// Adds the shown iterates of solvers. The ghost of a single solver gets labels: the number of its
+    /// iteration, and the distances from its tips to the targets.
+    pub fn add_solver_ghosts(&self, scene: &mut Scene, ghosts: &[SolverGhost], display: Display) {
+        for ghost in ghosts {
+            let colour = scene.palette.method(ghost.method);
+            let drawn = self.posed(&ghost.pose);
+            drawn.add_ghost(scene, colour);
+            // Labels of all ghosts of a race would hide each other.
+            let is_single = ghosts.len() == 1;
+            if is_single && display.shows(Overlay::Cursor) {
+                for target in &ghost.targets {
+                    drawn.add_gap(scene, target.joint, target.point, colour, false);
+                }
+            }
+            if is_single && display.shows(Overlay::Labels) {
+                drawn.add_iteration(scene, ghost, colour);
+            }
+        }
+    }
+
+    /// Adds thin bones that also show faintly through the skeleton's own.
+    fn add_ghost(&self, scene: &mut Scene, colour: Colour) {
+        for joint in self.pose.ids() {
+            let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
+            let radius = self.radius(joint) * GHOST;
+            if base != tip {
+                scene.add_guide_solid(base, tip, radius, radius, colour);
+            }
+            scene.guide_balls.push(Ball { centre: tip, radius, colour });
+        }
+    }
+
+    /// Adds the number of an iteration and of its part as a label above the highest tip.
+    fn add_iteration(&self, scene: &mut Scene, ghost: &SolverGhost, colour: Colour) {
+        let tips = self.pose.ids().map(|joint| (joint, self.pose.tip(joint)));
+        if let Some((joint, at)) = tips.max_by(|(_, a), (_, b)| a.y.total_cmp(&b.y)) {
+            let label = Label::new(at, self.radius(joint), LabelSide::Above, colour);
+            let iteration = ghost.iteration;
+            match ghost.part {
+                Some([part, of]) => scene
+                    .add_label(label, format_args!("Iteration {iteration}, part {part} of {of}")),
+                None => scene.add_label(label, format_args!("Iteration {iteration}")),
+            }
+        }
+    }
+}
+
+/// Adds an angle that swings: the bones that it moves, the path of the tip and the line that the
+/// Jacobian predicts, and the residual.
+pub(super) fn add_wiggle(
+    scene: &mut Scene,
+    drawn: &DrawnSkeleton<'_>,
+    skeleton: &Skeleton,
+    wiggle: &WiggleView,
+) {
+    let (accent, guide) = (scene.palette.accent, scene.palette.guide);
+    let swinging = drawn.posed(&wiggle.pose);
+    for joint in skeleton.ids().filter(|it| skeleton.is_in_subtree(*it, wiggle.swing.joint)) {
+        let (base, tip) = (wiggle.pose.base(joint), wiggle.pose.tip(joint));
+        let radius = swinging.radius(joint) * GHOST;
+        if base != tip {
+            scene.add_guide_solid(base, tip, radius, radius, accent);
+        }
+    }
+    let segments = wiggle.path.windows(2);
+    scene.lines.extend(segments.map(|ends| Line {
+        from: ends[0],
+        to: ends[1],
+        colour: accent,
+        dashed: false,
+    }));
+    let [from, to] = wiggle.predicted;
+    scene.lines.push(Line { from, to, colour: guide, dashed: true });
+    let tip = wiggle.pose.tip(wiggle.swing.tip);
+    let radius = 0.014 * drawn.reach;
+    scene.guide_balls.push(Ball { centre: tip, radius, colour: accent });
+    let label = Label::new(tip, radius, LabelSide::Above, accent);
+    if let Some(WiggleTarget { before, now, .. }) = wiggle.target {
+        scene.add_label(label, format_args!("{:+.4}", now - before));
     }
 }

@@ -2,10 +2,10 @@ use core::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::instance_buffer::InstanceBuffer;
+use super::instances::InstanceBuffer;
 use super::pipeline::Output;
-use super::texture_sampler::TextureSampler;
-use super::uniforms::Uniforms;
+use super::texture::TextureSampler;
+use super::view::Uniforms;
 use super::{Gpu, pipeline};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/triangle.wgsl");
