@@ -28,7 +28,7 @@
 //! 2. [`apply`](session::Session::apply) checks each action, edits the document and solves again.
 //! 3. If there was an action, the panels run once more, so that no panel shows the state from
 //!    before the action.
-//! 4. The [scene](scene::Scene) is refilled from the document and drawn if it changed; then the
+//! 4. The [scene](scene::Scene) is refilled from the pose and drawn if it changed; then the
 //!    panels are drawn.
 //!
 //! Nothing is drawn while nothing changes.
@@ -40,10 +40,13 @@
 //! - Where code uses two spaces, the name of a point says which space the point is in.
 //! - A target out of reach gives a result, not an error. Errors name the file, the field and the
 //!   rule.
-//! - A pose is a function of document and time. All state that determines the pose is in the
-//!   document, except unkeyed edits of keyed channels, which last until the time changes.
-//! - Playback writes nothing to the document, except keys while heads follow the mouse. Keys of a transported twist are measured from the
-//!   stereographic map, so that a pose does not depend on the poses before it.
+//! - A pose is a function of document and time, and a [`Track`](document::Track) is the only way
+//!   to it: it gives a [`Posed`](document::Posed), which solves each rig once. All state that
+//!   determines the pose is in the document, except unkeyed edits of keyed channels, which last
+//!   until the time changes.
+//! - Playback writes nothing to the document, except keys while heads follow the mouse. Keys of a
+//!   transported twist are measured from the stereographic map, so that a pose does not depend on
+//!   the poses before it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

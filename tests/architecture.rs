@@ -35,6 +35,24 @@ fn no_files_import_each_other_in_a_cycle() {
 }
 
 #[test]
+fn only_a_track_poses_a_document_at_a_time() {
+    for (file, text) in sources_in("src") {
+        let ways = [".skeleton_at(", "rig.evaluate(", "apply_keys("];
+        let found = ways.into_iter().find(|way| text.contains(way));
+        assert!(found.is_none() || file == "src/document/track.rs", "{file}: {found:?}");
+    }
+}
+
+#[test]
+fn the_scene_solves_nothing() {
+    for (file, text) in sources_in("src/scene") {
+        let solves = [".solve(", "arm.pose()", "pose_with_reference(", "fk_at(", "Track"];
+        let found = solves.into_iter().find(|solve| text.contains(solve));
+        assert!(found.is_none(), "{file}: {found:?}");
+    }
+}
+
+#[test]
 fn the_table_of_floors_lists_every_module_of_its_package() {
     for folder in PACKAGES {
         let sources = sources_in(folder);

@@ -8,7 +8,7 @@ use crate::rig::{FollowPath, PathKind, SkeletonRig, Target};
 
 /// Changes over time.
 impl Document {
-    /// Whether a chain follows a path at any time: a ring, a target, or the keys of its head.
+    /// True if a chain follows a path at any time: a ring, a target, or the keys of its head.
     pub fn follows_path(&self) -> bool {
         self.skeleton_rig.follow_paths.iter().any(|path| match path.kind {
             PathKind::Ring(_) => true,
@@ -17,14 +17,14 @@ impl Document {
         })
     }
 
-    /// Whether something of the picture may change over time: there are keys, or a target or the shown
-    /// skeleton moves without keys.
+    /// True if something of the picture may change over time: there are keys, or a target or the
+    /// shown skeleton moves without keys.
     pub fn is_moving(&self) -> bool {
         let moves = self.rig == RigKind::Skeleton && self.skeleton_rig.is_moving();
         moves || !self.keys.is_empty()
     }
 
-    /// Whether the pose of the shown rig changes over time.
+    /// True if the pose of the shown rig changes over time.
     pub fn is_animated(&self) -> bool {
         let SkeletonRig { follow_paths, targets, .. } = &self.skeleton_rig;
         let is_ring = |path: &FollowPath| matches!(path.kind, PathKind::Ring(_));
@@ -34,14 +34,14 @@ impl Document {
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }
 
-    /// Whether keys of the channel pose the shown rig.
+    /// True if keys of the channel pose the shown rig.
     fn poses(&self, channel: Channel) -> bool {
         let target = channel.target().and_then(|joint| self.skeleton_rig.target(joint));
         let can_pose = target.is_none_or(|index| self.can_pose(&self.skeleton_rig.targets[index]));
         channel.rig() == Some(self.rig) && can_pose
     }
 
-    /// Whether a target poses the skeleton at some time.
+    /// True if a target poses the skeleton at some time.
     fn can_pose(&self, target: &Target) -> bool {
         let track = |channel| self.keys.track(channel);
         let is_ever = |channel, value: f32| {
@@ -54,11 +54,11 @@ impl Document {
             && is_ever(Channel::Enabled(joint), f32::from(u8::from(enabled)))
     }
 
-    /// Adds a key with the present value of a channel at a time in seconds, with an automatic curve;
-    /// a key that is there keeps its curve. A twist is first
-    /// unwrapped to be nearest to the value that its existing keys have at that time. The hand is
-    /// first keyed where the last plant before that time begins, so that it arrives there as
-    /// before. Does nothing if the channel has no value.
+    /// Adds a key with the present value of a channel at a time in seconds, with an automatic
+    /// curve; a key that is there keeps its curve. A twist is first unwrapped to be nearest to the
+    /// value that its existing keys have at that time. The hand is first keyed where the last plant
+    /// before that time begins, so that it arrives there as before. Does nothing if the channel has
+    /// no value.
     pub fn key(&mut self, channel: Channel, time: f64) {
         let Some(mut value) = channel.value(self) else {
             return;

@@ -172,3 +172,18 @@ impl Document {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rig_is_solved_once() {
+        let posed = Document::default().at(0.0);
+        assert!(posed.arm.get().is_none() && posed.skeleton.get().is_none());
+        assert!(core::ptr::eq(posed.arm_pose(), posed.arm_pose()));
+        assert!(core::ptr::eq(posed.evaluated_skeleton(), posed.evaluated_skeleton()));
+        let moved = posed.clone();
+        assert!(moved.arm.get().is_some() && moved.skeleton.get().is_some(), "copies are solved");
+    }
+}

@@ -128,7 +128,7 @@ impl Crowds {
         }
     }
 
-    /// Whether the number of triangles of an earlier frame has not arrived yet.
+    /// True if the number of triangles of an earlier frame has not arrived yet.
     pub fn awaits_triangles(&self) -> bool {
         self.uploaded().is_some_and(|(renderer, _)| !renderer.drawn.is_free())
     }

@@ -46,8 +46,8 @@ pub(super) type DrawArguments = [u32; 4];
 impl CrowdLod {
     pub const COUNT: usize = 5;
 
-    /// Levels from the nearest arms to the farthest: round limbs with joints, five-sided limbs, flat
-    /// limbs, lines, points.
+    /// Levels from the nearest arms to the farthest: round limbs with joints, five-sided limbs,
+    /// flat limbs, lines, points.
     pub const ALL: [Self; Self::COUNT] = [
         Self::with_sides(12, 3 * 10 * 5 * 6),
         Self::with_sides(5, 0),

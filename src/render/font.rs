@@ -35,7 +35,7 @@ struct Glyph {
     id: Option<(usize, GlyphId)>,
     advance: f32,
     image: Option<GlyphImage>,
-    /// Whether the letter is drawn as a box because its own image did not fit the atlas.
+    /// True if the letter is drawn as a box because its own image did not fit the atlas.
     is_left_out: bool,
 }
 

@@ -149,7 +149,7 @@ impl Gpu {
         format!("{} ({})", info.name, info.backend)
     }
 
-    /// Whether the adapter is a program on the CPU.
+    /// True if the adapter is a program on the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }

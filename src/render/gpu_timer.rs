@@ -21,7 +21,7 @@ pub struct GpuTimer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     readbacks: [TimestampReadback; 3],
-    /// Whether each pass is part of the current frame.
+    /// For each pass, true if it is part of the current frame.
     passes: [bool; PASSES],
     nanoseconds_per_tick: f64,
 }

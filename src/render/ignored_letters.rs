@@ -1,4 +1,4 @@
-/// Whether a letter is invisible in every font: control characters, and Unicode's
+/// True if a letter is invisible in every font: control characters, and Unicode's
 /// Default_Ignorable_Code_Point, such as joiners, direction marks and variation selectors.
 pub(super) fn is_ignored(letter: char) -> bool {
     letter.is_control()

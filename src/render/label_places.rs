@@ -12,8 +12,9 @@ const LETTERS: f32 = 0.75;
 /// Maximum number of lines by which a label is moved away from its point to be clear of others.
 const MOST_LINES: u8 = 3;
 
-/// Where labels are written, so that none covers another or leaves the picture: on its own side of its point
-/// if there is room, else on another side, else farther away. Earlier labels of a scene choose first.
+/// Where labels are written, so that none covers another or leaves the picture: on its own side of
+/// its point if there is room, else on another side, else farther away. Earlier labels of a scene
+/// choose first.
 #[derive(Debug, Default)]
 pub(super) struct LabelPlaces {
     pens: Vec<Option<Vec2>>,
@@ -89,10 +90,7 @@ impl Text {
         let Self { point, away, width, line } = self;
         let across = if side.is_left() { -away - width } else { away };
         let farther = f32::from(lines) * line;
-        let drop = match side.is_above() {
-            true => -away - farther,
-            false => away + 0.6 * line + farther,
-        };
+        let drop = if side.is_above() { -away - farther } else { away + 0.6 * line + farther };
         point + Vec2::new(across, drop)
     }
 

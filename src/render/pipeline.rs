@@ -16,7 +16,7 @@ pub(super) struct PipelineDescriptor<'a> {
     pub output: Output,
 }
 
-/// What a pipeline writes.
+/// Kind of output of a pipeline.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Output {
     /// Replaces the colours behind, and writes depth.

@@ -30,7 +30,7 @@ impl Readback {
         Self { buffer, state: Arc::new(AtomicU8::new(FREE)) }
     }
 
-    /// Whether no copy is under way.
+    /// True if no copy is under way.
     pub fn is_free(&self) -> bool {
         self.state() == FREE
     }
@@ -54,7 +54,7 @@ impl Readback {
         });
     }
 
-    /// What `read` returns for the bytes; `None` if they have not arrived yet, cannot be read, or
+    /// Result of `read` for the bytes; `None` if they have not arrived yet, cannot be read, or
     /// were read before. The device must be polled for them to arrive.
     pub fn read<T>(&self, read: impl FnOnce(&[u8]) -> Option<T>) -> Option<T> {
         let state = self.state();

@@ -137,7 +137,7 @@ impl Renderer {
         self.counts.triangles = self.triangles();
     }
 
-    /// Whether counts of earlier frames have not arrived yet.
+    /// True if counts of earlier frames have not arrived yet.
     pub fn awaits_counts(&self) -> bool {
         self.crowds.awaits_triangles()
     }
@@ -201,10 +201,8 @@ impl Renderer {
     /// Enlarges a smaller picture, and draws the labels in full.
     fn encode_labels(&self, gpu: &Gpu, canvas: &Canvas) -> wgpu::CommandBuffer {
         let is_smaller = canvas.resolution_scale() < 1.0;
-        let load = match is_smaller {
-            true => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-            false => wgpu::LoadOp::Load,
-        };
+        let load =
+            if is_smaller { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("labels") });

@@ -49,8 +49,8 @@ struct SkinPipelines {
     wire: wgpu::RenderPipeline,
 }
 
-/// Pipelines for parts of skins without a texture and with one, each for skins that are not mirrored and
-/// for mirrored ones.
+/// Pipelines for parts of skins without a texture and with one, each for skins that are not
+/// mirrored and for mirrored ones.
 #[derive(Debug)]
 struct SurfacePipelines([[wgpu::RenderPipeline; 2]; 2]);
 
@@ -80,8 +80,8 @@ struct DrawnSkin {
 }
 
 impl Skins {
-    /// Sends the changes to the device, moves the vertices if a pose has changed, and returns the number of
-    /// bytes sent.
+    /// Sends the changes to the device, moves the vertices if a pose has changed, and returns the
+    /// number of bytes sent.
     pub fn upload(&mut self, gpu: &Gpu, view: &wgpu::BindGroupLayout, scene: &Scene) -> u64 {
         if scene.skins.is_empty() {
             self.skins.clear();

@@ -150,7 +150,8 @@ impl SkinDeformer {
         DeformedSkin { uniform, joints, vertices, group, data: None, sent: Vec::new() }
     }
 
-    /// Moves the vertices if the pose is another one than before, and returns the number of bytes sent.
+    /// Moves the vertices if the pose is another one than before, and returns the number of bytes
+    /// sent.
     pub(super) fn update(
         &self,
         gpu: &Gpu,

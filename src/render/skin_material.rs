@@ -8,7 +8,7 @@ use crate::io::texture_pixels;
 use crate::kinematics::Shared;
 use crate::rig::{SkinPart, SkinTexture};
 
-/// What the materials of skins have in common on the device.
+/// Resources that the materials of skins share on the device.
 #[derive(Debug)]
 pub(super) struct SkinMaterials {
     pub layout: wgpu::BindGroupLayout,
@@ -109,7 +109,8 @@ impl SkinMaterials {
     }
 }
 
-/// A texture with all its smaller levels. An image that is too large for the device is halved until it fits.
+/// A texture with all its smaller levels. An image that is too large for the device is halved until
+/// it fits.
 fn texture_view(gpu: &Gpu, size: [u32; 2], pixels: &[[u8; 4]]) -> wgpu::TextureView {
     let most = gpu.device.limits().max_texture_dimension_2d;
     let mut level = Level { size, pixels: pixels.to_vec() };

@@ -61,7 +61,7 @@ impl Spheres {
     }
 }
 
-/// Whether a shell can be drawn: its centre and squared radius are finite, and the radius is above
+/// True if a shell can be drawn: its centre and squared radius are finite, and the radius is above
 /// 0.
 fn has_size(shell: &SphereShell) -> bool {
     let radius = shell.radius;

@@ -71,8 +71,8 @@ impl TrianglePainter {
         self.corners.push(corner);
     }
 
-    /// Sends the pushed corners, which replace those of the previous upload. `size` is the width and
-    /// height of the picture in the unit of the corners.
+    /// Sends the pushed corners, which replace those of the previous upload. `size` is the width
+    /// and height of the picture in the unit of the corners.
     pub fn upload(&mut self, gpu: &Gpu, [width, height]: [f32; 2]) {
         self.corners.upload(gpu);
         self.size.upload(gpu, [width, height, 0.0, 0.0]);

@@ -36,7 +36,7 @@ impl Globe {
         directions.into_iter().flatten()
     }
 
-    /// Whether the globe can be drawn: its centre and radius are finite, and the radius is above 0.
+    /// True if the globe can be drawn: its centre and radius are finite, and the radius is above 0.
     pub fn has_size(&self) -> bool {
         self.centre.is_finite() && self.radius.is_finite() && self.radius > 0.0
     }

@@ -5,8 +5,8 @@ use crate::document::Camera;
 
 /// Distance of a text from its ball, in points.
 const GAP: f32 = 3.0;
-/// Distance from a point along both axes of the picture at which a text is clear of the squares and the free
-/// handle around the point, in points.
+/// Distance from a point along both axes of the picture at which a text is clear of the squares and
+/// the free handle around the point, in points.
 const HANDLES: f32 = 46.0;
 
 /// A label beside a point; [`Scene::text`](super::Scene::text) returns its text.
@@ -42,12 +42,12 @@ impl LabelSide {
     /// All sides.
     pub const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
 
-    /// Whether the text is to the left of the point.
+    /// True if the text is to the left of the point.
     pub fn is_left(self) -> bool {
         matches!(self, Self::AboveLeft | Self::BelowLeft)
     }
 
-    /// Whether the text is above the point.
+    /// True if the text is above the point.
     pub fn is_above(self) -> bool {
         matches!(self, Self::Above | Self::AboveLeft)
     }

@@ -1,4 +1,4 @@
-//! What to draw: plain lists of solids, balls, shells, lines and labels, filled from a document.
+//! Things to draw: plain lists of solids, balls, shells, lines and labels, filled from a pose.
 //!
 //! This module does not know how these things are drawn, and [`crate::render`] does not know what
 //! they mean.

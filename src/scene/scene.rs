@@ -50,7 +50,8 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// Texts of all labels, concatenated.
     text: String,
-    /// The pose of a skin of the last picture, while the scene is refilled: its memory is used again.
+    /// The pose of a skin of the last picture, while the scene is refilled: its memory is used
+    /// again.
     pub(super) spare_skin_pose: Option<Shared<SkinPose>>,
 }
 
@@ -127,8 +128,8 @@ impl Scene {
         self.solids.push(Solid { transform, shape, colour, stripes: None });
     }
 
-    /// Adds a cone from base to tip, both in the world, that also shows faintly through the surfaces
-    /// that hide it.
+    /// Adds a cone from base to tip, both in the world, that also shows faintly through the
+    /// surfaces that hide it.
     pub(super) fn add_guide_solid(
         &mut self,
         base: Vec3,

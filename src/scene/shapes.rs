@@ -53,7 +53,7 @@ pub struct Line {
     pub to: Vec3,
     /// Colour, with opacity.
     pub colour: Colour,
-    /// Whether the line is dashed.
+    /// True if the line is dashed.
     pub dashed: bool,
 }
 
@@ -71,8 +71,8 @@ pub struct Shadow {
 }
 
 impl Shadow {
-    /// Cuts off the part of the limb below the ground, since that part casts no shadow; `None` if the
-    /// whole limb is below.
+    /// Cuts off the part of the limb below the ground, since that part casts no shadow; `None` if
+    /// the whole limb is below.
     pub(super) fn above_ground(self) -> Option<Self> {
         let at = |fraction: f32| {
             let radius = self.base_radius + (self.tip_radius - self.base_radius) * fraction;
@@ -97,14 +97,14 @@ impl Shadow {
 pub struct SkinInstance {
     /// The mesh. Clones of one mesh are sent to the device once.
     pub mesh: Shared<AttachedMesh>,
-    /// How the joints move the mesh.
+    /// Transforms by which the joints move the mesh.
     pub pose: Shared<SkinPose>,
-    /// How the joints of a vertex are blended.
+    /// Way of blending the joints of a vertex.
     pub skinning: Skinning,
     /// Offset in the world.
     pub offset: Vec3,
-    /// Colour of the surface, with opacity. Where a see-through skin overlaps itself, only its nearest
-    /// surface is drawn.
+    /// Colour of the surface, with opacity. Where a see-through skin overlaps itself, only its
+    /// nearest surface is drawn.
     pub colour: Colour,
     /// Colour of the edges of the triangles; `None` hides them.
     pub wireframe: Option<Colour>,
@@ -116,13 +116,13 @@ pub struct SkinInstance {
 /// radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
-    /// Whether the grid in the plane z = 0 is drawn.
+    /// True if the grid in the plane z = 0 is drawn.
     pub grid_xy: bool,
-    /// Whether the grid in the plane y = 0 is drawn.
+    /// True if the grid in the plane y = 0 is drawn.
     pub grid_xz: bool,
-    /// Whether the grid in the plane x = 0 is drawn.
+    /// True if the grid in the plane x = 0 is drawn.
     pub grid_yz: bool,
-    /// Whether the ground is drawn.
+    /// True if the ground is drawn.
     pub ground: bool,
     /// Centre of the drawn part, in the world.
     pub centre: Vec3,

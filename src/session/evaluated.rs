@@ -58,7 +58,7 @@ impl Evaluated {
         why.get(index).map_or(&[], |why| why.get(diagnose))
     }
 
-    /// Whether the diagnoses of any target were made.
+    /// True if the diagnoses of any target were made.
     pub fn knows_why(&self) -> bool {
         self.why.known().is_some()
     }

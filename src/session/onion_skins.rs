@@ -11,14 +11,14 @@ pub struct OnionSkin {
     pub arm: [Vec3; 3],
     /// The skeleton's pose, in world space.
     pub pose: SkeletonPose,
-    /// Whether the frame is before the playhead.
+    /// True if the frame is before the playhead.
     pub past: bool,
     /// Opacity: 1 nearest to the playhead, less farther away.
     pub opacity: f32,
 }
 
-/// Writes into `skins` the rig in frames before and after those of `posed` that are on the timeline,
-/// or nothing if onion skins are hidden. Reuses the memory of `skins`.
+/// Writes into `skins` the rig in frames before and after those of `posed` that are on the
+/// timeline, or nothing if onion skins are hidden. Reuses the memory of `skins`.
 pub(super) fn write_onion_skins(track: &Track, posed: &Posed, skins: &mut Vec<OnionSkin>) {
     /// Number of onion skins on each side of `time`, and number of frames from one skin to the
     /// next.

@@ -39,7 +39,7 @@ pub struct Overlays {
     pub trail: Vec<Vec3>,
     /// The rig in frames before and after the playhead.
     pub onion_skins: Vec<OnionSkin>,
-    /// Whether handles are drawn over the picture. Names that they would cover are left out.
+    /// True if handles are drawn over the picture. Names that they would cover are left out.
     pub has_handles: bool,
     /// The crowd that is shown instead of the rig; `None` to show the rig.
     pub crowd: Option<Crowd>,
@@ -63,7 +63,7 @@ pub struct InsideView {
     pub previous: Option<Shared<SubStep>>,
     /// The pose before the part, in world space.
     pub before: Shared<SkeletonPose>,
-    /// What is shown of it.
+    /// Layers of it that are shown.
     pub layers: InsideLayers,
 }
 

@@ -173,7 +173,7 @@ impl Spike {
         Self { pop, ..higher }
     }
 
-    /// Whether the same move of the Cursor would pop again, because the settings that caused the
+    /// True if the same move of the Cursor would pop again, because the settings that caused the
     /// pop are unchanged.
     pub fn persists(self, arm: &Arm) -> bool {
         match self.pop {

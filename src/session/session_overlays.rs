@@ -8,7 +8,7 @@ use super::trail::{has_trail, sample_trail};
 
 /// Overlays of the viewport.
 impl Session {
-    /// What the viewport shows beside the document: selection, drags, trails and solver ghosts.
+    /// State that the viewport shows beside the document: selection, drags, trails, solver ghosts.
     pub fn overlays(&self) -> Overlays {
         let mut overlays = Overlays::default();
         self.write_overlays(&mut overlays);

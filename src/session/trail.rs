@@ -3,7 +3,7 @@ use glam::Vec3;
 use crate::document::{Document, Overlay, RigKind, Track};
 use crate::kinematics::skeleton::JointId;
 
-/// Whether a document is animated and shows its motion trail.
+/// True if a document is animated and shows its motion trail.
 pub(super) fn has_trail(document: &Document, shown: &Document) -> bool {
     document.is_animated() && shown.display.shows(Overlay::Trail)
 }

@@ -15,8 +15,8 @@ const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
 
-/// Adds the arm with the guides, labels and shadows that the display shows. The part under the mouse
-/// lights up; a hand with handles has no label.
+/// Adds the arm with the guides, labels and shadows that the display shows. The part under the
+/// mouse lights up; a hand with handles has no label.
 pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
     let (arm, pose, display) = (posed.arm(), posed.arm_pose(), posed.document().display);
     let rig = arm.rig(pose);
@@ -167,22 +167,22 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32, has_handl
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     // The fingers are on the same line, beyond the hand.
     let line = [hand, cursor + (cursor - hand)];
-    let arrows = Vec3::AXES.map(|axis| cursor + axis * hand.distance(cursor));
-    let [x, y, z] = arrows;
-    let label = |side| Label::new(cursor, CURSOR_BALL * thickness, side, colour);
-    let label = match has_handles {
-        true => {
-            let all = [line[0], line[1], x, y, z];
-            label(LabelSide::clear_of(&all, cursor, &scene.camera)).clear_of_handles()
-        }
-        false => label(LabelSide::clear_of(&line, cursor, &scene.camera)),
+    let [x, y, z] = Vec3::AXES.map(|axis| cursor + axis * hand.distance(cursor));
+    let beside = |others: &[Vec3]| {
+        let side = LabelSide::clear_of(others, cursor, &scene.camera);
+        Label::new(cursor, CURSOR_BALL * thickness, side, colour)
+    };
+    let label = if has_handles {
+        beside(&[line[0], line[1], x, y, z]).clear_of_handles()
+    } else {
+        beside(&line)
     };
     let (length, decimals) = (hand.distance(cursor), arm.length_decimals());
     scene.add_label(label, format_args!("{}", ShownLength { length, decimals }));
 }
 
-/// Adds the names of the joints, clear of the limbs and the Pointer. If the elbow has the label of a
-/// twist reference, its name is left out, and so is that of a hand with handles.
+/// Adds the names of the joints, clear of the limbs and the Pointer. If the elbow has the label of
+/// a twist reference, its name is left out, and so is that of a hand with handles.
 fn add_labels(
     scene: &mut Scene,
     rig: &ArmRig,

@@ -13,13 +13,13 @@ const MAX_RADIUS: (f32, f32) = (0.45, 0.028);
 /// Minimum of a bone's radius limit by reach, as a fraction of the bone's length, so that the first
 /// bones of a new skeleton are as thick as they will be in the complete one.
 const MIN_LIMIT: f32 = 0.07;
-/// Minimum of a bone's radius limit, as a fraction of the skeleton's reach, so that a chain of many short
-/// bones can be seen.
+/// Minimum of a bone's radius limit, as a fraction of the skeleton's reach, so that a chain of many
+/// short bones can be seen.
 const LEAST_LIMIT: f32 = 0.004;
 /// Ratio of a bone's length to its radius below which the balls at its ends would hide it.
 const SHORT: f32 = 2.4;
-/// Least length of a shadow as a fraction of the reach: short bones in a row share one, since soft shadows
-/// add up where they overlap.
+/// Least length of a shadow as a fraction of the reach: short bones in a row share one, since soft
+/// shadows add up where they overlap.
 const SHADOW: f32 = 0.04;
 /// Maximum radius of a joint without a bone, as a fraction of the skeleton's reach.
 const POINT_RADIUS: f32 = 0.02;
@@ -30,7 +30,8 @@ const TAPER: f32 = 0.6;
 const SLENDER: f32 = 4.0;
 /// Ratio of the radius of a ghost's bone to that of the skeleton's bone.
 pub(super) const GHOST: f32 = 0.45;
-/// Ratio of the radius of a rod between a bone and a child away from it to the thinner bone's radius.
+/// Ratio of the radius of a rod between a bone and a child away from it to the thinner bone's
+/// radius.
 const LINK: f32 = 0.3;
 /// Ratio of the radius of an onion skin to that of the figure, so that it hides less of the figure.
 const ONION_SKIN: f32 = 0.5;
@@ -83,14 +84,12 @@ impl<'a> DrawnSkeleton<'a> {
     /// selected joints have colours of their own.
     pub fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
-        let plain = if self.depths[joint.index()].is_multiple_of(2) {
+        let colour = if self.joints[joint.index()].locked {
+            palette.joint
+        } else if self.depths[joint.index()].is_multiple_of(2) {
             palette.upper
         } else {
             palette.lower
-        };
-        let colour = match self.joints[joint.index()].locked {
-            true => palette.joint,
-            false => plain,
         };
         if overlays.selection.contains(&joint) {
             palette.accent
@@ -141,8 +140,8 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of that
-    /// bone, so that no bone floats.
+    /// Adds a thin rod to a joint that starts away from its parent's bone, from the nearer end of
+    /// that bone, so that no bone floats.
     pub fn add_link(&self, scene: &mut Scene, joint: JointId, colour: Colour) {
         let Some(parent) = self.joints[joint.index()].parent else { return };
         let (base, tip) = (self.pose.base(parent), self.pose.tip(parent));
@@ -178,7 +177,8 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Adds the shadow of a joint's bone, and of the short bones before it that have none of their own.
+    /// Adds the shadow of a joint's bone, and of the short bones before it that have none of their
+    /// own.
     pub fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
         if !self.ends_shadow(joint) {
             return;
@@ -192,7 +192,8 @@ impl<'a> DrawnSkeleton<'a> {
         scene.shadows.extend((base != tip).then(|| limb.above_ground()).flatten());
     }
 
-    /// Whether a shadow ends at a joint's tip: every so many short bones, and at the end of a chain.
+    /// True if a shadow ends at a joint's tip: every so many short bones, and at the end of a
+    /// chain.
     fn ends_shadow(&self, joint: JointId) -> bool {
         const MOST: f32 = 64.0;
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
@@ -200,8 +201,8 @@ impl<'a> DrawnSkeleton<'a> {
         self.are_leaves[joint.index()] || (self.depths[joint.index()] + 1).is_multiple_of(bones)
     }
 
-    /// Adds the figure in the pose of another frame. `thickness` is the radius of a joint's part of the skin;
-    /// `None` without a skin.
+    /// Adds the figure in the pose of another frame. `thickness` is the radius of a joint's part of
+    /// the skin; `None` without a skin.
     pub fn add_onion_skin(
         &self,
         scene: &mut Scene,

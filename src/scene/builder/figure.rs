@@ -8,8 +8,9 @@ use crate::rig::{ArmPart, ArmRig};
 use crate::scene::{Label, LabelSide, Line, Scene};
 use crate::session::ArmFigure;
 
-/// The frames of the hierarchy, with the length of their axes as fractions of the arm's length. Their
-/// origins coincide, and the Limb and the Socket have the same x axis: the lengths tell them apart.
+/// The frames of the hierarchy, with the length of their axes as fractions of the arm's length.
+/// Their origins coincide, and the Limb and the Socket have the same x axis: the lengths tell them
+/// apart.
 const FRAMES: [(ArmPart, f32); 3] =
     [(ArmPart::Root, 0.28), (ArmPart::Limb, 0.36), (ArmPart::Socket, 0.44)];
 /// Radius of the arcs of angles, as a fraction of the arm's length.

@@ -10,8 +10,8 @@ const BONE_RADIUS: f32 = 0.008;
 /// skin's plain colour).
 const CONTRAST: f32 = 0.7;
 
-/// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion skins of
-/// the arm. Those of a figure are added with the figure, whose sizes they have.
+/// Adds the trail of the hand or the selected joint, with a dot for every frame, and the onion
+/// skins of the arm. Those of a figure are added with the figure, whose sizes they have.
 pub(super) fn add(scene: &mut Scene, rig: RigKind, overlays: &Overlays, reach: f32) {
     add_trail(scene, overlays, DOT_RADIUS * reach);
     if rig == RigKind::Arm {

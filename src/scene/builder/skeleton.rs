@@ -27,7 +27,7 @@ pub(super) struct Scratch {
     pub distances: Vec<f32>,
     /// Number of bones above each joint, not counting bones of zero length.
     pub depths: Vec<usize>,
-    /// Whether each joint has no child.
+    /// For each joint, true if it has no child.
     pub are_leaves: Vec<bool>,
     /// Joints that get a label.
     pub labelled: Vec<JointId>,
@@ -135,8 +135,8 @@ fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut
     }
 }
 
-/// Adds a path that a chain follows: one revolution of a ring, or the head's path through its keys. The
-/// path of a target is drawn with the target.
+/// Adds a path that a chain follows: one revolution of a ring, or the head's path through its keys.
+/// The path of a target is drawn with the target.
 fn add_path(scene: &mut Scene, rig: &SkeletonRig, path: &FollowPath, time: f64) {
     let to_world = rig.skeleton.transform();
     match path.kind {

@@ -44,7 +44,7 @@ impl<'a> ShownSkin<'a> {
         Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones), row })
     }
 
-    /// Whether the bones are drawn too.
+    /// True if the bones are drawn too.
     pub fn has_bones(&self) -> bool {
         self.has_bones
     }
@@ -94,8 +94,8 @@ impl<'a> ShownSkin<'a> {
         self.mesh.radii.get(joint.index()).copied().unwrap_or_default()
     }
 
-    /// Adds what a skin without bones shows of a joint: its shadow, and its bone if it is selected or
-    /// under the mouse.
+    /// Adds what a skin without bones shows of a joint: its shadow, and its bone if it is selected
+    /// or under the mouse.
     pub fn add_joint(
         &self,
         scene: &mut Scene,

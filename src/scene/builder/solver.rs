@@ -23,7 +23,7 @@ const POINT: f32 = 0.014;
 /// Angle in radians from which a turn is drawn.
 const LEAST_TURN: f32 = 2e-3;
 
-/// What is needed to draw a part of an iteration.
+/// A part of an iteration, with all that its drawing depends on.
 pub(super) struct InsideDrawing<'a> {
     pub view: &'a InsideView,
     pub targets: &'a [TipTarget],
@@ -233,8 +233,8 @@ fn add_ellipses(scene: &mut Scene, centre: Vec3, axes: [Vec3; 3], colour: Colour
 }
 
 impl DrawnSkeleton<'_> {
-    /// Adds the shown iterates of solvers. The ghost of a single solver gets labels: the number of its
-    /// iteration, and the distances from its tips to the targets.
+    /// Adds the shown iterates of solvers. The ghost of a single solver gets labels: the number of
+    /// its iteration, and the distances from its tips to the targets.
     pub fn add_solver_ghosts(&self, scene: &mut Scene, ghosts: &[SolverGhost], display: Display) {
         for ghost in ghosts {
             let colour = scene.palette.method(ghost.method);

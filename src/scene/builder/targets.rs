@@ -8,8 +8,8 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetReport;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
 
-/// Maximum radius of a target's ball: as a fraction of the skeleton's reach, and as a multiple of the
-/// radius of the bone that it moves, so that the ball hides no bones of a long chain.
+/// Maximum radius of a target's ball: as a fraction of the skeleton's reach, and as a multiple of
+/// the radius of the bone that it moves, so that the ball hides no bones of a long chain.
 const TARGET_RADIUS: (f32, f32) = (0.014, 1.6);
 /// Opacity of the line from a limb's base to its target at full influence.
 const POINTER_OPACITY: f32 = 0.45;
@@ -17,7 +17,8 @@ const POINTER_OPACITY: f32 = 0.45;
 const TRAIL: (f64, usize) = (1.2, 48);
 
 impl DrawnSkeleton<'_> {
-    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the pole.
+    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the
+    /// pole.
     pub fn add_target(&self, scene: &mut Scene, target: &Target, report: &TargetReport) {
         let at = report.position;
         let radius = self.target_radius(target.joint);
@@ -62,8 +63,8 @@ impl DrawnSkeleton<'_> {
         }
     }
 
-    /// Adds the circle of all places where the elbow of a limb could be with the tip where it is, and a
-    /// spoke to the elbow; nothing for another target, or for a straight limb.
+    /// Adds the circle of all places where the elbow of a limb could be with the tip where it is,
+    /// and a spoke to the elbow; nothing for another target, or for a straight limb.
     pub fn add_elbow_circle(&self, scene: &mut Scene, target: &Target) {
         // Radius as a fraction of the reach from which the circle is drawn.
         const LEAST: f32 = 1e-4;

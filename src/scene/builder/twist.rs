@@ -68,9 +68,10 @@ impl ReferenceGhost {
 fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
     let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
     let Some(ghost) = shown else { return };
-    let (ball, colour) = match ghost.is_own {
-        true => (BodyPart::JOINT_BALL, scene.palette.text),
-        false => (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference)),
+    let (ball, colour) = if ghost.is_own {
+        (BodyPart::JOINT_BALL, scene.palette.text)
+    } else {
+        (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference))
     };
     let at = arm.root + ghost.pose.elbow;
     let clearance = ball * ArmRig::thickness(arm.bones);
@@ -108,8 +109,8 @@ const LEAST: f32 = 1e-3;
 /// Twist in radians from which its arc is drawn.
 const LEAST_TWIST: f32 = 1e-3;
 
-/// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of the
-/// twist between them. Where FK has a part in the pose, the elbow has no circle.
+/// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of
+/// the twist between them. Where FK has a part in the pose, the elbow has no circle.
 pub(super) fn add_circle(scene: &mut Scene, posed: &Posed) {
     let (arm, pose) = (posed.arm(), posed.arm_pose());
     if arm.influence < 1.0 || pose.out < LEAST * arm.bones.outer_limit() {
@@ -130,7 +131,8 @@ pub(super) fn add_circle(scene: &mut Scene, posed: &Posed) {
     }
 }
 
-/// A circle around the Pointer. Angles are Socket twists: 0 is the direction of the twist reference.
+/// A circle around the Pointer. Angles are Socket twists: 0 is the direction of the twist
+/// reference.
 struct ElbowCircle {
     centre: Vec3,
     axis: Vec3,

@@ -2,8 +2,7 @@
 
 use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
-use crate::document::{Arm, Overlay, TwistReferenceKind};
-use crate::kinematics::twist::TransportedFrame;
+use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
 use crate::session::{Actions, EditAction, Session, ViewAction};
 use crate::ui::widgets;
@@ -15,7 +14,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.weak("Not used in FK: switch to IK to compare references.");
         return;
     }
-    table(ui, arm, session.transport_path().transported(), actions);
+    table(ui, session, actions);
     ui.add_space(4.0);
     transport_path(ui, session, actions);
     let display = session.shown().display;
@@ -53,8 +52,9 @@ fn legend(ui: &mut Ui) {
     widgets::colour_bar(ui, summary, colour, &marks);
 }
 
-fn table(ui: &mut Ui, arm: &Arm, transported: TransportedFrame, actions: &mut Actions) {
-    let own = arm.solve().pose;
+fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let (arm, own) = (session.arm(), session.posed().arm_solution().pose);
+    let transported = session.transport_path().transported();
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         glossary::term_label(ui, "Twist reference", "Twist reference", actions);
