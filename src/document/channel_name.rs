@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::channel::Channel;
+use super::channel::{Access, Channel};
 use super::display::Overlay;
 use crate::kinematics::skeleton::JointId;
 
@@ -18,35 +18,6 @@ use crate::kinematics::skeleton::JointId;
 pub struct UnknownChannel(String);
 
 impl Channel {
-    /// Name of the channel in files, without its joint or overlay.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Hand => "hand",
-            Self::Twist => "twist",
-            Self::Root => "root",
-            Self::Upper => "upper",
-            Self::Lower => "lower",
-            Self::Pin => "pin",
-            Self::Pinned => "pinned",
-            Self::Pole => "pole",
-            Self::Influence => "influence",
-            Self::Shoulder => "shoulder",
-            Self::Bend => "bend",
-            Self::Stretch => "stretch",
-            Self::HandOrientation => "hand_orientation",
-            Self::Translation => "translation",
-            Self::Rotation(_) => "rotation",
-            Self::Offset(_) => "offset",
-            Self::Target(_) => "target",
-            Self::TargetInfluence(_) => "target_influence",
-            Self::TargetOrientation(_) => "target_orientation",
-            Self::TargetTwist(_) => "target_twist",
-            Self::TargetPole(_) => "target_pole",
-            Self::Enabled(_) => "enabled",
-            Self::Overlay(_) => "overlay",
-        }
-    }
-
     /// The channel that has this [`name`](Self::name), for the given joint or overlay if the
     /// channel belongs to one. `None` if the name is unknown, or the joint or overlay is missing.
     pub fn named(name: &str, joint: Option<JointId>, overlay: Option<Overlay>) -> Option<Self> {
@@ -62,10 +33,10 @@ impl Channel {
 impl fmt::Display for Channel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())?;
-        match (self.joint(), self) {
-            (Some(joint), _) => write!(f, " {joint}"),
-            (None, Self::Overlay(overlay)) => write!(f, " {}", overlay.name()),
-            (None, _) => Ok(()),
+        match self.access() {
+            Access::Joint { joint, .. } | Access::Target { joint, .. } => write!(f, " {joint}"),
+            Access::Overlay(overlay) => write!(f, " {}", overlay.name()),
+            Access::Arm { .. } | Access::Skeleton { .. } => Ok(()),
         }
     }
 }

@@ -143,7 +143,7 @@ impl Keys {
             (_, Quantity::Switch) => track.step(time),
             (_, Quantity::Length) => Some(track.at(time)?.max(Vec3::X * min_length(track))),
             (_, Quantity::Fraction) => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
-            (_, Quantity::Angles) if channel.is_rotation() => rotation(track, time),
+            (_, Quantity::Rotation) => rotation(track, time),
             (_, Quantity::Point | Quantity::Angle | Quantity::Angles) => track.at(time),
         }
     }

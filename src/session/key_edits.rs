@@ -273,7 +273,7 @@ fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
         Quantity::Switch => value,
         Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
         Quantity::Length => sum.max(value * LEAST),
-        Quantity::Point | Quantity::Angle | Quantity::Angles => sum,
+        Quantity::Point | Quantity::Angle | Quantity::Angles | Quantity::Rotation => sum,
     }
 }
 

@@ -46,32 +46,10 @@ pub(in crate::ui) fn joint_of_channel(session: &Session, channel: Channel) -> Op
 
 /// Name of a channel beside that of its joint, such as "rotation".
 pub(in crate::ui) fn channel_of_joint(session: &Session, channel: Channel) -> String {
+    let label = channel.label();
     match channel {
-        Channel::Hand => "Hand".to_owned(),
-        Channel::Twist => "Socket twist".to_owned(),
-        Channel::Pin => "Pinned hand".to_owned(),
-        Channel::Pinned => "Pinned to world".to_owned(),
-        Channel::Pole => "Pole".to_owned(),
-        Channel::Influence => "IK influence".to_owned(),
-        Channel::Shoulder => "Shoulder angles".to_owned(),
-        Channel::Bend => "Elbow bend".to_owned(),
-        Channel::Stretch => "FK stretch".to_owned(),
-        Channel::HandOrientation => "Hand orientation".to_owned(),
-        Channel::Root => "Root".to_owned(),
-        Channel::Upper => "Upper length".to_owned(),
-        Channel::Lower => "Lower length".to_owned(),
-        Channel::Translation => "Skeleton translation".to_owned(),
-        Channel::Rotation(_) => "rotation".to_owned(),
-        Channel::Offset(_) => "offset".to_owned(),
-        Channel::Target(_) => "target".to_owned(),
-        Channel::TargetInfluence(_) => "target influence".to_owned(),
-        Channel::TargetOrientation(_) => "target orientation".to_owned(),
-        Channel::TargetTwist(_) => "target twist".to_owned(),
-        Channel::TargetPole(_) => "target pole".to_owned(),
-        Channel::Enabled(_) => "target enabled".to_owned(),
-        Channel::Overlay(shown) => {
-            format!("{} shown", overlay(session.rig(), shown).0)
-        }
+        Channel::Overlay(shown) => format!("{} {label}", overlay(session.rig(), shown).0),
+        _ => label.to_owned(),
     }
 }
 

@@ -189,7 +189,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
         }
         for _ in 0..1 + random.below(5) {
             let value = match channel.quantity() {
-                Quantity::Point | Quantity::Angles => random.finite_vector(),
+                Quantity::Point | Quantity::Angles | Quantity::Rotation => random.finite_vector(),
                 Quantity::Fraction => Vec3::new(random.within(0.0..1.0), 0.0, 0.0),
                 Quantity::Angle => Vec3::new(random.finite(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.positive(), 0.0, 0.0),

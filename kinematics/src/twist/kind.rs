@@ -33,26 +33,26 @@ impl TwistReferenceKind {
     /// All kinds, in the order in which panels list them.
     pub const ALL: [Self; 4] = [Self::Up, Self::Pole, Self::Stereographic, Self::Transport];
 
+    /// Name for labels, and the name in files and on the command line.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Up => ("Up", "up"),
+            Self::Pole => ("Pole", "pole"),
+            Self::Stereographic => ("Stereographic", "stereographic"),
+            Self::Transport => ("Transport", "transport"),
+        }
+    }
+
     /// Name for labels, such as "Up".
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Up => "Up",
-            Self::Pole => "Pole",
-            Self::Stereographic => "Stereographic",
-            Self::Transport => "Transport",
-        }
+        self.names().0
     }
 }
 
 impl fmt::Display for TwistReferenceKind {
     /// The name in lower case, as in files and on the command line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Up => "up",
-            Self::Pole => "pole",
-            Self::Stereographic => "stereographic",
-            Self::Transport => "transport",
-        })
+        f.pad(self.names().1)
     }
 }
 
@@ -62,12 +62,7 @@ impl FromStr for TwistReferenceKind {
     /// Reads the name in lower case: the inverse of [`Display`](fmt::Display). `limb`, the former name
     /// of `up`, is read too.
     fn from_str(text: &str) -> Result<Self, UnknownTwistReference> {
-        match text {
-            "up" | "limb" => Ok(Self::Up),
-            "pole" => Ok(Self::Pole),
-            "stereographic" => Ok(Self::Stereographic),
-            "transport" => Ok(Self::Transport),
-            _ => Err(UnknownTwistReference),
-        }
+        let name = if text == "limb" { "up" } else { text };
+        Self::ALL.into_iter().find(|kind| kind.names().1 == name).ok_or(UnknownTwistReference)
     }
 }

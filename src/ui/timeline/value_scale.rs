@@ -24,7 +24,7 @@ impl ValueKind {
     pub fn of(channel: Channel) -> Self {
         match (channel, channel.quantity()) {
             (Channel::Stretch, _) => Self::Ratio,
-            (_, Quantity::Angle | Quantity::Angles) => Self::Angle,
+            (_, Quantity::Angle | Quantity::Angles | Quantity::Rotation) => Self::Angle,
             (_, Quantity::Point | Quantity::Length) => Self::Length,
             (_, Quantity::Fraction | Quantity::Switch) => Self::Ratio,
         }
