@@ -1,6 +1,6 @@
 //! Pictures of scenes, compared with those in `tests/golden`.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden` writes new ones; look at them before committing.
+//! `UPDATE_GOLDEN=1 cargo test --test render` writes new ones; look at them before committing.
 
 use glam::Vec3;
 use ik_arm::document::{

@@ -1,7 +1,7 @@
 //! Pictures of the singularities of twist references, of twisting limbs, and of a hand, compared
 //! with the ones kept in `tests/golden`; and numbers read off such pictures.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden_trouble` keeps the new ones; look at them before
+//! `UPDATE_GOLDEN=1 cargo test --test render` keeps the new ones; look at them before
 //! committing.
 
 use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
