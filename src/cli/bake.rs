@@ -1,18 +1,15 @@
 //! `ik-arm bake`: a document whose skeleton moves by keys instead of targets.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
-
-use thiserror::Error;
 
 use super::argument::{FrameRateArgument, NumberArgument};
 use super::open;
 use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
-use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::report::{CommandError, say};
 use super::time_limit::TimeLimitArgs;
 use crate::document::{Bake, BakeError, Baked, Document, Timeline};
-use crate::io::{OpenError, SaveError, save};
+use crate::io::save;
 
 #[derive(clap::Args)]
 #[command(
@@ -42,57 +39,27 @@ pub struct BakeArgs {
     time_limit: TimeLimitArgs,
 }
 
-/// Reasons why no file is written.
-#[derive(Debug, Error)]
-enum BakeCommandError {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error("bake writes a document, so OUT must end in .json, got {0}")]
-    Extension(String),
-    #[error("cannot handle Ctrl+C: {0}")]
-    Signal(#[from] ctrlc::Error),
-    #[error("{file}: {error}")]
-    Bake { file: String, error: BakeError },
-    #[error(transparent)]
-    Save(#[from] SaveError),
-}
-
-pub fn run(args: &BakeArgs) -> ExitCode {
-    match args.bake() {
-        Ok(lines) => {
-            lines.iter().for_each(|line| say(line));
-            ExitCode::SUCCESS
+pub fn run(args: &BakeArgs) -> Result<(), CommandError> {
+    let BakeArgs { file, output, .. } = args;
+    open::require_document("bake", output)?;
+    let limit = args.time_limit.start_long(file);
+    let document = open::open(file, &args.open.options())?.document;
+    let settings = args.settings(&document);
+    let baked = run_with_bar(&limit, |progress| {
+        settings.run(&document, |done, total| progress.step(done, total).is_ok())
+    })?;
+    let baked = baked.map_err(|error| match error {
+        cancelled @ BakeError::Cancelled => {
+            CommandError::Cancelled { cancelled, output: output.display().to_string() }
         }
-        Err(BakeCommandError::Bake { error: error @ BakeError::Cancelled, .. }) => {
-            say(&format_args!("{error}; {} is not written", args.output.display()));
-            ExitCode::from(INTERRUPTED)
-        }
-        Err(error @ BakeCommandError::Extension(_)) => {
-            say(&error);
-            ExitCode::from(USAGE)
-        }
-        Err(error) => fail(&error),
-    }
+        error => CommandError::of_file(open::name(file), error),
+    })?;
+    save(&baked.document, output)?;
+    report(&settings, &baked).iter().for_each(|line| say(line));
+    Ok(())
 }
 
 impl BakeArgs {
-    /// Bakes the file; returns the lines of the report.
-    fn bake(&self) -> Result<Vec<String>, BakeCommandError> {
-        if !open::is_document(&self.output) {
-            return Err(BakeCommandError::Extension(self.output.display().to_string()));
-        }
-        let limit = self.time_limit.start_long(&self.file);
-        let document = open::open(&self.file, &self.open.options())?.document;
-        let settings = self.settings(&document);
-        let baked = run_with_bar(&limit, |progress| {
-            settings.run(&document, |done, total| progress.step(done, total).is_ok())
-        })?;
-        let baked = baked
-            .map_err(|error| BakeCommandError::Bake { file: open::name(&self.file), error })?;
-        save(&baked.document, &self.output)?;
-        Ok(report(&settings, &baked))
-    }
-
     fn settings(&self, document: &Document) -> Bake {
         let whole = Bake::of_timeline(document);
         let frame_rate = self.fps.map_or(whole.frames.frame_rate, |FrameRateArgument(rate)| rate);

@@ -2,13 +2,11 @@
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::builder::PossibleValuesParser;
-use thiserror::Error;
 
-use super::report::fail;
-use crate::io::{self as files, Example, WriteError, system_reason};
+use super::report::CommandError;
+use crate::io::{self as files, Example};
 
 #[derive(clap::Args)]
 #[command(after_help = "Without NAME it lists the examples. With NAME it prints one as a document:
@@ -27,26 +25,7 @@ fn names() -> PossibleValuesParser {
     PossibleValuesParser::new(Example::ALL.map(|example| example.name))
 }
 
-/// Reasons why no example is written.
-#[derive(Debug, Error)]
-enum ExamplesError {
-    #[error(transparent)]
-    File(#[from] WriteError),
-    #[error("cannot write to standard output: {}", system_reason(.0))]
-    Write(#[from] io::Error),
-}
-
-pub fn run(args: &ExamplesArgs) -> ExitCode {
-    match print(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(ExamplesError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-fn print(args: &ExamplesArgs) -> Result<(), ExamplesError> {
+pub fn run(args: &ExamplesArgs) -> Result<(), CommandError> {
     let mut stdout = io::stdout().lock();
     let Some(example) = args.name.as_deref().and_then(Example::find) else {
         let width = Example::ALL.map(|example| example.name.len()).into_iter().max().unwrap_or(0);

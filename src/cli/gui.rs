@@ -1,13 +1,12 @@
 //! `ik-arm gui`: opens the window.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::value_parser;
 
 use super::open;
 use super::open_args::OpenArgs;
-use super::report::fail;
+use super::report::CommandError;
 use crate::app;
 use crate::session::{FileAction, TourStep};
 
@@ -28,17 +27,12 @@ fn steps() -> i64 {
     TourStep::all().len() as i64
 }
 
-pub fn run(args: &GuiArgs) -> ExitCode {
-    let mut document = None;
-    if let Some(path) = &args.file {
+pub fn run(args: &GuiArgs) -> Result<(), CommandError> {
+    let open = |path: &PathBuf| -> Result<FileAction, CommandError> {
         let options = args.open.options();
-        match open::open_to_draw(path, &options) {
-            Ok(opened) => document = Some(FileAction::opened(path.clone(), options, opened)),
-            Err(error) => return fail(&error),
-        }
-    }
-    match app::run(document, args.tour.map(|step| usize::from(step) - 1)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&error),
-    }
+        let opened = open::open_to_draw(path, &options)?;
+        Ok(FileAction::opened(path.clone(), options, opened))
+    };
+    let document = args.file.as_ref().map(open).transpose()?;
+    Ok(app::run(document, args.tour.map(|step| usize::from(step) - 1))?)
 }

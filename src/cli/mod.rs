@@ -2,14 +2,13 @@
 
 mod argument;
 mod bake;
-mod completions;
 mod convert;
 mod examples;
 mod export;
 mod gui;
-mod manual;
 mod open;
 mod open_args;
+mod packaging;
 mod pose;
 mod progress_bar;
 mod quiet;
@@ -27,12 +26,11 @@ use std::process::ExitCode;
 use clap::{CommandFactory as _, Parser, Subcommand};
 
 use bake::BakeArgs;
-use completions::CompletionsArgs;
 use convert::ConvertArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
 use gui::GuiArgs;
-use manual::ManualArgs;
+use packaging::{CompletionsArgs, ManualArgs};
 use pose::PoseArgs;
 use render::RenderArgs;
 use skin::SkinArgs;
@@ -90,20 +88,24 @@ pub fn run() -> ExitCode {
     if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
         quiet::restart_without_device_select();
     }
-    match command {
-        Some(Command::Solve(args)) => solve::run(&args),
+    let done = match command {
+        Some(Command::Solve(args)) => return solve::run(&args),
+        Some(Command::Export(args)) => return export::run(&args),
+        Some(Command::Convert(args)) => return convert::run(&args),
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Export(args)) => export::run(&args),
-        Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Bake(args)) => bake::run(&args),
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Tour) => tour::run(),
-        Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
-        Some(Command::Manual(args)) => manual::run(&args, Cli::command()),
+        Some(Command::Completions(args)) => packaging::print_completions(&args, Cli::command()),
+        Some(Command::Manual(args)) => packaging::write_manual(&args, Cli::command()),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&window),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.exit(),
     }
 }
 

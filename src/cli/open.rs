@@ -1,7 +1,7 @@
 use std::io;
 use std::path::Path;
 
-use super::report::say;
+use super::report::{CommandError, say};
 use crate::io::{
     OpenError, OpenOptions, Opened, Remark, open as open_file, read, undrawn_textures,
 };
@@ -16,7 +16,7 @@ pub fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Whether a path has the extension of a document.
+/// True if a path has the extension of a document.
 pub fn is_document(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
@@ -26,6 +26,13 @@ pub fn open_to_draw(path: &Path, options: &OpenOptions) -> Result<Opened, OpenEr
     let opened = open(path, options)?;
     warn(path, &undrawn_textures(&opened.document));
     Ok(opened)
+
+/// Checks that a command which writes documents is to write one.
+pub fn require_document(command: &'static str, output: &Path) -> Result<(), CommandError> {
+    if is_document(output) {
+        return Ok(());
+    }
+    Err(CommandError::Extension { command, output: output.display().to_string() })
 }
 
 /// Opens a file, or standard input for `-`, and prints its warnings.

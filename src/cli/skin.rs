@@ -1,18 +1,15 @@
 //! `ik-arm skin`: a document whose skeleton has a skin around its bones.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
-
-use thiserror::Error;
 
 use super::argument::NumberArgument;
 use super::open;
 use super::open_args::OpenArgs;
-use super::report::{USAGE, fail, say};
+use super::report::{CommandError, say};
 use crate::document::{Document, Overlay, RigKind, Skin};
-use crate::io::{OpenError, SaveError, save};
+use crate::io::save;
 use crate::kinematics::skin::{SkinShape, Skinning};
-use crate::rig::{BoneSkin, SkinMeshError, SkinSource};
+use crate::rig::{BoneSkin, SkinSource};
 
 #[derive(clap::Args)]
 #[command(
@@ -44,57 +41,25 @@ pub struct SkinArgs {
     skinning: Option<Skinning>,
 }
 
-/// Reasons why no file is written.
-#[derive(Debug, Error)]
-enum SkinCommandError {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error("skin writes a document, so OUT must end in .json, got {0}")]
-    Extension(String),
-    #[error("{0}: a skin needs a skeleton, and the document shows an arm")]
-    NoSkeleton(String),
-    #[error("{file}: {error}")]
-    Mesh { file: String, error: SkinMeshError },
-    #[error(transparent)]
-    Save(#[from] SaveError),
-}
-
-pub fn run(args: &SkinArgs) -> ExitCode {
-    match args.skin() {
-        Ok(report) => {
-            say(&report);
-            ExitCode::SUCCESS
-        }
-        Err(error @ SkinCommandError::Extension(_)) => {
-            say(&error);
-            ExitCode::from(USAGE)
-        }
-        Err(error) => fail(&error),
+pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
+    let SkinArgs { file, output, .. } = args;
+    open::require_document("skin", output)?;
+    let mut document = open::open(file, &args.open.options())?.document;
+    if document.rig == RigKind::Arm {
+        return Err(CommandError::SkinOfArm(open::name(file)));
     }
+    let skin = args.made(&document);
+    let made = skin.mesh().map_err(|error| CommandError::of_file(open::name(file), error))?;
+    let mesh = made.mesh.mesh();
+    let report = format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
+    document.skeleton_rig.skin = Some(skin);
+    document.display = document.display.with(Overlay::Skin, true);
+    save(&document, output)?;
+    say(&report);
+    Ok(())
 }
 
 impl SkinArgs {
-    /// Writes the document; returns the sizes of the mesh.
-    fn skin(&self) -> Result<String, SkinCommandError> {
-        if !open::is_document(&self.output) {
-            return Err(SkinCommandError::Extension(self.output.display().to_string()));
-        }
-        let file = open::name(&self.file);
-        let mut document = open::open(&self.file, &self.open.options())?.document;
-        if document.rig == RigKind::Arm {
-            return Err(SkinCommandError::NoSkeleton(file));
-        }
-        let skin = self.made(&document);
-        let mesh = skin.mesh().map_err(|error| SkinCommandError::Mesh { file, error })?;
-        let mesh = mesh.mesh.mesh();
-        let report =
-            format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
-        document.skeleton_rig.skin = Some(skin);
-        document.display = document.display.with(Overlay::Skin, true);
-        save(&document, &self.output)?;
-        Ok(report)
-    }
-
     /// The skin of the document with the settings that are given.
     fn made(&self, document: &Document) -> Skin {
         let rig = &document.skeleton_rig;

@@ -1,9 +1,8 @@
 //! `ik-arm tour`: the text of the tour, with the numbers of its scenes.
 
 use std::io::{self, Write};
-use std::process::ExitCode;
 
-use super::report::fail;
+use super::report::CommandError;
 use crate::session::{
     Comparison, PlaybackAction, Preferences, Session, TourAction, TourEnd, TourStep, filled,
 };
@@ -11,12 +10,8 @@ use crate::session::{
 const WIDTH: usize = 88;
 const INDENT: &str = "   ";
 
-pub fn run() -> ExitCode {
-    match print(&mut io::stdout().lock()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => fail(&error),
-    }
+pub fn run() -> Result<(), CommandError> {
+    Ok(print(&mut io::stdout().lock())?)
 }
 
 fn print(out: &mut impl Write) -> io::Result<()> {

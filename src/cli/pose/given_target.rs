@@ -3,11 +3,10 @@ use std::str::FromStr;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::joint_name::{self, JointNameError};
 use crate::cli::argument::PointArgument;
 use crate::document::{Document, Posed, Track};
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetSpace;
 
 /// A target given on the command line: a joint by name or index, and a position in the world.
@@ -57,7 +56,7 @@ pub fn with_targets(
     let mut set = Vec::new();
     for GivenTarget { joint: name, point } in targets {
         let skeleton = posed.document().skeleton();
-        let joint = joint_name::find(name, skeleton, order)?;
+        let joint = find(name, skeleton, order)?;
         let (document, index) = place(&posed, joint, *point);
         if set.contains(&index) {
             return Err(SetTargetsError::Two(skeleton[joint].name.clone()));
@@ -87,4 +86,53 @@ fn place(posed: &Posed, joint: JointId, point: Vec3) -> (Document, usize) {
         target.influence = 1.0;
     }
     (document, index)
+}
+
+/// Names below this similarity (Jaro–Winkler, from 0 to 1) are not suggested.
+const NEAR: f64 = 0.7;
+const MOST_NAMES: usize = 5;
+
+/// A text that names no joint.
+#[derive(Debug, PartialEq, Eq, Error)]
+pub enum JointNameError {
+    #[error("there is no joint {text:?}; near names are {}", quoted(near))]
+    Near { text: String, near: Vec<String> },
+    #[error("there is no joint {text:?}; the joints are 0 to {last}, called {}", quoted(first))]
+    Unlike { text: String, last: usize, first: Vec<String> },
+}
+
+/// Finds the joint with this name, else the one with this index in the file. `order` has the joints
+/// in the file's order.
+///
+/// # Errors
+///
+/// [`JointNameError`] if there is no such joint.
+fn find(text: &str, skeleton: &Skeleton, order: &[JointId]) -> Result<JointId, JointNameError> {
+    let by_index = || order.get(text.parse::<usize>().ok()?).copied();
+    skeleton.find(text).or_else(by_index).ok_or_else(|| missing(text, skeleton, order))
+}
+
+fn missing(text: &str, skeleton: &Skeleton, order: &[JointId]) -> JointNameError {
+    let names = || order.iter().map(|joint| &skeleton[*joint].name);
+    let near = near(text, names());
+    let text = text.to_owned();
+    if near.is_empty() {
+        let first = names().take(MOST_NAMES).cloned().collect();
+        return JointNameError::Unlike { text, last: order.len().saturating_sub(1), first };
+    }
+    JointNameError::Near { text, near }
+}
+
+/// The names most similar to a text, the nearest first.
+fn near<'a>(text: &str, names: impl Iterator<Item = &'a String>) -> Vec<String> {
+    let text = text.to_lowercase();
+    let similarity = |name: &String| strsim::jaro_winkler(&text, &name.to_lowercase());
+    let mut near: Vec<(f64, &String)> = names.map(|name| (similarity(name), name)).collect();
+    near.retain(|(similarity, _)| *similarity >= NEAR);
+    near.sort_by(|one, other| other.0.total_cmp(&one.0));
+    near.into_iter().take(MOST_NAMES).map(|(_, name)| name.clone()).collect()
+}
+
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
 }

@@ -2,30 +2,26 @@
 
 mod answered_pose;
 mod given_target;
-mod joint_name;
 mod list;
 mod pose_line;
-mod why_line;
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use thiserror::Error;
 
 use self::list::FileList;
 use super::argument::TimeArgument;
 use super::open;
 use super::open_args::OpenArgs;
-use super::report::{fail, say};
+use super::report::{CommandError, print_json, say};
 use super::time_limit::TimeLimitArgs;
 use crate::document::{Posed, RigKind, Track};
-use crate::io::{OpenError, OpenOptions, Opened, system_reason};
+use crate::io::{OpenOptions, Opened};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
 use answered_pose::AnsweredPose;
-use given_target::{GivenTarget, SetTargetsError};
+use given_target::GivenTarget;
 use pose_line::PoseLine;
 
 #[derive(clap::Args)]
@@ -105,41 +101,14 @@ fn tolerance(text: &str) -> Result<f32, String> {
         .ok_or_else(|| "tolerance must be finite and above 0".to_owned())
 }
 
-/// Reasons why no pose is printed.
-#[derive(Debug, Error)]
-enum PoseCommandError {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error("{0} shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms")]
-    Arm(String),
-    #[error("{file}: {error}")]
-    Target { file: String, error: SetTargetsError },
-    #[error("{file}: {error}")]
-    Solve { file: String, error: SolveError },
-    #[error("{file}: the position of joint {name:?} must be within ±3.4028235e38")]
-    Overflow { file: String, name: String },
-    #[error("cannot write to standard output: {}", system_reason(.0))]
-    Write(#[from] io::Error),
-}
-
-pub fn run(args: &PoseArgs) -> ExitCode {
-    match pose(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(PoseCommandError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
+pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
     let file = open::name(&args.file);
     args.time_limit.start_short(&args.file);
     // A list needs no camera, and a skeleton is solved to be framed by one.
     let options = OpenOptions { without_camera: args.list, ..args.open.options() };
     let opened = open::open(&args.file, &options)?;
     if opened.document.rig == RigKind::Arm {
-        return Err(PoseCommandError::Arm(file));
+        return Err(CommandError::PoseOfArm(file));
     }
     if args.list {
         let list = FileList::new(&opened, options.skeleton.as_deref());
@@ -149,15 +118,14 @@ fn pose(args: &PoseArgs) -> Result<(), PoseCommandError> {
     let Opened { document, order, .. } = opened;
     let TimeArgument(time) = args.time;
     let posed = given_target::with_targets(&Track::new(&document), time, &args.targets, &order)
-        .map_err(|error| PoseCommandError::Target { file: file.clone(), error })?;
+        .map_err(|error| CommandError::of_file(file.clone(), error))?;
     let answer = answer(&posed, args, &order, &file)?;
     if let Some(remark) = &answer.remark {
         say(&format_args!("{file}: {remark}"));
     }
     let line = PoseLine::new(&posed.document().skeleton_rig, &answer, &order, time)
-        .map_err(|name| PoseCommandError::Overflow { file, name: name.to_owned() })?;
-    let line = serde_json::to_string(&line).map_err(io::Error::from)?;
-    Ok(writeln!(io::stdout(), "{line}")?)
+        .map_err(|name| CommandError::Overflow { file, name: name.to_owned() })?;
+    print_json(&line)
 }
 
 /// The pose that the arguments ask for.
@@ -166,7 +134,7 @@ fn answer(
     args: &PoseArgs,
     order: &[JointId],
     file: &str,
-) -> Result<AnsweredPose, PoseCommandError> {
+) -> Result<AnsweredPose, CommandError> {
     let (rig, time) = (&posed.document().skeleton_rig, posed.time());
     let Some(method) = args.solver else {
         let answer = if args.fk { AnsweredPose::fk } else { AnsweredPose::by_targets };
@@ -184,10 +152,8 @@ fn answer(
         tolerance: args.tolerance.or(rig.solver.tolerance),
         ..rig.solver
     };
-    AnsweredPose::solved(posed, &options).map_err(|error| {
-        let file = file.to_owned();
-        PoseCommandError::Solve { file, error: with_file_indices(error, order) }
-    })
+    AnsweredPose::solved(posed, &options)
+        .map_err(|error| CommandError::of_file(file.to_owned(), with_file_indices(error, order)))
 }
 
 /// Replaces the joint's index in an error by the index of the same joint in the file.

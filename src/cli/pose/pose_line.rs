@@ -2,9 +2,9 @@ use glam::{Mat4, Vec3};
 use serde::Serialize;
 
 use super::answered_pose::AnsweredPose;
-use super::why_line::WhyLine;
 use crate::document::SkeletonRig;
 use crate::kinematics::chain_ik::Report;
+use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{JointId, is_within_numbers};
 use crate::rig::TargetKind;
 
@@ -114,6 +114,35 @@ impl ReportLine {
             iterations: report.iterations,
             error: report.error,
             converged: report.converged(),
+        }
+    }
+}
+
+/// A cause for which a target is not reached, in the output of the command.
+#[derive(Serialize)]
+struct WhyLine<'a> {
+    cause: &'static str,
+    target: &'a str,
+    joints: Vec<&'a str>,
+    sentence: String,
+    remedy: Option<String>,
+    residual_with_remedy: Option<f32>,
+    rotation_error_with_remedy_deg: Option<f32>,
+}
+
+impl<'a> WhyLine<'a> {
+    /// The output for a diagnosis of a rig, with its best remedy.
+    fn new(found: &Diagnosis, rig: &'a SkeletonRig) -> Self {
+        let name = |joint: JointId| rig.skeleton[joint].name.as_str();
+        let best = found.remedies.first();
+        Self {
+            cause: found.cause.name(),
+            target: name(found.target),
+            joints: found.joints.iter().map(|joint| name(*joint)).collect(),
+            sentence: rig.sentence(found),
+            remedy: best.map(|tried| rig.remedy_sentence(&tried.remedy)),
+            residual_with_remedy: best.map(|tried| tried.residual),
+            rotation_error_with_remedy_deg: best.map(|tried| tried.rotation_residual.to_degrees()),
         }
     }
 }

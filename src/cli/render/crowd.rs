@@ -1,7 +1,6 @@
 use super::args::RenderArgs;
-use super::error::RenderCommandError;
-use super::frame_progress::FrameProgress;
-use super::timings::{CrowdTimingsLine, milliseconds, print};
+use super::timings::{CrowdTimingsLine, FrameProgress, milliseconds};
+use crate::cli::report::{CommandError, print_json};
 use crate::cli::view_name::ViewName;
 use crate::document::{Document, Theme};
 use crate::kinematics::two_bone::TwoBone;
@@ -14,7 +13,7 @@ use crate::session::Overlays;
 const STEP: f32 = 1.0 / 60.0;
 
 /// Draws a crowd of arms to a file, prints its frame times, or both.
-pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
+pub fn render(args: &RenderArgs, arms: u32) -> Result<(), CommandError> {
     let crowd = Crowd {
         arms,
         bones: TwoBone::new(args.upper.0, args.lower.0)?,
@@ -26,7 +25,7 @@ pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
     if scene(&document, crowd, theme).crowd.is_none() {
         let (min, max) = (Scene::CROWD_RADII.start, Scene::CROWD_RADII.end);
         let (upper, lower) = (args.upper.0, args.lower.0);
-        return Err(RenderCommandError::CrowdLength { min, max, upper, lower });
+        return Err(CommandError::CrowdLength { min, max, upper, lower });
     }
     let gpu = Gpu::headless()?;
     let mut picture = PictureRenderer::of_size(&gpu, args.size.width, args.size.height)?;
@@ -44,7 +43,7 @@ pub fn render(args: &RenderArgs, arms: u32) -> Result<(), RenderCommandError> {
         })?;
         progress.finish();
         picture.crowd_times()?;
-        print(&CrowdTimingsLine {
+        print_json(&CrowdTimingsLine {
             arms,
             frames: timings.frames,
             solve_ms_median: milliseconds(timings.solve.unwrap_or_default()),

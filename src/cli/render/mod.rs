@@ -2,15 +2,10 @@
 
 mod args;
 mod crowd;
-mod error;
-mod frame_progress;
 mod timings;
 
-use std::io;
-use std::process::ExitCode;
-
 use super::open;
-use super::report::fail;
+use super::report::{CommandError, print_json};
 use super::view_name::ViewName;
 use crate::document::{Arm, Cursor, Document, Posed, Track};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
@@ -18,20 +13,9 @@ use crate::render::{self, Gpu, PictureRenderer};
 use crate::scene::Scene;
 use crate::session::Overlays;
 pub use args::RenderArgs;
-use error::RenderCommandError;
-use timings::{TimingsLine, milliseconds, print};
+use timings::{TimingsLine, milliseconds};
 
-pub fn run(args: &RenderArgs) -> ExitCode {
-    match render(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(RenderCommandError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
+pub fn run(args: &RenderArgs) -> Result<(), CommandError> {
     if let Some(arms) = args.crowd {
         return crowd::render(args, arms);
     }
@@ -46,7 +30,7 @@ fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
     }
     if args.timings {
         let timings = picture.time(args.frames, |_| scene())?;
-        print(&TimingsLine {
+        print_json(&TimingsLine {
             frames: timings.frames,
             cpu_ms_median: milliseconds(timings.cpu),
             frame_ms_median: milliseconds(timings.frame),
@@ -58,7 +42,7 @@ fn render(args: &RenderArgs) -> Result<(), RenderCommandError> {
 
 /// Returns the pose to draw at the time in `args`, with its track: of the file, or without a file
 /// of a document with the arm that the arguments describe.
-fn posed(args: &RenderArgs) -> Result<(Track, Posed), RenderCommandError> {
+fn posed(args: &RenderArgs) -> Result<(Track, Posed), CommandError> {
     let track = match &args.file {
         Some(file) => {
             args.time_limit.start_long(file);

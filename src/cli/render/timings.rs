@@ -1,6 +1,7 @@
-use std::io::{self, Write as _};
+use std::io::IsTerminal as _;
 use std::time::Duration;
 
+use indicatif::ProgressBar;
 use serde::Serialize;
 
 /// Output of `--timings` without a crowd: median times in milliseconds.
@@ -27,7 +28,27 @@ pub fn milliseconds(time: Duration) -> f64 {
     (time.as_secs_f64() * 1e6).round() / 1e3
 }
 
-/// Prints one line of JSON.
-pub fn print(line: &impl Serialize) -> Result<(), io::Error> {
-    writeln!(io::stdout(), "{}", serde_json::to_string(line)?)
+/// Progress over frames on standard error: in a terminal a bar, otherwise a line for every tenth of
+/// the frames.
+pub struct FrameProgress {
+    bar: ProgressBar,
+    frames: u32,
+}
+
+impl FrameProgress {
+    pub fn new(frames: u32) -> Self {
+        Self { bar: ProgressBar::new(u64::from(frames)), frames }
+    }
+
+    pub fn show(&self, frame: u32) {
+        self.bar.set_position(u64::from(frame));
+        let tenth = (self.frames / 10).max(1);
+        if !std::io::stderr().is_terminal() && frame.is_multiple_of(tenth) {
+            eprintln!("frame {} of {}", frame + 1, self.frames);
+        }
+    }
+
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
 }
