@@ -1,4 +1,5 @@
-//! Bakes of 240 frames: the figure of the Human example with four moving limb targets, and the Snake.
+//! Bakes of 240 frames: the figure of the Human example with four moving limb targets, and the
+//! Snake.
 
 use core::hint::black_box;
 

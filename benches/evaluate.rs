@@ -13,8 +13,8 @@ fn example(name: &str) -> Document {
     Example::find(name).expect("an example").open().expect("valid").document
 }
 
-/// The Human with a target 5 cm away from each hand and foot; the pelvis is 5 cm lower than the targets
-/// were added for.
+/// The Human with a target 5 cm away from each hand and foot; the pelvis is 5 cm lower than the
+/// targets were added for.
 fn human(kind: impl Fn(Target) -> Target) -> SkeletonRig {
     let mut rig = example("human").skeleton_rig;
     rig.targets.clear();

@@ -21,8 +21,8 @@ fn human(detail: f32) -> (Document, SkinShape, u64) {
     (document, shape, vertices)
 }
 
-/// The time per vertex, of which each cell of the grid that the surface passes through has about one, is the
-/// same for every detail.
+/// The time per vertex, of which each cell of the grid that the surface passes through has about
+/// one, is the same for every detail.
 fn from_bones(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("skin/from bones");
     group.sample_size(10);

@@ -1,5 +1,5 @@
-//! Imports inside each package: floors use only floors above them, and no files import each other in a
-//! cycle. Between the packages Cargo checks that.
+//! Imports inside each package: floors use only floors above them, and no files import each other
+//! in a cycle. Between the packages Cargo checks that.
 //!
 //! The floors are the rows of the table in the docs of each `lib.rs`, so there is one list of them.
 //! An import counts for the file that defines the item, so a `mod.rs` that only declares modules

@@ -31,8 +31,8 @@ pub struct BakeArgs {
     /// Frames per second [default: the timeline's]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     fps: Option<FrameRateArgument>,
-    /// Largest distance from the evaluated motion at a frame, as a fraction of the skeleton's reach,
-    /// 0.00001 to 1 [default: 0.001]
+    /// Largest distance from the evaluated motion at a frame, as a fraction of the skeleton's
+    /// reach, 0.00001 to 1 [default: 0.001]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     tolerance: Option<NumberArgument>,
     #[command(flatten)]

@@ -69,8 +69,8 @@ impl CommandError {
         Self::Input { file, error: Box::new(error) }
     }
 
-    /// Prints the error and returns the exit code. A reader that has closed standard output has what
-    /// it wants, so `ik-arm … | head` succeeds.
+    /// Prints the error and returns the exit code. A reader that has closed standard output has
+    /// what it wants, so `ik-arm … | head` succeeds.
     pub fn exit(&self) -> ExitCode {
         match self {
             Self::StandardOutput(error) if error.kind() == ErrorKind::BrokenPipe => {

@@ -28,8 +28,8 @@ pub struct SkinArgs {
     output: PathBuf,
     #[command(flatten)]
     open: OpenArgs,
-    /// How finely the mesh is made: the smallest radius is N cells of the grid, 1.2 to 16; twice the
-    /// detail gives four times the vertices [default: 2]
+    /// How finely the mesh is made: the smallest radius is N cells of the grid, 1.2 to 16; twice
+    /// the detail gives four times the vertices [default: 2]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     detail: Option<NumberArgument>,
     /// Factor of all radii, above 0 [default: 1]

@@ -81,7 +81,7 @@ impl Arm {
         self.cursor.move_in_root(self.root, cursor);
     }
 
-    /// Whether the Cursor is pinned to the world.
+    /// True if the Cursor is pinned to the world.
     pub fn is_pinned(&self) -> bool {
         self.cursor.is_pinned
     }
@@ -97,12 +97,12 @@ impl Arm {
         blended_limits(self.fk, self.soft_reach, self.influence, self.bones)
     }
 
-    /// Whether the limbs are stretched by FK, or can be by IK.
+    /// True if the limbs are stretched by FK, or can be by IK.
     pub fn is_stretching(&self) -> bool {
         self.soft_reach.max_stretch() > 1.0 || self.fk.stretch != 1.0
     }
 
-    /// Whether IK poses the arm, alone or blended with FK.
+    /// True if IK poses the arm, alone or blended with FK.
     pub fn uses_ik(&self) -> bool {
         self.influence > 0.0
     }
@@ -112,8 +112,8 @@ impl Arm {
         self.bones = TwoBone::new(upper, lower).unwrap_or(self.bones);
     }
 
-    /// The point of Root space that the Pointer goes through: the Cursor, or the hand where FK has a
-    /// part in the pose.
+    /// The point of Root space that the Pointer goes through: the Cursor, or the hand where FK has
+    /// a part in the pose.
     pub fn pointed_at(&self, pose: &TwoBonePose) -> Vec3 {
         if self.influence == 1.0 { self.cursor_in_root() } else { pose.hand }
     }

@@ -5,8 +5,8 @@ use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 
 impl Arm {
-    /// Why the hand is not at the Cursor in a pose of the arm; `None` if it is, or if FK alone poses the
-    /// arm. The joints are those of an arm without names: see [`Arm::why`].
+    /// Why the hand is not at the Cursor in a pose of the arm; `None` if it is, or if FK alone
+    /// poses the arm. The joints are those of an arm without names: see [`Arm::why`].
     pub fn diagnose(&self, pose: &TwoBonePose) -> Option<Diagnosis> {
         let influence = self.influence;
         if !self.uses_ik() {
@@ -35,7 +35,7 @@ impl Arm {
         Some(Diagnosis { target: HAND, residual, cause, joints: vec![HAND], remedies: Vec::new() })
     }
 
-    /// Whether softness alone keeps the hand from the Cursor: hard limits would let it go there.
+    /// True if softness alone keeps the hand from the Cursor: hard limits would let it go there.
     pub fn is_softened(&self) -> bool {
         let ReachLimits { inner, outer } = self.reach_limits();
         let distance = self.cursor_in_root().length();

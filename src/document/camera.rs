@@ -18,7 +18,7 @@ pub struct Camera {
     /// Distance from the eye to the target. At the target, an orthographic picture is as wide as a
     /// perspective one.
     pub distance: f32,
-    /// Whether the projection is orthographic rather than perspective.
+    /// True for an orthographic projection, false for a perspective one.
     pub orthographic: bool,
 }
 
@@ -54,7 +54,7 @@ impl Camera {
     /// sphere.
     const MARGIN: f32 = 1.2;
 
-    /// Whether all numbers are finite, the pitch is within ±π/2 and the distance is above 0.
+    /// True if all numbers are finite, the pitch is within ±π/2 and the distance is above 0.
     pub fn is_valid(&self) -> bool {
         let looks = self.target.is_finite() && self.yaw.is_finite();
         let is_upright = (-FRAC_PI_2..=FRAC_PI_2).contains(&self.pitch);

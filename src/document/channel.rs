@@ -80,8 +80,8 @@ pub enum Quantity {
     Angle,
     /// Three angles in radians.
     Angles,
-    /// Euler angles in radians of a rotation, R_z · R_y · R_x. Keys can turn it the shortest way: see
-    /// [`Interpolation::Slerp`](crate::kinematics::spline::Interpolation::Slerp).
+    /// Euler angles in radians of a rotation, R_z · R_y · R_x. Keys can turn it the shortest way:
+    /// see [`Interpolation::Slerp`](crate::kinematics::spline::Interpolation::Slerp).
     Rotation,
     /// 0 or 1, not interpolated.
     Switch,

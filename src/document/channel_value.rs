@@ -20,8 +20,8 @@ impl Channel {
     }
 
     /// Channels that affect the pose of the shown rig. For a skeleton: its translation, the offsets
-    /// of its roots, the rotations of its joints and its targets; a target's influence only below 1, and
-    /// a twist of 0 not at all.
+    /// of its roots, the rotations of its joints and its targets; a target's influence only below
+    /// 1, and a twist of 0 not at all.
     pub fn of_rig(document: &Document) -> Vec<Self> {
         if document.rig == RigKind::Arm {
             let shapes = |channel: &Self| channel.shapes(&document.arm);

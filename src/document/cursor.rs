@@ -8,7 +8,7 @@ pub struct Cursor {
     pub in_root: Vec3,
     /// The Cursor in the world while it is pinned: it stays when the shoulder moves.
     pub in_world: Vec3,
-    /// Whether the Cursor is pinned to the world.
+    /// True if the Cursor is pinned to the world.
     pub is_pinned: bool,
 }
 

@@ -56,8 +56,8 @@ pub enum Overlay {
     FkPose,
     /// The skin of a skeleton that has one.
     Skin,
-    /// The bones of a skeleton with a skin, through the skin. Without it, the bones are hidden while the
-    /// skin is shown.
+    /// The bones of a skeleton with a skin, through the skin. Without it, the bones are hidden
+    /// while the skin is shown.
     Bones,
     /// The edges of the skin's triangles.
     Wireframe,
@@ -149,7 +149,7 @@ pub struct Display {
 }
 
 impl Display {
-    /// Whether an overlay is shown.
+    /// True if an overlay is shown.
     pub fn shows(self, overlay: Overlay) -> bool {
         self.shown & bit(overlay) != 0
     }
@@ -179,8 +179,8 @@ impl FromIterator<Overlay> for Display {
 }
 
 impl Default for Display {
-    /// A display of the surroundings, Cursor, Pointer, hand, skin and trail. The limits are hidden, since
-    /// their spheres would cover the arm.
+    /// A display of the surroundings, Cursor, Pointer, hand, skin and trail. The limits are hidden,
+    /// since their spheres would cover the arm.
     fn default() -> Self {
         let guides =
             [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Skin, Overlay::Trail];

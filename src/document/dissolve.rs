@@ -106,7 +106,7 @@ impl Orphan {
         })
     }
 
-    /// Whether keys move the orphan's base relative to its new parent.
+    /// True if keys move the orphan's base relative to its new parent.
     fn needs_offset_keys(&self, keys: &Keys) -> bool {
         self.channels_above().any(|channel| keys.has(channel))
             || keys.has(Channel::Offset(self.joint))

@@ -66,8 +66,8 @@ impl Document {
         self.camera = camera;
     }
 
-    /// Deletes joints with all their descendants, their targets and their keys. Targets on them move to
-    /// the world.
+    /// Deletes joints with all their descendants, their targets and their keys. Targets on them
+    /// move to the world.
     ///
     /// # Errors
     ///

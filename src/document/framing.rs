@@ -11,8 +11,9 @@ use crate::kinematics::skeleton::SkeletonPose;
 use crate::rig::Target;
 
 impl Document {
-    /// Centre and radius of a bounding sphere of the shown rig over the timeline, in world space. At each
-    /// time it contains [`SkeletonRig::bounds`](super::SkeletonRig::bounds) or [`Arm::bounds`].
+    /// Centre and radius of a bounding sphere of the shown rig over the timeline, in world space.
+    /// At each time it contains [`SkeletonRig::bounds`](super::SkeletonRig::bounds) or
+    /// [`Arm::bounds`].
     ///
     /// A long motion is sampled: at most 1,000 times, or 100 if targets pose the skeleton.
     pub fn motion_bounds(&self) -> (Vec3, f32) {
@@ -37,8 +38,8 @@ impl Document {
         around(&self.bounds_times().map(sphere_at).collect::<Vec<_>>())
     }
 
-    /// The times at which [`Document::motion_bounds`] looks at the rig: frames of the timeline at even
-    /// distances, with the first and the last; the start alone if nothing moves.
+    /// The times at which [`Document::motion_bounds`] looks at the rig: frames of the timeline at
+    /// even distances, with the first and the last; the start alone if nothing moves.
     fn bounds_times(&self) -> impl Iterator<Item = f64> + use<> {
         const MOST: usize = 1000;
         const MOST_SOLVED: usize = 100;
@@ -51,8 +52,8 @@ impl Document {
         (0..last).step_by(step).chain([last]).map(move |frame| timeline.time(frame))
     }
 
-    /// A camera with the default direction that frames the shown rig over the timeline. A still arm with
-    /// the default lengths is seen by the default camera.
+    /// A camera with the default direction that frames the shown rig over the timeline. A still arm
+    /// with the default lengths is seen by the default camera.
     #[must_use]
     pub fn framing_camera(&self) -> Camera {
         let is_default = self.rig == RigKind::Arm && self.arm.bones == Arm::default().bones;

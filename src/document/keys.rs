@@ -18,7 +18,7 @@ pub struct Keys {
 type Tracks = BTreeMap<Channel, Shared<Spline<Vec3>>>;
 
 impl Keys {
-    /// Whether no channel is keyed.
+    /// True if no channel is keyed.
     pub fn is_empty(&self) -> bool {
         self.tracks.is_empty()
     }
@@ -38,7 +38,7 @@ impl Keys {
         self.tracks.get(&channel).cloned()
     }
 
-    /// Whether a channel is keyed.
+    /// True if a channel is keyed.
     pub fn has(&self, channel: Channel) -> bool {
         self.tracks.contains_key(&channel)
     }
@@ -80,8 +80,8 @@ impl Keys {
         self.insert_key(channel, Knot { value, ..key });
     }
 
-    /// Adds a key with its interpolation and slopes, or replaces the channel's key at its time. Does
-    /// nothing if the time, the value or a slope is not finite.
+    /// Adds a key with its interpolation and slopes, or replaces the channel's key at its time.
+    /// Does nothing if the time, the value or a slope is not finite.
     pub fn insert_key(&mut self, channel: Channel, key: Knot<Vec3>) {
         let slopes = key.slopes.iter().flat_map(|it| [it.arriving, it.leaving]);
         if key.time.is_finite() && slopes.chain([key.value]).all(Vec3::is_finite) {

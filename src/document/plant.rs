@@ -9,8 +9,8 @@ use super::document::Document;
 use super::keys::Keys;
 use crate::kinematics::spline::{Knot, Spline};
 
-/// Points of a Cursor whose pin is keyed. Their splines end where plants begin and end, so that keys
-/// of one plant move the hand neither in another one nor on the way to it.
+/// Points of a Cursor whose pin is keyed. Their splines end where plants begin and end, so that
+/// keys of one plant move the hand neither in another one nor on the way to it.
 impl Keys {
     /// Interpolated value of [`Channel::Pin`] at a time in seconds: on the spline through the keys
     /// of one plant alone, its ends included. A plant without keys is at the last key before it.
@@ -76,7 +76,7 @@ fn stretch(switch: &Spline<Vec3>, time: f64) -> RangeInclusive<f64> {
     last.unwrap_or(f64::NEG_INFINITY)..=next.unwrap_or(f64::INFINITY)
 }
 
-/// Whether a time, in seconds, is in a plant or at one of its ends.
+/// True if a time, in seconds, is in a plant or at one of its ends.
 fn is_planted(switch: &Spline<Vec3>, time: f64) -> bool {
     let (before, _) = split(switch, |knot| knot.time < time);
     let (until, _) = split(switch, |knot| knot.time <= time);
@@ -99,7 +99,7 @@ fn split(
     knots.split_at(knots.partition_point(is_past))
 }
 
-/// Whether a switch is on after its knots `past`. Before its first knot it is as at that knot.
+/// True if a switch is on after its knots `past`. Before its first knot it is as at that knot.
 fn is_on_after(past: &[Knot<Vec3>], switch: &Spline<Vec3>) -> bool {
     past.last().or(switch.knots().first()).is_some_and(is_on)
 }

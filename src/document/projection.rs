@@ -20,7 +20,7 @@ pub struct Projection {
     /// Vector in the world from the middle of the picture to its upper edge. In perspective the
     /// edge is measured at distance 1 from the eye.
     pub up: Vec3,
-    /// Whether the projection is orthographic.
+    /// True for an orthographic projection.
     pub orthographic: bool,
 }
 

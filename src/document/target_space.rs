@@ -6,11 +6,12 @@ use super::track::{Posed, Track};
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
 use crate::rig::{Target, TargetSpace};
 
-/// Conversions of a target, or of the pole of a limb, to another space, for its present values and all
-/// its keys.
+/// Conversions of a target, or of the pole of a limb, to another space, for its present values and
+/// all its keys.
 impl Document {
-    /// Moves the target of a joint to another space. The target stays where it is, and the hand keeps
-    /// its orientation, at `time`, at which this document is evaluated, and at each of their keys.
+    /// Moves the target of a joint to another space. The target stays where it is, and the hand
+    /// keeps its orientation, at `time`, at which this document is evaluated, and at each of their
+    /// keys.
     pub fn set_target_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
         let channels = [Channel::Target(joint), Channel::TargetOrientation(joint)];
         self.convert_target(joint, channels, time, |target, pose, time, near| {
@@ -18,7 +19,8 @@ impl Document {
         });
     }
 
-    /// Moves the pole of the limb of a joint's target to another space. The pole stays where it is at
+    /// Moves the pole of the limb of a joint's target to another space. The pole stays where it is
+    /// at
     /// `time`, at which this document is evaluated, and at each of its keys.
     pub fn set_pole_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
         self.convert_target(joint, [Channel::TargetPole(joint)], time, |target, pose, _, _| {
@@ -27,8 +29,8 @@ impl Document {
     }
 
     /// Replaces a target by `converted` of it, and the keys of `channels` by their values in the
-    /// converted targets. The last argument of `converted` is the value near which angles should be:
-    /// that of the key before.
+    /// converted targets. The last argument of `converted` is the value near which angles should
+    /// be: that of the key before.
     fn convert_target<const N: usize>(
         &mut self,
         joint: JointId,
@@ -59,8 +61,8 @@ impl Document {
         self.skeleton_rig.targets[index] = convert(&track.pose(self.clone(), time), None);
     }
 
-    /// Moves the targets and poles that are on joints which `remap` removes to the world, where they
-    /// are at time 0.
+    /// Moves the targets and poles that are on joints which `remap` removes to the world, where
+    /// they are at time 0.
     pub(super) fn release_targets(&mut self, remap: &JointRemap) {
         let is_removed =
             |space: TargetSpace| space.joint().is_some_and(|it| remap.get(it).is_none());

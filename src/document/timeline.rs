@@ -21,7 +21,7 @@ impl Timeline {
     /// Maximum distance in seconds of start and end from time 0: one day.
     pub const MAX_TIME: f64 = 86_400.0;
 
-    /// Whether the timeline starts before it ends, starts and ends within a day of time 0, and has
+    /// True if the timeline starts before it ends, starts and ends within a day of time 0, and has
     /// 0.01 to 1000 frames per second.
     pub fn is_valid(&self) -> bool {
         let times =
@@ -29,7 +29,7 @@ impl Timeline {
         times && Self::is_frame_rate(self.frame_rate)
     }
 
-    /// Whether a timeline can have this number of frames per second.
+    /// True if a timeline can have this number of frames per second.
     pub fn is_frame_rate(rate: f64) -> bool {
         (Self::MIN_FRAME_RATE..=Self::MAX_FRAME_RATE).contains(&rate)
     }

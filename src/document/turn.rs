@@ -8,14 +8,14 @@ use crate::kinematics::skeleton::nearest_angles;
 use crate::kinematics::spline::{Knot, Slopes};
 use crate::rig::{Target, TargetSpace, UpAxis};
 
-/// Columns of the rotation that turns z up into y up: −90° about x. All its numbers are 0 or ±1, so that
-/// no number is rounded.
+/// Columns of the rotation that turns z up into y up: −90° about x. All its numbers are 0 or ±1, so
+/// that no number is rounded.
 const TURN: Mat3A = Mat3A::from_cols(Vec3A::X, Vec3A::NEG_Z, Vec3A::Y);
 
 /// Which axis points up.
 impl Document {
-    /// Whether the figure stands along the z axis in its bind pose, and not along the y axis at the start of
-    /// its motion.
+    /// True if the figure stands along the z axis in its bind pose, and not along the y axis at the
+    /// start of its motion.
     pub fn looks_z_up(&self) -> bool {
         if self.rig != RigKind::Skeleton {
             return false;
@@ -27,9 +27,9 @@ impl Document {
         }
     }
 
-    /// Turns the skeleton by −90° about the x axis of the world, so that what was up along z is up along y,
-    /// with the targets and poles in the world and the keys of all these. The paths of moving targets keep
-    /// their planes.
+    /// Turns the skeleton by −90° about the x axis of the world, so that what was up along z is up
+    /// along y, with the targets and poles in the world and the keys of all these. The paths of
+    /// moving targets keep their planes.
     pub fn turn_y_up(&mut self) {
         let mut transform = self.skeleton().transform();
         transform.matrix3 = TURN * transform.matrix3;
@@ -87,8 +87,8 @@ impl Document {
         }
     }
 
-    /// Turns the keys of angles, each to the equivalent angles nearest to those of the key before. They
-    /// lose their own slopes, which turned angles do not have.
+    /// Turns the keys of angles, each to the equivalent angles nearest to those of the key before.
+    /// They lose their own slopes, which turned angles do not have.
     fn turn_keyed_angles(&mut self, channel: Channel) {
         let Some(track) = self.keys.track(channel) else { return };
         let mut last = None;

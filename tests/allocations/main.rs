@@ -1,4 +1,4 @@
-//! What allocates memory, and how much.
+//! Allocations of memory, and their number.
 
 mod chain_ik;
 #[path = "../common/mod.rs"]

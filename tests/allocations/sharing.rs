@@ -1,5 +1,5 @@
-//! In a binary of its own, whose allocator counts: an edit of a large skeleton takes memory for what it
-//! changes, and so does its undo step.
+//! In a binary of its own, whose allocator counts: an edit of a large skeleton takes memory for
+//! what it changes, and so does its undo step.
 
 use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;

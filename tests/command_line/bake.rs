@@ -180,7 +180,7 @@ fn what_cannot_be_baked_is_refused() {
     assert_eq!(complaint(&output), format!("{why}{}", out.display()));
 }
 
-/// Whether a process handles a signal, by its number.
+/// True if a process handles a signal, by its number.
 #[cfg(target_os = "linux")]
 fn handles(process: u32, signal: i32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();

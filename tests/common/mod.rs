@@ -1,5 +1,5 @@
-//! Random documents and damaged files, the same on every run, with the random values of the library's
-//! tests.
+//! Random documents and damaged files, the same on every run, with the random values of the
+//! library's tests.
 #![allow(dead_code, unused_imports, reason = "each program takes what it needs")]
 
 pub mod damage;

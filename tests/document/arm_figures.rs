@@ -29,7 +29,7 @@ fn arm(random: &mut Random) -> Arm {
     }
 }
 
-/// What a figure adds to the picture of an arm.
+/// Additions of a figure to the picture of an arm.
 struct Lit {
     solids: Vec<Solid>,
     lines: Vec<Line>,

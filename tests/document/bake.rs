@@ -115,8 +115,8 @@ fn untargeted(document: &Document) -> Document {
     document
 }
 
-/// Largest distance of a base or tip between two documents at the frames of a range; the tips of some
-/// joints are left out.
+/// Largest distance of a base or tip between two documents at the frames of a range; the tips of
+/// some joints are left out.
 fn largest_distance(
     one: &Document,
     other: &Document,

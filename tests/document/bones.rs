@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 
 use crate::common::{Random, skeletons};
 
-/// A file of another program with a skin on those nodes that are no ends. A node is its name, its parent and
-/// its translation; the names of ends begin with `end`.
+/// A file of another program with a skin on those nodes that are no ends. A node is its name, its
+/// parent and its translation; the names of ends begin with `end`.
 fn file(nodes: &[(&str, Option<usize>, [f32; 3])]) -> Value {
     let children = |parent: usize| -> Vec<usize> {
         (0..nodes.len()).filter(|node| nodes[*node].1 == Some(parent)).collect()

@@ -1,4 +1,4 @@
-//! What a scene draws of a skeleton: bones, shadows and onion skins.
+//! Parts of a skeleton in a scene: bones, shadows and onion skins.
 
 use glam::Vec3;
 use ik_arm::document::{Display, Document, Overlay, RigKind, Target, Theme};

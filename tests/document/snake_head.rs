@@ -56,8 +56,8 @@ fn points(skeleton: &Skeleton) -> Vec<Vec3> {
     pose.ids().map(|joint| pose.base(joint)).chain([pose.tip(last)]).collect()
 }
 
-/// The path that the head has travelled until a time, the newest point first: the spline back to the first key,
-/// the body as it was there, and the line straight behind it.
+/// The path that the head has travelled until a time, the newest point first: the spline back to
+/// the first key, the body as it was there, and the line straight behind it.
 fn travelled(document: &Document, time: f64) -> Vec<Vec3> {
     const STEPS: u32 = 5000;
     let track: &Spline<Vec3> = document.keys.track(Channel::Offset(HEAD)).expect("keys");

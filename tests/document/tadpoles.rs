@@ -19,8 +19,9 @@ fn heads(document: &Document) -> Vec<JointId> {
     document.skeleton_rig.follow_paths.iter().map(|path| path.root).collect()
 }
 
-/// Where a target is at a time in seconds, in the world and in f64, from the document's numbers alone. The
-/// pond, on which the targets are, lies 0.07 above the floor and is turned so that its z points up.
+/// Where a target is at a time in seconds, in the world and in f64, from the document's numbers
+/// alone. The pond, on which the targets are, lies 0.07 above the floor and is turned so that its z
+/// points up.
 fn target_at(document: &Document, head: JointId, time: f64) -> [f64; 3] {
     let rig = &document.skeleton_rig;
     let Target { home, motion, .. } = rig.targets[rig.target(head).expect("a target")];

@@ -157,8 +157,8 @@ fn targets_cannot_be_where_they_could_not_be_evaluated() {
     );
 }
 
-/// The driver with keys that turn trunk and wheel, and with a left target whose position, orientation
-/// and pole are keyed.
+/// The driver with keys that turn trunk and wheel, and with a left target whose position,
+/// orientation and pole are keyed.
 fn keyed(random: &mut Random) -> (Document, JointId) {
     let mut driver = Driver::new();
     let forearm = driver.forearms[0];

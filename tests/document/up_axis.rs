@@ -17,8 +17,8 @@ type Axes = [[i32; 3]; 3];
 const Y_UP: Axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const Z_UP: Axes = [[1, 0, 0], [0, 0, 1], [0, -1, 0]];
 
-/// A BVH file with these joints, in axes of its own. A joint is its name, its depth in the tree, and its offset
-/// to the right, up and forward. The root walks, and the joints turn.
+/// A BVH file with these joints, in axes of its own. A joint is its name, its depth in the tree,
+/// and its offset to the right, up and forward. The root walks, and the joints turn.
 fn bvh(joints: &[(&str, usize, [f32; 3])], axes: &Axes, random: &mut Random) -> String {
     let at = |offset: &[f32; 3]| -> Vec<f32> {
         (0..3).map(|axis| (0..3).map(|own| offset[own] * axes[own][axis] as f32).sum()).collect()
@@ -197,9 +197,9 @@ fn rotation(angles: Vec3) -> DMat3 {
     DMat3::from_euler(EulerRot::ZYX, angles.z, angles.y, angles.x)
 }
 
-/// A tree that moves, with a target in the world for the hand of a limb; the hand has an orientation, and the
-/// elbow a pole. The target does not pose the skeleton: it could not do so in the same way, since gravity and
-/// the elbow's rules know which way is up.
+/// A tree that moves, with a target in the world for the hand of a limb; the hand has an
+/// orientation, and the elbow a pole. The target does not pose the skeleton: it could not do so in
+/// the same way, since gravity and the elbow's rules know which way is up.
 fn rig(random: &mut Random) -> Document {
     let (skeleton, tips) = skeletons::tree(random, 3, 1.0);
     let mut skeleton_rig = SkeletonRig::new(skeleton);

@@ -7,7 +7,8 @@ use ik_arm::kinematics::skeleton::JointId;
 
 use crate::common::{Random, skeletons};
 
-/// A tree with turning joints, a walking root and inner joints that slide, in a turned and scaled place.
+/// A tree with turning joints, a walking root and inner joints that slide, in a turned and scaled
+/// place.
 fn motion(random: &mut Random) -> Document {
     let (mut skeleton, _) = skeletons::tree(random, 3, 1.0);
     let turned = random.rotation() * random.within(0.2..5.0);

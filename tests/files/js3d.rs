@@ -632,8 +632,8 @@ fn floats(kind: &str, numbers: &[f32]) -> String {
     format!("{kind}:{}", base64(&bytes))
 }
 
-/// A box from y = 0 to 2 as six quads around two bones of length 1, as Scotty3D saves it. The faces are numbered
-/// by their corners, counter-clockwise seen from outside.
+/// A box from y = 0 to 2 as six quads around two bones of length 1, as Scotty3D saves it. The faces
+/// are numbered by their corners, counter-clockwise seen from outside.
 struct HalfEdgeBox {
     positions: Vec<Vec3>,
     faces: Vec<[usize; 4]>,

@@ -1,5 +1,5 @@
-//! Pictures of what a solver computes in a part of an iteration, of a wiggle, of why a target is not
-//! reached, and of the arm's figures, compared with those in `tests/golden`.
+//! Pictures of what a solver computes in a part of an iteration, of a wiggle, of why a target is
+//! not reached, and of the arm's figures, compared with those in `tests/golden`.
 
 use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, Target, Theme};

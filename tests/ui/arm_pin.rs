@@ -18,7 +18,7 @@ fn go_to(bench: &mut Bench, time: f64) {
     bench.apply([PlaybackAction::SetTime(time)]);
 }
 
-/// Whether the diamond shows a key at the playhead.
+/// True if the diamond shows a key at the playhead.
 fn is_at_key(bench: &Bench) -> bool {
     bench.node(Role::Button, DIAMOND).accesskit_node().toggled() == Some(Toggled::True)
 }

@@ -369,8 +369,8 @@ impl Bench {
         }]);
     }
 
-    /// Scrolls the panel of a widget until the widget is in sight, in the left panel above the note on the
-    /// selected target.
+    /// Scrolls the panel of a widget until the widget is in sight, in the left panel above the note
+    /// on the selected target.
     pub fn reveal(&mut self, role: Role, name: &str) {
         const NOTE: f32 = 150.0;
         for _ in 0..40 {

@@ -136,7 +136,7 @@ fn tooltip(bench: &mut Bench, control: &Control) -> Vec<String> {
     texts(bench).difference(&before).cloned().collect()
 }
 
-/// Whether the control is a row of the tree of joints that the list has scrolled out of sight.
+/// True if the control is a row of the tree of joints that the list has scrolled out of sight.
 fn is_scrolled_out(bench: &Bench, control: &Control) -> bool {
     control.name.starts_with("Joint ")
         && control.rect.top() < bench.rect(Role::Button, "Add child").bottom()
@@ -187,7 +187,7 @@ fn part(bench: &Bench, rect: Rect) -> usize {
     }
 }
 
-/// Whether a reader comes to `next` after `before`: further right in the same row, or lower.
+/// True if a reader comes to `next` after `before`: further right in the same row, or lower.
 fn is_read_after(bench: &Bench, before: Rect, next: Rect) -> bool {
     let (first, second) = (part(bench, before), part(bench, next));
     let in_one_row = (before.center().y - next.center().y).abs() < 8.0;

@@ -244,8 +244,8 @@ fn switches_have_no_curve_to_choose() {
     assert!(bench.node(Role::Button, "Auto").accesskit_node().is_disabled());
 }
 
-/// A figure with keys of two joints' angles and of one offset, in the graph editor. Returns the names of the
-/// two joints.
+/// A figure with keys of two joints' angles and of one offset, in the graph editor. Returns the
+/// names of the two joints.
 fn figure() -> (Bench, [String; 2]) {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([Action::from(EditAction::ShowRig(RigKind::Skeleton))]);

@@ -1,4 +1,4 @@
-//! What users of other 3D programs try first.
+//! First attempts of users of other 3D programs.
 
 use std::path::PathBuf;
 

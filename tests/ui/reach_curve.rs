@@ -45,8 +45,8 @@ fn the_position_of_the_cursor_on_the_arms_curve_is_stated() {
     }
 }
 
-/// Distance that the elbow of an arm of 200 and 300 moves in its plane, between two distances of the
-/// hand, by the law of cosines in f64.
+/// Distance that the elbow of an arm of 200 and 300 moves in its plane, between two distances of
+/// the hand, by the law of cosines in f64.
 fn elbow_moves(from: f64, to: f64) -> f64 {
     let [(x, y), (to_x, to_y)] = [from, to].map(|distance| {
         let along = (distance * distance + 200.0 * 200.0 - 300.0 * 300.0) / (2.0 * distance);

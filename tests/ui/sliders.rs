@@ -234,7 +234,7 @@ fn the_hands_ranges_follow_the_lengths() {
     }
 }
 
-/// Whether a tooltip is on screen.
+/// True if a tooltip is on screen.
 fn has_tooltip(bench: &Bench) -> bool {
     let layers = bench.harness.ctx.memory(|memory| memory.areas().visible_layer_ids());
     layers.iter().any(|layer| layer.order == egui::Order::Tooltip)

@@ -15,8 +15,8 @@ fn ring(screen: &RgbImage, at: Pos2) -> usize {
     pixels.filter(|(x, y, colour)| is_near(*x, *y) && is_bright(colour)).count()
 }
 
-/// Distances in points from the middle of the hips and of the head beyond their outlines: inside, the skin
-/// has one colour.
+/// Distances in points from the middle of the hips and of the head beyond their outlines: inside,
+/// the skin has one colour.
 const HIPS: f32 = 70.0;
 const HEAD: f32 = 45.0;
 

@@ -1,7 +1,8 @@
 //! The real program in a real window: a mouse drags a slider and the hand, and the screen follows.
 //!
-//! Needs a display without a window manager, `xdotool` and ImageMagick's `import`. `scripts/test.sh`
-//! starts such a display; within one, `cargo test --test window -- --ignored` runs the tests.
+//! Needs a display without a window manager, `xdotool` and ImageMagick's `import`.
+//! `scripts/test.sh` starts such a display; within one, `cargo test --test window -- --ignored`
+//! runs the tests.
 #![cfg(all(feature = "app", target_os = "linux"))]
 
 mod display;

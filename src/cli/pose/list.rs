@@ -28,7 +28,7 @@ struct ListedAnimation {
     start: f64,
     end: f64,
     moving_joints: usize,
-    /// Whether it is the open one.
+    /// True if it is the open one.
     open: bool,
 }
 

@@ -64,9 +64,9 @@ pub struct PoseArgs {
     /// Print the FK pose, without the targets
     #[arg(long, conflicts_with_all = ["solver", "targets"])]
     fk: bool,
-    /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a name
-    /// or an index. A hand or foot at the end of two bones gets a limb target for its base, any other
-    /// joint a whole-body target for its tip; a target of influence 0 gets influence 1
+    /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a
+    /// name or an index. A hand or foot at the end of two bones gets a limb target for its base,
+    /// any other joint a whole-body target for its tip; a target of influence 0 gets influence 1
     #[arg(long = "target", value_name = "JOINT=x,y,z")]
     targets: Vec<GivenTarget>,
     /// Solve all enabled targets together from the FK pose with this solver, at full influence

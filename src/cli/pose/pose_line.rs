@@ -48,8 +48,8 @@ struct ReportLine {
 }
 
 impl<'a> PoseLine<'a> {
-    /// Returns the output for a pose of a rig at `time`, in seconds. `order` has the rig's joints in
-    /// the file's order.
+    /// Returns the output for a pose of a rig at `time`, in seconds. `order` has the rig's joints
+    /// in the file's order.
     ///
     /// # Errors
     ///

@@ -51,8 +51,8 @@ pub struct RenderArgs {
     /// Length of the lower limb
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "300")]
     pub lower: LengthArgument,
-    /// Guides to show: any of cursor, pointer, inner, outer, circle; or none [default: the file's, else
-    /// cursor,pointer]
+    /// Guides to show: any of cursor, pointer, inner, outer, circle; or none [default: the file's,
+    /// else cursor,pointer]
     #[arg(long, value_name = "LIST")]
     pub guides: Option<GuidesArgument>,
     /// Camera that frames the rig from this side [default: the file's camera, else perspective]

@@ -12,8 +12,8 @@ use crate::document::{Channel, Document, RigKind, Timeline, Track};
 pub struct Bake {
     /// The range to bake, and its frames.
     pub frames: Timeline,
-    /// Largest distance of a base or tip from its evaluated position at a frame, as a fraction of the
-    /// rig's [reach](crate::rig::SkeletonRig::reach).
+    /// Largest distance of a base or tip from its evaluated position at a frame, as a fraction of
+    /// the rig's [reach](crate::rig::SkeletonRig::reach).
     pub tolerance: f32,
 }
 

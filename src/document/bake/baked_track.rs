@@ -20,9 +20,9 @@ pub(super) struct BakedTrack {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BakedFrames {
     timeline: Timeline,
-    /// Whether the document's timeline starts before the range.
+    /// True if the document's timeline starts before the range.
     starts_late: bool,
-    /// Whether the document's timeline ends after the range.
+    /// True if the document's timeline ends after the range.
     ends_early: bool,
 }
 

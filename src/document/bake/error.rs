@@ -47,7 +47,8 @@ pub enum BakeError {
 }
 
 impl BakeError {
-    /// The tolerances that a bake can keep, as fractions of the reach. Smaller ones are near rounding.
+    /// The tolerances that a bake can keep, as fractions of the reach. Smaller ones are near
+    /// rounding.
     pub const TOLERANCES: RangeInclusive<f32> = 1e-5..=1.0;
     /// Maximum number of frames times joints. A bake of so many takes about half a gigabyte of
     /// memory.

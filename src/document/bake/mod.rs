@@ -11,10 +11,10 @@
 //!
 //! # What breaks
 //!
-//! - Lengths of bones have no channel. The tip of a bone that a target stretches is not kept, but the
-//!   joints at the tip are; see [`Baked::shortened`].
-//! - Between frames a baked pose is interpolated from the keys, and may differ from the evaluated one
-//!   by more than the tolerance.
+//! - Lengths of bones have no channel. The tip of a bone that a target stretches is not kept, but
+//!   the joints at the tip are; see [`Baked::shortened`].
+//! - Between frames a baked pose is interpolated from the keys, and may differ from the evaluated
+//!   one by more than the tolerance.
 
 #[expect(clippy::module_inception, reason = "the type Bake, in the file of its name")]
 mod bake;

@@ -22,8 +22,8 @@ pub(super) struct Ends {
     pub tip: Vec3,
 }
 
-/// A skeleton at every frame of a range. Lists have the joints of the first frame, then those of the
-/// second, and so on.
+/// A skeleton at every frame of a range. Lists have the joints of the first frame, then those of
+/// the second, and so on.
 pub(super) struct Motion {
     /// The skeleton at the first frame, not posed by its targets.
     pub skeleton: Skeleton,
@@ -91,7 +91,7 @@ impl Motion {
         }
     }
 
-    /// Whether anything but keys and angles poses the skeleton.
+    /// True if anything but keys and angles poses the skeleton.
     pub fn is_posed(&self) -> bool {
         self.follows_path || !self.posed.is_empty()
     }
@@ -113,8 +113,8 @@ impl Motion {
         self.skeleton.transform().matrix3
     }
 
-    /// Tracks with a key at every frame, for the rotations and offsets that keys and angles alone do
-    /// not give.
+    /// Tracks with a key at every frame, for the rotations and offsets that keys and angles alone
+    /// do not give.
     pub fn tracks(&self, track: &Track, frames: &BakedFrames) -> Vec<BakedTrack> {
         let mut tracks = Vec::new();
         for joint in self.skeleton.ids() {

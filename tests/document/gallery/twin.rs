@@ -64,7 +64,8 @@ fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
     }
 }
 
-/// Compares hand and elbow with the f64 arm, in Root space and in the world, and checks limb lengths.
+/// Compares hand and elbow with the f64 arm, in Root space and in the world, and checks limb
+/// lengths.
 pub fn check(arm: &Arm) {
     let (pose, twin) = (arm.pose(), twin(arm));
     let length = twin.length;

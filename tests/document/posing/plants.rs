@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::common::strategies::{config, points};
 
-/// How the user keys the edits: by auto-key, or by pressing K after them.
+/// The way in which the user keys the edits: by auto-key, or by pressing K after them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Keying {
     Auto,

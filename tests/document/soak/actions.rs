@@ -1,4 +1,5 @@
-//! Choice of the next action: bursts of one sort, with tame or wild values, in sessions of bounded size.
+//! Choice of the next action: bursts of one sort, with tame or wild values, in sessions of bounded
+//! size.
 
 use ik_arm::document::Channel;
 use ik_arm::session::{Action, EditAction, FileAction, Session};

@@ -16,7 +16,7 @@ pub struct Run {
     pub actions: usize,
     /// Mean number of actions between two expensive checks.
     pub every: Every,
-    /// Whether progress is printed.
+    /// True if progress is printed.
     pub is_told: bool,
 }
 

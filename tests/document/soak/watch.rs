@@ -17,11 +17,11 @@ use crate::soak::{Broken, hold, past, pictured, posed, sound};
 /// Checks to make after an action.
 #[derive(Clone, Copy, Debug)]
 pub struct Care {
-    /// Whether this action is undone and redone.
+    /// True if this action is undone and redone.
     pub step: bool,
     pub saving: bool,
     pub scene: bool,
-    /// Whether everything is undone and redone.
+    /// True if everything is undone and redone.
     pub walk: bool,
 }
 
@@ -36,7 +36,7 @@ pub struct Watch {
     own: Option<Expected>,
 }
 
-/// What is expected of a document and its history.
+/// The expected state of a document and its history.
 pub struct Expected {
     /// First document of the history.
     pub began: Document,
@@ -75,7 +75,7 @@ impl Watch {
         Self { session, expected: Expected::of(document), own: None }
     }
 
-    /// Whether the action was applied instead of asked about.
+    /// True if the action was applied instead of asked about.
     pub fn apply(&mut self, action: &Action, care: Care) -> Result<bool, Broken> {
         catch_unwind(AssertUnwindSafe(|| self.watched(action, care))).unwrap_or_else(|panic| {
             let text = panic.downcast_ref::<String>().cloned();
@@ -124,8 +124,8 @@ impl Watch {
         Ok(is_done)
     }
 
-    /// Follows the beginning, the steps and the end of the tour; `own` is the user's own document before
-    /// the action. Returns whether the action has begun a step.
+    /// Follows the beginning, the steps and the end of the tour; `own` is the user's own document
+    /// before the action. Returns whether the action has begun a step.
     fn follow_tour(&mut self, action: &Action, own: &Before) -> Result<bool, Broken> {
         let is_begun = matches!(action, Action::Tour(TourAction::Enter(_)));
         if self.session.tour().is_some() {
@@ -176,7 +176,8 @@ impl Watch {
         is_replaced
     }
 
-    /// Checks that actions outside the document leave it unchanged, and that a cancelled drag restores it.
+    /// Checks that actions outside the document leave it unchanged, and that a cancelled drag
+    /// restores it.
     fn check_documents(
         &mut self,
         action: &Action,

@@ -293,8 +293,8 @@ fn uneven_scales_above_a_joint_give_keys_at_every_frame_at_the_same_places() {
     }
 }
 
-/// A skeleton with keys of random curves, some with slopes of their own, at whole frames. `kinds` has the
-/// curves of the angles and of the offsets.
+/// A skeleton with keys of random curves, some with slopes of their own, at whole frames. `kinds`
+/// has the curves of the angles and of the offsets.
 fn keyed(random: &mut Random, kinds: [&[Interpolation]; 2]) -> Document {
     let mut document = example("human");
     document.skeleton_rig.targets.clear();

@@ -1,5 +1,5 @@
-//! A skeleton that targets pose over time is the same in a session, in any order of times, in CSV, in
-//! GLB, on the command line and in the picture.
+//! A skeleton that targets pose over time is the same in a session, in any order of times, in CSV,
+//! in GLB, on the command line and in the picture.
 
 use std::process::Command;
 
@@ -25,8 +25,8 @@ use crate::gltf::glb::{Glb, index};
 
 const FRAMES: u32 = 24;
 
-/// A random skeleton with targets of both kinds in the world and on joints, and keys of everything that
-/// poses it.
+/// A random skeleton with targets of both kinds in the world and on joints, and keys of everything
+/// that poses it.
 fn document(random: &mut Random) -> Document {
     let mut skeleton = forest(random, 12);
     skeleton.set_transform(transform(random)).expect("finite");

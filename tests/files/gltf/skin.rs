@@ -210,7 +210,8 @@ fn every_form_of_an_accessor_gives_the_same_mesh() {
     }
 }
 
-/// Makes the positions sparse: all are wrong or missing in the view, but the sparse rows overwrite them.
+/// Makes the positions sparse: all are wrong or missing in the view, but the sparse rows overwrite
+/// them.
 fn sparse(text: &mut Text, strip: &Strip, component: u32, has_view: bool) {
     let positions = text.floats(3, &[5.0; 18]);
     let places: Vec<u8> = (0..6_u32)

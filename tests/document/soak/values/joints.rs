@@ -69,7 +69,8 @@ impl Values<'_> {
         Some(skin)
     }
 
-    /// A few triangles on the joints of the skeleton, in the document or from a file that is missing.
+    /// A few triangles on the joints of the skeleton, in the document or from a file that is
+    /// missing.
     pub fn mesh_skin(&mut self) -> MeshSkin {
         let skeleton = self.session.skeleton_rig().skeleton.clone();
         let count = skeleton.joints().len();

@@ -128,7 +128,8 @@ impl Values<'_> {
         self.point(1.5 * if size.is_normal() { size } else { 1.0 })
     }
 
-    /// A Cursor in reach, on a limit, at the shoulder, on an axis, on the line to the pole, or far away.
+    /// A Cursor in reach, on a limit, at the shoulder, on an axis, on the line to the pole, or far
+    /// away.
     pub fn cursor(&mut self) -> Vec3 {
         let arm = *self.session.arm();
         let (inner, outer) = (arm.bones.inner_limit(), arm.bones.outer_limit());
