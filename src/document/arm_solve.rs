@@ -46,9 +46,10 @@ impl Arm {
         kind: TwistReferenceKind,
         transported: Option<TransportedFrame>,
     ) -> TwoBonePose {
-        let state = match kind == self.twist_reference {
-            true => self.ik_state,
-            false => IkState { transported, ..self.ik_state },
+        let state = if kind == self.twist_reference {
+            self.ik_state
+        } else {
+            IkState { transported, ..self.ik_state }
         };
         let ik = Ik { reference: self.reference_for(kind), ..self.ik() };
         ik.solve(self.cursor_in_root(), self.twist, state).pose

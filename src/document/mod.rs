@@ -17,7 +17,6 @@ mod camera;
 mod channel;
 mod channel_name;
 mod channel_value;
-mod cursor;
 mod display;
 mod dissolve;
 #[expect(clippy::module_inception, reason = "the type Document, in the file of its name")]
@@ -38,13 +37,12 @@ pub use crate::kinematics::twist::TwistReferenceKind;
 pub use crate::rig::{
     FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing,
 };
-pub use arm::Arm;
 pub(crate) use arm::ShownLength;
+pub use arm::{Arm, Cursor};
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};
 pub use channel::{Channel, Quantity};
 pub use channel_name::UnknownChannel;
-pub use cursor::Cursor;
 pub use display::{Display, Overlay, Theme};
 pub use document::Document;
 pub use hand_orientation::{HandOrientation, HandSpace};

@@ -255,9 +255,12 @@ fn a_key_of_the_hand_in_a_plant_ends_its_spline() {
         let times = || track.knots().iter().map(|knot| knot.time);
         let planted: Vec<f64> = times().filter(|at| is_on(*at) || is_on(*at - 0.125)).collect();
         for time in samples() {
-            let is_own = |key: f64| match key <= time {
-                true => !planted.iter().any(|end| key < *end && *end <= time),
-                false => !planted.iter().any(|end| time < *end && *end < key),
+            let is_own = |key: f64| {
+                if key <= time {
+                    !planted.iter().any(|end| key < *end && *end <= time)
+                } else {
+                    !planted.iter().any(|end| time < *end && *end < key)
+                }
             };
             let expected = part(track, is_own).at(time);
             assert_eq!(keys.value(Channel::Hand, time), expected, "at {time} of {keys:?}");

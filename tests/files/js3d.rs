@@ -323,9 +323,10 @@ impl Scene {
     fn text(&self) -> String {
         let mut text = String::from("{\"scene\":{\"transforms\":{");
         for (index, Step { translation, rotation, scale }) in self.steps.iter().enumerate() {
-            let parent = match index + 1 < self.steps.len() {
-                true => format!("\"T{}\"", index + 1),
-                false => "null".to_owned(),
+            let parent = if index + 1 < self.steps.len() {
+                format!("\"T{}\"", index + 1)
+            } else {
+                "null".to_owned()
             };
             let comma = if index > 0 { "," } else { "" };
             let [t, r, s] =
@@ -338,10 +339,8 @@ impl Scene {
         let (base, offset) = (row(&self.base.to_array()), row(&self.base_offset.to_array()));
         let skeleton =
             format!("\"base\":{base},\"base_offset\":{offset},\"bones\":[{}]", bones.join(","));
-        let instance = match self.steps.is_empty() {
-            true => "\"mesh\":\"X\"".to_owned(),
-            false => "\"mesh\":\"X\",\"transform\":\"T0\"".to_owned(),
-        };
+        let transform = if self.steps.is_empty() { "" } else { ",\"transform\":\"T0\"" };
+        let instance = format!("\"mesh\":\"X\"{transform}");
         write!(
             text,
             "}},\"instances\":{{\"skinned_meshes\":{{\"other\":{{\"mesh\":\"Y\"}},\

@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui::{PointerButton, Pos2, vec2};
-use egui_kittest::{SnapshotOptions, SnapshotResults};
+use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBonePose;
@@ -10,7 +10,7 @@ use ik_arm::session::{
     Action, EditAction, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
 };
 
-use crate::bench::{Bench, LARGE, bits};
+use crate::bench::{Bench, LARGE, bits, snapshot_options};
 use crate::looks::has_tooltip;
 
 const LEFT: PointerButton = PointerButton::Primary;
@@ -295,10 +295,7 @@ fn the_panels_in_pole_and_fk_mode_look_as_they_did() {
             Action::from(ShellAction::SetTheme(theme)),
             EditAction::SetTwistReference(TwistReferenceKind::Pole).into(),
         ]);
-        let options = SnapshotOptions::new()
-            .threshold(2.0)
-            .max_failed_pixels(600)
-            .output_path("tests/ui/snapshots");
+        let options = snapshot_options(600);
         results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
         bench.apply([EditAction::SwitchPoseMode(PoseMode::Angles)]);
         results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));

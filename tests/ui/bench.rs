@@ -9,9 +9,9 @@ use egui::{
     Vec2, ViewportId, vec2,
 };
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use egui_kittest::{Harness, Node};
+use egui_kittest::{Harness, Node, SnapshotOptions, SnapshotResults};
 use glam::{Quat, Vec3};
-use ik_arm::document::{Ray, RigKind};
+use ik_arm::document::{Ray, RigKind, Theme};
 use ik_arm::session::{
     Action, Actions, Effect, Grip, GripRing, PanelTab, Preferences, SelectAction, Session,
     ShellAction, ViewAction,
@@ -474,4 +474,27 @@ impl Bench {
 /// A point that is to be the same bit for bit.
 pub fn bits(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
+}
+
+// Snapshots of the panels.
+
+/// Options of a snapshot that may differ in at most so many pixels.
+pub fn snapshot_options(most_pixels: usize) -> SnapshotOptions {
+    SnapshotOptions::new()
+        .threshold(2.0)
+        .max_failed_pixels(most_pixels)
+        .output_path("tests/ui/snapshots")
+}
+
+/// Name of a snapshot in a theme, such as "panels_dark".
+pub fn themed(name: &str, theme: Theme) -> String {
+    format!("{name}_{}", format!("{theme:?}").to_lowercase())
+}
+
+impl Bench {
+    /// Compares the window with its snapshot.
+    pub fn snapshot(&mut self, name: &str, theme: Theme, results: &mut SnapshotResults) {
+        self.harness.snapshot_options(themed(name, theme), &snapshot_options(600));
+        results.extend_harness(&mut self.harness);
+    }
 }

@@ -195,10 +195,7 @@ fn is_read_after(bench: &Bench, before: Rect, next: Rect) -> bool {
     first == 2 && second == 2
         || first < second
         || first == second
-            && match in_one_row {
-                true => next.left() >= before.left(),
-                false => next.top() > before.top(),
-            }
+            && if in_one_row { next.left() >= before.left() } else { next.top() > before.top() }
 }
 
 #[test]

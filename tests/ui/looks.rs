@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Order, PointerButton, vec2};
-use egui_kittest::{SnapshotOptions, SnapshotResults};
+use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
@@ -158,13 +158,7 @@ fn the_panels_look_as_they_did() {
         for (name, actions) in rigs {
             let mut bench = in_theme(theme);
             bench.apply(actions);
-            let options = SnapshotOptions::new()
-                .threshold(2.0)
-                .max_failed_pixels(600)
-                .output_path("tests/ui/snapshots");
-            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
-            bench.harness.snapshot_options(name, &options);
-            results.extend_harness(&mut bench.harness);
+            bench.snapshot(name, theme, &mut results);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui::{PointerButton, Vec2, vec2};
-use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options};
+use egui_kittest::{SnapshotResults, try_image_snapshot_options};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -11,7 +11,7 @@ use ik_arm::session::{
 };
 use image::{RgbaImage, imageops};
 
-use crate::bench::Bench;
+use crate::bench::{Bench, snapshot_options, themed};
 
 const LEFT: PointerButton = PointerButton::Primary;
 /// Large enough for all that the hand can reach.
@@ -193,12 +193,9 @@ fn pops_and_the_reach_curve_look_as_they_did() {
         slide(&mut bench, Vec3::new(400.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0));
         slide(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0));
         bench.apply([EditAction::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
-        let options = SnapshotOptions::new()
-            .threshold(2.0)
-            .max_failed_pixels(600)
-            .output_path("tests/ui/snapshots");
+        let options = snapshot_options(600);
         for (tab, name) in [(PanelTab::Pops, "pops"), (PanelTab::Reach, "reach_curve")] {
-            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
+            let name = themed(name, theme);
             results.add(try_image_snapshot_options(&page(&mut bench, tab), name, &options));
         }
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Vec2, vec2};
-use egui_kittest::{SnapshotOptions, SnapshotResults};
+use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::Theme;
 use ik_arm::render::Counts;
@@ -168,12 +168,6 @@ fn the_statistics_look_as_they_did() {
         bench.apply([ShellAction::SetTheme(theme)]);
         bench.move_to(bench.empty_point());
         bench.settle();
-        let options = SnapshotOptions::new()
-            .threshold(2.0)
-            .max_failed_pixels(600)
-            .output_path("tests/ui/snapshots");
-        let name = format!("statistics_{}", format!("{theme:?}").to_lowercase());
-        bench.harness.snapshot_options(name, &options);
-        results.extend_harness(&mut bench.harness);
+        bench.snapshot("statistics", theme, &mut results);
     }
 }

@@ -2,8 +2,8 @@
 
 use egui::accesskit::Role;
 use egui::{Rect, Vec2};
+use egui_kittest::SnapshotResults;
 use egui_kittest::kittest::NodeT as _;
-use egui_kittest::{SnapshotOptions, SnapshotResults};
 use glam::Vec3;
 use ik_arm::document::{Channel, Theme};
 use ik_arm::session::{
@@ -66,13 +66,7 @@ fn the_timeline_looks_as_it_did() {
             } else if size == SMALL {
                 bench.apply([PlaybackAction::SetAutoKey(true)]);
             }
-            let options = SnapshotOptions::new()
-                .threshold(2.0)
-                .max_failed_pixels(600)
-                .output_path("tests/ui/snapshots");
-            let name = format!("{name}_{}", format!("{theme:?}").to_lowercase());
-            bench.harness.snapshot_options(name, &options);
-            results.extend_harness(&mut bench.harness);
+            bench.snapshot(name, theme, &mut results);
         }
     }
 }

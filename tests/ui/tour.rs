@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, Rect, Vec2, pos2};
 use egui_kittest::kittest::Queryable as _;
-use egui_kittest::{SnapshotOptions, SnapshotResults, try_image_snapshot_options};
+use egui_kittest::{SnapshotResults, try_image_snapshot_options};
 use glam::{Quat, Vec3};
 use ik_arm::document::Theme;
 use ik_arm::kinematics::skeleton::JointId;
@@ -11,7 +11,7 @@ use ik_arm::session::{
     PlaybackAction, Preferences, SelectAction, SolverAction, TourAction, TourEnd, TourStep, filled,
 };
 
-use crate::bench::{Bench, LARGE, SMALL};
+use crate::bench::{Bench, LARGE, SMALL, snapshot_options};
 use crate::common::all_cases;
 use crate::looks::has_tooltip;
 
@@ -310,10 +310,7 @@ fn cards_look_as_they_did() {
                 }
                 let theme = format!("{theme:?}").to_lowercase();
                 let name = format!("tour/{number:02}_{width}_{theme}");
-                let options = SnapshotOptions::new()
-                    .threshold(2.0)
-                    .max_failed_pixels(200)
-                    .output_path("tests/ui/snapshots");
+                let options = snapshot_options(200);
                 results.add(try_image_snapshot_options(&picture(&mut bench), name, &options));
             }
         }

@@ -204,12 +204,9 @@ impl Watch {
             let same = past::saved(document)? == past::saved(before)?;
             hold!(same, "a cancelled transaction leaves no trace in a file");
         }
-        self.expected.before_edit = match self.session.is_editing() {
-            true => {
-                Some(self.expected.before_edit.take().unwrap_or_else(|| before.document.clone()))
-            }
-            false => None,
-        };
+        let pressed = self.expected.before_edit.take();
+        self.expected.before_edit =
+            self.session.is_editing().then(|| pressed.unwrap_or_else(|| before.document.clone()));
         Ok(())
     }
 
