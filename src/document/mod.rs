@@ -17,6 +17,7 @@ mod camera;
 mod channel;
 mod channel_name;
 mod channel_value;
+mod conversion;
 mod display;
 mod dissolve;
 #[expect(clippy::module_inception, reason = "the type Document, in the file of its name")]
@@ -26,9 +27,7 @@ mod hand_orientation;
 mod keys;
 mod plant;
 mod projection;
-mod rekey;
 mod rig_kind;
-mod target_space;
 mod timeline;
 mod track;
 mod turn;

@@ -1,9 +1,8 @@
 use glam::Vec3;
 
-use super::baked::Baked;
 use super::baked_track::{BakedFrames, BakedTrack};
-use super::error::BakeError;
 use super::motion::Motion;
+use super::outcome::{BakeError, Baked};
 use super::reduction::Reduction;
 use crate::document::{Channel, Document, RigKind, Timeline, Track};
 

@@ -18,12 +18,10 @@
 
 #[expect(clippy::module_inception, reason = "the type Bake, in the file of its name")]
 mod bake;
-mod baked;
 mod baked_track;
-mod error;
 mod motion;
+mod outcome;
 mod reduction;
 
 pub use bake::Bake;
-pub use baked::{Baked, ShortenedBone};
-pub use error::BakeError;
+pub use outcome::{BakeError, Baked, ShortenedBone};

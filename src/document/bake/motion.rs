@@ -1,8 +1,7 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
-use super::baked::ShortenedBone;
 use super::baked_track::{BakedFrames, BakedTrack};
-use super::error::BakeError;
+use super::outcome::{BakeError, ShortenedBone};
 use crate::document::{Channel, Posed, Timeline, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::Target;

@@ -3,8 +3,8 @@ use core::iter::once;
 use glam::{Affine3A, Vec3};
 
 use super::baked_track::{BakedFrames, BakedTrack};
-use super::error::BakeError;
 use super::motion::{Ends, Motion, Placement};
+use super::outcome::BakeError;
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 

@@ -2,7 +2,34 @@ use core::ops::RangeInclusive;
 
 use thiserror::Error;
 
-use crate::document::Timeline;
+use crate::document::{Document, Timeline};
+use crate::kinematics::skeleton::JointId;
+
+/// A baked document, and what the bake cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked {
+    /// The document with the keys. Its targets have no influence in the range, and its skeleton
+    /// follows no path.
+    pub document: Document,
+    /// Number of keys at every frame, before keys were removed.
+    pub keys_at_frames: usize,
+    /// Number of keys that are left.
+    pub keys: usize,
+    /// Largest distance of a base or tip from its evaluated position at a frame, in the world. Tips
+    /// of shortened bones are compared at their own length.
+    pub error: f32,
+    /// Bones that targets stretch. They keep their own length in the baked document.
+    pub shortened: Vec<ShortenedBone>,
+}
+
+/// A bone that cannot keep the length that a target gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShortenedBone {
+    /// The bone's joint.
+    pub joint: JointId,
+    /// Largest distance of its tip from the evaluated position at a frame, in the world.
+    pub error: f32,
+}
 
 /// The reason why a document is not baked.
 #[derive(Clone, Debug, PartialEq, Error)]

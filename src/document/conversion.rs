@@ -1,13 +1,63 @@
+//! Conversions of values to another reference or space, for the present values and all their keys.
+
 use glam::Vec3;
 
 use super::channel::Channel;
 use super::document::Document;
+use super::hand_orientation::HandSpace;
 use super::track::{Posed, Track};
+use crate::kinematics::angle;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton};
+use crate::kinematics::spline::Spline;
+use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{Target, TargetSpace};
 
-/// Conversions of a target, or of the pole of a limb, to another space, for its present values and
-/// all its keys.
+/// Conversions of angles of the arm.
+impl Document {
+    /// Changes the kind of the arm's twist reference, and adjusts the present twist and all its
+    /// keys so that the elbow does not move in the present pose or at any key.
+    #[must_use]
+    pub fn with_twist_reference(&self, kind: TwistReferenceKind) -> Self {
+        let mut after = Self { arm: self.arm.with_twist_reference(kind), ..self.clone() };
+        let Some(keys) = self.keys.track(Channel::Twist) else {
+            return after;
+        };
+        let track = Track::new(self);
+        let mut shift = 0.0;
+        for knot in keys.knots() {
+            let mut arm = *track.at(knot.time).arm();
+            arm.ik_state.transported = None;
+            let measured = arm.with_twist_reference(kind).keyed_twist();
+            let (old, turned) = (knot.value.x, measured - knot.value.x);
+            shift = angle::nearest(turned, shift);
+            after.keys.insert(Channel::Twist, knot.time, Vec3::new(old + shift, 0.0, 0.0));
+        }
+        after
+    }
+
+    /// Converts the hand's present angles and all their keys to another space. The hand keeps its
+    /// orientation in the present pose and at every key.
+    #[must_use]
+    pub fn with_hand_space(&self, space: HandSpace) -> Self {
+        let mut after = self.clone();
+        after.arm.hand_orientation = self.arm.hand_orientation.in_space(space, &self.arm.pose());
+        let track = Track::new(self);
+        let mut last = None;
+        let keys = self.keys.track(Channel::HandOrientation);
+        for knot in keys.into_iter().flat_map(Spline::knots) {
+            let posed = track.at(knot.time);
+            let orientation = posed.arm().hand_orientation;
+            // Each key has the equivalent angles nearest to those of the previous key.
+            let near = last.unwrap_or(orientation.angles);
+            let angles = orientation.in_space_near(space, posed.arm_pose(), near).angles;
+            last = Some(angles);
+            after.keys.insert(Channel::HandOrientation, knot.time, angles);
+        }
+        after
+    }
+}
+
+/// Conversions of targets and of the poles of limbs.
 impl Document {
     /// Moves the target of a joint to another space. The target stays where it is, and the hand
     /// keeps its orientation, at `time`, at which this document is evaluated, and at each of their
@@ -20,8 +70,7 @@ impl Document {
     }
 
     /// Moves the pole of the limb of a joint's target to another space. The pole stays where it is
-    /// at
-    /// `time`, at which this document is evaluated, and at each of its keys.
+    /// at `time`, at which this document is evaluated, and at each of its keys.
     pub fn set_pole_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
         self.convert_target(joint, [Channel::TargetPole(joint)], time, |target, pose, _, _| {
             target.with_pole_in_space(space, pose)
