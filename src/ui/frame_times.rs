@@ -1,7 +1,10 @@
-//! Durations of the most recent frames.
+//! Durations of the most recent frames, and the machine that draws them.
 
 use core::fmt;
 use core::time::Duration;
+
+use crate::render::Counts;
+use crate::rig::CrowdTimes;
 
 /// Durations of the stages of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -138,6 +141,22 @@ impl FrameTimes {
     fn place(&self, frame: u64) -> usize {
         (frame % Self::MOST as u64) as usize
     }
+}
+
+/// The graphics adapter, and measurements of frames, scene and crowd, for the panels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Machine {
+    /// Name of the graphics adapter.
+    pub adapter: String,
+    /// True if the adapter has timestamp queries.
+    pub has_clock: bool,
+    /// Durations of the most recent frames.
+    pub times: FrameTimes,
+    /// Numbers of shapes, labels, triangles and uploaded bytes of the scene that was drawn last;
+    /// `None` before the first scene.
+    pub counts: Option<Counts>,
+    /// Time taken to solve the shown crowd; `None` without a crowd.
+    pub crowd: Option<CrowdTimes>,
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use super::panels::right;
-use super::{commands, labels};
+use super::{commands, labels, panels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group, OpenOptions};
 use crate::session::{
@@ -269,7 +268,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     let mut explain = session.preferences().explain;
     let panel = egui::Checkbox::new(&mut explain, "Explain panel");
-    let panel = ui.add_enabled(right::has_room(ui), panel);
+    let panel = ui.add_enabled(panels::has_room(ui), panel);
     if panel.on_disabled_hover_text("Make the window wider: it has no room").changed() {
         actions.push(ViewAction::ShowExplain(explain));
     }

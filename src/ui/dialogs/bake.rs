@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{DragValue, Grid, ProgressBar, Ui};
 
-use super::first_button::first_button;
+use super::path::first_button;
 use crate::document::{Bake, BakeError, Timeline};
 use crate::session::{Actions, BakeAction, BakeJob, Dialog, Session, ShellAction};
 use crate::ui::widgets;

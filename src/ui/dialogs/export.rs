@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{DragValue, Grid, Id, Ui};
 
-use super::path::{browse, folder, unless_there};
-use super::prompt::prompt;
+use super::path::{browse, folder, prompt, unless_there};
 use crate::export::{ExportOptions, Format};
 use crate::io::ExportFrames;
 use crate::session::{Actions, EditAction, Export, FileAction, PathDialog, Session, ShellAction};

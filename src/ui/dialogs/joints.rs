@@ -2,8 +2,7 @@
 
 use egui::Ui;
 
-use super::first_button::first_button;
-use super::prompt::prompt;
+use super::path::{first_button, prompt};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, Dialog, EditAction, Session, ShellAction};
 use crate::ui::widgets;

@@ -1,24 +1,21 @@
 //! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
 mod bake;
-mod contents;
 mod export;
-mod first_button;
+mod files;
 mod joints;
 mod path;
-mod prompt;
 mod shortcuts;
-mod unsaved;
 
 use std::mem::discriminant;
 
 use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
 
+use super::frame_times::Machine;
+use super::glossary;
+use super::panels::statistics;
 use crate::session::{Actions, Dialog, PathDialog, Session, ShellAction};
-use crate::ui::glossary;
-use crate::ui::machine::Machine;
-use crate::ui::panels::statistics;
-use first_button::first_button;
+use path::first_button;
 
 pub(in crate::ui) fn ui(
     ui: &Ui,
@@ -65,12 +62,12 @@ pub(in crate::ui) fn ui(
             close(ui, actions);
         }
         Dialog::Recover { document, file } => {
-            unsaved::recover(ui, document, file.as_deref(), actions);
+            files::recover(ui, document, file.as_deref(), actions);
         }
-        Dialog::Unsaved { then } => unsaved::unsaved(ui, session, then, actions),
-        Dialog::FileChanged { path } => unsaved::file_changed(ui, path, actions),
-        Dialog::Exporting => unsaved::quit_during_export(ui, session, actions),
-        Dialog::Replace { path, then, .. } => unsaved::replace(ui, path, then, actions),
+        Dialog::Unsaved { then } => files::unsaved(ui, session, then, actions),
+        Dialog::FileChanged { path } => files::file_changed(ui, path, actions),
+        Dialog::Exporting => files::quit_during_export(ui, session, actions),
+        Dialog::Replace { path, then, .. } => files::replace(ui, path, then, actions),
         Dialog::Path(PathDialog::SavePicture { path }) => {
             path::ask_path(ui, session, &path::SAVE_PICTURE, (path, None), is_new, actions);
         }
@@ -88,7 +85,7 @@ pub(in crate::ui) fn ui(
             let typed = (path.as_str(), problem.as_deref());
             path::ask_path(ui, session, &path::LOCATE_SKIN, typed, is_new, actions);
         }
-        Dialog::ChooseContents(of_file) => contents::choose(ui, of_file, actions),
+        Dialog::ChooseContents(of_file) => files::choose(ui, of_file, actions),
         Dialog::Rename { joint, name } => {
             joints::rename(ui, session, *joint, name, is_new, actions);
         }

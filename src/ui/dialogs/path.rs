@@ -1,10 +1,12 @@
-//! The text box for a path, and the question before a file is replaced.
+//! The text box for a path, and the question before a file is replaced; a line of text to type and
+//! the default button, for all dialogs.
 
 use std::path::{Path, PathBuf};
 
-use egui::{Label, RichText, Ui};
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
+use egui::{Key, Label, RichText, TextEdit, Ui};
 
-use super::prompt::prompt;
 use crate::export::existing;
 use crate::io::OpenOptions;
 use crate::session::{Action, Actions, Dialog, FileAction, PathDialog, Session, ShellAction};
@@ -116,4 +118,35 @@ pub(in crate::ui) fn unless_there(
         }
         None => action.into(),
     }
+}
+
+/// Shows a text line with the label `prompt`. If `is_new`, the line takes the keyboard focus and
+/// its text is selected. Returns the text, and whether Enter was pressed.
+pub(in crate::ui) fn prompt(ui: &mut Ui, prompt: &str, text: &str, is_new: bool) -> (String, bool) {
+    let mut typed = text.to_owned();
+    let name = ui.label(prompt);
+    let id = name.id.with("text");
+    if is_new {
+        let mut state = TextEditState::default();
+        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), id);
+    }
+    if is_new || ui.memory(|memory| memory.focused().is_none()) {
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
+    let edit = TextEdit::singleline(&mut typed).id(id).desired_width(f32::INFINITY);
+    let edit = ui.add(edit).labelled_by(name.id);
+    let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    (typed, entered)
+}
+
+/// Shows a button that takes the keyboard focus if no widget has it, so that Enter presses the
+/// button. Returns whether the button was pressed.
+pub(super) fn first_button(ui: &mut Ui, name: &str) -> bool {
+    let button = widgets::primary_button(ui, name, None);
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
 }

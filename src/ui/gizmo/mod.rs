@@ -1,24 +1,22 @@
 //! Handles in the viewport: their positions on screen, hit tests and painting.
 
 mod arm;
-mod locked_axis;
 mod rotate;
-mod shape;
+pub(in crate::ui) mod screen;
 mod skeleton;
 mod translate;
-mod twist;
 pub(in crate::ui) mod view_axes;
+
+pub(in crate::ui) use screen::locked_axis;
 
 use egui::{Painter, Pos2, Ui};
 
 use crate::document::RigKind;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Session};
-use crate::ui::viewport::projection::ScreenProjection;
 use arm::ArmGizmo;
+use screen::ScreenProjection;
 use skeleton::SkeletonGizmo;
-
-pub(in crate::ui) use locked_axis::locked_axis;
 
 pub(in crate::ui) enum Gizmo {
     Arm(ArmGizmo),

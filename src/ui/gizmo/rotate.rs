@@ -5,9 +5,8 @@ use core::f32::consts::TAU;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 use glam::Vec3;
 
-use super::shape::to_segment;
+use super::screen::{ScreenProjection, to_segment};
 use crate::session::{Grip, GripRing};
-use crate::ui::viewport::projection::ScreenProjection;
 
 /// Radius of a ring in points.
 pub(in crate::ui) const RADIUS: f32 = 56.0;

@@ -5,14 +5,13 @@ use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
 use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
-use super::shape::{bright, to_segment};
+use super::screen::{ScreenProjection, bright, to_segment};
 use super::translate::TranslateHandles;
 use crate::document::Target;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
-use crate::ui::viewport::projection::ScreenProjection;
 
 /// Radius in points of the circle around a bone's tip.
 const TIP: f32 = 7.0;

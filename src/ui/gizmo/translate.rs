@@ -4,10 +4,9 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, Ui, Vec2};
 use glam::Vec3;
 
-use super::shape::bright;
+use super::screen::{ScreenProjection, bright};
 use crate::session::PointHandle;
 use crate::ui::style;
-use crate::ui::viewport::projection::ScreenProjection;
 
 /// Length in points of an arrow that is normal to the view direction.
 const LENGTH: f32 = 80.0;

@@ -4,7 +4,7 @@ use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 
 use crate::rig::{Crowd, Processor};
 use crate::session::{Actions, Session, ViewAction};
-use crate::ui::machine::Machine;
+use crate::ui::frame_times::Machine;
 use crate::ui::widgets::format::grouped;
 
 const WIDTH: f32 = 232.0;

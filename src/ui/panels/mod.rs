@@ -1,11 +1,155 @@
-//! The panels beside and over the viewport.
+//! The panels beside and over the viewport. On the left are the rig's settings, guides and display;
+//! on the right are pages that explain the pose of the arm or of the skeleton.
 
 mod arm;
 pub(in crate::ui) mod crowd;
 mod explain;
-pub(in crate::ui) mod left;
-mod overlays;
-pub(in crate::ui) mod right;
 mod skeleton;
 mod solver;
 pub(in crate::ui) mod statistics;
+
+use egui::{ScrollArea, Ui};
+
+use super::widgets::{self, Segment, Tab};
+use crate::document::{Overlay, RigKind};
+use crate::session::{Actions, ArmFigure, EditAction, PanelTab, Session, ViewAction};
+
+pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    ui.add_space(4.0);
+    rig(ui, session, actions);
+    ui.add_space(2.0);
+    let note = skeleton::noted(session);
+    let height = ui.available_height();
+    let room = height - note.map_or(0.0, |_| skeleton::note_height(height));
+    let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
+    rows.show(ui, |ui| {
+        match session.rig() {
+            RigKind::Arm => arm::ui(ui, session, actions),
+            RigKind::Skeleton => skeleton::ui(ui, session, actions),
+        }
+        widgets::section(ui, "Guides", |ui| {
+            widgets::check_boxes(ui, session, 2, guides(session), None, actions);
+        });
+        if session.rig() == RigKind::Arm {
+            arm::more(ui, session, actions);
+        }
+        let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
+        let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
+        widgets::folded_section(ui, "Display", |ui| {
+            widgets::check_boxes(ui, session, 3, &surroundings, None, actions);
+        });
+        resets(ui, session, actions);
+        ui.add_space(8.0);
+    });
+    if let Some(target) = note {
+        skeleton::note(ui, session, target, actions);
+    }
+}
+
+fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rigs = [
+        Segment {
+            name: "Arm",
+            tooltip: "Pose an arm of two limbs, solved in closed form",
+            value: RigKind::Arm,
+        },
+        Segment {
+            name: "Skeleton",
+            tooltip: "Pose a tree of joints, solved by iteration",
+            value: RigKind::Skeleton,
+        },
+    ];
+    let chosen = widgets::segments(ui, session.rig(), &rigs);
+    actions.extend(chosen.map(EditAction::ShowRig));
+}
+
+fn guides(session: &Session) -> &'static [Overlay] {
+    match session.rig() {
+        RigKind::Arm => &Overlay::GUIDES,
+        RigKind::Skeleton if !session.skeleton_rig().follow_paths.is_empty() => {
+            &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose, Overlay::ElbowCircle]
+        }
+        RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle],
+    }
+}
+
+fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let (name, tooltip) = match session.rig() {
+        RigKind::Arm => ("Reset pose", "Reset everything that poses the arm"),
+        RigKind::Skeleton => ("Reset to bind pose", "Set every joint rotation to 0"),
+    };
+    ui.horizontal(|ui| {
+        if ui.button(name).on_hover_text(tooltip).clicked() {
+            actions.push(EditAction::ResetPose);
+        }
+        let all = ui
+            .button("Reset all")
+            .on_hover_text("Reset pose, guides, display and view; hide the crowd");
+        if all.clicked() {
+            actions.push(EditAction::ResetAll);
+        }
+    });
+}
+
+/// Least width of the window with this panel, in points.
+const WINDOW_WIDTH: f32 = 760.0;
+
+/// Whether the window is wide enough for the panel: in a narrow one, it gives way to the view.
+pub(super) fn has_room(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() >= WINDOW_WIDTH
+}
+
+/// Shows the chosen page, and returns the arm's figure under the mouse.
+pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Option<ArmFigure> {
+    let shown = shown(session);
+    ui.add_space(4.0);
+    let tabs: Vec<_> = tabs(session)
+        .map(|value| Tab { name: value.name(), tooltip: tooltip(session.rig(), value), value })
+        .collect();
+    actions.extend(widgets::tabs(ui, shown, &tabs).map(ViewAction::ShowTab));
+    ui.separator();
+    // Each page is scrolled on its own.
+    let mut figure = None;
+    ScrollArea::vertical().id_salt(shown).auto_shrink(false).show(ui, |ui| {
+        match (session.rig(), shown) {
+            (RigKind::Arm, PanelTab::Solver) => explain::closed_form(ui, session),
+            (RigKind::Arm, PanelTab::Twist) => explain::twist(ui, session, actions),
+            (RigKind::Arm, PanelTab::Reach) => explain::reach(ui, session),
+            (RigKind::Arm, PanelTab::Pops) => explain::pops(ui, session, actions),
+            (RigKind::Arm, _) => figure = explain::triangle(ui, session, actions),
+            (RigKind::Skeleton, PanelTab::Race) => solver::race(ui, session, actions),
+            (RigKind::Skeleton, PanelTab::Skin) => solver::skin(ui, session),
+            (RigKind::Skeleton, _) => solver::solver(ui, session, actions),
+        }
+        ui.add_space(8.0);
+    });
+    figure
+}
+
+/// The tabs of the rig. The page of the skin is there while the skin is compared.
+fn tabs(session: &Session) -> impl Iterator<Item = PanelTab> + use<> {
+    let compares = session.compares_skinning();
+    let tabs = PanelTab::of(session.rig()).iter().copied();
+    tabs.filter(move |tab| *tab != PanelTab::Skin || compares)
+}
+
+/// The chosen tab, or the first if the chosen one is not there.
+fn shown(session: &Session) -> PanelTab {
+    let chosen = session.tab();
+    let mut all = tabs(session);
+    let first = all.next().unwrap_or(chosen);
+    if all.any(|tab| tab == chosen) { chosen } else { first }
+}
+
+fn tooltip(rig: RigKind, tab: PanelTab) -> &'static str {
+    match (rig, tab) {
+        (_, PanelTab::Triangle) => "Show the triangle of shoulder, elbow and hand",
+        (_, PanelTab::Twist) => "Compare what the Socket twist can be measured from",
+        (_, PanelTab::Reach) => "Show how near and how far the hand can be",
+        (_, PanelTab::Pops) => "Show where the elbow jumped, and why",
+        (RigKind::Arm, PanelTab::Solver) => "Show why the arm needs no iterations",
+        (RigKind::Skeleton, PanelTab::Solver) => "Watch a solver bring the tips to their targets",
+        (_, PanelTab::Race) => "Run all solvers on the same targets",
+        (_, PanelTab::Skin) => "Plot the skin's cross-section for each way of blending joints",
+    }
+}

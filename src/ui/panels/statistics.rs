@@ -7,8 +7,7 @@ use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 
 use crate::kinematics::chain_ik::Method;
 use crate::scene::Palette;
-use crate::ui::frame_times::{FrameTime, FrameTimes};
-use crate::ui::machine::Machine;
+use crate::ui::frame_times::{FrameTime, FrameTimes, Machine};
 use crate::ui::style;
 use crate::ui::widgets::format::grouped;
 use crate::ui::widgets::plot;

@@ -2,9 +2,9 @@
 
 use egui::{Button, Id, Response, Ui};
 
+use super::dope_sheet::mouse::DopeSheetView;
+use super::dope_sheet::row::DopeSheetRow;
 use super::drag;
-use super::mouse::DopeSheetView;
-use super::row::DopeSheetRow;
 use crate::document::Channel;
 use crate::kinematics::spline::Interpolation;
 use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};

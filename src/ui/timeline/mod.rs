@@ -1,33 +1,25 @@
 //! The transport bar, and above it the timeline: ruler, and dope sheet or graph editor.
 
 mod areas;
-mod channel_curve;
 mod context_menu;
 mod dope_sheet;
 mod drag;
-mod graph_axes;
 mod graph_editor;
-mod graph_legend;
-mod graph_mouse;
 mod keyboard;
-mod mouse;
-mod row;
 mod ruler;
-mod text;
 mod time_scale;
 mod transport_bar;
 mod value_scale;
 
+pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
+pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
+
 use egui::{Rect, Ui};
 
+use crate::session::{Actions, Session};
 use areas::TimelineAreas;
 use drag::TimelineDrag;
 use time_scale::TimeScale;
-
-use crate::session::{Actions, Session};
-
-pub(in crate::ui) use keyboard::{everywhere, has_the_word, holds};
-pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
 pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -1,7 +1,8 @@
-//! The scales of the values in the graph editor: one for angles, one for lengths and one for
-//! ratios.
+//! The scales of the values in the graph editor, one for angles, one for lengths and one for ratios;
+//! and a channel's curve.
 
-use egui::{Event, Id, Rangef, Rect, Ui};
+use egui::{Color32, Event, Id, Rangef, Rect, Ui};
+use egui_plot::LineStyle;
 
 use super::time_scale::{WHEEL, wheel_steps};
 use crate::document::{Channel, Quantity};
@@ -167,4 +168,19 @@ fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 fn id() -> Id {
     Id::unique("timeline value scales")
+}
+
+/// The curve of one component of a channel.
+pub(super) struct ChannelCurve {
+    pub channel: Channel,
+    /// Component of the channel's values: 0, 1 or 2.
+    pub axis: usize,
+    pub kind: ValueKind,
+    pub name: String,
+    pub colour: Color32,
+    pub style: LineStyle,
+    /// Times in seconds and displayed values of the samples.
+    pub line: Vec<[f64; 2]>,
+    /// Times in seconds and displayed values of the keys.
+    pub knots: Vec<[f64; 2]>,
 }

@@ -1,27 +1,23 @@
 //! The viewport: gizmos, selection, orbit, pan and zoom.
 
-mod drag_hint;
-mod follow_mouse;
 mod navigation;
-pub(in crate::ui) mod projection;
-mod why_note;
-
-use projection::ScreenProjection;
+mod notes;
 
 use egui::{
     Event, EventFilter, Id, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui,
     WidgetInfo, pos2, vec2,
 };
 
+use super::gizmo::screen::ScreenProjection;
+use super::gizmo::{Gizmo, locked_axis, view_axes};
+use super::keyboard::{self, focus};
+use super::{commands, mouse_hints, pose_summary, why};
 use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::session::{
     Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, EditAction, Grip,
     PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
 };
-use crate::ui::gizmo::{Gizmo, locked_axis, view_axes};
-use crate::ui::keyboard::{self, focus};
-use crate::ui::{commands, mouse_hints, pose_summary, why};
 use navigation::{motion, show_cursor, wheel};
 
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside it.
@@ -56,12 +52,12 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     if held_grip.is_none() && session.view_drag().is_none() {
         light_up(ui, session, lit, actions);
     }
-    drag_hint::ui(ui, session, &screen);
+    notes::drag_the_hand(ui, session, &screen);
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes::ui(ui, rect, session, actions);
-    why_note::ui(ui, session, &screen, actions);
-    follow_mouse::ui(ui, session, rect, actions);
+    notes::why_not_reached(ui, session, &screen, actions);
+    notes::follow_mouse(ui, session, rect, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {
         invite(ui, rect);
     }

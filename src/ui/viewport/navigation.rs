@@ -2,9 +2,9 @@
 
 use egui::{CursorIcon, Event, MouseWheelUnit, PointerButton, Pos2, Ui, Vec2};
 
-use super::projection::ScreenProjection;
 use crate::document::Camera;
 use crate::session::{Actions, CameraMotion, Grip, Navigation, Session, ViewAction};
+use crate::ui::gizmo::screen::ScreenProjection;
 
 /// Zoom factor of a wheel step.
 const WHEEL: f32 = 1.15;

@@ -1,11 +1,13 @@
-//! A number to drag or type, also as an expression.
+//! Numbers to drag or type, also as an expression.
 
 use std::cell::Cell;
 
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
-use crate::session::{Action, Actions, ShellAction, TransactionAction};
+use super::format;
+use crate::document::Timeline;
+use crate::session::{Action, Actions, Session, ShellAction, TransactionAction};
 use crate::ui::keyboard::focus;
 
 const HEIGHT: f32 = 22.0;
@@ -120,3 +122,54 @@ struct WasPressed;
 /// Marks a number in which Esc ended the typing in the previous pass.
 #[derive(Clone, Copy, Default)]
 struct LeftByEscape;
+
+/// Width in points with which three fields and a name fit side by side in the narrowest panel.
+const FIELD_WIDTH: f32 = 52.0;
+
+/// A number to drag or type, without a slider.
+pub(in crate::ui) struct NumberField<'a> {
+    /// Accessible name, such as "Bone x".
+    pub name: &'a str,
+    pub value: f32,
+    pub unit: &'a str,
+    /// Change of the value per point that the mouse is dragged.
+    pub step: f32,
+    /// Number of decimals.
+    pub digits: usize,
+    pub tooltip: &'a str,
+}
+
+impl NumberField<'_> {
+    pub fn show<A: Into<Action>>(
+        self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Actions,
+        set: impl Fn(f32) -> A,
+    ) -> Response {
+        let digits = self.digits;
+        let format = |value| format::fixed(value, digits);
+        self.show_as(ui, session, actions, &format, set)
+    }
+
+    /// Shows the field as [`Self::show`] does, but with the text that `format` returns.
+    pub fn show_as<A: Into<Action>>(
+        self,
+        ui: &mut Ui,
+        session: &Session,
+        actions: &mut Actions,
+        format: &dyn Fn(f64) -> String,
+        set: impl Fn(f32) -> A,
+    ) -> Response {
+        let Self { name, value, unit, .. } = self;
+        let number = DragNumber { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };
+        let response = number.show(ui, session.is_editing(), actions, set);
+        hover_text(response, self.tooltip)
+    }
+}
+
+/// A field for a number of frames per second, which need not be whole.
+pub(in crate::ui) fn frame_rate(rate: &mut f64) -> DragValue<'_> {
+    let range = Timeline::MIN_FRAME_RATE..=Timeline::MAX_FRAME_RATE;
+    DragValue::new(rate).speed(0.25).max_decimals(3).range(range)
+}

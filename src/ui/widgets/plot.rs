@@ -1,6 +1,6 @@
-//! Settings shared by all plots.
+//! Settings shared by all plots, and a bar that shows a scale of colours.
 
-use egui::{Rangef, Ui};
+use egui::{Align2, Color32, FontId, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::{AxisHints, GridMark, Plot, PlotBounds, PlotUi};
 
 /// A plot that the mouse cannot pan or zoom; `height` is in points.
@@ -41,4 +41,34 @@ pub(in crate::ui) fn axis<'a>(
 pub(in crate::ui) fn marks(values: &[f64]) -> Vec<GridMark> {
     let step_size = 1.0;
     values.iter().map(|value| GridMark { value: *value, step_size }).collect()
+}
+
+/// Shows the colours of a scale from 0 to 1 with marks below, each at its place on the scale.
+/// `summary` is the tooltip and the accessible name.
+pub(in crate::ui) fn colour_bar(
+    ui: &mut Ui,
+    summary: &str,
+    colour: impl Fn(f32) -> Color32,
+    marks: &[(f32, &str)],
+) {
+    const HEIGHT: f32 = 30.0;
+    const STEPS: usize = 64;
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, summary));
+    let painter = ui.painter();
+    let bar = rect.shrink2(vec2(8.0, 0.0)).with_max_y(rect.top() + 10.0);
+    for step in 0..STEPS {
+        let [from, to] = [step, step + 1].map(|step| step as f32 / STEPS as f32);
+        let [left, right] = [from, to].map(|part| bar.left() + part * bar.width());
+        let part = Rect::from_x_y_ranges(left..=right, bar.y_range());
+        painter.rect_filled(part, 0.0, colour(0.5 * (from + to)));
+    }
+    let font = FontId::proportional(12.0);
+    for (place, text) in marks {
+        let at = pos2(bar.left() + bar.width() * place, bar.bottom() + 3.0);
+        let weak = ui.visuals().weak_text_color();
+        painter.text(at, Align2::CENTER_TOP, text, font.clone(), weak);
+    }
+    response.on_hover_text(summary);
 }

@@ -5,15 +5,13 @@ use egui::{
     Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
 };
 
-use super::format;
-use super::key_button::KeyButton;
+use super::buttons::KeyButton;
 use super::number::{DragNumber, hover_text};
-use super::symbol;
+use super::{format, symbol};
 use crate::document::Channel;
 use crate::session::{Action, Actions, Session, TransactionAction};
-use crate::ui::glossary;
 use crate::ui::keyboard::focus;
-use crate::ui::style;
+use crate::ui::{glossary, style};
 
 /// A slider: a label, a rail with a thumb, and the value, which can be typed.
 ///

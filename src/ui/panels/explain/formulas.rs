@@ -3,7 +3,7 @@
 use egui::{Align, Color32, Grid, Layout, Rect, Response, RichText, Ui, vec2};
 use glam::Vec3;
 
-use super::lit::Lit;
+use super::drawing::Lit;
 use crate::document::Arm;
 use crate::session::ArmFigure;
 use crate::ui::widgets::symbol;

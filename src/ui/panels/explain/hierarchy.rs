@@ -2,8 +2,8 @@
 
 use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
+use super::drawing::Lit;
 use super::formulas::{degrees, length, point};
-use super::lit::Lit;
 use crate::document::Overlay;
 use crate::session::{Actions, ArmFigure, EditAction, Session};
 use crate::ui::style;

@@ -1,25 +1,20 @@
 //! Figures and formulas of the arm with the numbers of the current pose.
 
-mod drawing_labels;
+mod drawing;
 mod elbow;
 mod formulas;
 mod hierarchy;
-mod law_of_cosines;
-mod lit;
 mod pointer;
 mod pops;
-mod reach_curve;
-mod reach_meter;
-mod same_step;
+mod reach;
 mod triangle;
 mod twist_references;
 
 use egui::{Ui, vec2};
 
 use crate::session::{Actions, ArmFigure, Session, TourState};
-use crate::ui::pose_summary;
-use crate::ui::widgets;
-use lit::Lit;
+use crate::ui::{pose_summary, widgets};
+use drawing::Lit;
 
 /// The triangle of the arm, a sentence on its pose, and its angles and lengths. Returns the figure
 /// under the mouse.
@@ -35,7 +30,7 @@ pub(in crate::ui) fn triangle(
     widgets::section(ui, "Hierarchy", |ui| hierarchy::ui(ui, session, lit, actions));
     widgets::section(ui, "Pointer", |ui| pointer::ui(ui, session, lit));
     widgets::section(ui, "Elbow triangle", |ui| elbow::triangle(ui, session, lit));
-    widgets::section(ui, "Law of cosines", |ui| law_of_cosines::ui(ui, session, lit));
+    widgets::section(ui, "Law of cosines", |ui| elbow::law_of_cosines(ui, session, lit));
     widgets::section(ui, "Positions", |ui| elbow::positions(ui, session, lit));
     lit.pointed()
 }
@@ -47,13 +42,13 @@ pub(in crate::ui) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions
 
 /// The distances that the hand can have, and those that it has.
 pub(in crate::ui) fn reach(ui: &mut Ui, session: &Session) {
-    reach_meter::ui(ui, session);
+    reach::meter(ui, session);
     sentence(ui, session);
     // A step of the tour asks for what this section shows.
     if session.tour().is_none_or(TourState::shows_result) {
-        widgets::section(ui, "Same step, two poses", |ui| same_step::ui(ui, session));
+        widgets::section(ui, "Same step, two poses", |ui| reach::same_step(ui, session));
     }
-    widgets::section(ui, "Reach curve", |ui| reach_curve::ui(ui, session));
+    widgets::section(ui, "Reach curve", |ui| reach::curve(ui, session));
 }
 
 /// The elbow's jumps with their causes and fixes.

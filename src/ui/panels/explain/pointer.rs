@@ -6,9 +6,8 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::drawing_labels::{Labels, beside};
+use super::drawing::{FigureLine, Labels, Lit, around, beside};
 use super::formulas::{FormulaRow, degrees, length, table};
-use super::lit::{FigureLine, Lit};
 use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
 use crate::ui::style;
@@ -140,7 +139,7 @@ impl RightTriangle {
             let both = [beside(from, to), beside(to, from)].concat();
             labels.write(self.names[nth], colour, self.figures[nth], &both);
         }
-        let around = super::drawing_labels::around(shoulder, ARC, 0.5 * self.angle);
+        let around = around(shoulder, ARC, 0.5 * self.angle);
         labels.write(self.names[3], accent, self.figures[3], &around);
         labels.written()
     }

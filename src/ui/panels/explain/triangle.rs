@@ -6,8 +6,7 @@ use egui::{
     Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
-use super::drawing_labels::{Labels, Place, around, beside};
-use super::lit::{FigureLine, Lit};
+use super::drawing::{FigureLine, Labels, Lit, Place, around, beside};
 use crate::document::Arm;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::session::{ArmFigure, Session};

@@ -4,10 +4,10 @@
 use egui::Ui;
 use glam::Vec3;
 
-use super::choice::Choice;
 use crate::document::{Channel, PathKind, WavyRing};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, EditAction, Session};
+use crate::ui::widgets::Choice;
 use crate::ui::widgets::{AXES, PointSliders, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {

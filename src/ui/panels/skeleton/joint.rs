@@ -5,11 +5,11 @@ use core::f32::consts::PI;
 use egui::Ui;
 use glam::Vec3;
 
-use super::choice::Choice;
 use super::targets;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit};
 use crate::session::{Actions, EditAction, Session};
+use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 use crate::ui::{labels, style};
 

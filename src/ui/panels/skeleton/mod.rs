@@ -1,20 +1,19 @@
 //! The joints, targets and path of the skeleton.
 
-mod choice;
 mod follow_path;
 mod joint;
 mod outliner;
 mod skin;
 mod targets;
 
-use crate::ui::widgets::{self, AXES, PointSliders};
+pub(in crate::ui) use targets::note_height;
+
 use egui::Ui;
 use glam::Vec3;
 
 use crate::document::{Channel, RigKind, Target};
 use crate::session::{Actions, EditAction, Session};
-
-pub(in crate::ui) use targets::note_height;
+use crate::ui::widgets::{self, AXES, PointSliders};
 
 /// The target of the selected joint, of which the panel has a note; `None` without one.
 pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {

@@ -4,14 +4,12 @@ use std::time::Duration;
 
 use egui::Ui;
 
-use super::choice::Choice;
 use crate::document::{Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, MeshSkin, SkinMeshError, SkinSource};
 use crate::session::{Actions, EditAction, FileAction, PathDialog, Session, TransactionAction};
-use crate::ui::panels::overlays;
 use crate::ui::style;
-use crate::ui::widgets::{self, Segment, Slider};
+use crate::ui::widgets::{self, Choice, Segment, Slider};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(skin) = &session.skeleton_rig().skin else {
@@ -54,7 +52,7 @@ fn details(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let all = [Overlay::Wireframe, Overlay::SkinWeights, Overlay::CompareSkinning];
     let is_shown = session.shown().display.shows(Overlay::Skin);
     let why_not = (!is_shown).then_some("Show the skin first");
-    overlays::check_boxes(ui, session, 2, &all, why_not, actions);
+    widgets::check_boxes(ui, session, 2, &all, why_not, actions);
     if is_shown && session.shown().display.shows(Overlay::SkinWeights) {
         match session.selected().and_then(|joint| session.skeleton_rig().skeleton.joint(joint)) {
             Some(joint) => legend(ui, &joint.name),

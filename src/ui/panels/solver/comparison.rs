@@ -1,4 +1,5 @@
-//! The comparison ("race") of all solvers: iterations, error and time of every solver.
+//! The comparison ("race") of all solvers: iterations, error and time of every solver; and the reason
+//! why solvers are disabled.
 
 use core::time::Duration;
 
@@ -6,11 +7,10 @@ use egui::{
     Align, Color32, Grid, Layout, Rect, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
-use super::can_solve::why_not;
 use crate::kinematics::chain_ik::{Method, Report, Status};
 use crate::session::{Actions, ComparedSolver, Session, SolverAction};
-use crate::ui::style;
 use crate::ui::widgets::{self, format};
+use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.comparison() else {
@@ -118,5 +118,20 @@ fn duration(time: Duration) -> String {
         ..1_000.0 => format!("{micros:.0} µs"),
         ..100_000.0 => format!("{:.1} ms", micros / 1e3),
         _ => format!("{:.0} ms", micros / 1e3),
+    }
+}
+
+/// The reason why solvers are disabled; `None` if they can run.
+pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
+    let rig = session.skeleton_rig();
+    let enabled = rig.targets.iter().filter(|target| target.enabled);
+    if let Some(reason) = enabled.filter_map(|it| labels::why_on_path(session, it.joint)).next() {
+        Some(reason)
+    } else if rig.targets.is_empty() {
+        Some("Add a target to a joint first")
+    } else if !rig.targets.iter().any(|target| target.enabled) {
+        Some("Enable a target first")
+    } else {
+        None
     }
 }

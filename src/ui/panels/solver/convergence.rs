@@ -1,14 +1,18 @@
-//! A plot of the solver's error against the iteration, on a logarithmic scale.
+//! A plot of the solver's error against the iteration, on a logarithmic scale; the slider through the
+//! iterations of a run, and the button that applies the shown pose.
 
 use core::ops::RangeInclusive;
 
-use egui::{Rangef, Stroke, Ui, Vec2b};
+use egui::{Align, Color32, Layout, Rangef, Slider, Stroke, Ui, Vec2b};
 use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints, Points, VLine};
 
 use crate::kinematics::chain_ik::Method;
-use crate::session::{Iterate, Session, ShownIteration, SolverRun};
+use crate::session::{
+    Actions, EditAction, Iterate, Session, ShownIteration, SolverAction, SolverRun,
+};
+use crate::ui::keyboard::focus;
 use crate::ui::style;
-use crate::ui::widgets::{format, plot};
+use crate::ui::widgets::{self, format, plot};
 
 const HEIGHT: f32 = 132.0;
 /// Smallest error on the scale, as a fraction of the skeleton's reach.
@@ -29,7 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
     let response = plot::still("convergence", HEIGHT)
         .custom_x_axes(vec![
-            AxisHints::new_x().formatter(iteration).label_spacing(Rangef::new(20.0, 28.0)),
+            AxisHints::new_x().formatter(iteration_mark).label_spacing(Rangef::new(20.0, 28.0)),
         ])
         .x_grid_spacer(egui_plot::uniform_grid_spacer(|grid| {
             let step = round_step((grid.bounds.1 - grid.bounds.0) / 4.0);
@@ -110,7 +114,7 @@ fn round_step(step: f64) -> f64 {
 }
 
 /// Label of an iteration; empty if the right edge of the plot would cut the label off.
-fn iteration(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
+fn iteration_mark(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
     let edge = shown.end() - 0.04 * (shown.end() - shown.start());
     if mark.value > edge { String::new() } else { mark.value.to_string() }
 }
@@ -121,5 +125,54 @@ fn power_of_ten(exponent: f64) -> String {
     match exponent.round() as i32 {
         exponent if exponent.abs() <= DIGITS => 10_f64.powi(exponent).to_string(),
         exponent => format!("1e{exponent}"),
+    }
+}
+
+pub(in crate::ui) fn iteration(
+    ui: &mut Ui,
+    session: &Session,
+    shown: ShownIteration,
+    actions: &mut Actions,
+) {
+    slider(ui, shown, actions);
+    apply(ui, session, shown, actions);
+}
+
+fn slider(ui: &mut Ui, shown: ShownIteration, actions: &mut Actions) {
+    let (mut number, latest) = (shown.number, shown.latest);
+    ui.horizontal(|ui| {
+        let label = ui.label("Iteration");
+        let value_width = number_width(ui, latest) + ui.spacing().item_spacing.x;
+        ui.spacing_mut().slider_width = (ui.available_width() - value_width).max(40.0);
+        // Without a second value the slider could not be laid out.
+        let slider = ui.add(Slider::new(&mut number, 0..=latest.max(1))).labelled_by(label.id);
+        focus::leave_letters(ui, slider.id);
+        let slider = slider.on_hover_text("Show the pose of an iteration: 0 is FK (, and .)");
+        if slider.changed() {
+            actions.push(SolverAction::Show(number));
+        }
+    });
+}
+
+/// Width of the box of a number of up to `most`, in points.
+fn number_width(ui: &Ui, most: u32) -> f32 {
+    let font = ui.style().drag_value_text_style.resolve(ui.style());
+    let text = ui.painter().layout_no_wrap(most.to_string(), font, Color32::PLACEHOLDER);
+    let spacing = ui.spacing();
+    spacing.interact_size.x.max(text.size().x + 2.0 * spacing.button_padding.x)
+}
+
+fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Actions) {
+    let nothing = match shown.number {
+        _ if session.comparison().is_some() => {
+            Some("End the race and run one solver to apply its pose")
+        }
+        0 => Some("Iteration 0 is the FK pose already"),
+        _ => None,
+    };
+    let tooltip = "Write the shown pose to the joints' own angles (FK)";
+    let layout = Layout::top_down_justified(Align::Center);
+    if ui.with_layout(layout, |ui| widgets::button(ui, "Apply pose", tooltip, nothing)).inner {
+        actions.push(EditAction::ApplyPose);
     }
 }

@@ -1,10 +1,8 @@
 //! The solver of the skeleton: method, settings, status, convergence and comparison.
 
-mod can_solve;
 mod comparison;
 mod convergence;
 mod inside;
-mod iteration;
 mod skin_areas;
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
@@ -13,7 +11,7 @@ use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
 use crate::ui::labels;
 use crate::ui::widgets::{self, NumberField, format};
-use can_solve::why_not;
+use comparison::why_not;
 
 /// The method and its settings, a run of it, and the iterations of that run.
 pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -62,7 +60,7 @@ fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions
     };
     ui.weak("Up: error · across: iterations · dashed: tolerance");
     convergence::ui(ui, session);
-    iteration::ui(ui, session, shown, actions);
+    convergence::iteration(ui, session, shown, actions);
 }
 
 fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {

@@ -1,22 +1,46 @@
-//! Settings of a limb's target: elbow, hand and soft limits.
+//! The joints that a target moves, the whole body or a limb; settings of a limb's target: elbow, hand
+//! and soft limits; the space in which a target or a pole is fixed.
 
 use core::mem::discriminant;
 
 use egui::Ui;
 use glam::Vec3;
 
-use super::super::choice::Choice;
-use super::space;
 use crate::document::{Channel, Target};
 use crate::kinematics::limb_ik::{ElbowReference, Limb};
 use crate::kinematics::twist::Stereographic;
-use crate::rig::{LimbSettings, TargetKind};
+use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
 use crate::session::{Actions, EditAction, Session};
+use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders};
+
+pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
+    let no_limb = Limb::ending_at(session.skeleton(), target.joint).err();
+    let no_limb = no_limb.map(|reason| format!("No limb: {reason}"));
+    let choice = Choice {
+        label: "Moves",
+        name: "Target kind",
+        tooltip: "Choose the joints that the target moves",
+        shown: if target.limb().is_some() { "Limb" } else { "Whole body" },
+    };
+    choice.show(ui, |list| {
+        let is_limb = target.limb().is_some();
+        let tooltip = "Solve from the root, together with the other whole-body targets";
+        if list.item(!is_limb, "Whole body", tooltip, None) {
+            let kind = TargetKind::WholeBody;
+            actions.push(EditAction::SetTarget(Target { kind, ..target }));
+        }
+        let tooltip = "Solve the two bones above the tip in closed form";
+        if list.item(is_limb, "Limb", tooltip, no_limb.as_deref()) {
+            let kind = TargetKind::Limb(LimbSettings::default());
+            actions.push(EditAction::SetTarget(Target { kind, ..target }));
+        }
+    });
+}
 
 const NO_HAND: &str = "There is no hand or foot: no single joint is at the tip";
 
-pub(super) fn ui(
+pub(super) fn settings(
     ui: &mut Ui,
     session: &Session,
     target: Target,
@@ -115,7 +139,7 @@ fn pole(
     sliders.show(ui, session, actions, |pole| {
         set(LimbSettings { reference: ElbowReference::Pole(pole), ..settings })
     });
-    space::of_pole(ui, session, target, now, actions);
+    of_pole(ui, session, target, now, actions);
 }
 
 /// Shows whether the hand or foot follows the lower bone or keeps its orientation, and its angles.
@@ -166,4 +190,76 @@ fn hand(
             set(LimbSettings { orientation: Some(turned), ..settings })
         });
     }
+}
+
+/// Shows the choice of the target's space.
+pub(super) fn of_target(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+    let choice = Choice {
+        label: "Moves with",
+        name: "Target space",
+        tooltip: "Fix the target to the world or to a joint; it stays where it is",
+        shown: name(session.skeleton_rig(), target.space),
+    };
+    let put = |target: &mut Target, space| target.space = space;
+    spaces(ui, session, target, target.space, &choice, put, |space| {
+        actions.push(EditAction::SetTargetSpace { joint: target.joint, space });
+    });
+}
+
+/// Shows the choice of the space of a limb's pole.
+pub(super) fn of_pole(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    now: TargetSpace,
+    actions: &mut Actions,
+) {
+    let choice = Choice {
+        label: "Pole moves with",
+        name: "Pole space",
+        tooltip: "Fix the pole to the world or to a joint; it stays where it is",
+        shown: name(session.skeleton_rig(), now),
+    };
+    let put = |target: &mut Target, space| {
+        if let Some(limb) = target.limb_mut() {
+            limb.pole_space = space;
+        }
+    };
+    spaces(ui, session, target, now, &choice, put, |space| {
+        actions.push(EditAction::SetPoleSpace { joint: target.joint, space });
+    });
+}
+
+fn name(rig: &SkeletonRig, space: TargetSpace) -> &str {
+    space.joint().and_then(|joint| rig.skeleton.joint(joint)).map_or("World", |joint| &joint.name)
+}
+
+/// Shows a choice of spaces. `put` writes a space into a target, to find out whether the target could
+/// be evaluated there.
+fn spaces(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    now: TargetSpace,
+    choice: &Choice<'_>,
+    put: impl Fn(&mut Target, TargetSpace),
+    mut choose: impl FnMut(TargetSpace),
+) {
+    choice.show(ui, |list| {
+        let mut rig = session.skeleton_rig().clone();
+        let Some(index) = rig.target(target.joint) else { return };
+        let joints = session.skeleton().ids().map(TargetSpace::Joint);
+        for space in std::iter::once(TargetSpace::World).chain(joints) {
+            put(&mut rig.targets[index], space);
+            let refused = rig.check_target_spaces().err().map(|error| error.reason());
+            let name = name(session.skeleton_rig(), space);
+            let tooltip = match space {
+                TargetSpace::World => "Stay in the world",
+                TargetSpace::Joint(_) => "Move and turn with this joint",
+            };
+            if list.item(space == now, name, tooltip, refused) {
+                choose(space);
+            }
+        }
+    });
 }

@@ -1,21 +1,19 @@
 //! The list of targets with their distances, and the target of the selected joint.
 
-mod kind;
 mod limb;
-mod motion;
-mod space;
 mod status;
+
+pub(in crate::ui) use status::{height as note_height, ui as note};
 
 use egui::{RichText, Role, Ui, WidgetInfo};
 
-use crate::document::{Channel, SkeletonRig, Target, TargetPath};
+use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetKind, TargetReport};
-use crate::session::{Actions, EditAction, SelectAction, Session};
+use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
 use crate::ui::labels;
+use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
-
-pub(in crate::ui) use status::{height as note_height, ui as note};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
@@ -90,16 +88,16 @@ pub(in crate::ui) fn selected(
 ) {
     let step = session.shown().grid_cell() * 0.1;
     influence(ui, session, target, actions);
-    kind::ui(ui, session, target, actions);
+    limb::kind(ui, session, target, actions);
     place(ui, session, target, step, actions);
-    space::of_target(ui, session, &target, actions);
+    limb::of_target(ui, session, &target, actions);
     match target.kind {
-        TargetKind::Limb(settings) => limb::ui(ui, session, target, settings, actions),
+        TargetKind::Limb(settings) => limb::settings(ui, session, target, settings, actions),
         TargetKind::WholeBody => weight(ui, session, target, actions),
     }
-    motion::path(ui, target, actions);
+    path(ui, target, actions);
     if target.motion.path != TargetPath::Still {
-        motion::ui(ui, session, target, step, actions);
+        motion(ui, session, target, step, actions);
     }
     matches(ui, session, &target, actions);
 }
@@ -176,5 +174,58 @@ fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Action
         if widgets::button(ui, "FK to pose", tooltip, disabled) {
             actions.push(EditAction::MatchFkToPose(target.joint));
         }
+    });
+}
+
+const PATHS: [(TargetPath, &str, &str); 3] = [
+    (TargetPath::Still, "Still", "Stay in place, or where keys put it"),
+    (TargetPath::Circle, "Circle", "Go around a circle"),
+    (TargetPath::FigureEight, "Figure eight", "Go around an eight"),
+];
+
+/// Shows the choice of the path.
+fn path(ui: &mut Ui, target: Target, actions: &mut Actions) {
+    let now = PATHS.iter().find(|(path, ..)| *path == target.motion.path);
+    let choice = Choice {
+        label: "Motion",
+        name: "Motion",
+        tooltip: "Move the target along a path during playback",
+        shown: now.map_or("", |now| now.1),
+    };
+    choice.show(ui, |list| {
+        for (path, name, tooltip) in PATHS {
+            if list.item(path == target.motion.path, name, tooltip, None) {
+                let motion = TargetMotion { path, ..target.motion };
+                actions.push(EditAction::SetTarget(Target { motion, ..target }));
+                actions.push(PlaybackAction::Play(path != TargetPath::Still));
+            }
+        }
+    });
+}
+
+/// Shows the size and the period of the path.
+fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
+    let set = |motion| EditAction::SetTarget(Target { motion, ..target });
+    widgets::pair(ui, "Radius", |ui| {
+        let radius = NumberField {
+            name: "Radius",
+            value: target.motion.radius,
+            unit: "",
+            step,
+            digits: format::decimals(step),
+            tooltip: "Set the radius of the path",
+        };
+        radius.show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
+    });
+    widgets::pair(ui, "Period", |ui| {
+        let period = NumberField {
+            name: "Period",
+            value: target.motion.period,
+            unit: " s",
+            step: 0.1,
+            digits: 2,
+            tooltip: "Set the time for one round",
+        };
+        period.show(ui, session, actions, |period| set(TargetMotion { period, ..target.motion }));
     });
 }

@@ -2,6 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
+use super::end;
 use crate::document::Target;
 use crate::kinematics::chain_ik::Status;
 use crate::kinematics::diagnosis::Diagnosis;
@@ -29,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions
     });
     ui.separator();
     ScrollArea::vertical().id_salt("note").auto_shrink(false).show(ui, |ui| {
-        let end = super::end(rig, target).map_or("", |end| end.1);
+        let end = end(rig, target).map_or("", |end| end.1);
         ui.spacing_mut().item_spacing.y = 3.0;
         match why.is_empty() {
             true => {

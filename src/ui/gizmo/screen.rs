@@ -1,0 +1,107 @@
+//! The screen that gizmos are painted on: projection from world to screen, distances and colours,
+//! and the lines of a locked axis.
+
+use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use glam::Vec3;
+
+use crate::document::{Camera, Projection, Ray};
+use crate::session::{Constraint, Drag, Session};
+use crate::ui::style;
+
+/// Converts world points to screen positions in points, and screen positions to rays in the world.
+pub(in crate::ui) struct ScreenProjection {
+    pub rect: Rect,
+    pub projection: Projection,
+}
+
+impl ScreenProjection {
+    pub fn new(rect: Rect, camera: &Camera) -> Self {
+        Self { rect, projection: camera.projection(rect.aspect_ratio()) }
+    }
+
+    pub fn place(&self, point: Vec3) -> Option<Pos2> {
+        let at = self.projection.project(point)?;
+        Some(self.rect.center() + vec2(at.x, -at.y) * self.rect.size() / 2.0)
+    }
+
+    pub fn ray(&self, at: Pos2) -> Ray {
+        self.projection.ray(self.normalised(at))
+    }
+
+    /// The screen position in normalised coordinates: −1 to 1 across the viewport, with y up.
+    pub fn normalised(&self, at: Pos2) -> glam::Vec2 {
+        let from_centre = (at - self.rect.center()) / (self.rect.size() / 2.0);
+        glam::Vec2::new(from_centre.x, -from_centre.y)
+    }
+
+    pub fn units_per_point(&self, at: Vec3) -> f32 {
+        self.projection.half_height_at(at) / (self.rect.height() / 2.0)
+    }
+
+    /// Distance of a world point from the eye along the view direction.
+    pub fn depth(&self, point: Vec3) -> f32 {
+        (point - self.projection.eye).dot(self.projection.forward)
+    }
+
+    /// Screen vector, in points, of a world vector at the world point `at`, without perspective.
+    pub fn direction(&self, vector: Vec3, at: Vec3) -> Vec2 {
+        let [right, up] = [self.projection.right, self.projection.up].map(Vec3::normalize);
+        vec2(vector.dot(right), -vector.dot(up)) / self.units_per_point(at)
+    }
+}
+
+pub(in crate::ui) fn bright(colour: Color32) -> Color32 {
+    colour.lerp_to_gamma(Color32::WHITE, 0.35)
+}
+
+/// Distance in points from a screen position to a line segment; infinite if an end of the segment
+/// is not finite, as behind the eye.
+pub(in crate::ui) fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {
+    if !(from.is_finite() && to.is_finite()) {
+        return f32::INFINITY;
+    }
+    let along = to - from;
+    let part = if along.length_sq() > 0.0 {
+        ((at - from).dot(along) / along.length_sq()).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    at.distance(from + along * part)
+}
+
+/// Draws a line along the locked axis, or two along those of the locked plane, through the point that
+/// is dragged.
+pub(in crate::ui) fn locked_axis(
+    painter: &Painter,
+    ui: &Ui,
+    screen: &ScreenProjection,
+    session: &Session,
+) {
+    let Some(drag) = session.drag().and_then(Drag::point) else { return };
+    let Some(constraint) = drag.constraint() else { return };
+    let is_free = |axis: usize| match constraint {
+        Constraint::Axis(free) => axis == free,
+        Constraint::Plane(normal) => axis != normal,
+    };
+    let colours = style::palette(ui).axes;
+    for axis in (0..3).filter(|axis| is_free(*axis)) {
+        let stroke = Stroke::new(1.5, style::colour(colours[axis]));
+        line(painter, screen, drag.at(), Vec3::AXES[axis], stroke);
+    }
+}
+
+/// Draws a line in world space to both sides of a point, as far as it is before the eye.
+fn line(painter: &Painter, screen: &ScreenProjection, at: Vec3, along: Vec3, stroke: Stroke) {
+    /// Length to each side, in heights of the view.
+    const FARTHEST: f32 = 20.0;
+    const HALVINGS: i32 = 12;
+    let Some(here) = screen.place(at) else { return };
+    let height = screen.units_per_point(at) * screen.rect.height();
+    for direction in [along, -along] {
+        let lengths = (0..HALVINGS).map(|halving| FARTHEST * 0.5_f32.powi(halving) * height);
+        let ends = lengths.filter_map(|length| screen.place(at + direction * length));
+        if let Some(end) = ends.into_iter().next() {
+            painter.line_segment([here, end], stroke);
+        }
+    }
+}

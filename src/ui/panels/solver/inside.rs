@@ -1,0 +1,351 @@
+//! The parts of one iteration: a slider through them, switches for their marks in the view, and their
+//! numbers.
+
+use egui::{Align, Color32, Grid, Layout, RichText, Sense, Slider, Ui, vec2};
+
+use crate::kinematics::chain_ik::{
+    AngleChange, Ellipsoid, Gradient, Method, SolverOptions, StepTaken, SubStep, SubStepKind, Turn,
+};
+use crate::kinematics::skeleton::JointId;
+use crate::session::{
+    Actions, EditAction, InsideLayer, Session, SolverAction, SolverRun, ViewAction,
+};
+use crate::ui::keyboard::focus;
+use crate::ui::widgets::{self, format};
+use crate::ui::{commands, style};
+
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let Some(run) = session.solver_run() else { return };
+    switch(ui, run, actions);
+    let Some(shown) = run.shown_part() else { return };
+    let parts = run.parts();
+    slider(ui, run, shown, parts.len(), actions);
+    buttons(ui, session, run, actions);
+    let title = parts[shown].kind.title();
+    ui.add_space(4.0);
+    ui.label(RichText::new(title).strong().color(style::accent(ui)));
+    legend(ui, session, &parts[shown].kind, actions);
+    if run.method() == Method::DampedLeastSquares {
+        damping(ui, session, actions);
+    }
+    numbers(ui, session, run, shown);
+}
+
+fn switch(ui: &mut Ui, run: &SolverRun, actions: &mut Actions) {
+    let mut is_on = run.shown_part().is_some() || run.is_walking();
+    let nothing = match run.shown().iteration {
+        _ if run.is_running() => Some("Pause the solver first"),
+        0 => Some("Make an iteration first: press Step"),
+        _ => None,
+    };
+    let check = ui.add_enabled(nothing.is_none(), egui::Checkbox::new(&mut is_on, "Look inside"));
+    let check = check.on_hover_text("Show what the method computes in this iteration (Shift .)");
+    let check = check.on_disabled_hover_text(nothing.unwrap_or_default());
+    if check.changed() {
+        let part = is_on.then_some(0);
+        actions.push(SolverAction::ShowPart { iteration: run.shown().iteration, part });
+    }
+}
+
+fn slider(ui: &mut Ui, run: &SolverRun, shown: usize, count: usize, actions: &mut Actions) {
+    let mut number = shown + 1;
+    ui.horizontal(|ui| {
+        let label = ui.label("Part");
+        // Room for the numbers of a long sweep, such as "100 / 100".
+        const VALUE_WIDTH: f32 = 72.0;
+        ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).max(40.0);
+        // Without a second value the slider could not be laid out.
+        let slider = Slider::new(&mut number, 1..=count.max(2)).suffix(format!(" / {count}"));
+        let slider = ui.add(slider).labelled_by(label.id);
+        focus::leave_letters(ui, slider.id);
+        let slider = slider.on_hover_text("Show a part of the iteration (Shift , and Shift .)");
+        if slider.changed() {
+            let part = Some(number.clamp(1, count) - 1);
+            actions.push(SolverAction::ShowPart { iteration: run.shown().iteration, part });
+        }
+    });
+}
+
+fn buttons(ui: &mut Ui, session: &Session, run: &SolverRun, actions: &mut Actions) {
+    let first = commands::previous_part(session).is_none().then_some("This is the first part");
+    let last = (run.is_over() && commands::next_part(session).is_empty())
+        .then_some("This is the last part of the last iteration");
+    ui.columns(3, |columns| {
+        let [back, walk, next] = columns else { return };
+        if wide(back, "Back", "Show the part before (Shift ,)", first) {
+            actions.extend(commands::previous_part(session));
+        }
+        let (name, tooltip) = match run.is_walking() {
+            true => ("Stand", "Stop at this part"),
+            false => ("Walk", "Show the parts of all iterations slowly"),
+        };
+        if wide(walk, name, tooltip, if run.is_walking() { None } else { last }) {
+            actions.push(SolverAction::Walk(!run.is_walking()));
+        }
+        if wide(next, "Next", "Show the next part, or make an iteration (Shift .)", last) {
+            actions.extend(commands::next_part(session));
+        }
+    });
+}
+
+fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
+    let layout = Layout::top_down_justified(Align::Center);
+    ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
+}
+
+/// The damping λ, whose effect on the ellipsoid is seen at once.
+fn damping(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let options = session.skeleton_rig().solver;
+    let slider = widgets::Slider {
+        name: "Damping of this iteration",
+        label: "λ",
+        term: Some("Damping"),
+        tooltip: "Set the damping λ, in chain lengths: the step turns less along short axes",
+        value: options.damping,
+        range: (0.001, 0.5),
+        default: SolverOptions::default().damping,
+        step: 0.01,
+        ..widgets::Slider::default()
+    };
+    slider.show(ui, session, actions, |damping| {
+        EditAction::SetSolver(SolverOptions { damping, ..options })
+    });
+}
+
+/// A thing in the view: its colours, its name and what it means.
+struct Entry {
+    layer: InsideLayer,
+    colours: Vec<Color32>,
+    name: &'static str,
+    meaning: &'static str,
+}
+
+fn legend(ui: &mut Ui, session: &Session, kind: &SubStepKind, actions: &mut Actions) {
+    for entry in entries(ui, kind) {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let mut shown = session.inside_layers().shows(entry.layer);
+            let check = ui.checkbox(&mut shown, entry.name);
+            for colour in &entry.colours {
+                let (rect, _) = ui.allocate_exact_size(vec2(12.0, 3.0), Sense::hover());
+                ui.painter().rect_filled(rect, 1.0, *colour);
+            }
+            if check.on_hover_text(format!("Show {}", entry.meaning)).changed() {
+                actions.push(ViewAction::ShowInside(entry.layer, shown));
+            }
+        });
+        ui.label(RichText::new(capitalized(entry.meaning)).weak().small());
+    }
+}
+
+fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
+    let palette = style::palette(ui);
+    let axes = palette.axes.map(style::colour).to_vec();
+    let (accent, guide) = (style::colour(palette.accent), style::colour(palette.guide));
+    let entry = |layer, colours, name, meaning| Entry { layer, colours, name, meaning };
+    match kind {
+        SubStepKind::Gradient(Gradient { damping, .. }) => {
+            let columns = entry(
+                InsideLayer::Columns,
+                axes,
+                "Columns of the Jacobian",
+                "where the tip would go per radian of each angle, x, y and z; of the selected joint, or of all",
+            );
+            let ellipsoid = damping.map(|_| {
+                entry(
+                    InsideLayer::Ellipsoid,
+                    vec![guide, accent],
+                    "Ellipsoid of J·Jᵀ",
+                    "how fast the tip can go in each direction, not to scale, and what the damping λ leaves of it",
+                )
+            });
+            [columns].into_iter().chain(ellipsoid).collect()
+        }
+        SubStepKind::Step(_) => vec![entry(
+            InsideLayer::Step,
+            vec![accent, guide],
+            "Step",
+            "how the tip moved, dashed where the Jacobian sent it, and by how much each angle turned; in thin lines, the pose before",
+        )],
+        SubStepKind::Turn(_) => vec![entry(
+            InsideLayer::Rays,
+            vec![guide, accent],
+            "Rays and arc",
+            "the rays from the joint to the tip and to its target, and the turn between them; in thin lines, the pose before",
+        )],
+        SubStepKind::Backward(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent],
+            "Backward pass",
+            "the tip at its target and each joint pulled after it, at its distance; the root has left its place",
+        )],
+        SubStepKind::Forward(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent, guide],
+            "Forward pass",
+            "after the backward pass, the root back in its place and each joint pushed after it, at its distance",
+        )],
+        SubStepKind::Relaxed(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent],
+            "Points of the joints",
+            "each joint where the bones at its ends have moved it: the root in its place, the last bone at its target, and other bones stretched or shortened until the points settle",
+        )],
+        SubStepKind::LaidOut(_) => vec![entry(
+            InsideLayer::Passes,
+            vec![accent, guide],
+            "Bones laid out",
+            "from the root, each bone at its own length towards its point: the pose",
+        )],
+        SubStepKind::PlaceElbow(_) | SubStepKind::Aim(_) => vec![entry(
+            InsideLayer::Triangle,
+            vec![accent, guide],
+            "Triangle and circle",
+            "the triangle of shoulder, elbow and target, and the circle of all elbows; in thin lines, the pose before",
+        )],
+        _ => Vec::new(),
+    }
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Number of angles in a table, so that it stays readable; those that turn most are listed.
+const MOST: usize = 12;
+
+fn numbers(ui: &mut Ui, session: &Session, run: &SolverRun, shown: usize) {
+    let parts = run.parts();
+    let part: &SubStep = &parts[shown];
+    ui.add_space(4.0);
+    match &part.kind {
+        SubStepKind::Gradient(gradient) => jacobian(ui, session, gradient),
+        SubStepKind::Step(step) => angles(ui, session, step),
+        SubStepKind::Turn(turn) => turned(ui, session, turn),
+        _ => {}
+    }
+    let before = match shown.checked_sub(1) {
+        Some(before) => parts[before].error,
+        None => {
+            let iteration = run.shown().iteration.saturating_sub(1);
+            run.iterates().at(iteration).error
+        }
+    };
+    pairs(
+        ui,
+        "error",
+        &[("Error before", format::short(before)), ("Error after", format::short(part.error))],
+    );
+}
+
+/// The lengths of the columns, and the axes of the ellipsoid.
+fn jacobian(ui: &mut Ui, session: &Session, gradient: &Gradient) {
+    let selection = session.selection();
+    let any = gradient.columns.iter().any(|column| selection.contains(&column.joint));
+    let shown = gradient.columns.iter().filter(|it| !any || selection.contains(&it.joint));
+    let mut rows: Vec<[String; 2]> = shown
+        .map(|column| {
+            let name = format!("{} {}", name(session, column.joint), column.axis);
+            (column.by.length(), name)
+        })
+        .map(|(speed, name)| [name, format::short(speed)])
+        .collect();
+    rows.truncate(MOST);
+    table(ui, "columns", ["Angle", "Column, per radian"], &rows);
+    if let (Some(damping), [ellipsoid]) = (gradient.damping, &gradient.ellipsoids[..]) {
+        singular_values(ui, ellipsoid, damping);
+    }
+}
+
+fn singular_values(ui: &mut Ui, ellipsoid: &Ellipsoid, damping: f32) {
+    let gains = ellipsoid.gains(damping);
+    let rows: Vec<[String; 2]> = ellipsoid
+        .values
+        .iter()
+        .zip(gains)
+        .map(|(value, gain)| [format::short(*value), format!("{:.0} %", 100.0 * gain)])
+        .collect();
+    table(ui, "ellipsoid", ["Singular value σ", "Kept: σ²/(σ² + λ²)"], &rows);
+    pairs(ui, "damping", &[("Damping λ, as a length", format::short(damping))]);
+}
+
+/// Gradient and change of the angles that turn most, and the length of the step.
+fn angles(ui: &mut Ui, session: &Session, step: &StepTaken) {
+    let mut changes: Vec<&AngleChange> = step.changes.iter().filter(|it| it.by != 0.0).collect();
+    changes.sort_by(|one, other| other.by.abs().total_cmp(&one.by.abs()));
+    let rows: Vec<[String; 3]> = changes
+        .into_iter()
+        .take(MOST)
+        .map(|change| {
+            let limit = if change.is_at_limit { " limit" } else { "" };
+            [
+                format!("{} {}{limit}", name(session, change.joint), change.axis),
+                format::short(change.gradient),
+                format!("{:+.2}°", change.by.to_degrees()),
+            ]
+        })
+        .collect();
+    table(ui, "angles", ["Angle", "Gradient", "Δθ"], &rows);
+    let length = step.length.map(|length| ("Step length τ", format::short(length)));
+    let damping = step.damping.map(|damping| ("Damping λ, as a length", format::short(damping)));
+    let refused = (step.refused > 0).then(|| ("Refused before", step.refused.to_string()));
+    let rows: Vec<_> = [length, damping, refused].into_iter().flatten().collect();
+    pairs(ui, "step", &rows);
+}
+
+fn turned(ui: &mut Ui, session: &Session, turn: &Turn) {
+    let rows = [
+        ("Joint", name(session, turn.joint)),
+        ("Turned by", format!("{:.2}°", turn.angle.to_degrees())),
+    ];
+    pairs(ui, "turn", &rows);
+}
+
+fn name(session: &Session, joint: JointId) -> String {
+    session.skeleton().joint(joint).map_or_else(String::new, |joint| joint.name.clone())
+}
+
+fn table<const N: usize>(ui: &mut Ui, id: &str, titles: [&str; N], rows: &[[String; N]]) {
+    if rows.is_empty() {
+        return;
+    }
+    Grid::new(id).num_columns(N).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
+        for (column, title) in titles.into_iter().enumerate() {
+            cell(ui, column, RichText::new(title).weak().small());
+        }
+        ui.end_row();
+        for row in rows {
+            for (column, text) in row.iter().enumerate() {
+                let text = RichText::new(text);
+                cell(ui, column, if column == 0 { text } else { text.monospace() });
+            }
+            ui.end_row();
+        }
+    });
+    ui.add_space(2.0);
+}
+
+fn pairs(ui: &mut Ui, id: &str, rows: &[(&str, String)]) {
+    let rows: Vec<[String; 2]> =
+        rows.iter().map(|(name, value)| [(*name).to_owned(), value.clone()]).collect();
+    if rows.is_empty() {
+        return;
+    }
+    Grid::new(id).num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
+        for [name, value] in rows {
+            ui.label(name);
+            cell(ui, 1, RichText::new(value).monospace());
+            ui.end_row();
+        }
+    });
+}
+
+fn cell(ui: &mut Ui, column: usize, text: RichText) {
+    let align = if column == 0 { Align::Min } else { Align::Max };
+    let layout = match align {
+        Align::Min => Layout::left_to_right(Align::Center),
+        _ => Layout::right_to_left(Align::Center),
+    };
+    ui.with_layout(layout, |ui| ui.label(text));
+}

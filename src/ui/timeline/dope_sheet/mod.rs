@@ -1,0 +1,242 @@
+//! The dope sheet: a row for all keys and one for every keyed channel.
+
+pub(super) mod mouse;
+pub(super) mod row;
+
+use egui::containers::scroll_area::{DragScroll, ScrollSource};
+use egui::{
+    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
+    accesskit, pos2, vec2,
+};
+
+use super::areas::{self, ROW, TimelineAreas};
+use super::context_menu;
+use super::time_scale::TimeScale;
+use crate::document::Channel;
+use crate::session::{Actions, SelectAction, Session};
+use crate::ui::widgets::diamond;
+use crate::ui::{labels, style};
+use mouse::DopeSheetView;
+use row::{DopeSheetRow, SelectedKeys, channels};
+
+/// Distance in points from the centre of a key's diamond to a corner.
+const SIZE: f32 = 5.0;
+/// Half the height of a diamond among dense keys, in points.
+const SMALLEST: f32 = 2.0;
+/// A key that is closer than this distance, in points, to the key at its left has no tooltip.
+const NEAR: f32 = 5.0;
+
+pub(in crate::ui) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    scale: TimeScale,
+    areas: &TimelineAreas,
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    let channels = channels(session);
+    if channels.is_empty() {
+        let sentence = "No keys. Pose the rig and press K to add keys at the playhead";
+        areas::hint(ui, areas, sentence);
+        return;
+    }
+    let body = ui.interact(areas.keys, Id::unique("timeline rows"), Sense::click_and_drag());
+    body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Dope sheet"));
+    let shown = DopeSheet { session, scale, picked: SelectedKeys::new(session), areas, ruler };
+
+    let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
+    shown.row(ui, DopeSheetRow::All, first, actions);
+    let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
+    let offset = shown.scrolled(ui, &channels, rest, actions);
+
+    let sheet = DopeSheetView { session, scale, channels: &channels, area: areas.keys, offset };
+    mouse::press(ui, &sheet, &body, ruler, actions);
+    mouse::follow(ui, &sheet, actions);
+    context_menu::of_rows(ui, &sheet, &body, actions);
+    mouse::paint_box(ui, &sheet);
+}
+
+struct DopeSheet<'a> {
+    session: &'a Session,
+    scale: TimeScale,
+    picked: SelectedKeys,
+    areas: &'a TimelineAreas,
+    ruler: &'a Response,
+}
+
+impl DopeSheet<'_> {
+    /// Shows the visible rows of `channels` in a scroll area. Returns the scroll offset in points.
+    fn scrolled(
+        &self,
+        ui: &mut Ui,
+        channels: &[Channel],
+        rect: Rect,
+        actions: &mut Actions,
+    ) -> f32 {
+        // The wheel scrolls over the names only, because over the keys it zooms.
+        let mouse_wheel = ui.rect_contains_pointer(self.areas.names);
+        let source = ScrollSource { scroll_bar: true, drag: DragScroll::Never, mouse_wheel };
+        let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            let area = ScrollArea::vertical().id_salt("rows").auto_shrink(false);
+            area.scroll_source(source).show_viewport(ui, |ui, seen| {
+                ui.set_height(ROW * channels.len() as f32);
+                let (top, left) = (ui.max_rect().top(), rect.left());
+                let first = (seen.top() / ROW).floor().max(0.0) as usize;
+                let count = (seen.height() / ROW).ceil() as usize + 1;
+                for (row, channel) in channels.iter().enumerate().skip(first).take(count) {
+                    let at = pos2(left, top + ROW * row as f32);
+                    let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
+                    self.row(ui, DopeSheetRow::Channel(*channel), rect, actions);
+                }
+            })
+        });
+        scroll.inner.state.clamped_offset().y
+    }
+
+    fn row(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
+        let split = self.areas.keys.left();
+        let name = Rect::from_min_max(rect.min, pos2(split, rect.bottom()));
+        let keys = Rect::from_min_max(pos2(split, rect.top()), rect.max);
+        let line = ui.visuals().widgets.noninteractive.bg_stroke.color.gamma_multiply(0.6);
+        ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
+        match row {
+            DopeSheetRow::All => {
+                areas::line(ui, name, "All", ui.visuals().strong_text_color());
+            }
+            DopeSheetRow::Channel(channel) => self.name(ui, channel, name, actions),
+        }
+        self.keys(ui, row, keys, actions);
+        if let DopeSheetRow::Channel(channel) = row
+            && self.session.is_overridden(channel)
+        {
+            self.overridden(ui, channel, keys);
+        }
+    }
+
+    /// Shows the name of a channel. A click selects the channel, and with Shift or Ctrl adds it to
+    /// the selection or removes it.
+    fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
+        let session = self.session;
+        let selected = session.selected_channels().contains(&channel);
+        let shown = labels::channel(session, channel);
+        let id = Id::unique(("timeline channel", channel));
+        let response = ui.interact(rect, id, Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, true, selected, format!("Channel {shown}"))
+        });
+        let visuals = ui.visuals();
+        let inside = rect.shrink2(vec2(2.0, 1.0));
+        if selected {
+            ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
+        } else if response.hovered() {
+            ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
+        }
+        if response.has_focus() {
+            let kind = egui::StrokeKind::Inside;
+            ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, kind);
+        }
+        let is_of_rig = channel.rig().is_none_or(|rig| rig == session.rig());
+        let colour = match (selected || response.hovered(), is_of_rig) {
+            (true, _) => visuals.strong_text_color(),
+            (false, true) => visuals.text_color(),
+            (false, false) => visuals.weak_text_color(),
+        };
+        areas::line(ui, rect, &shown, colour);
+        if response.clicked() {
+            self.ruler.request_focus();
+            actions.push(row::clicked(ui, session, channel));
+        }
+        context_menu::of_channel(&response, session, channel, actions);
+        response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));
+    }
+
+    fn keys(&self, ui: &Ui, row: DopeSheetRow, rect: Rect, actions: &mut Actions) {
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        let (from, to) = self.scale.range();
+        let mut last = f32::NEG_INFINITY;
+        let times: Vec<f64> = row.times(self.session, from, to);
+        for (index, &time) in times.iter().enumerate() {
+            let x = self.scale.x(time);
+            let neighbours = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
+            let gaps =
+                neighbours.filter_map(|other| Some((self.scale.x(*times.get(other)?) - x).abs()));
+            let room = SMALLEST.max(0.5 * gaps.fold(f32::INFINITY, f32::min));
+            let picked = self.picked.has(row, time);
+            if x - last < 1.0 && !picked {
+                continue;
+            }
+            let at = pos2(x, rect.center().y);
+            let hovered = x - last >= NEAR && self.key(ui, row, time, at, rect, actions);
+            last = x;
+            let visuals = ui.visuals();
+            let plain = if row == DopeSheetRow::All {
+                visuals.weak_text_color()
+            } else {
+                visuals.text_color()
+            };
+            let (size, fill, rim) = match picked {
+                true => {
+                    (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
+                }
+                false => (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color)),
+            };
+            let size = if hovered { size + 1.0 } else { size.min(room) };
+            painter.add(diamond(at, size, fill, rim));
+        }
+    }
+
+    /// Adds the tooltip and the screen reader node of a key. Returns whether the mouse is over the
+    /// key.
+    fn key(
+        &self,
+        ui: &Ui,
+        row: DopeSheetRow,
+        time: f64,
+        at: egui::Pos2,
+        row_rect: Rect,
+        actions: &mut Actions,
+    ) -> bool {
+        let rect = Rect::from_center_size(at, vec2(2.0 * SIZE, 2.0 * SIZE + 2.0));
+        let (id, said) = match row {
+            DopeSheetRow::All => {
+                (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
+            }
+            DopeSheetRow::Channel(channel) => (
+                Id::unique(("timeline key", channel, time.to_bits())),
+                format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
+            ),
+        };
+        // A key senses no presses: the whole sheet handles them.
+        let response = ui.interact(rect.intersect(row_rect), id, Sense::hover());
+        let picked = self.picked.has(row, time);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, picked, &said));
+        ui.ctx().accesskit_node_builder(id, |node| node.add_action(accesskit::Action::Click));
+        if ui.input(|input| input.has_accesskit_action_request(id, accesskit::Action::Click)) {
+            actions.push(SelectAction::Keys(row.keys(self.session, time)));
+        }
+        let hovered = response.hovered();
+        response.on_hover_text(format!("Click to select, drag to move. {said}"));
+        hovered
+    }
+
+    /// Draws the mark of an unkeyed change of the channel at the playhead, with a tooltip.
+    fn overridden(&self, ui: &Ui, channel: Channel, rect: Rect) {
+        let at = pos2(self.scale.x(self.session.time()), rect.center().y);
+        let id = Id::unique(("timeline override", channel));
+        let size = vec2(4.0 * SIZE, ROW);
+        let response =
+            ui.interact(Rect::from_center_size(at, size).intersect(rect), id, Sense::hover());
+        let key = match self.session.channels_to_key().contains(&channel) {
+            true => "K",
+            false => "Shift+K",
+        };
+        let name = labels::channel(self.session, channel);
+        let said =
+            format!("{name}: unkeyed change, press {key} or it is lost when the time changes");
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
+        let rim = Stroke::new(2.0, style::accent(ui));
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        painter.add(diamond(at, SIZE + 2.0, Color32::TRANSPARENT, rim));
+        response.on_hover_text(said);
+    }
+}

@@ -1,0 +1,274 @@
+//! The mouse in the dope sheet: selects and moves keys, draws selection boxes.
+
+use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
+use glam::Vec3;
+
+use super::row::{DopeSheetRow, SelectedKeys};
+use crate::document::Channel;
+use crate::session::{
+    Actions, EditAction, Key, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
+};
+use crate::ui::timeline::areas::{ROW, take_keyboard};
+use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
+use crate::ui::timeline::time_scale::TimeScale;
+use crate::ui::{labels, style};
+
+/// Hit radius of a key, in points.
+const REACH: f32 = 7.0;
+/// Distance in points that the mouse must exceed for a press to become a drag.
+const SLACK: f32 = 3.0;
+
+/// The dope sheet as it lies on screen.
+pub(in crate::ui) struct DopeSheetView<'a> {
+    pub session: &'a Session,
+    pub scale: TimeScale,
+    pub channels: &'a [Channel],
+    pub area: Rect,
+    /// Scroll offset of the channels' rows in points.
+    pub offset: f32,
+}
+
+impl DopeSheetView<'_> {
+    /// The row at a screen position; `None` below the last row.
+    pub fn row(&self, at: Pos2) -> Option<DopeSheetRow> {
+        let y = at.y - self.area.top();
+        if y < ROW {
+            return Some(DopeSheetRow::All);
+        }
+        let row = ((y - ROW + self.offset) / ROW).floor().max(0.0) as usize;
+        self.channels.get(row).map(|channel| DopeSheetRow::Channel(*channel))
+    }
+
+    /// Row, and time in seconds, of the key nearest to a screen position; `None` if no key of the
+    /// row is within `REACH`.
+    pub fn key(&self, at: Pos2) -> Option<(DopeSheetRow, f64)> {
+        let row = self.row(at)?;
+        let (from, to) = (self.scale.time(at.x - REACH), self.scale.time(at.x + REACH));
+        let off = |time: &f64| (self.scale.x(*time) - at.x).abs();
+        let times = row.times(self.session, from, to).into_iter();
+        let nearest = times.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        Some((row, nearest))
+    }
+
+    /// Distance in points from the top of the first channel's row, which may be scrolled out of
+    /// view, down to a screen position.
+    fn content_y(&self, at: Pos2) -> f32 {
+        at.y - self.area.top() - ROW + self.offset
+    }
+
+    /// The keys within a range of times in seconds, in the rows whose centres are within a range of
+    /// [`Self::content_y`].
+    fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
+        let centre = |row: usize| ROW * (row as f32 + 0.5);
+        let rows = self.channels.iter().enumerate();
+        let inside = rows.filter(|(row, _)| (ys.0..=ys.1).contains(&centre(*row)));
+        let keys = inside.flat_map(|(_, channel)| {
+            let found = DopeSheetRow::Channel(*channel).times(self.session, times.0, times.1);
+            found.into_iter().map(|time| (*channel, time))
+        });
+        keys.collect()
+    }
+}
+
+/// Handles presses and double-clicks in the dope sheet: starts drags, selects the key at a right
+/// click, and adds keys at a double-click.
+pub(in crate::ui) fn press(
+    ui: &Ui,
+    sheet: &DopeSheetView<'_>,
+    body: &Response,
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    take_keyboard(ui, body, ruler);
+    if !body.contains_pointer() {
+        return;
+    }
+    for event in ui.input(|input| input.events.clone()) {
+        let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
+            continue;
+        };
+        if sheet.session.is_editing() || drag::get(ui).is_some() {
+            continue;
+        }
+        match button {
+            PointerButton::Primary => {
+                let adds = modifiers.shift || modifiers.command;
+                match sheet.key(pos) {
+                    Some((row, time)) => press_key(ui, sheet, row, time, pos, adds, actions),
+                    None => press_background(ui, sheet, pos, adds),
+                }
+            }
+            PointerButton::Middle => drag::set(ui, TimelineDrag::Pan),
+            PointerButton::Secondary => {
+                if let Some((row, time)) = sheet.key(pos)
+                    && !SelectedKeys::new(sheet.session).has(row, time)
+                {
+                    actions.push(SelectAction::Keys(row.keys(sheet.session, time)));
+                }
+            }
+            PointerButton::Extra1 | PointerButton::Extra2 => {}
+        }
+    }
+    let double_click =
+        body.double_clicked().then(|| ui.input(|input| input.pointer.interact_pos()));
+    if let Some(at) = double_click.flatten()
+        && sheet.key(at).is_none()
+        && let Some(row) = sheet.row(at)
+    {
+        actions.push(PlaybackAction::SetTime(drag::pointed_time(
+            ui,
+            sheet.session,
+            sheet.scale,
+            at,
+        )));
+        actions.push(EditAction::Key(row.channels(sheet.session)));
+    }
+}
+
+fn press_key(
+    ui: &Ui,
+    sheet: &DopeSheetView<'_>,
+    row: DopeSheetRow,
+    time: f64,
+    pressed: Pos2,
+    adds: bool,
+    actions: &mut Actions,
+) {
+    let session = sheet.session;
+    let pointed = row.keys(session, time);
+    let selected = session.selected_keys();
+    let picked = |of: &[Key]| {
+        let of = SelectedKeys::of(of);
+        move |key: &&Key| of.has(DopeSheetRow::Channel(key.0), key.1)
+    };
+    let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
+    let all_selected = pointed.iter().all(|key| is_selected(&key));
+    let (keys, clicked) = match (adds, all_selected) {
+        // Keys that are selected already are deselected by this click, unless they are dragged.
+        (true, true) => {
+            let others = selected.iter().filter(|key| !is_pointed(key)).copied();
+            (selected.to_vec(), others.collect())
+        }
+        (true, false) => {
+            let new = pointed.iter().filter(|key| !is_selected(key));
+            let both: Vec<_> = selected.iter().chain(new).copied().collect();
+            (both.clone(), both)
+        }
+        (false, true) => (selected.to_vec(), pointed),
+        (false, false) => (pointed.clone(), pointed),
+    };
+    if keys != selected {
+        actions.push(SelectAction::Keys(keys.clone()));
+    }
+    drag::set(ui, TimelineDrag::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
+}
+
+fn press_background(ui: &Ui, sheet: &DopeSheetView<'_>, at: Pos2, adds: bool) {
+    let base = if adds { sheet.session.selected_keys().to_vec() } else { Vec::new() };
+    let drag = BoxDrag { time: sheet.scale.time(at.x), y: sheet.content_y(at), base };
+    drag::set(ui, TimelineDrag::Box(drag));
+}
+
+/// Continues the drag until the release of the mouse button or Esc.
+pub(in crate::ui) fn follow(ui: &Ui, sheet: &DopeSheetView<'_>, actions: &mut Actions) {
+    let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
+        return;
+    };
+    match drag::get(ui) {
+        Some(TimelineDrag::Keys(drag)) => move_keys(ui, sheet, drag, mouse, actions),
+        Some(TimelineDrag::Box(drag)) => draw_box(ui, sheet, &drag, mouse, actions),
+        Some(TimelineDrag::Pan) if drag::is_released(ui) => drag::clear(ui),
+        Some(_) | None => {}
+    }
+}
+
+fn move_keys(
+    ui: &Ui,
+    sheet: &DopeSheetView<'_>,
+    mut drag: KeyDrag,
+    mouse: Pos2,
+    actions: &mut Actions,
+) {
+    let session = sheet.session;
+    let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
+    if cancelled || drag.moved && !session.is_editing() {
+        actions.push(SelectAction::Keys(drag.keys));
+        drag::clear(ui);
+        return;
+    }
+    if !drag.moved && (mouse - drag.pressed).length() > SLACK {
+        actions.push(TransactionAction::Begin);
+        drag.moved = true;
+        drag::set(ui, TimelineDrag::Keys(drag.clone()));
+    }
+    if drag.moved {
+        let way = f64::from(mouse.x - drag.pressed.x) / sheet.scale.points_per_second();
+        let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
+        let count = labels::count_of_keys(drag.keys.len());
+        let said = match drag::is_released(ui) {
+            true => format!("Moved {count} by {by:+.2} s"),
+            false => format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel"),
+        };
+        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
+        actions.push(ShellAction::Report(said));
+    }
+    if drag::is_released(ui) {
+        if drag.moved {
+            actions.push(TransactionAction::Commit);
+        } else {
+            actions.push(SelectAction::Keys(drag.clicked));
+        }
+        drag::clear(ui);
+    }
+}
+
+fn draw_box(
+    ui: &Ui,
+    sheet: &DopeSheetView<'_>,
+    drag: &BoxDrag,
+    mouse: Pos2,
+    actions: &mut Actions,
+) {
+    if ui.input(|input| input.key_pressed(Button::Escape)) {
+        actions.push(SelectAction::Keys(drag.base.clone()));
+        drag::clear(ui);
+        return;
+    }
+    let corner = place(sheet, drag);
+    let is_box = (mouse - corner).length() > SLACK;
+    let mut keys = drag.base.clone();
+    if is_box {
+        let (time, y) = (sheet.scale.time(mouse.x), sheet.content_y(mouse));
+        let times = (drag.time.min(time), drag.time.max(time));
+        let inside = sheet.keys_in(times, (drag.y.min(y), drag.y.max(y)));
+        let picked = SelectedKeys::of(&keys);
+        keys.extend(
+            inside.into_iter().filter(|(it, at)| !picked.has(DopeSheetRow::Channel(*it), *at)),
+        );
+    }
+    if keys != sheet.session.selected_keys() {
+        actions.push(SelectAction::Keys(keys));
+    }
+    if drag::is_released(ui) {
+        drag::clear(ui);
+    }
+}
+
+fn place(sheet: &DopeSheetView<'_>, drag: &BoxDrag) -> Pos2 {
+    let y = drag.y - sheet.offset + ROW + sheet.area.top();
+    pos2(sheet.scale.x(drag.time), y)
+}
+
+/// Draws the selection box.
+pub(in crate::ui) fn paint_box(ui: &Ui, sheet: &DopeSheetView<'_>) {
+    let (Some(TimelineDrag::Box(drag)), Some(mouse)) =
+        (drag::get(ui), ui.input(|input| input.pointer.latest_pos()))
+    else {
+        return;
+    };
+    let accent = style::accent(ui);
+    let rect = Rect::from_two_pos(place(sheet, &drag), mouse);
+    let painter = ui.painter().with_clip_rect(sheet.area);
+    let rim = Stroke::new(1.0, accent);
+    painter.rect(rect, 0.0, accent.gamma_multiply(0.15), rim, egui::StrokeKind::Inside);
+}

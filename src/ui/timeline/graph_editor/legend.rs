@@ -1,0 +1,148 @@
+//! The names in the graph editor: joints, and below each its channels with the colours of their
+//! curves.
+
+use egui::{
+    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, pos2,
+    vec2,
+};
+
+use crate::document::Channel;
+use crate::kinematics::skeleton::JointId;
+use crate::session::{Actions, SelectAction, Session};
+use crate::ui::labels;
+use crate::ui::timeline::areas::{self, ROW, TimelineAreas, VALUES};
+use crate::ui::timeline::context_menu;
+use crate::ui::timeline::dope_sheet::row;
+
+/// Width in points of one colour beside a name.
+const SWATCH: f32 = 6.0;
+
+/// A listed channel, with the colours of its curves.
+pub(in crate::ui::timeline) struct LegendEntry {
+    pub channel: Channel,
+    pub colours: Vec<Color32>,
+    /// Whether its curves are drawn.
+    pub is_drawn: bool,
+}
+
+pub(in crate::ui::timeline) fn ui(
+    ui: &mut Ui,
+    session: &Session,
+    areas: &TimelineAreas,
+    entries: &[LegendEntry],
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    let right = pos2(areas.names.right() - VALUES, areas.names.bottom());
+    let rect = Rect::from_min_max(areas.names.min, right);
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        ScrollArea::vertical().id_salt("legend").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let mut above = None;
+            for entry in entries {
+                let joint = labels::joint_of_channel(session, entry.channel);
+                if joint != above
+                    && let Some(joint) = joint
+                {
+                    joint_name(ui, session, joint, ruler, actions);
+                }
+                above = joint;
+                channel_name(ui, session, entry, ruler, actions);
+            }
+        });
+    });
+}
+
+/// Shows the name of a joint. A click selects the joint, with Shift or Ctrl besides the others; a
+/// click on the only selected joint selects none.
+fn joint_name(
+    ui: &mut Ui,
+    session: &Session,
+    joint: JointId,
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    let rig = session.skeleton_rig();
+    let name = rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
+    let selected = session.selection();
+    let is_selected = selected.contains(&joint);
+    let (rect, response) =
+        item(ui, ("timeline joint", joint), is_selected, &format!("Curves of joint {name}"));
+    areas::line(ui, rect, name, ui.visuals().strong_text_color());
+    if response.clicked() {
+        ruler.request_focus();
+        let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+        let others = selected.iter().copied().filter(|other| adds && *other != joint);
+        let is_alone = is_selected && selected.len() == 1;
+        let goes = is_selected && adds || is_alone;
+        let joints = others.chain((!goes).then_some(joint)).collect();
+        actions.push(SelectAction::Joints(joints));
+    }
+    response.on_hover_text(format!(
+        "Show the curves of {name} alone, or of all joints again; Shift or Ctrl adds it"
+    ));
+}
+
+/// Shows the name of a channel. A click shows its curves alone, with Shift or Ctrl besides the
+/// others.
+fn channel_name(
+    ui: &mut Ui,
+    session: &Session,
+    entry: &LegendEntry,
+    ruler: &Response,
+    actions: &mut Actions,
+) {
+    let LegendEntry { channel, colours, is_drawn } = entry;
+    let full = labels::channel(session, *channel);
+    let is_selected = session.selected_channels().contains(channel);
+    let id = ("timeline curve", *channel);
+    let (rect, response) = item(ui, id, is_selected, &format!("Curve of {full}"));
+    let indent = if labels::joint_of_channel(session, *channel).is_some() { 18.0 } else { 10.0 };
+    let y = rect.center().y;
+    for (place, colour) in colours.iter().enumerate() {
+        let x = rect.left() + indent + SWATCH * place as f32;
+        let colour = if *is_drawn { *colour } else { colour.gamma_multiply(0.35) };
+        ui.painter().hline(x..=x + SWATCH - 1.5, y, Stroke::new(3.0, colour));
+    }
+    let left = rect.left() + indent + SWATCH * colours.len() as f32 - 5.0;
+    let beside = Rect::from_min_max(pos2(left, rect.top()), rect.max);
+    let colour = match (is_selected || response.hovered(), is_drawn) {
+        (true, _) => ui.visuals().strong_text_color(),
+        (false, true) => ui.visuals().text_color(),
+        (false, false) => ui.visuals().weak_text_color(),
+    };
+    areas::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
+    if response.clicked() {
+        ruler.request_focus();
+        actions.push(row::clicked(ui, session, *channel));
+    }
+    context_menu::of_channel(&response, session, *channel, actions);
+    let axes = if colours.len() == 3 { ", x, y and z in axis colours" } else { "" };
+    response.on_hover_text(format!(
+        "Show {full} alone{axes}, or all curves again; Shift or Ctrl adds it"
+    ));
+}
+
+/// A row that can be clicked.
+fn item(
+    ui: &mut Ui,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    is_selected: bool,
+    said: &str,
+) -> (Rect, Response) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let response = ui.interact(rect, Id::unique(id), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, said.to_owned()));
+    let visuals = ui.visuals();
+    let inside = rect.shrink2(vec2(2.0, 1.0));
+    if is_selected {
+        ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
+    }
+    if response.has_focus() {
+        let kind = egui::StrokeKind::Inside;
+        ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, kind);
+    }
+    (rect, response)
+}

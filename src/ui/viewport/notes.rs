@@ -1,0 +1,132 @@
+//! Notes over the view: why a target is not reached, with a button that helps; the hint "Drag the
+//! hand"; the switch that lets heads follow the mouse.
+
+use egui::{
+    Align2, Area, FontId, Frame, Id, Order, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
+};
+
+use crate::document::RigKind;
+use crate::session::{Actions, Session, TransactionAction};
+use crate::ui::gizmo::screen::ScreenProjection;
+use crate::ui::{style, why};
+
+/// Width of the text, in points.
+const WIDTH: f32 = 232.0;
+/// Distance from the target, in points, clear of its arrows.
+const DISTANCE: Vec2 = vec2(56.0, 36.0);
+/// Distance within which the note hides a point, in points.
+const CLEAR: f32 = 12.0;
+/// Size before the note was shown.
+const SIZE: Vec2 = vec2(WIDTH + 14.0, 108.0);
+
+pub(in crate::ui) fn why_not_reached(
+    ui: &Ui,
+    session: &Session,
+    screen: &ScreenProjection,
+    actions: &mut Actions,
+) {
+    let is_shown = session.rig() == RigKind::Skeleton
+        && session.crowd().is_none()
+        && session.solver_runs().next().is_none();
+    let Some(found) = why::found(ui, session).first().filter(|_| is_shown) else { return };
+    let Some(report) = session.target_report(found.target) else { return };
+    let Some(target) = screen.place(report.position) else { return };
+    let id = Id::unique("why not reached");
+    let size = ui.memory(|memory| memory.area_rect(id)).map_or(SIZE, |rect| rect.size());
+    let room = screen.rect.shrink(8.0);
+    let joints = session.skeleton_pose();
+    let bones = joints.ids().flat_map(|joint| {
+        let (base, tip) = (joints.base(joint), joints.tip(joint));
+        [base, base.midpoint(tip), tip].map(|point| screen.place(point))
+    });
+    let bones: Vec<Pos2> = bones.flatten().collect();
+    let at = place(target.clamp(room.min, room.max), size, room, &bones);
+    Area::new(id).order(Order::Middle).fixed_pos(at.min).constrain_to(room).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_width(WIDTH);
+            why::cause(ui, session, found);
+            why::remedies(ui, session, found, 1, actions);
+        });
+    });
+}
+
+/// Of the places beside the target that are in the view, the one that hides the fewest of `points`.
+fn place(target: Pos2, size: Vec2, room: Rect, points: &[Pos2]) -> Rect {
+    let sides = [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)];
+    let corners = [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, -1.0)];
+    let beside = |side: Vec2| {
+        let rect = Rect::from_center_size(target + side * (DISTANCE + size * 0.5), size);
+        rect.translate(
+            (room.min - rect.min).max(Vec2::ZERO) + (room.max - rect.max).min(Vec2::ZERO),
+        )
+    };
+    let hidden = |rect: &Rect| {
+        let near = rect.expand(CLEAR);
+        let of_target = if near.contains(target) { points.len() + 1 } else { 0 };
+        of_target + points.iter().filter(|point| near.contains(**point)).count()
+    };
+    let places = sides.into_iter().chain(corners).map(beside);
+    places.min_by_key(hidden).unwrap_or(Rect::from_min_size(room.min, size))
+}
+
+const TEXT: &str = "Drag the hand";
+/// Corner of the hint from the hand, in points, clear of the arrows.
+const OFFSET: egui::Vec2 = vec2(44.0, -78.0);
+
+pub(in crate::ui) fn drag_the_hand(ui: &Ui, session: &Session, screen: &ScreenProjection) {
+    let (arm, preferences) = (session.arm(), session.preferences());
+    let is_arm = session.rig() == RigKind::Arm && session.crowd().is_none();
+    let is_needed =
+        session.tour().is_none() && is_arm && arm.uses_ik() && !preferences.has_dragged_hand;
+    if !is_needed || session.drag().is_some() {
+        return;
+    }
+    if let Some(hand) = screen.place(arm.cursor_in_world()).filter(|at| screen.rect.contains(*at)) {
+        paint(ui, screen.rect, hand);
+    }
+}
+
+fn paint(ui: &Ui, viewport: Rect, hand: Pos2) {
+    let painter = ui.painter().with_clip_rect(viewport);
+    let (accent, visuals) = (style::accent(ui), ui.visuals());
+    let font = FontId::proportional(15.0);
+    let text = painter.layout_no_wrap(TEXT.to_owned(), font, visuals.strong_text_color());
+    let tag = Rect::from_min_size(hand + OFFSET, text.size() + vec2(20.0, 10.0));
+    let tag = tag.translate(into(tag, viewport.shrink(8.0)));
+    let near = pos2(hand.x.clamp(tag.left() + 8.0, tag.right() - 8.0), tag.bottom());
+    let direction = (near - hand).normalized();
+    painter.line_segment([hand + 18.0 * direction, near], Stroke::new(1.5, accent));
+    painter.rect(tag, 6.0, visuals.panel_fill, Stroke::new(1.5, accent), egui::StrokeKind::Inside);
+    let at = Align2::CENTER_CENTER.anchor_size(tag.center(), text.size()).min;
+    painter.galley(at, text, visuals.strong_text_color());
+    let hint = ui.interact(tag, Id::unique("drag hint"), Sense::hover());
+    hint.widget_info(|| WidgetInfo::labeled(Role::Label, true, TEXT));
+}
+
+/// The shift that brings `tag` into `room`.
+fn into(tag: Rect, room: Rect) -> egui::Vec2 {
+    let least = (room.min - tag.min).max(egui::Vec2::ZERO);
+    let most = (room.max - tag.max).min(egui::Vec2::ZERO);
+    least + most
+}
+
+/// Distance from the edges of the view, in points.
+const MARGIN: f32 = 12.0;
+
+pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: &mut Actions) {
+    if !session.can_follow_mouse() {
+        return;
+    }
+    let area = Area::new(Id::unique("follow the mouse")).order(Order::Middle);
+    area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            let mut follows = session.follows_mouse();
+            let tooltip =
+                "Let the heads follow the mouse and record it; a click in the view ends it";
+            if ui.checkbox(&mut follows, "Follow the mouse").on_hover_text(tooltip).changed() {
+                actions.push(TransactionAction::FollowMouse(follows));
+            }
+        });
+    });
+}

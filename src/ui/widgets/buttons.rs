@@ -1,0 +1,198 @@
+//! Buttons: one that can be disabled, one that stands out, icons (painted, because the fonts lack
+//! them), and the diamond that keys a value.
+
+use egui::{
+    Button, Color32, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke, Ui,
+    WidgetInfo, WidgetText, pos2, vec2,
+};
+
+use crate::document::Channel;
+use crate::session::{Actions, EditAction, Session};
+use crate::ui::style;
+
+/// Shows a button and returns whether it was pressed. `disabled` is the reason why the button is
+/// disabled, shown as its tooltip; `None` enables the button.
+pub(in crate::ui) fn button(
+    ui: &mut Ui,
+    name: impl Into<WidgetText>,
+    tooltip: &str,
+    disabled: Option<&str>,
+) -> bool {
+    let button = ui.add_enabled(disabled.is_none(), Button::new(name.into()));
+    let button = button.on_hover_text(tooltip);
+    match disabled {
+        Some(why) => button.on_disabled_hover_text(why).clicked(),
+        None => button.clicked(),
+    }
+}
+
+/// Shows the button that most users press, in the accent colour. `disabled` is the reason why it is
+/// disabled, shown as its tooltip; `None` enables it.
+pub(in crate::ui) fn primary_button(ui: &mut Ui, name: &str, disabled: Option<&str>) -> Response {
+    let Some(why) = disabled else {
+        let text = RichText::new(name).color(ui.visuals().panel_fill).strong();
+        return ui.add(Button::new(text).fill(style::accent(ui)));
+    };
+    ui.add_enabled(false, Button::new(name)).on_disabled_hover_text(why)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::ui) enum Icon {
+    Play,
+    Pause,
+    Start,
+    End,
+    PreviousKey,
+    NextKey,
+    Loop,
+    Fold,
+}
+
+/// An icon button; `disabled` is the reason shown while the button is disabled, `None` otherwise.
+pub(in crate::ui) struct IconButton<'a> {
+    pub icon: Icon,
+    pub name: &'a str,
+    pub tooltip: &'a str,
+    /// State of a toggle; `None` for other buttons.
+    pub on: Option<bool>,
+    pub disabled: Option<&'a str>,
+}
+
+impl IconButton<'_> {
+    /// Shows the button and returns whether it was pressed.
+    pub fn show(self, ui: &mut Ui) -> bool {
+        let enabled = self.disabled.is_none();
+        let response = ui.add_enabled_ui(enabled, |ui| self.button(ui)).inner;
+        match self.disabled {
+            Some(why) => response.on_disabled_hover_text(why).clicked(),
+            None => response.on_hover_text(self.tooltip).clicked(),
+        }
+    }
+
+    fn button(&self, ui: &mut Ui) -> Response {
+        let (rect, response) = ui.allocate_exact_size(vec2(28.0, 24.0), Sense::click());
+        let enabled = ui.is_enabled();
+        response.widget_info(|| match self.on {
+            Some(on) => WidgetInfo::selected(Role::Button, enabled, on, self.name),
+            None => WidgetInfo::labeled(Role::Button, enabled, self.name),
+        });
+        let on = self.on == Some(true);
+        let visuals = ui.style().interact_selectable(&response, on);
+        let painter = ui.painter();
+        let round = visuals.corner_radius;
+        painter.rect(
+            rect,
+            round,
+            visuals.weak_bg_fill,
+            visuals.bg_stroke,
+            egui::StrokeKind::Inside,
+        );
+        self.icon.paint(painter, rect.center(), visuals.fg_stroke.color);
+        response
+    }
+}
+
+impl Icon {
+    fn paint(self, painter: &Painter, centre: Pos2, colour: Color32) {
+        let at = |x: f32, y: f32| centre + vec2(x, y);
+        let shape = |points: &[(f32, f32)]| {
+            let points = points.iter().map(|(x, y)| at(*x, *y)).collect();
+            painter.add(Shape::convex_polygon(points, colour, Stroke::NONE));
+        };
+        let bar = |from: f32, to: f32| {
+            painter.rect_filled(Rect::from_min_max(at(from, -5.0), at(to, 5.0)), 0.5, colour);
+        };
+        match self {
+            Self::Play => shape(&[(-4.0, -6.0), (6.0, 0.0), (-4.0, 6.0)]),
+            Self::Pause => {
+                bar(-5.0, -1.5);
+                bar(1.5, 5.0);
+            }
+            Self::Start | Self::End => {
+                let side = if self == Self::Start { -1.0 } else { 1.0 };
+                shape(&[(5.0 * side, 0.0), (-4.0 * side, -5.0), (-4.0 * side, 5.0)]);
+                let (a, b) = (5.0 * side, 6.5 * side);
+                bar(a.min(b), a.max(b));
+            }
+            Self::PreviousKey | Self::NextKey => {
+                let side = if self == Self::PreviousKey { -1.0 } else { 1.0 };
+                shape(&[(-1.5 * side, 0.0), (-8.0 * side, -5.0), (-8.0 * side, 5.0)]);
+                painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
+            }
+            Self::Fold => shape(&[(-5.5, -3.0), (5.5, -3.0), (0.0, 4.0)]),
+            Self::Loop => {
+                let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());
+                let ends = (0.35 * core::f32::consts::PI, 1.85 * core::f32::consts::PI);
+                let points = (0..=20).map(|i| ends.0 + (ends.1 - ends.0) * i as f32 / 20.0);
+                painter.line(points.map(place).collect(), Stroke::new(1.6, colour));
+                shape(&[(7.6, -6.2), (6.6, 0.6), (1.6, -2.8)]);
+            }
+        }
+    }
+}
+
+/// The diamond that marks a key; `size` is the distance in points from its centre to a corner.
+pub(in crate::ui) fn diamond(at: Pos2, size: f32, fill: Color32, stroke: Stroke) -> Shape {
+    let points = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
+    let points = points.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();
+    Shape::convex_polygon(points, fill, stroke)
+}
+
+/// Distance in points from the centre of the diamond to a corner.
+const SIZE: f32 = 4.5;
+
+/// A diamond that adds a key of a channel at the playhead, or deletes the key that is there. It is
+/// filled at a key, and has the accent colour there and while the channel has an unkeyed change.
+pub(in crate::ui) struct KeyButton {
+    pub channel: Channel,
+    /// Channels that get keys together with `channel`.
+    pub others: Vec<Channel>,
+}
+
+impl KeyButton {
+    /// Width in points of the button.
+    pub const WIDTH: f32 = 16.0;
+
+    /// Shows the button, named after the value that it keys.
+    pub fn show(self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Actions) {
+        let (channel, time) = (self.channel, session.time());
+        let track = session.document().keys.track(channel);
+        let is_at_key = track.is_some_and(|track| track.get(time).is_some());
+        let response = self.button(ui, session, name, is_at_key, track.is_some());
+        if response.clicked() {
+            actions.push(match is_at_key {
+                true => EditAction::DeleteKeys(vec![(channel, time)]),
+                false => EditAction::Key([vec![channel], self.others].concat()),
+            });
+        }
+        response.on_hover_text(match is_at_key {
+            true => "Delete the key at the playhead",
+            false => "Add a key at the playhead",
+        });
+    }
+
+    fn button(
+        &self,
+        ui: &mut Ui,
+        session: &Session,
+        name: &str,
+        is_at_key: bool,
+        is_keyed: bool,
+    ) -> Response {
+        let (rect, response) = ui.allocate_exact_size(vec2(Self::WIDTH, 18.0), Sense::click());
+        let name = format!("Key {name}");
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_at_key, &name));
+        let is_changed = session.is_overridden(self.channel);
+        let stands_out = response.hovered() || response.has_focus();
+        let visuals = ui.visuals();
+        let colour = match (is_at_key || is_changed, is_keyed || stands_out) {
+            (true, _) => style::accent(ui),
+            (false, true) => visuals.text_color(),
+            (false, false) => visuals.weak_text_color(),
+        };
+        let fill = if is_at_key { colour } else { Color32::TRANSPARENT };
+        let size = if stands_out { SIZE + 1.0 } else { SIZE };
+        ui.painter().add(diamond(rect.center(), size, fill, Stroke::new(1.2, colour)));
+        response
+    }
+}
