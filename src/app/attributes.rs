@@ -1,9 +1,11 @@
+//! Attributes and title of the window.
+
 use egui_winit::WindowSettings;
 use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Icon, Window, WindowAttributes};
 
-use super::title::TITLE;
+use crate::session::Session;
 
 const APP_ID: &str = "ik-arm";
 const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
@@ -59,4 +61,24 @@ fn icon() -> Option<Icon> {
     let image = image::load_from_memory(ICON).ok()?.into_rgba8();
     let (width, height) = image.dimensions();
     Icon::from_rgba(image.into_raw(), width, height).ok()
+}
+
+/// Name of the program, as in the window's title.
+pub const TITLE: &str = "ik-arm";
+
+/// Title of the window: the document's name, an asterisk for unsaved changes, and the program; during the
+/// tour, the step or the title of the last card.
+pub fn title(session: &Session) -> String {
+    if let Some(tour) = session.tour() {
+        return match tour.step() {
+            Some(_) => format!("Tour, step {} – {TITLE}", tour.number() + 1),
+            None => format!("Tour, {} – {TITLE}", tour.title()),
+        };
+    }
+    let unsaved = if session.is_unsaved() { "*" } else { "" };
+    match session.document_name() {
+        Some(name) => format!("{name}{unsaved} – {TITLE}"),
+        None if session.is_unsaved() => format!("untitled* – {TITLE}"),
+        None => TITLE.to_owned(),
+    }
 }

@@ -1,4 +1,4 @@
-//! Jobs on threads of their own, which report to the window when they end.
+//! Jobs on threads of their own, and the events by which they report to the window when they end.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
 
-use super::user_event::{PathChoice, UserEvent, send};
-use super::viewport_picture::ViewportPicture;
-use crate::document::{Bake, Document, SkeletonRig, Skin};
+use crate::document::{Bake, Baked, Document, Posed, SkeletonRig, Skin, Theme};
 use crate::export::{self, ExportError, ExportOptions, Format};
 use crate::io::{self, OpenError, OpenOptions, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
-use crate::rig::SkinSource;
+use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinSource};
 use crate::scene::Scene;
-use crate::session::{Action, BakeJob, Export, ExportJob, FileAction, PathDialog, ShellAction};
+use crate::session::{
+    Action, BakeJob, Export, ExportJob, FileAction, Overlays, PathDialog, ShellAction,
+};
 
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
 pub(super) fn save_picture(
@@ -213,4 +213,64 @@ pub(super) fn path_action(dialog: PathDialog, choice: PathChoice) -> Action {
         (PathChoice::Cancelled, _) => FileAction::ChoseNothing.into(),
         (PathChoice::NoDialog, dialog) => FileAction::NoSystemDialog(dialog).into(),
     }
+}
+
+/// Events that do not come from the window.
+#[derive(Debug)]
+pub enum UserEvent {
+    /// Request of a screen reader.
+    Accesskit(egui_winit::accesskit_winit::Event),
+    /// Message or error of a finished background job.
+    Report(Result<String, String>),
+    /// Result or error of a finished bake.
+    Baked(BakeJob, Result<Box<Baked>, String>),
+    /// Message or error of a finished export.
+    Exported(Result<String, String>),
+    /// The backup of unsaved changes was written.
+    BackedUp,
+    /// The graphics device failed.
+    GraphicsFailed,
+    /// Answer of the system's file dialog.
+    Chosen(PathDialog, PathChoice),
+    /// A file was read.
+    Opened { path: PathBuf, options: OpenOptions, read: Box<Result<Opened, OpenError>> },
+    /// The file of a skin was read.
+    SkinLocated {
+        path: PathBuf,
+        before: Option<SkinFile>,
+        read: Box<Result<MeshSkin, SkinFileError>>,
+    },
+}
+
+/// Answer to a request for a path.
+#[derive(Debug)]
+pub enum PathChoice {
+    Path(PathBuf),
+    Cancelled,
+    /// The system has no file dialog.
+    NoDialog,
+}
+
+impl From<egui_winit::accesskit_winit::Event> for UserEvent {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accesskit(event)
+    }
+}
+
+/// Sends an event to the window, which may have been closed.
+pub fn send(proxy: &EventLoopProxy<UserEvent>, event: UserEvent) {
+    if proxy.send_event(event).is_err() {
+        log::info!("the window was closed before a background job ended");
+    }
+}
+
+/// Everything that a picture of the viewport shows.
+pub struct ViewportPicture {
+    pub posed: Posed,
+    pub overlays: Overlays,
+    pub theme: Theme,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Pixels per point.
+    pub scale: f32,
 }

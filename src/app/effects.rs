@@ -2,9 +2,7 @@ use std::path::PathBuf;
 
 use winit::event_loop::EventLoopProxy;
 
-use super::background;
-use super::user_event::UserEvent;
-use super::viewport_picture::ViewportPicture;
+use super::background::{self, UserEvent, ViewportPicture};
 use super::window::AppWindow;
 use crate::io;
 use crate::session::{Action, BakeAction, Effect, FileAction, Session};

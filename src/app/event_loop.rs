@@ -5,12 +5,10 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
-use super::background;
-use super::error::AppError;
-use super::graphics_error::GraphicsError;
+use super::background::{self, UserEvent};
+use super::error::{AppError, GraphicsError};
 use super::recovery::{self, RecoveredFile, Recovery};
 use super::settings::{Settings, SettingsWriter};
-use super::user_event::UserEvent;
 use super::window::{AppWindow, Repaint};
 use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
 

@@ -7,8 +7,8 @@ use egui_wgpu::ScreenDescriptor;
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 
+use super::error::GraphicsError;
 use super::graphics::Graphics;
-use super::graphics_error::GraphicsError;
 use super::panel_painter::PlacedScene;
 use crate::render::TimedPass;
 use crate::ui::FrameTimes;

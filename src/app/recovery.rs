@@ -13,9 +13,10 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use winit::event_loop::EventLoopProxy;
 
-use super::user_event::UserEvent;
+use super::background::UserEvent;
 use crate::document::Document;
-use crate::io::{self as files, OpenOptions, SaveError};
+use crate::io as files;
+use crate::io::{OpenOptions, SaveError};
 use crate::session::Session;
 
 /// Time from a change of the document to its backup.

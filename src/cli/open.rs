@@ -26,6 +26,7 @@ pub fn open_to_draw(path: &Path, options: &OpenOptions) -> Result<Opened, OpenEr
     let opened = open(path, options)?;
     warn(path, &undrawn_textures(&opened.document));
     Ok(opened)
+}
 
 /// Checks that a command which writes documents is to write one.
 pub fn require_document(command: &'static str, output: &Path) -> Result<(), CommandError> {

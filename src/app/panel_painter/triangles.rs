@@ -12,7 +12,7 @@ use crate::render::{Corner, Gpu, TrianglePainter};
 ///
 /// The renderer of `egui_wgpu` has one shader for all kinds of texture filters. A processor computes
 /// all of them for every pixel, which takes several times as long as this.
-pub(super) struct PanelTriangles {
+pub(in crate::app) struct PanelTriangles {
     painter: TrianglePainter,
     textures: HashMap<TextureId, PanelTexture>,
 }
@@ -23,7 +23,7 @@ struct PanelTexture {
 }
 
 /// Triangles with the same texture and clipping.
-pub(super) struct TriangleBatch {
+pub(in crate::app) struct TriangleBatch {
     texture: TextureId,
     clip: PixelArea,
     corners: Range<u32>,

@@ -3,7 +3,7 @@ use egui_wgpu::ScreenDescriptor;
 
 /// A rectangle of whole pixels in the window: left, top, width and height, not empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PixelArea {
+pub(in crate::app) struct PixelArea {
     pub at: [u32; 2],
     pub size: [u32; 2],
 }

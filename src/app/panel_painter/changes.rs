@@ -18,7 +18,7 @@ const AREA_COST: u32 = 4;
 
 /// Finds the parts of the window where the panels differ from the frame before.
 #[derive(Default)]
-pub(super) struct PanelChanges {
+pub(in crate::app) struct PanelChanges {
     tiles: Tiles,
 }
 
