@@ -29,7 +29,7 @@ fn print(out: &mut impl Write) -> io::Result<()> {
 fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> io::Result<()> {
     paragraph(out, &filled(&step.text, session))?;
     paragraph(out, &format!("Guess first: {}", step.guess.question))?;
-    for answer in &step.guess.answers {
+    for answer in step.guess.answers {
         writeln!(out, "{INDENT}- {answer}")?;
     }
     paragraph(out, &format!("Now try it: {}", filled(&step.task, session)))?;
@@ -41,10 +41,10 @@ fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> i
 
 fn print_end(out: &mut impl Write, end: &TourEnd) -> io::Result<()> {
     writeln!(out, "\n{}\n", end.title)?;
-    for sentence in &end.sentences {
+    for sentence in end.sentences {
         paragraph(out, &format!("- {sentence}"))?;
     }
-    paragraph(out, &end.next)
+    paragraph(out, end.next)
 }
 
 /// Does the task of the step, and waits for the end of what it starts.

@@ -67,7 +67,7 @@ pub(super) fn open_section(ui: &Ui, session: &Session) {
     }
     ui.data_mut(|data| data.insert_temp(shown, now));
     let step = session.tour().and_then(TourState::step);
-    widgets::open_section(ui, step.and_then(|step| step.section.as_deref()));
+    widgets::open_section(ui, step.and_then(|step| step.section));
     if now.is_none() {
         widgets::fold_opened_sections(ui);
     }
@@ -149,7 +149,7 @@ fn question(ui: &mut Ui, step: &TourStep, actions: &mut Actions) {
     paragraph(ui, &step.guess.question);
     ui.horizontal_wrapped(|ui| {
         for (number, answer) in step.guess.answers.iter().enumerate() {
-            if ui.button(answer).on_hover_text("Guess this, then try it").clicked() {
+            if ui.button(*answer).on_hover_text("Guess this, then try it").clicked() {
                 actions.push(TourAction::Guess(number));
             }
         }
@@ -187,7 +187,7 @@ fn result(ui: &mut Ui, session: &Session, step: &TourStep, guess: Option<usize>)
 fn end(ui: &mut Ui) {
     let TourEnd { sentences, next, .. } = TourEnd::get();
     ui.spacing_mut().item_spacing.y = 2.0;
-    for sentence in sentences {
+    for sentence in *sentences {
         paragraph(ui, &format!("• {sentence}"));
     }
     ui.add_space(4.0);

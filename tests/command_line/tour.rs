@@ -20,7 +20,7 @@ fn the_whole_text_of_the_tour_is_printed_with_the_numbers_of_its_scenes() {
     for answer in answers {
         assert!(words.contains(&format!("Answer: {answer} What happens: ")), "{answer}");
     }
-    for sentence in &TourEnd::get().sentences {
+    for sentence in TourEnd::get().sentences {
         assert!(words.contains(&format!("- {sentence}")), "{sentence}");
     }
 }

@@ -51,7 +51,11 @@ fn there_are_twelve_steps_each_with_a_question_of_two_to_four_answers() {
         assert!((2..=4).contains(&answers.len()), "{}", step.title);
         assert!(answers.iter().enumerate().all(|(at, one)| !answers[..at].contains(one)));
         assert!(step.guess.question.ends_with('?'), "{}", step.title);
-        assert!(answers.iter().any(|answer| answer == step.guess.right_answer()), "{}", step.title);
+        assert!(
+            answers.iter().any(|answer| *answer == step.guess.right_answer()),
+            "{}",
+            step.title
+        );
         let right = (0..answers.len()).filter(|answer| step.guess.is_right(*answer));
         assert_eq!(right.count(), 1, "{}", step.title);
         let told = [&step.title, &step.text].map(|text| text.to_lowercase());

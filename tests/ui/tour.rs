@@ -270,7 +270,7 @@ fn cards_show_all_of_their_text_at_every_stage() {
             let mut bench = in_step(number, size, Theme::Dark);
             let text = said(&bench, &step.text);
             let question = [text.as_str(), "Guess first", &step.guess.question];
-            let answers = step.guess.answers.iter().map(String::as_str);
+            let answers = step.guess.answers.iter().copied();
             expect_in_sight(&bench, question.into_iter().chain(answers));
 
             bench.click(Role::Button, &step.guess.answers[0]);
@@ -468,7 +468,7 @@ fn tab_reaches_the_whole_card_in_reading_order() {
         visited.push(focused);
     }
     let step = step(1);
-    let answers = step.guess.answers.iter().map(String::as_str);
+    let answers = step.guess.answers.iter().copied();
     let dot = format!("Step 1: {}", step.title);
     let card: Vec<&str> = ["Leave"].into_iter().chain(answers).chain([&dot, "Next"]).collect();
     let places: Vec<_> =

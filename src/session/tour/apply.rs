@@ -1,8 +1,5 @@
-use super::demonstration;
-use super::predicates;
-use super::step::TourStep;
-use super::tour_action::TourAction;
-use super::tour_state::TourState;
+use super::state::{TourAction, TourState};
+use super::steps::TourStep;
 use crate::session::action::Action;
 use crate::session::file_action::FileAction;
 use crate::session::playback_action::PlaybackAction;
@@ -37,10 +34,11 @@ impl Session {
             && let Some(step) = tour.step()
         {
             tour.show_result();
-            let goal = step.goal;
-            let actions = demonstration::actions(goal, self);
-            let (edits, others): (Vec<_>, Vec<_>) =
-                actions.into_iter().partition(|action| matches!(action, Action::Edit(_)));
+            let (edits, others): (Vec<_>, Vec<_>) = step
+                .goal
+                .demonstration(self)
+                .into_iter()
+                .partition(|action| matches!(action, Action::Edit(_)));
             // One undo step, and for the page Pops one drag.
             self.begin_edit(None);
             edits.into_iter().for_each(|edit| drop(self.apply(edit)));
@@ -76,7 +74,7 @@ impl Session {
         self.preferences.timeline_open = Some(false);
         step.tab.into_iter().for_each(|tab| self.show_tab(tab));
         let joints = self.skeleton().iter();
-        let selected = joints.filter(|(_, joint)| Some(&joint.name) == step.select.as_ref());
+        let selected = joints.filter(|(_, joint)| Some(joint.name.as_str()) == step.select);
         self.select(selected.map(|(id, _)| id).collect());
         self.tour = Some(TourState::new(number, self.shown().clone(), done));
         self.own = Some(own);
@@ -113,7 +111,7 @@ impl Session {
     pub(in crate::session) fn watch_tour(&mut self) {
         let is_met = self.tour.as_ref().is_some_and(|tour| {
             !tour.shows_result()
-                && tour.step().is_some_and(|step| predicates::is_met(step.goal, self, tour.start()))
+                && tour.step().is_some_and(|step| step.goal.is_met(self, tour.start()))
         });
         if is_met {
             self.change_tour(TourState::finish);

@@ -1,16 +1,11 @@
 //! The tour: steps that each show a scene, ask a question, and notice when the user has done a task.
 
 mod apply;
-mod demonstration;
 mod figures;
-mod goal;
-mod predicates;
-mod step;
-mod tour_action;
-mod tour_state;
+mod goals;
+mod state;
+mod steps;
 
 pub use figures::filled;
-pub use goal::Goal;
-pub use step::{Guess, TourEnd, TourStep};
-pub use tour_action::TourAction;
-pub use tour_state::TourState;
+pub use state::{TourAction, TourState};
+pub use steps::{Goal, Guess, TourEnd, TourStep};

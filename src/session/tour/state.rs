@@ -1,5 +1,21 @@
-use super::step::{TourEnd, TourStep};
+use super::steps::{TourEnd, TourStep};
 use crate::document::Document;
+
+/// Moves through the tour.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TourAction {
+    /// Begins a step, counted from 0; the user's document is kept for the end of the tour. A number
+    /// beyond the last step shows the card after it, with the scene of the last step.
+    Enter(usize),
+    /// Chooses an answer to the step's question, counted from 0.
+    Guess(usize),
+    /// Does the step's task for the user and shows the result.
+    Demonstrate,
+    /// Ends the tour and puts the user's document back.
+    Leave,
+    /// Declines the tour; it is not offered again.
+    Decline,
+}
 
 /// Where the user is in the tour: in a step, or at the card after the last one.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +48,7 @@ impl TourState {
 
     /// Title of the card.
     pub fn title(&self) -> &'static str {
-        self.step().map_or(&TourEnd::get().title, |step| &step.title)
+        self.step().map_or(TourEnd::get().title, |step| step.title)
     }
 
     /// The document with which the step began.
@@ -45,12 +61,12 @@ impl TourState {
         self.guess
     }
 
-    /// Whether the result of the step is shown: its task was done, by the user or in a demonstration.
+    /// True while the result of the step is shown: its task was done, by the user or in a demonstration.
     pub fn shows_result(&self) -> bool {
         self.shows_result
     }
 
-    /// Whether the user has done the task of a step, counted from 0.
+    /// True if the user has done the task of a step, counted from 0.
     pub fn is_done(&self, number: usize) -> bool {
         self.done.get(number).copied().unwrap_or(false)
     }
