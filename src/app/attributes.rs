@@ -66,8 +66,8 @@ fn icon() -> Option<Icon> {
 /// Name of the program, as in the window's title.
 pub const TITLE: &str = "ik-arm";
 
-/// Title of the window: the document's name, an asterisk for unsaved changes, and the program; during the
-/// tour, the step or the title of the last card.
+/// Title of the window: the document's name, an asterisk for unsaved changes, and the program;
+/// during the tour, the step or the title of the last card.
 pub fn title(session: &Session) -> String {
     if let Some(tour) = session.tour() {
         return match tour.step() {

@@ -118,7 +118,8 @@ pub(super) fn open(path: PathBuf, options: OpenOptions, proxy: EventLoopProxy<Us
     });
 }
 
-/// Reads the mesh of the skin of `rig` from a file on a thread of its own, because the file may be large.
+/// Reads the mesh of the skin of `rig` from a file on a thread of its own, because the file may be
+/// large.
 pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProxy<UserEvent>) {
     let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &rig.skin else { return };
     let (skin, skeleton) = (skin.clone(), rig.skeleton.clone());
@@ -130,8 +131,8 @@ pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProx
     });
 }
 
-/// The action for a file that was read, which shows the file's document or the error, and what to say
-/// once the document is open.
+/// The action for a file that was read, which shows the file's document or the error, and what to
+/// say once the document is open.
 pub(super) fn opened(
     path: PathBuf,
     options: OpenOptions,
@@ -173,10 +174,8 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
     }
     let start = Instant::now();
     let is_open = matches!(dialog, PathDialog::Open { .. } | PathDialog::LocateSkin { .. });
-    let (open, save) = match is_open {
-        true => (Some(system.pick_file()), None),
-        false => (None, Some(system.save_file())),
-    };
+    let (open, save) =
+        if is_open { (Some(system.pick_file()), None) } else { (None, Some(system.save_file())) };
     thread::spawn(move || {
         let file = match (open, save) {
             (Some(open), _) => pollster::block_on(open),

@@ -1,16 +1,16 @@
 //! The resolution of the scene while something moves.
 //!
-//! The program must be smooth on a machine without a graphics card, where a software adapter draws on
-//! the processor. There the time of a frame grows with the number of its pixels: at 1280×800 on two
-//! cores a drag of a figure in its skin takes 40 ms a frame in full, and 23 to 28 ms with a budget of
-//! 33 ms (docs/performance.md). While something moves, nobody looks at single pixels, so the scene is
-//! drawn smaller and scaled up; a tenth of a second after the last motion it is drawn in full. Labels
-//! and panels always have the full resolution.
+//! The program must be smooth on a machine without a graphics card, where a software adapter draws
+//! on the processor. There the time of a frame grows with the number of its pixels: at 1280×800 on
+//! two cores a drag of a figure in its skin takes 40 ms a frame in full, and 23 to 28 ms with a
+//! budget of 33 ms (docs/performance.md). While something moves, nobody looks at single pixels, so
+//! the scene is drawn smaller and scaled up; a tenth of a second after the last motion it is drawn
+//! in full. Labels and panels always have the full resolution.
 //!
-//! The controller reads the durations of the frames. Two slow frames in a row lower the scale to the
-//! largest one that is predicted to fit the budget; twenty fast ones raise it by one step. The gap
-//! between the two thresholds keeps the scale from swinging. A graphics card that meets the budget
-//! draws in full.
+//! The controller reads the durations of the frames. Two slow frames in a row lower the scale to
+//! the largest one that is predicted to fit the budget; twenty fast ones raise it by one step. The
+//! gap between the two thresholds keeps the scale from swinging. A graphics card that meets the
+//! budget draws in full.
 
 use std::time::{Duration, Instant};
 
@@ -58,7 +58,8 @@ impl DynamicResolution {
         self.moved.map_or(1.0, |_| SCALES[self.step])
     }
 
-    /// Time from `now` until the scene must be drawn at full resolution, unless it moves again; `None` at rest.
+    /// Time from `now` until the scene must be drawn at full resolution, unless it moves again;
+    /// `None` at rest.
     pub fn rests_in(&self, now: Instant) -> Option<Duration> {
         Some((self.moved? + REST).saturating_duration_since(now))
     }

@@ -12,8 +12,8 @@ use super::settings::{Settings, SettingsWriter};
 use super::window::{AppWindow, Repaint};
 use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
 
-/// Opens the window, with the document of a file if `opened` is given, and returns when the window is
-/// closed. Begins the tour at `tour_step`, counted from 0, if given.
+/// Opens the window, with the document of a file if `opened` is given, and returns when the window
+/// is closed. Begins the tour at `tour_step`, counted from 0, if given.
 ///
 /// # Errors
 ///
@@ -75,7 +75,7 @@ struct App {
     recovery: Recovery,
     /// Unsaved document of an earlier run that did not end cleanly.
     recovered: Option<RecoveredFile>,
-    /// Whether the user has quit: unsaved changes are to be dropped.
+    /// True if the user has quit: unsaved changes are to be dropped.
     has_quit: bool,
     state: AppState,
 }

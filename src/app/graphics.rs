@@ -19,12 +19,12 @@ pub(super) struct Graphics {
     pub(super) renderer: Renderer,
     pub(super) picture: ScenePicture,
     pub(super) gpu_timer: Option<GpuTimer>,
-    /// Whether the device works beside the CPU, for a known time. The time of a software adapter is
+    /// True if the device works beside the CPU, for a known time. The time of a software adapter is
     /// part of the CPU's.
     pub(super) has_own_time: bool,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
-    /// Whether the surface still works but should be configured again.
+    /// True if the surface still works but should be configured again.
     pub(super) is_stale: bool,
     pub(super) gpu: Gpu,
     /// Error of the latest crowd that was drawn; `None` if there was no error.
@@ -35,9 +35,9 @@ pub(super) struct Graphics {
 pub(super) struct ScenePicture {
     pub(super) canvas: Canvas,
     scene: Option<Scene>,
-    /// Whether the canvas shows the scene.
+    /// True if the canvas shows the scene.
     is_drawn: bool,
-    /// Whether the window does not show the canvas yet.
+    /// True if the window does not show the canvas yet.
     pub(super) is_new: bool,
 }
 
@@ -95,7 +95,7 @@ impl Graphics {
         self.renderer.crowd_times().ok().flatten()
     }
 
-    /// Whether the device can measure the time that it takes for a frame.
+    /// True if the device can measure the time that it takes for a frame.
     pub fn has_clock(&self) -> bool {
         self.gpu_timer.is_some()
     }
@@ -109,7 +109,7 @@ impl Graphics {
         self.gpu_timer.as_mut()?.read(&self.gpu)
     }
 
-    /// Whether counts of drawn frames will arrive from the device.
+    /// True if counts of drawn frames will arrive from the device.
     pub fn awaits_counts(&self) -> bool {
         self.renderer.awaits_counts()
     }
@@ -164,9 +164,10 @@ impl Graphics {
 /// Format of the picture that is copied to the surface. A surface with an sRGB format shows a copy
 /// as it is, but would encode drawn colours, which are encoded already.
 fn composed_format(config: &wgpu::SurfaceConfiguration) -> wgpu::TextureFormat {
-    match config.usage.contains(wgpu::TextureUsages::COPY_DST) {
-        true => config.format.remove_srgb_suffix(),
-        false => config.format,
+    if config.usage.contains(wgpu::TextureUsages::COPY_DST) {
+        config.format.remove_srgb_suffix()
+    } else {
+        config.format
     }
 }
 
@@ -224,7 +225,7 @@ impl DeviceRetries {
         pause
     }
 
-    /// Whether the device was lost and no frame was presented since.
+    /// True if the device was lost and no frame was presented since.
     pub fn is_retrying(&self) -> bool {
         self.count > 0
     }

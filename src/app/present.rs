@@ -15,7 +15,8 @@ use crate::ui::FrameTimes;
 
 /// Outcome of a frame.
 pub(super) enum Presented {
-    /// The window is up to date. `has_changed` tells whether this frame differs from the one before.
+    /// The window is up to date. `has_changed` tells whether this frame differs from the one
+    /// before.
     Shown { has_changed: bool },
     /// The surface accepts no frame now. Retry after this time, or, for `None`, when the system
     /// requests a redraw.
@@ -43,9 +44,9 @@ impl Graphics {
         }
     }
 
-    /// Draws the panels with the scene in the viewport (in points), and presents the window. Returns
-    /// the outcome and the time spent waiting for the surface. `scale` is in pixels per point;
-    /// `drawn` is the number of earlier frames.
+    /// Draws the panels with the scene in the viewport (in points), and presents the window.
+    /// Returns the outcome and the time spent waiting for the surface. `scale` is in pixels per
+    /// point; `drawn` is the number of earlier frames.
     ///
     /// # Errors
     ///

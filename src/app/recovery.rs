@@ -195,7 +195,7 @@ impl Recovery {
         }
     }
 
-    /// Whether the backup on disk has this revision.
+    /// True if the backup on disk has this revision.
     pub fn has(&self, revision: u64) -> bool {
         self.written_revision == Some(revision)
     }
@@ -329,9 +329,9 @@ fn write_at_crash(slot: Arc<BackupSlot>, newest: Arc<Mutex<Option<Backup>>>) {
     AT_EXIT.set(Some(WriteAtExit(Box::new(move || write()))));
 }
 
-/// Writes the newest backup when it is dropped with its thread. Xlib calls `exit` on this thread when
-/// the display server is gone: nothing returns to the event loop then, but thread-local values are
-/// still dropped.
+/// Writes the newest backup when it is dropped with its thread. Xlib calls `exit` on this thread
+/// when the display server is gone: nothing returns to the event loop then, but thread-local values
+/// are still dropped.
 struct WriteAtExit(Box<dyn Fn()>);
 
 impl Drop for WriteAtExit {

@@ -13,8 +13,8 @@ use winit::keyboard::{KeyCode, PhysicalKey};
 use crate::io;
 use crate::session::Preferences;
 
-/// Everything that is kept from one start of the program to the next: preferences, recent files, position of
-/// the window, layout of the panels.
+/// Everything that is kept from one start of the program to the next: preferences, recent files,
+/// position of the window, layout of the panels.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Settings {
@@ -69,7 +69,7 @@ fn write(text: &str) -> Result<(), Box<dyn std::error::Error>> {
 /// Writes the settings soon after they change, so that a program that is killed loses none.
 #[derive(Default)]
 pub(super) struct SettingsWriter {
-    /// What was written or found unchanged last.
+    /// The text that was written or found unchanged last.
     written: String,
     /// Time to look for changes; `None` if nothing has happened since the last look.
     due: Option<Instant>,
@@ -129,7 +129,7 @@ impl DebugOptions {
         Self { is_enabled: !value.is_empty(), failing_devices: count.unwrap_or(0) }
     }
 
-    /// Whether the event asks to destroy the graphics device.
+    /// True if the event asks to destroy the graphics device.
     pub fn destroys_device(&self, event: &WindowEvent) -> bool {
         self.is_enabled
             && matches!(
@@ -145,7 +145,7 @@ impl DebugOptions {
             )
     }
 
-    /// Whether the next attempt to create the device is to fail; counts this attempt.
+    /// True if the next attempt to create the device is to fail; counts this attempt.
     pub fn fails_device(&mut self) -> bool {
         let fails = self.failing_devices > 0;
         self.failing_devices = self.failing_devices.saturating_sub(1);

@@ -57,11 +57,11 @@ pub(super) struct AppWindow {
     title: String,
     /// Rectangle of the scene in points.
     pub(super) viewport: Rect,
-    /// Whether the program ends at the next frame.
+    /// True if the program ends at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
     dynamic_resolution: DynamicResolution,
-    /// Whether counts of earlier frames will arrive from the device.
+    /// True if counts of earlier frames will arrive from the device.
     awaits_counts: bool,
 }
 
@@ -245,9 +245,12 @@ impl AppWindow {
             return Some(Repaint::At(self.retry_at));
         }
         let display = event_loop.owned_display_handle();
-        let created = guarded(|| match self.debug.fails_device() {
-            true => Err(GraphicsError::Requested),
-            false => Graphics::new(display, &self.window, self.egui.egui_ctx(), proxy.clone()),
+        let created = guarded(|| {
+            if self.debug.fails_device() {
+                Err(GraphicsError::Requested)
+            } else {
+                Graphics::new(display, &self.window, self.egui.egui_ctx(), proxy.clone())
+            }
         });
         let graphics = match created {
             Ok(graphics) => self.graphics.insert(graphics),
@@ -305,9 +308,10 @@ impl AppWindow {
         let mut viewport = Rect::ZERO;
         let mut effects = Vec::new();
         for events in strokes {
-            let events = match session.is_choosing() {
-                true => ui::hold_typed(events, &mut self.held_keys),
-                false => events,
+            let events = if session.is_choosing() {
+                ui::hold_typed(events, &mut self.held_keys)
+            } else {
+                events
             };
             let dropped_files = std::mem::take(&mut input.dropped_files);
             let stroke = RawInput { events, dropped_files, ..input.clone() };
@@ -438,8 +442,8 @@ impl AppWindow {
     }
 }
 
-/// Whether a scene that differs from the one drawn before is a moment of a motion: the camera moves,
-/// or `is_driven` by a held mouse button or playback.
+/// True if a scene that differs from the one drawn before is a moment of a motion: the camera
+/// moves, or `is_driven` by a held mouse button or playback.
 fn moves(before: Option<&Scene>, now: Option<&Scene>, is_driven: bool) -> bool {
     let (Some(before), Some(now)) = (before, now) else {
         return false;

@@ -27,16 +27,16 @@ fn print(out: &mut impl Write) -> io::Result<()> {
 }
 
 fn print_step(out: &mut impl Write, step: &TourStep, session: &mut Session) -> io::Result<()> {
-    paragraph(out, &filled(&step.text, session))?;
+    paragraph(out, &filled(step.text, session))?;
     paragraph(out, &format!("Guess first: {}", step.guess.question))?;
     for answer in step.guess.answers {
         writeln!(out, "{INDENT}- {answer}")?;
     }
-    paragraph(out, &format!("Now try it: {}", filled(&step.task, session)))?;
+    paragraph(out, &format!("Now try it: {}", filled(step.task, session)))?;
     paragraph(out, &format!("Without a mouse: {}", step.keyboard))?;
     demonstrate(session);
     paragraph(out, &format!("Answer: {}", step.guess.right_answer()))?;
-    paragraph(out, &format!("What happens: {}", filled(&step.result, session)))
+    paragraph(out, &format!("What happens: {}", filled(step.result, session)))
 }
 
 fn print_end(out: &mut impl Write, end: &TourEnd) -> io::Result<()> {

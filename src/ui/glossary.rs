@@ -51,8 +51,8 @@ pub(super) fn term_label(ui: &mut Ui, name: &str, of: &str, actions: &mut Action
     term(ui, label, width, of, actions);
 }
 
-/// Underlines a label, whose text is `width` points wide, and shows the meaning of the term `of` while
-/// the mouse is over it. A term that the glossary lacks stays a plain label.
+/// Underlines a label, whose text is `width` points wide, and shows the meaning of the term `of`
+/// while the mouse is over it. A term that the glossary lacks stays a plain label.
 pub(super) fn term(ui: &Ui, label: Response, width: f32, of: &str, actions: &mut Actions) {
     let Some(entry) = Entry::find(of) else { return };
     underline(ui, &label, width);
@@ -68,8 +68,8 @@ pub(super) fn term(ui: &Ui, label: Response, width: f32, of: &str, actions: &mut
     });
 }
 
-/// Draws dots below the text. They are discs, since egui rounds lines and rectangles of one point to no
-/// length.
+/// Draws dots below the text. They are discs, since egui rounds lines and rectangles of one point
+/// to no length.
 fn underline(ui: &Ui, label: &Response, width: f32) {
     const RADIUS: f32 = 0.8;
     const SPACING: f32 = 4.0;

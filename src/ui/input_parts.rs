@@ -43,7 +43,7 @@ pub fn hold_typed(stroke: Vec<Event>, deferred: &mut Vec<Event>) -> Vec<Event> {
     rest
 }
 
-/// Whether the event is a key press, a clipboard event, or a press or release of a mouse button.
+/// True if the event is a key press, a clipboard event, or a press or release of a mouse button.
 /// Releases count, because egui reports a click at the release.
 fn is_press(event: &Event) -> bool {
     match event {

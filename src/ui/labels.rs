@@ -5,8 +5,8 @@ use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Session};
 
-/// What a grip of a skeleton moves, such as "pelvis", "the limb of left_hand" or "the target of
-/// left_hand"; empty for other grips.
+/// Name of the part that a grip of a skeleton moves, such as "pelvis", "the limb of left_hand" or
+/// "the target of left_hand"; empty for other grips.
 pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
     let rig = session.skeleton_rig();
     let name = |joint: JointId| rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
@@ -23,8 +23,8 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
     }
 }
 
-/// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of the
-/// joint that the target is named after.
+/// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of
+/// the joint that the target is named after.
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
     let name = channel_of_joint(session, channel);
     match joint_of_channel(session, channel) {

@@ -31,8 +31,8 @@ use panels::crowd;
 /// Least height of the view beside an open timeline, in points.
 const VIEW_HEIGHT: f32 = 360.0;
 
-/// Shows all panels and returns the rectangle of the viewport in points. The viewport is left empty:
-/// the scene is drawn there before the panels.
+/// Shows all panels and returns the rectangle of the viewport in points. The viewport is left
+/// empty: the scene is drawn there before the panels.
 pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) -> Rect {
     keyboard::focus::begin(ui);
     keyboard::global(ui, session, actions);

@@ -1,4 +1,4 @@
-//! What the mouse buttons do at the mouse, for the status bar.
+//! Hints in the status bar: the effects of the mouse buttons at the mouse.
 
 use std::borrow::Cow;
 

@@ -81,8 +81,8 @@ fn describe_skeleton(session: &Session) -> String {
     line.join(" · ")
 }
 
-/// The shown iterate of a solver run, the iteration of a race, or whether the evaluated pose reaches
-/// its targets; `None` without an enabled target.
+/// The shown iterate of a solver run, the iteration of a race, or whether the evaluated pose
+/// reaches its targets; `None` without an enabled target.
 fn describe_solver(session: &Session) -> Option<String> {
     let Some(ShownIteration { number, latest, .. }) = session.shown_iteration() else {
         return Some(session.solver_status()?.state.to_string());

@@ -45,11 +45,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                     offer_turn(ui, actions);
                 }
                 let is_error = session.drag().is_none() && session.has_failed();
-                match is_error {
-                    true => widgets::error_label(ui, &line(session)),
-                    false => {
-                        ui.add(Label::new(line(session)).truncate().selectable(false));
-                    }
+                if is_error {
+                    widgets::error_label(ui, &line(session));
+                } else {
+                    ui.add(Label::new(line(session)).truncate().selectable(false));
                 }
             });
         });
@@ -70,9 +69,10 @@ fn expire(ui: &Ui, session: &Session, actions: &mut Actions) {
     }
     let stays = if session.has_failed() { ERROR_SECONDS } else { MESSAGE_SECONDS };
     let left = shown.since + stays - now;
-    match left > 0.0 {
-        true => ui.ctx().request_repaint_after(Duration::from_secs_f64(left)),
-        false => actions.push(ShellAction::ClearMessage),
+    if left > 0.0 {
+        ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
+    } else {
+        actions.push(ShellAction::ClearMessage);
     }
 }
 
@@ -154,9 +154,12 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         RigKind::Arm => format::decimals_of_cell(session.shown().grid_cell() * 0.1),
         RigKind::Skeleton => format::decimals_of_cell(session.shown().grid_cell()),
     };
-    let [x, y, z] = moved.to_array().map(|way| match format::has_overflowed(way.into()) {
-        true => format::OVERFLOW.to_owned(),
-        false => format!("{way:+.digits$}"),
+    let [x, y, z] = moved.to_array().map(|way| {
+        if format::has_overflowed(way.into()) {
+            format::OVERFLOW.to_owned()
+        } else {
+            format!("{way:+.digits$}")
+        }
     });
     format!(
         "{verb} {how}: {x}, {y}, {z}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",

@@ -103,7 +103,8 @@ fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> 
 
 /// Applies a theme to the panels.
 pub fn apply(ctx: &Context, theme: Theme) {
-    // A slow adapter may show the two clicks of a double-click in frames this far apart, in seconds.
+    // A slow adapter may show the two clicks of a double-click in frames this far apart, in
+    // seconds.
     const DOUBLE_CLICK: f64 = 0.6;
     ctx.options_mut(|options| options.input_options.max_double_click_delay = DOUBLE_CLICK);
     ctx.set_theme(egui_theme(theme));

@@ -50,14 +50,14 @@ const TEXT_WIDTH: f32 = 720.0;
 /// Height of the lower row of buttons, with the space around it, in points.
 const FOOTER: f32 = 38.0;
 
-/// Height of the card in a window in which it has a width. It is the same for all steps, so that the
-/// view does not change its size.
+/// Height of the card in a window in which it has a width. It is the same for all steps, so that
+/// the view does not change its size.
 pub(super) fn height(width: f32) -> f32 {
     if width < WIDE { 270.0 } else { 216.0 }
 }
 
-/// Unfolds the section of the left panel that a step needs, once, when the step begins. When the tour
-/// ends, folds the sections again that it unfolded.
+/// Unfolds the section of the left panel that a step needs, once, when the step begins. When the
+/// tour ends, folds the sections again that it unfolded.
 pub(super) fn open_section(ui: &Ui, session: &Session) {
     let shown = Id::unique("step of the tour");
     let now = session.tour().map(TourState::number);
@@ -114,13 +114,15 @@ fn footer(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
     ui.add_space(4.0);
     ui.scope(|ui| progress(ui, tour, actions));
     ui.add_space(4.0);
-    let (name, tooltip, action) = match is_end {
-        true => ("Finish", "End the tour and put your document back", TourAction::Leave),
-        false => ("Next", "Go to the next card", TourAction::Enter(number + 1)),
+    let (name, tooltip, action) = if is_end {
+        ("Finish", "End the tour and put your document back", TourAction::Leave)
+    } else {
+        ("Next", "Go to the next card", TourAction::Enter(number + 1))
     };
-    let next = match tour.shows_result() || is_end {
-        true => widgets::primary_button(ui, name, None),
-        false => ui.button(name),
+    let next = if tour.shows_result() || is_end {
+        widgets::primary_button(ui, name, None)
+    } else {
+        ui.button(name)
     };
     if next.on_hover_text(tooltip).clicked() {
         actions.push(action);
@@ -135,7 +137,7 @@ fn body(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions)
         if tour.shows_result() {
             return result(ui, session, step, tour.guess());
         }
-        paragraph(ui, &filled(&step.text, session));
+        paragraph(ui, &filled(step.text, session));
         ui.add_space(4.0);
         match tour.guess() {
             None => question(ui, step, actions),
@@ -146,7 +148,7 @@ fn body(ui: &mut Ui, session: &Session, tour: &TourState, actions: &mut Actions)
 
 fn question(ui: &mut Ui, step: &TourStep, actions: &mut Actions) {
     caption(ui, "Guess first");
-    paragraph(ui, &step.guess.question);
+    paragraph(ui, step.guess.question);
     ui.horizontal_wrapped(|ui| {
         for (number, answer) in step.guess.answers.iter().enumerate() {
             if ui.button(*answer).on_hover_text("Guess this, then try it").clicked() {
@@ -158,7 +160,7 @@ fn question(ui: &mut Ui, step: &TourStep, actions: &mut Actions) {
 
 fn task(ui: &mut Ui, session: &Session, step: &TourStep, actions: &mut Actions) {
     caption(ui, "Now try it");
-    paragraph(ui, &filled(&step.task, session));
+    paragraph(ui, &filled(step.task, session));
     ui.horizontal_wrapped(|ui| {
         let demonstrate = ui.small_button("Do it for me");
         if demonstrate.on_hover_text("Show the result without the mouse").clicked() {
@@ -181,7 +183,7 @@ fn result(ui: &mut Ui, session: &Session, step: &TourStep, guess: Option<usize>)
         let answer = RichText::new(format!("{mark}: {}", step.guess.right_answer()));
         ui.add(Label::new(answer.strong().size(12.0)).truncate().selectable(false));
     });
-    paragraph(ui, &filled(&step.result, session));
+    paragraph(ui, &filled(step.result, session));
 }
 
 fn end(ui: &mut Ui) {
@@ -244,10 +246,7 @@ fn progress(ui: &mut Ui, tour: &TourState, actions: &mut Actions) {
 fn dot(ui: &mut Ui, is_now: bool, is_done: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(CELL, CELL), Sense::click());
     let accent = style::accent(ui);
-    let colour = match is_now || is_done {
-        true => accent,
-        false => ui.visuals().weak_text_color(),
-    };
+    let colour = if is_now || is_done { accent } else { ui.visuals().weak_text_color() };
     let fill = if is_done { colour } else { Color32::TRANSPARENT };
     ui.painter().circle(rect.center(), 3.5, fill, Stroke::new(1.2, colour));
     if is_now || response.has_focus() || response.hovered() {

@@ -42,17 +42,19 @@ pub(in crate::ui) fn remedies(
     }
 }
 
-/// What a remedy of a diagnosis leaves between the tip or the hand and its target.
+/// The error that a remedy of a diagnosis leaves between the tip or the hand and its target.
 fn left(session: &Session, found: &Diagnosis, tried: &TriedRemedy) -> String {
     let TriedRemedy { residual, rotation_residual, .. } = *tried;
     if let Cause::RotationLimits { .. } = found.cause {
-        return match rotation_residual <= SkeletonRig::ROTATION_TOLERANCE {
-            true => "it is then turned as its target asks".to_owned(),
-            false => format!("{} are then missing", format::degrees(rotation_residual)),
+        return if rotation_residual <= SkeletonRig::ROTATION_TOLERANCE {
+            "it is then turned as its target asks".to_owned()
+        } else {
+            format!("{} are then missing", format::degrees(rotation_residual))
         };
     }
-    match residual <= session.skeleton_rig().tolerance() {
-        true => "the tip is then at its target".to_owned(),
-        false => format!("the tip is then {} away", format::short(residual)),
+    if residual <= session.skeleton_rig().tolerance() {
+        "the tip is then at its target".to_owned()
+    } else {
+        format!("the tip is then {} away", format::short(residual))
     }
 }

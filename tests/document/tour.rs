@@ -78,7 +78,7 @@ fn every_sentence_of_a_result_has_its_numbers_once_the_task_is_done() {
             assert_eq!(said.matches(". ").count(), text.matches(". ").count(), "{said}");
         }
         demonstrate(&mut session);
-        let said = filled(&step.result, &session);
+        let said = filled(step.result, &session);
         assert!(!said.contains(['{', '}']), "{said}");
         assert_eq!(said.matches(". ").count(), step.result.matches(". ").count(), "{said}");
         assert!(shows_result(&session));

@@ -172,7 +172,7 @@ fn every_step_notices_its_task_done_with_the_mouse() {
     for (size, theme) in looks {
         for (number, step) in (1..).zip(TourStep::all()) {
             let mut bench = in_step(number, size, theme);
-            bench.click(Role::Button, &step.guess.answers[0]);
+            bench.click(Role::Button, step.guess.answers[0]);
             assert!(!is_done(&bench, number), "a guess is not the task of step {number}");
             do_with_the_mouse(&mut bench, number);
             assert!(is_done(&bench, number), "step {number} at {size:?}");
@@ -200,7 +200,7 @@ fn enter_number(bench: &mut Bench, name: &str, text: &str) {
 fn every_step_notices_its_task_done_without_a_mouse() {
     for (number, step) in (1..).zip(TourStep::all()) {
         let mut bench = in_step(number, SMALL, Theme::Dark);
-        press_keys(&mut bench, Role::Button, &step.guess.answers[1], &[Key::Space]);
+        press_keys(&mut bench, Role::Button, step.guess.answers[1], &[Key::Space]);
         assert!(bench.says("Now try it"), "step {number}");
         match number {
             1 => press_keys(&mut bench, Role::Slider, "Hand x", &[Key::PageDown; 36]),
@@ -268,18 +268,18 @@ fn cards_show_all_of_their_text_at_every_stage() {
     for size in SIZES {
         for (number, step) in (1..).zip(TourStep::all()) {
             let mut bench = in_step(number, size, Theme::Dark);
-            let text = said(&bench, &step.text);
-            let question = [text.as_str(), "Guess first", &step.guess.question];
+            let text = said(&bench, step.text);
+            let question = [text.as_str(), "Guess first", step.guess.question];
             let answers = step.guess.answers.iter().copied();
             expect_in_sight(&bench, question.into_iter().chain(answers));
 
-            bench.click(Role::Button, &step.guess.answers[0]);
-            let (task, keyboard) = (said(&bench, &step.task), step.keyboard.replace('*', ""));
+            bench.click(Role::Button, step.guess.answers[0]);
+            let (task, keyboard) = (said(&bench, step.task), step.keyboard.replace('*', ""));
             expect_in_sight(&bench, [&text, "Now try it", &task, "Do it for me", &keyboard]);
 
             bench.apply_moving([TourAction::Demonstrate]);
             bench.wait(if number == 11 { 8.0 } else { 0.1 });
-            let result = said(&bench, &step.result);
+            let result = said(&bench, step.result);
             expect_in_sight(&bench, ["What happened", &result, &mark(step, 0)]);
             let height = bench.viewport().height();
             assert!(height > 220.0, "room for the scene of step {number}: {height}");
@@ -302,7 +302,7 @@ fn cards_look_as_they_did() {
                 let mut bench = in_step(number, size, theme);
                 // The question, the task and the result in turn.
                 if number <= TourStep::all().len() && number % 3 != 1 {
-                    bench.click(Role::Button, &step(number).guess.answers[0]);
+                    bench.click(Role::Button, step(number).guess.answers[0]);
                 }
                 if number % 3 == 0 {
                     bench.apply_moving([TourAction::Demonstrate]);
@@ -334,7 +334,7 @@ fn the_card_leads_through_the_steps_and_back_to_the_own_document() {
     bench.click(Role::Button, "Take the tour");
     for (number, step) in (1..).zip(TourStep::all()) {
         assert_eq!(bench.session().tour().map(|tour| tour.number() + 1), Some(number));
-        assert!(bench.says(&step.title));
+        assert!(bench.says(step.title));
         for name in ["Back", next(&bench), "Leave"] {
             let is_first = number == 1 && name == "Back";
             assert!(is_first || has_tooltip(&mut bench, Role::Button, name), "{name}");
@@ -342,9 +342,9 @@ fn the_card_leads_through_the_steps_and_back_to_the_own_document() {
         let name = next(&bench);
         bench.click(Role::Button, name);
     }
-    assert!(bench.says(&TourEnd::get().title));
+    assert!(bench.says(TourEnd::get().title));
     bench.click(Role::Button, "Back");
-    assert!(bench.says(&step(TourStep::all().len()).title));
+    assert!(bench.says(step(TourStep::all().len()).title));
     bench.click(Role::Button, "Next");
     bench.click(Role::Button, "Finish");
     assert!(bench.session().tour().is_none());
@@ -361,11 +361,11 @@ fn any_step_can_be_entered_from_its_dot_and_left() {
     assert!(bench.says("The limbs are 200.0 mm and 300.0 mm long"));
     assert!(bench.shows(Role::Slider, "Softness"), "the section of the step is open");
     bench.click(Role::Button, "Back");
-    assert!(bench.says(&step(6).title));
+    assert!(bench.says(step(6).title));
     bench.click(Role::Button, "Leave");
     assert!(bench.session().tour().is_none());
     bench.choose(&["Help", "Tour"]);
-    assert!(bench.says(&step(1).title));
+    assert!(bench.says(step(1).title));
 }
 
 #[test]
@@ -374,7 +374,7 @@ fn each_guess_is_marked_right_or_not_quite_with_the_right_answer() {
         [(0, "Not quite: It vanishes"), (1, "Not quite: It vanishes"), (2, "Right: It vanishes")]
     {
         let mut bench = in_step(5, SMALL, Theme::Dark);
-        bench.click(Role::Button, &step(5).guess.answers[guess]);
+        bench.click(Role::Button, step(5).guess.answers[guess]);
         assert!(!bench.says("It vanishes"), "the answer comes after the task");
         do_with_the_mouse(&mut bench, 5);
         assert!(bench.says(said), "{said}");
@@ -388,7 +388,7 @@ fn each_guess_is_marked_right_or_not_quite_with_the_right_answer() {
 fn the_two_poses_of_nearly_straight_are_shown_after_the_guess() {
     let mut bench = in_step(7, LARGE, Theme::Dark);
     assert!(!bench.says("Nearly straight: hand"));
-    bench.click(Role::Button, &step(7).guess.answers[2]);
+    bench.click(Role::Button, step(7).guess.answers[2]);
     do_with_the_mouse(&mut bench, 7);
     assert!(bench.says("Nearly straight: hand"));
 }
@@ -433,7 +433,7 @@ fn the_offer_goes_for_good_when_it_is_declined() {
 #[test]
 fn do_it_for_me_shows_the_result_without_a_mouse() {
     let mut bench = in_step(5, SMALL, Theme::Dark);
-    bench.click(Role::Button, &step(5).guess.answers[2]);
+    bench.click(Role::Button, step(5).guess.answers[2]);
     assert!(has_tooltip(&mut bench, Role::Button, "Do it for me"));
     bench.click(Role::Button, "Do it for me");
     assert!(

@@ -1,19 +1,19 @@
 //! The painter of the panels, which redraws only the areas that have changed.
 //!
 //! It exists because of machines without a graphics card, where a software adapter draws on the
-//! processor. `egui_wgpu` redraws all panels in each frame, with one shader for all kinds of texture
-//! filters, of which a processor computes all for every pixel. With it, a drag of the arm took 64 ms
-//! a frame at 1280×800 on two cores, even with the scene at half its size; with this painter it takes
-//! 25 to 33 ms (docs/performance.md).
+//! processor. `egui_wgpu` redraws all panels in each frame, with one shader for all kinds of
+//! texture filters, of which a processor computes all for every pixel. With it, a drag of the arm
+//! took 64 ms a frame at 1280×800 on two cores, even with the scene at half its size; with this
+//! painter it takes 25 to 33 ms (docs/performance.md).
 //!
 //! A frame takes these steps:
 //!
 //! 1. `changes` hashes the triangles that touch each tile of 32×32 pixels and compares the hashes
-//! with those of the frame before. Tiles that differ are joined to at most 12 rectangles.
+//!    with those of the frame before. Tiles that differ are joined to at most 12 rectangles.
 //! 2. `triangles` uploads the triangles that touch these rectangles, and draws them with a shader
-//! that has one filter.
+//!    that has one filter.
 //! 3. Under them come black, the picture of the scene and its labels. The picture of the window is
-//! kept in a texture, and the frame is a copy of it.
+//!    kept in a texture, and the frame is a copy of it.
 //!
 //! A frame is bit for bit the frame that a painter of everything draws, and within 1 of 255 of
 //! `egui_wgpu`'s; tests compare both.
@@ -42,13 +42,13 @@ pub(super) struct PanelPainter {
     format: wgpu::TextureFormat,
 }
 
-/// What the window shows.
+/// The picture that the window shows.
 struct KeptPicture {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
     /// Where the scene is.
     viewport: Option<PixelArea>,
-    /// Whether all of it must be drawn.
+    /// True if all of it must be drawn.
     is_stale: bool,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct PlacedScene<'a> {
     /// Draws the labels.
     pub renderer: &'a Renderer,
     pub viewport: Rect,
-    /// Whether it differs from that of the frame before.
+    /// True if it differs from that of the frame before.
     pub has_changed: bool,
 }
 
@@ -102,8 +102,8 @@ impl PanelPainter {
         }
     }
 
-    /// Redraws the areas of the panels and the scene that have changed since the last call, and returns
-    /// whether there are any.
+    /// Redraws the areas of the panels and the scene that have changed since the last call, and
+    /// returns whether there are any.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -155,9 +155,10 @@ impl PanelPainter {
             self.kept = KeptPicture::new(gpu, self.format, size);
         }
         let was_there = std::mem::replace(&mut self.kept.viewport, viewport) == viewport;
-        let drawn = match std::mem::take(&mut self.kept.is_stale) || !was_there {
-            true => Some(PixelArea { at: [0, 0], size }),
-            false => viewport.filter(|_| has_scene_changed),
+        let drawn = if std::mem::take(&mut self.kept.is_stale) || !was_there {
+            Some(PixelArea { at: [0, 0], size })
+        } else {
+            viewport.filter(|_| has_scene_changed)
         };
         let mut changed = self.changes.replace(panels, screen, drawn);
         changed.extend(drawn);

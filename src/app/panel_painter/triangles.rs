@@ -10,8 +10,8 @@ use crate::render::{Corner, Gpu, TrianglePainter};
 
 /// Draws the triangles of the panels that touch some areas of the window.
 ///
-/// The renderer of `egui_wgpu` has one shader for all kinds of texture filters. A processor computes
-/// all of them for every pixel, which takes several times as long as this.
+/// The renderer of `egui_wgpu` has one shader for all kinds of texture filters. A processor
+/// computes all of them for every pixel, which takes several times as long as this.
 pub(in crate::app) struct PanelTriangles {
     painter: TrianglePainter,
     textures: HashMap<TextureId, PanelTexture>,

@@ -1,4 +1,5 @@
-//! The tour: steps that each show a scene, ask a question, and notice when the user has done a task.
+//! The tour: steps that each show a scene, ask a question, and notice when the user has done a
+//! task.
 
 mod apply;
 mod figures;

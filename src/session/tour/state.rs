@@ -36,7 +36,8 @@ impl TourState {
         Self { number, start, guess: None, shows_result: false, done }
     }
 
-    /// Number of the step, counted from 0; at the card after the last step, the number of all steps.
+    /// Number of the step, counted from 0; at the card after the last step, the number of all
+    /// steps.
     pub fn number(&self) -> usize {
         self.number
     }
@@ -61,7 +62,8 @@ impl TourState {
         self.guess
     }
 
-    /// True while the result of the step is shown: its task was done, by the user or in a demonstration.
+    /// True while the result of the step is shown: its task was done, by the user or in a
+    /// demonstration.
     pub fn shows_result(&self) -> bool {
         self.shows_result
     }

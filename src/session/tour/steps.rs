@@ -6,8 +6,8 @@ use crate::session::panel_tab::PanelTab;
 
 /// A step of the tour.
 ///
-/// Texts may name live numbers of the scene in braces, such as `{hand}`. Parts of the window and new
-/// terms are between asterisks.
+/// Texts may name live numbers of the scene in braces, such as `{hand}`. Parts of the window and
+/// new terms are between asterisks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TourStep {
     /// The step's title.

@@ -170,9 +170,10 @@ fn length(ui: &mut Ui, session: &Session, frame_rate: f64, format: Option<Format
         Some(format) if format.is_picture() => ExportFrames::of_picture(document, Some(frame_rate)),
         _ => ExportFrames::of_pose(document, Some(frame_rate)),
     };
-    ui.label(match frames.is_ok_and(|frames| frames.count() > 1) {
-        true => format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start),
-        false => "One frame, no motion".to_owned(),
+    ui.label(if frames.is_ok_and(|frames| frames.count() > 1) {
+        format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start)
+    } else {
+        "One frame, no motion".to_owned()
     });
     ui.end_row();
 }
@@ -200,7 +201,8 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
     });
 }
 
-/// The path without the extension of a format and without the placeholder of the frame number, `_####`.
+/// The path without the extension of a format and without the placeholder of the frame number,
+/// `_####`.
 fn stem(path: &str) -> String {
     let path = Path::new(path);
     let has_format = Format::of(path).is_ok();

@@ -1,5 +1,5 @@
-//! Questions about files: before changes or files are lost, and the choice of a file's skeletons and
-//! animations.
+//! Questions about files: before changes or files are lost, and the choice of a file's skeletons
+//! and animations.
 
 use std::path::Path;
 

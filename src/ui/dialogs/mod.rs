@@ -97,7 +97,7 @@ pub(in crate::ui) fn ui(
     });
 }
 
-/// Whether the open dialog differs in kind from that of the previous frame: true in the first frame
+/// True if the open dialog differs in kind from that of the previous frame: true in the first frame
 /// of a dialog.
 fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     let now = dialog.map(|dialog| match dialog {

@@ -102,8 +102,8 @@ pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog)
 }
 
 /// Returns `action`, which writes the file at `path`. If that would overwrite a file other than the
-/// open one, or the open one after another program has changed it, returns the action that opens a dialog to ask first; cancelling that dialog leads back
-/// to `back`.
+/// open one, or the open one after another program has changed it, returns the action that opens a
+/// dialog to ask first; cancelling that dialog leads back to `back`.
 pub(in crate::ui) fn unless_there(
     session: &Session,
     path: PathBuf,

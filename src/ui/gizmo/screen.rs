@@ -69,8 +69,8 @@ pub(in crate::ui) fn to_segment(at: Pos2, from: Pos2, to: Pos2) -> f32 {
     at.distance(from + along * part)
 }
 
-/// Draws a line along the locked axis, or two along those of the locked plane, through the point that
-/// is dragged.
+/// Draws a line along the locked axis, or two along those of the locked plane, through the point
+/// that is dragged.
 pub(in crate::ui) fn locked_axis(
     painter: &Painter,
     ui: &Ui,

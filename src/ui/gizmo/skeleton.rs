@@ -40,7 +40,7 @@ struct ScreenBone {
     base: Pos2,
     tip: Pos2,
     depth: f32,
-    /// Whether its tip can be dragged by a circle around it, which is hidden with the bones.
+    /// True if its tip can be dragged by a circle around it, which is hidden with the bones.
     has_circle: bool,
     is_selected: bool,
 }
@@ -239,7 +239,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     points.into_iter().filter_map(handles).collect()
 }
 
-/// Whether a joint is a root without a bone that can be dragged; it has arrows while it is
+/// True if a joint is a root without a bone that can be dragged; it has arrows while it is
 /// selected.
 fn is_dragged_root(session: &Session, joint: JointId) -> bool {
     session.is_root_point(joint) && session.can_drag_tip(joint)

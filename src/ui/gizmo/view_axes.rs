@@ -25,7 +25,7 @@ struct AxisEnd {
     colour: Color32,
 }
 
-/// Whether a screen position is on the view axes.
+/// True if a screen position is on the view axes.
 pub(in crate::ui) fn covers(viewport: Rect, at: Pos2) -> bool {
     centre(viewport).distance(at) <= RADIUS + END + 2.0
 }

@@ -19,12 +19,13 @@ pub(in crate::ui) fn leaves_letters(ui: &Ui) -> bool {
     focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresLetters>(id)).is_some())
 }
 
-/// Whether a text field had the keyboard focus at the end of the previous frame.
+/// True if a text field had the keyboard focus at the end of the previous frame.
 #[derive(Clone, Copy, Default)]
 struct TextFocus(bool);
 
-/// Ends a frame: moves the focus from number to number, and stores for the next frame whether a text
-/// field has the keyboard focus, because Esc removes the focus before the next frame runs the panels.
+/// Ends a frame: moves the focus from number to number, and stores for the next frame whether a
+/// text field has the keyboard focus, because Esc removes the focus before the next frame runs the
+/// panels.
 pub(in crate::ui) fn end(ui: &Ui) {
     follow_numbers(ui);
     let typing = TextFocus(ui.text_edit_focused());
@@ -47,7 +48,7 @@ struct IsTyped;
 #[derive(Clone, Copy)]
 struct LeftByTab {
     number: Id,
-    /// Whether Shift was held, so that the number before is next.
+    /// True if Shift was held, so that the number before is next.
     backwards: bool,
 }
 
@@ -80,8 +81,8 @@ fn edit(ui: &Ui, number: Id) {
     text.store(ui.ctx(), number);
 }
 
-/// Lists a number, so that Tab leads from it to the next number once the user has typed into it. From
-/// other widgets, and from numbers without typing, Tab leads to the next widget of any kind.
+/// Lists a number, so that Tab leads from it to the next number once the user has typed into it.
+/// From other widgets, and from numbers without typing, Tab leads to the next widget of any kind.
 pub(in crate::ui) fn list_number(ui: &Ui, number: &Response) {
     if number.enabled() {
         ui.data_mut(|data| data.get_temp_mut_or_default::<Numbers>(numbers()).0.push(number.id));

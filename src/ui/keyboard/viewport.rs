@@ -75,8 +75,8 @@ fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Handles the digits that choose a view along an axis or the other projection, for use also while a
-/// widget has the keyboard focus that makes no use of digits.
+/// Handles the digits that choose a view along an axis or the other projection, for use also while
+/// a widget has the keyboard focus that makes no use of digits.
 pub(in crate::ui) fn axis_views(ui: &Ui, session: &Session, actions: &mut Actions) {
     let camera = session.settled_camera();
     let along = |view| ViewAction::GlideTo(camera.along(view));

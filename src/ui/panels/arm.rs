@@ -1,4 +1,5 @@
-//! Settings of the arm: FK and IK, hand, Socket twist, Root, lengths, soft limits, hand orientation.
+//! Settings of the arm: FK and IK, hand, Socket twist, Root, lengths, soft limits, hand
+//! orientation.
 
 use core::f32::consts::TAU;
 
@@ -236,8 +237,8 @@ pub(in crate::ui) fn socket_twist(ui: &mut Ui, session: &Session, actions: &mut 
     }
 }
 
-/// Shows the combo box of the twist references, for the title row of the section, with a label if there
-/// is room for both.
+/// Shows the combo box of the twist references, for the title row of the section, with a label if
+/// there is room for both.
 pub(in crate::ui) fn reference(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     /// Width in points of the section's title with its triangle.
     const TITLE: f32 = 104.0;

@@ -94,7 +94,7 @@ fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Least width of the window with this panel, in points.
 const WINDOW_WIDTH: f32 = 760.0;
 
-/// Whether the window is wide enough for the panel: in a narrow one, it gives way to the view.
+/// True if the window is wide enough for the panel: in a narrow one, it gives way to the view.
 pub(super) fn has_room(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() >= WINDOW_WIDTH
 }

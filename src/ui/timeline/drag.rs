@@ -60,7 +60,7 @@ pub(in crate::ui) struct TangentDrag {
     /// Component of the value: 0, 1 or 2.
     pub axis: usize,
     pub kind: ValueKind,
-    /// Whether the handle is on the side after the key.
+    /// True if the handle is on the side after the key.
     pub is_leaving: bool,
     /// True once the transaction is open.
     pub moved: bool,
@@ -91,7 +91,7 @@ pub(in crate::ui) fn clear(ui: &Ui) {
     ui.data_mut(|data| data.remove::<TimelineDrag>(id()));
 }
 
-/// Whether a drag ends: a mouse button was released in this frame, or none is held.
+/// True if a drag ends: a mouse button was released in this frame, or none is held.
 pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
     ui.input(|input| !input.pointer.any_down() || input.pointer.any_released())
 }

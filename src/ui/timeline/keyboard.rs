@@ -48,14 +48,14 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     }
 }
 
-/// Whether shortcuts act on the selected keys: there are any, and the timeline has the keyboard
+/// True if shortcuts act on the selected keys: there are any, and the timeline has the keyboard
 /// focus or no joint is selected.
 pub(in crate::ui) fn has_the_word(ui: &Ui, session: &Session) -> bool {
     let is_used = ui.memory(|memory| memory.has_focus(ruler::id()));
     !session.selected_keys().is_empty() && (is_used || session.selection().is_empty())
 }
 
-/// Whether a drag in the timeline is in progress, which Esc cancels.
+/// True if a drag in the timeline is in progress, which Esc cancels.
 pub(in crate::ui) fn holds(ui: &Ui) -> bool {
     drag::get(ui).is_some()
 }
@@ -110,10 +110,8 @@ fn next_frame(session: &Session, by: f64) -> f64 {
     const ROUNDING: f64 = 1e-6;
     let timeline = session.document().timeline;
     let frame = timeline.number(session.time());
-    let next = match by > 0.0 {
-        true => (frame + ROUNDING).floor() + 1.0,
-        false => (frame - ROUNDING).ceil() - 1.0,
-    };
+    let next =
+        if by > 0.0 { (frame + ROUNDING).floor() + 1.0 } else { (frame - ROUNDING).ceil() - 1.0 };
     let (first, last) = time_scale::span(session);
     timeline.time_of_number(next).clamp(first.min(session.time()), last.max(session.time()))
 }

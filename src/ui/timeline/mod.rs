@@ -23,9 +23,10 @@ use time_scale::TimeScale;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
 pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    match session.shows_timeline() {
-        true => transport_bar::whole(ui, session, actions),
-        false => transport_bar::slim(ui, session, actions),
+    if session.shows_timeline() {
+        transport_bar::whole(ui, session, actions);
+    } else {
+        transport_bar::slim(ui, session, actions);
     }
 }
 

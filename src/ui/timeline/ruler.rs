@@ -63,7 +63,7 @@ pub(in crate::ui) fn ui(
     )
 }
 
-/// Whether the left mouse button was pressed on the widget of `response` in this frame.
+/// True if the left mouse button was pressed on the widget of `response` in this frame.
 pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
     let is_press = |event: &Event| {
         matches!(event, Event::PointerButton { button: PointerButton::Primary, pressed: true, .. })
@@ -195,7 +195,7 @@ enum RulerStep {
     Seconds(i64),
 }
 
-/// What a line of the ruler stands for. The number of a frame counts from time 0.
+/// The meaning of a line of the ruler. The number of a frame counts from time 0.
 #[derive(Clone, Copy)]
 enum RulerLabel {
     Frame(i64),
@@ -210,7 +210,7 @@ impl RulerStep {
         }
     }
 
-    /// Whether every line of `other` is a line of this step, too.
+    /// True if every line of `other` is a line of this step, too.
     fn divides(self, other: Self, timeline: Timeline) -> bool {
         match (self, other) {
             (Self::Frames(own), Self::Frames(other)) => other % own == 0,

@@ -36,7 +36,7 @@ struct StoredRange {
     to: f64,
 }
 
-/// What a range was stored for.
+/// The document and timeline for which a range was stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RangeOwner {
     /// The open document.
@@ -53,9 +53,9 @@ impl RangeOwner {
 }
 
 impl TimeScale {
-    /// The scale that shows the stored range or, if none is stored, or if another document was opened
-    /// or the timeline's start or end has changed since, the whole timeline. `seen` is the range of x on
-    /// screen in points.
+    /// The scale that shows the stored range or, if none is stored, or if another document was
+    /// opened or the timeline's start or end has changed since, the whole timeline. `seen` is the
+    /// range of x on screen in points.
     pub fn load(ui: &Ui, session: &Session, seen: Rangef) -> Self {
         let of = RangeOwner::of(session);
         let zoom = ui.data(|data| data.get_temp::<StoredRange>(id())).filter(|zoom| zoom.of == of);

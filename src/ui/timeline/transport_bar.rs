@@ -1,5 +1,5 @@
-//! The transport bar: playback and time; while the timeline is open also keying, speed, frame rate and
-//! range, while it is closed a ruler.
+//! The transport bar: playback and time; while the timeline is open also keying, speed, frame rate
+//! and range, while it is closed a ruler.
 
 use egui::{ComboBox, Rect, RichText, Ui, vec2};
 
@@ -244,9 +244,10 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     } else {
         egui::Button::selectable(false, text).frame_when_inactive(true)
     };
-    let tooltip = match on {
-        true => "Stop adding keys with every edit",
-        false => "Add keys at the playhead with every edit",
+    let tooltip = if on {
+        "Stop adding keys with every edit"
+    } else {
+        "Add keys at the playhead with every edit"
     };
     if ui.add(button).on_hover_text(tooltip).clicked() {
         actions.push(PlaybackAction::SetAutoKey(!on));
@@ -318,10 +319,8 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
 fn curves(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let on = session.preferences().curves;
     let button = egui::Button::selectable(on, "Graph editor").frame_when_inactive(true);
-    let tooltip = match on {
-        true => "Show keys in a dope sheet",
-        false => "Show the selected channels as curves",
-    };
+    let tooltip =
+        if on { "Show keys in a dope sheet" } else { "Show the selected channels as curves" };
     if ui.add(button).on_hover_text(tooltip).clicked() {
         actions.push(ViewAction::ShowGraphEditor(!on));
     }

@@ -1,5 +1,5 @@
-//! The scales of the values in the graph editor, one for angles, one for lengths and one for ratios;
-//! and a channel's curve.
+//! The scales of the values in the graph editor, one for angles, one for lengths and one for
+//! ratios; and a channel's curve.
 
 use egui::{Color32, Event, Id, Rangef, Rect, Ui};
 use egui_plot::LineStyle;
@@ -10,7 +10,7 @@ use crate::document::{Channel, Quantity};
 /// Part of the height that is left free above and below the curves.
 const ROOM: f64 = 0.12;
 
-/// What a value is measured in.
+/// The unit of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueKind {
     Angle,

@@ -20,7 +20,8 @@ use crate::session::{
 };
 use navigation::{motion, show_cursor, wheel};
 
-/// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside it.
+/// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside
+/// it.
 const PANEL_EDGE: f32 = 4.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Rect {
@@ -139,7 +140,7 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
-/// What the mouse is over: what a press would drag, and the part of a body that lights up.
+/// Things under the mouse: the grip that a press would drag, and the part of a body that lights up.
 #[derive(Clone, Copy, Default)]
 struct Pointed {
     grip: Option<Grip>,
@@ -275,7 +276,7 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Action
     ui.request_repaint();
 }
 
-/// What the current drag in the viewport moves: nothing, a handle, or the camera.
+/// The current drag in the viewport: of nothing, a handle, or the camera.
 #[derive(Clone, Copy)]
 enum ViewportDrag {
     Nothing,

@@ -160,14 +160,16 @@ impl KeyButton {
         let is_at_key = track.is_some_and(|track| track.get(time).is_some());
         let response = self.button(ui, session, name, is_at_key, track.is_some());
         if response.clicked() {
-            actions.push(match is_at_key {
-                true => EditAction::DeleteKeys(vec![(channel, time)]),
-                false => EditAction::Key([vec![channel], self.others].concat()),
+            actions.push(if is_at_key {
+                EditAction::DeleteKeys(vec![(channel, time)])
+            } else {
+                EditAction::Key([vec![channel], self.others].concat())
             });
         }
-        response.on_hover_text(match is_at_key {
-            true => "Delete the key at the playhead",
-            false => "Add a key at the playhead",
+        response.on_hover_text(if is_at_key {
+            "Delete the key at the playhead"
+        } else {
+            "Add a key at the playhead"
         });
     }
 

@@ -1,5 +1,5 @@
-//! Choices: tabs, a row of buttons of which one is chosen, a labelled drop-down list, and check boxes
-//! of overlays.
+//! Choices: tabs, a row of buttons of which one is chosen, a labelled drop-down list, and check
+//! boxes of overlays.
 
 use egui::{
     Align, Button, Checkbox, Color32, ComboBox, Layout, Rect, RichText, Role, Stroke, Ui,
@@ -17,8 +17,8 @@ pub(in crate::ui) struct Tab<'a, T> {
     pub value: T,
 }
 
-/// Shows a row of tabs, the chosen one underlined, and returns the value of one that was pressed and is
-/// not `now`.
+/// Shows a row of tabs, the chosen one underlined, and returns the value of one that was pressed
+/// and is not `now`.
 pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     ui: &mut Ui,
     now: T,
@@ -30,9 +30,10 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
         ui.spacing_mut().button_padding = vec2(6.0, 5.0);
         for Tab { name, tooltip, value } in tabs {
             let is_now = *value == now;
-            let colour = match is_now {
-                true => ui.visuals().strong_text_color(),
-                false => ui.visuals().weak_text_color(),
+            let colour = if is_now {
+                ui.visuals().strong_text_color()
+            } else {
+                ui.visuals().weak_text_color()
             };
             let text = RichText::new(*name).color(colour);
             let tab = ui.add(Button::new(text).fill(Color32::TRANSPARENT));
@@ -110,8 +111,8 @@ impl Choice<'_> {
 }
 
 impl ChoiceList<'_> {
-    /// Shows an item and returns whether the user chose it and it was not the present choice. An empty
-    /// `tooltip` shows none. `disabled` is the reason why the item cannot be chosen.
+    /// Shows an item and returns whether the user chose it and it was not the present choice. An
+    /// empty `tooltip` shows none. `disabled` is the reason why the item cannot be chosen.
     pub fn item(
         &mut self,
         is_now: bool,
@@ -130,8 +131,8 @@ impl ChoiceList<'_> {
     }
 }
 
-/// Shows check boxes of overlays in `count` columns. `disabled` is the reason why they are disabled;
-/// `None` enables them.
+/// Shows check boxes of overlays in `count` columns. `disabled` is the reason why they are
+/// disabled; `None` enables them.
 pub(in crate::ui) fn check_boxes(
     ui: &mut Ui,
     session: &Session,

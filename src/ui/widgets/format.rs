@@ -5,7 +5,7 @@ use crate::kinematics::diagnosis::significant;
 /// Stands for a number that is not finite, or that was clamped to the largest one.
 pub(in crate::ui) const OVERFLOW: &str = "overflow";
 
-/// Whether the number is not finite or was clamped to ±`f32::MAX`.
+/// True if the number is not finite or was clamped to ±`f32::MAX`.
 pub(in crate::ui) fn has_overflowed(value: f64) -> bool {
     !value.is_finite() || value.abs() >= f64::from(f32::MAX)
 }

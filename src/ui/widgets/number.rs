@@ -85,8 +85,8 @@ impl<N: Numeric> DragNumber<'_, N> {
         response
     }
 
-    /// Evaluates text with or without the unit, such as `2*50`; `None` if the result is not a finite
-    /// number. Unchanged text returns the value itself, with the digits that are not shown.
+    /// Evaluates text with or without the unit, such as `2*50`; `None` if the result is not a
+    /// finite number. Unchanged text returns the value itself, with the digits that are not shown.
     fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
         let text = text.replace('\u{2212}', "-");
@@ -99,8 +99,8 @@ impl<N: Numeric> DragNumber<'_, N> {
     }
 }
 
-/// Shows a tooltip while the mouse is over a widget. After a press of the widget it stays away until the
-/// mouse leaves: it would cover the rows below, where the effect of the press shows.
+/// Shows a tooltip while the mouse is over a widget. After a press of the widget it stays away
+/// until the mouse leaves: it would cover the rows below, where the effect of the press shows.
 pub(in crate::ui) fn hover_text(response: Response, tooltip: &str) -> Response {
     let id = response.id.with("pressed");
     let ctx = response.ctx.clone();

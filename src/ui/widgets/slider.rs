@@ -297,7 +297,7 @@ fn spoken_values(ui: &Ui, rail: &Response) -> Vec<f32> {
     })
 }
 
-/// Whether a transaction is open that is not a drag in the viewport, such as the drag of a slider.
+/// True if a transaction is open that is not a drag in the viewport, such as the drag of a slider.
 fn is_sliding(session: &Session) -> bool {
     session.is_editing() && session.drag().is_none()
 }

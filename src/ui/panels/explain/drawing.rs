@@ -115,8 +115,8 @@ pub(super) fn beside(from: Pos2, to: Pos2) -> Vec<Place> {
     parts.map(|part| Place { at: from + (to - from) * part + away * GAP, away }).to_vec()
 }
 
-/// Places around a corner, outside the arc of its angle: near the direction `middle` first, in radians
-/// clockwise from the right.
+/// Places around a corner, outside the arc of its angle: near the direction `middle` first, in
+/// radians clockwise from the right.
 pub(super) fn around(corner: Pos2, arc: f32, middle: f32) -> Vec<Place> {
     let place = |radius: f32, turn: f32| Place {
         at: corner + radius * Vec2::angled(middle + turn),

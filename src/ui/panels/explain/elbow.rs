@@ -1,5 +1,5 @@
-//! The quantities of the arm's triangle, and where they place the elbow; the angle at the shoulder by
-//! the law of cosines, beside the form that the solver uses.
+//! The quantities of the arm's triangle, and where they place the elbow; the angle at the shoulder
+//! by the law of cosines, beside the form that the solver uses.
 
 use egui::{RichText, Ui};
 use glam::Vec3;
@@ -179,9 +179,9 @@ impl Cosine {
     }
 }
 
-/// The angle between the sides `upper` and `distance` of a triangle whose third side is `lower`: twice
-/// the arctangent that Kahan's formula for the area gives. A triangle that does not close is straight
-/// or folded.
+/// The angle between the sides `upper` and `distance` of a triangle whose third side is `lower`:
+/// twice the arctangent that Kahan's formula for the area gives. A triangle that does not close is
+/// straight or folded.
 fn exact_angle(upper: f64, lower: f64, distance: f64) -> f64 {
     let sum = (upper + distance + lower) * (upper + distance - lower).max(0.0);
     let difference = (lower - (upper - distance)) * (lower + (upper - distance));

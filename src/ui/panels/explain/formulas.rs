@@ -18,7 +18,7 @@ pub(super) struct FormulaRow {
     pub value: String,
     pub meaning: &'static str,
     pub colour: Option<Color32>,
-    /// What lights up while the mouse is over the row.
+    /// Lights up while the mouse is over the row.
     pub figure: Option<ArmFigure>,
 }
 

@@ -181,10 +181,7 @@ fn rows(session: &Session) -> [FormulaRow; 4] {
         },
         FormulaRow {
             symbol: "Distance D",
-            formula: match arm.soft_reach.is_hard() {
-                true => "|c|, limited",
-                false => "|c|, softened",
-            },
+            formula: if arm.soft_reach.is_hard() { "|c|, limited" } else { "|c|, softened" },
             value: length(arm, pose.distance),
             meaning: "Distance from shoulder to hand: the Cursor's, within the limits",
             colour: None,

@@ -131,12 +131,13 @@ fn why_none(pop: PopCause, arm: &Arm) -> String {
     match pop {
         PopCause::Shoulder => {
             let least = arm.soft_reach.least_distance(arm.bones);
-            match least > 1e-3 * arm.bones.outer_limit() {
-                true => format!(
+            if least > 1e-3 * arm.bones.outer_limit() {
+                format!(
                     "No fix: the hand must jump by twice the inner limit, {}.",
                     arm.format_length(2.0 * least)
-                ),
-                false => "No fix: the whole arm must turn around.".to_owned(),
+                )
+            } else {
+                "No fix: the whole arm must turn around.".to_owned()
             }
         }
         _ => "No fix: all settings that help are in use.".to_owned(),

@@ -26,9 +26,10 @@ pub(in crate::ui) fn meter(ui: &mut Ui, session: &Session) {
     let ReachLimits { inner, outer } = arm.reach_limits();
     let decimals = format::decimals_of_cell(arm.grid_cell());
     let shown = |length: f32| ShownLength { length, decimals }.to_string();
-    let (what, distance) = match arm.uses_ik() {
-        true => ("Cursor", arm.cursor_in_root().length()),
-        false => ("Hand", session.pose().distance),
+    let (what, distance) = if arm.uses_ik() {
+        ("Cursor", arm.cursor_in_root().length())
+    } else {
+        ("Hand", session.pose().distance)
     };
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());

@@ -103,8 +103,8 @@ impl TriangleDrawing {
         .map(|(figure, points)| FigureLine { figure, points })
     }
 
-    /// The direction from the elbow to the shoulder, and the turn from there to the hand, in radians
-    /// clockwise from the right.
+    /// The direction from the elbow to the shoulder, and the turn from there to the hand, in
+    /// radians clockwise from the right.
     fn at_elbow(&self) -> (f32, f32) {
         let [to_shoulder, to_hand] =
             [self.shoulder, self.hand].map(|end| (end - self.elbow).angle());
@@ -153,8 +153,8 @@ impl TriangleDrawing {
         painter.add(Shape::line(self.elbow_arc(), stroke));
     }
 
-    /// Writes each label at the first of its positions that is clear of lines and other labels. Labels
-    /// without such a position are left out, except those of the sides.
+    /// Writes each label at the first of its positions that is clear of lines and other labels.
+    /// Labels without such a position are left out, except those of the sides.
     fn write(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, ArmFigure)> {
         let mut labels = Labels::new(painter, ui, self.lines());
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);

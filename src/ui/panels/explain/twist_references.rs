@@ -63,9 +63,10 @@ fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.with_layout(right, |ui| glossary::term_label(ui, "Gain", "Gain", actions));
         ui.end_row();
         for twist_reference in TwistReferenceKind::ALL {
-            let colour = match twist_reference == arm.twist_reference {
-                true => ui.visuals().strong_text_color(),
-                false => style::colour(palette.twist_reference(twist_reference)),
+            let colour = if twist_reference == arm.twist_reference {
+                ui.visuals().strong_text_color()
+            } else {
+                style::colour(palette.twist_reference(twist_reference))
             };
             let name = RichText::new(twist_reference.name()).color(colour);
             ui.label(name).on_hover_text(labels::twist_reference(twist_reference));

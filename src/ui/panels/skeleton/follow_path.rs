@@ -24,7 +24,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// The root above the selected joint; without a selection the first with a path, else the first root.
+/// The root above the selected joint; without a selection the first with a path, else the first
+/// root.
 fn shown_root(session: &Session) -> Option<JointId> {
     let rig = session.skeleton_rig();
     let selected = session.selected().and_then(|joint| rig.root_of(joint));

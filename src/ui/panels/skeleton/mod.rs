@@ -22,8 +22,8 @@ pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
     rig.target_of_end(selected).map(|index| rig.targets[index])
 }
 
-/// Shows whether a target is reached and, if not, why, with what helps. It stands at the foot of the panel,
-/// always as high, so that no row moves under the mouse when a slider is let go.
+/// Shows whether a target is reached and, if not, why, with what helps. It stands at the foot of
+/// the panel, always as high, so that no row moves under the mouse when a slider is let go.
 pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
     targets::note(ui, session, &target, actions);
 }

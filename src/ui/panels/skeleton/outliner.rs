@@ -24,7 +24,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     tree(ui, session, actions);
 }
 
-/// Whether a row of the tree had the keyboard focus in the previous frame.
+/// True if a row of the tree had the keyboard focus in the previous frame.
 #[derive(Clone, Copy, Default)]
 struct OutlinerFocus(bool);
 
@@ -34,7 +34,7 @@ struct OutlinerRow {
     depth: usize,
     /// Influence of the targets that turn the joint.
     influence: f32,
-    /// Whether the target that ends here is enabled; `None` without a target.
+    /// True if the target that ends here is enabled; `None` without a target.
     target: Option<bool>,
 }
 
@@ -132,12 +132,11 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     }
     let at = pos2(rect.left() + indent + 8.0, rect.center().y);
     let palette = style::palette(ui);
-    match joint.locked {
-        true => locked_dot(painter, at, style::colour(palette.joint)),
-        false => {
-            let colour = palette.upper.mixed(palette.accent, row.influence);
-            free_dot(painter, at, style::colour(colour));
-        }
+    if joint.locked {
+        locked_dot(painter, at, style::colour(palette.joint));
+    } else {
+        let colour = palette.upper.mixed(palette.accent, row.influence);
+        free_dot(painter, at, style::colour(colour));
     }
     let text = if selected { visuals.strong_text_color() } else { visuals.text_color() };
     painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
@@ -287,9 +286,10 @@ fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let none = selected.is_none().then_some(NONE_SELECTED);
     let has_target =
         selected.is_some_and(|joint| session.skeleton_rig().target_of_end(joint).is_some());
-    let (name, tooltip) = match has_target {
-        true => ("Remove target", "Remove the target of the selected joint (T)"),
-        false => ("Add target", "Add a target for the selected joint's tip (T)"),
+    let (name, tooltip) = if has_target {
+        ("Remove target", "Remove the target of the selected joint (T)")
+    } else {
+        ("Add target", "Add a target for the selected joint's tip (T)")
     };
     if widgets::button(ui, name, tooltip, none) {
         actions.extend(commands::toggle_target(session));

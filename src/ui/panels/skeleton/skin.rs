@@ -174,7 +174,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
     });
 }
 
-/// Whether the open transaction, if any, changes the skin.
+/// True if the open transaction, if any, changes the skin.
 fn is_change_open(session: &Session) -> bool {
     let label = EditAction::SetSkin(session.skeleton_rig().skin.clone()).label();
     session.is_editing() && session.undo_label() == Some(label)

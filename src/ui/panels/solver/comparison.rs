@@ -1,5 +1,5 @@
-//! The comparison ("race") of all solvers: iterations, error and time of every solver; and the reason
-//! why solvers are disabled.
+//! The comparison ("race") of all solvers: iterations, error and time of every solver; and the
+//! reason why solvers are disabled.
 
 use core::time::Duration;
 
@@ -53,9 +53,10 @@ fn legend(ui: &mut Ui) {
 }
 
 fn square(ui: &Ui, rect: Rect, colour: Color32, is_filled: bool) {
-    match is_filled {
-        true => ui.painter().rect_filled(rect, 2.0, colour),
-        false => ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside),
+    if is_filled {
+        ui.painter().rect_filled(rect, 2.0, colour)
+    } else {
+        ui.painter().rect_stroke(rect, 2.0, (1.5, colour), StrokeKind::Inside)
     };
 }
 

@@ -1,5 +1,5 @@
-//! A plot of the solver's error against the iteration, on a logarithmic scale; the slider through the
-//! iterations of a run, and the button that applies the shown pose.
+//! A plot of the solver's error against the iteration, on a logarithmic scale; the slider through
+//! the iterations of a run, and the button that applies the shown pose.
 
 use core::ops::RangeInclusive;
 

@@ -1,5 +1,5 @@
-//! The parts of one iteration: a slider through them, switches for their marks in the view, and their
-//! numbers.
+//! The parts of one iteration: a slider through them, switches for their marks in the view, and
+//! their numbers.
 
 use egui::{Align, Color32, Grid, Layout, RichText, Sense, Slider, Ui, vec2};
 
@@ -75,9 +75,10 @@ fn buttons(ui: &mut Ui, session: &Session, run: &SolverRun, actions: &mut Action
         if wide(back, "Back", "Show the part before (Shift ,)", first) {
             actions.extend(commands::previous_part(session));
         }
-        let (name, tooltip) = match run.is_walking() {
-            true => ("Stand", "Stop at this part"),
-            false => ("Walk", "Show the parts of all iterations slowly"),
+        let (name, tooltip) = if run.is_walking() {
+            ("Stand", "Stop at this part")
+        } else {
+            ("Walk", "Show the parts of all iterations slowly")
         };
         if wide(walk, name, tooltip, if run.is_walking() { None } else { last }) {
             actions.push(SolverAction::Walk(!run.is_walking()));

@@ -49,7 +49,8 @@ pub(in crate::ui) fn skin(ui: &mut Ui, session: &Session) {
     skin_areas::ui(ui, session);
 }
 
-/// Shows the errors of the shown runs and the slider through their iterations; without a run, `empty`.
+/// Shows the errors of the shown runs and the slider through their iterations; without a run,
+/// `empty`.
 fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions) {
     let Some(shown) = session.shown_iteration() else {
         match why_not(session) {

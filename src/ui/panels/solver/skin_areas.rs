@@ -1,4 +1,5 @@
-//! A plot of the area of the skin's cross-section at a joint over time, for each way of blending joints.
+//! A plot of the area of the skin's cross-section at a joint over time, for each way of blending
+//! joints.
 
 use egui::{Stroke, Ui};
 use egui_plot::{AxisHints, Line, PlotBounds, PlotPoints, VLine};

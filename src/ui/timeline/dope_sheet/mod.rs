@@ -174,11 +174,10 @@ impl DopeSheet<'_> {
             } else {
                 visuals.text_color()
             };
-            let (size, fill, rim) = match picked {
-                true => {
-                    (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
-                }
-                false => (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color)),
+            let (size, fill, rim) = if picked {
+                (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
+            } else {
+                (SIZE, plain, Stroke::new(1.0, visuals.extreme_bg_color))
             };
             let size = if hovered { size + 1.0 } else { size.min(room) };
             painter.add(diamond(at, size, fill, rim));
@@ -226,10 +225,7 @@ impl DopeSheet<'_> {
         let size = vec2(4.0 * SIZE, ROW);
         let response =
             ui.interact(Rect::from_center_size(at, size).intersect(rect), id, Sense::hover());
-        let key = match self.session.channels_to_key().contains(&channel) {
-            true => "K",
-            false => "Shift+K",
-        };
+        let key = if self.session.channels_to_key().contains(&channel) { "K" } else { "Shift+K" };
         let name = labels::channel(self.session, channel);
         let said =
             format!("{name}: unkeyed change, press {key} or it is lost when the time changes");

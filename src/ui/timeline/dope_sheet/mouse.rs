@@ -205,9 +205,10 @@ fn move_keys(
         let way = f64::from(mouse.x - drag.pressed.x) / sheet.scale.points_per_second();
         let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
         let count = labels::count_of_keys(drag.keys.len());
-        let said = match drag::is_released(ui) {
-            true => format!("Moved {count} by {by:+.2} s"),
-            false => format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel"),
+        let said = if drag::is_released(ui) {
+            format!("Moved {count} by {by:+.2} s")
+        } else {
+            format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel")
         };
         actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
         actions.push(ShellAction::Report(said));

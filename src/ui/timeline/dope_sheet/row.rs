@@ -103,7 +103,7 @@ impl SelectedKeys {
         }
     }
 
-    /// Whether the set contains a key of the row at `time`.
+    /// True if the set contains a key of the row at `time`.
     pub fn has(&self, row: DopeSheetRow, time: f64) -> bool {
         let bits = (time + 0.0).to_bits();
         match row {

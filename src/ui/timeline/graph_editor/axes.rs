@@ -49,9 +49,10 @@ pub(in crate::ui::timeline) fn ui(
     };
     for (kind, is_left) in [(sides.left, true), (sides.right, false)] {
         let Some(kind) = kind else { continue };
-        let (x, align) = match is_left {
-            true => (plot.left() - GAP, egui::Align::Max),
-            false => (plot.right() + GAP, egui::Align::Min),
+        let (x, align) = if is_left {
+            (plot.left() - GAP, egui::Align::Max)
+        } else {
+            (plot.right() + GAP, egui::Align::Min)
         };
         let (name, unit) = kind.unit(metres_per_unit);
         let top = Align2([align, egui::Align::Min]);
@@ -69,11 +70,10 @@ pub(in crate::ui::timeline) fn ui(
                 write(pos2(x, y), label, written(mark, marks.step), colours.1);
             }
         }
-        let rect = match is_left {
-            true => Rect::from_min_max(pos2(plot.left() - VALUES, plot.top()), plot.left_bottom()),
-            false => {
-                Rect::from_min_max(plot.right_top(), pos2(plot.right() + VALUES, plot.bottom()))
-            }
+        let rect = if is_left {
+            Rect::from_min_max(pos2(plot.left() - VALUES, plot.top()), plot.left_bottom())
+        } else {
+            Rect::from_min_max(plot.right_top(), pos2(plot.right() + VALUES, plot.bottom()))
         };
         let response = ui.interact(rect, Id::unique(("timeline axis", is_left)), Sense::click());
         response.widget_info(|| {

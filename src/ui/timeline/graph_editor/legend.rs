@@ -21,7 +21,7 @@ const SWATCH: f32 = 6.0;
 pub(in crate::ui::timeline) struct LegendEntry {
     pub channel: Channel,
     pub colours: Vec<Color32>,
-    /// Whether its curves are drawn.
+    /// True if its curves are drawn.
     pub is_drawn: bool,
 }
 

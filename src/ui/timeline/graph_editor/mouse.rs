@@ -267,19 +267,21 @@ fn move_keys(
         let mut raise = Vec3::ZERO;
         raise[drag.axis] = (shown / drag.kind.factor()) as f32;
         let count = labels::count_of_keys(drag.keys.len());
-        let said = match drag::is_released(ui) {
-            true => format!("Moved {count} by {by:+.2} s, {shown:+.2}"),
-            false => format!(
+        let said = if drag::is_released(ui) {
+            format!("Moved {count} by {by:+.2} s, {shown:+.2}")
+        } else {
+            format!(
                 "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
-            ),
+            )
         };
         actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise });
         actions.push(ShellAction::Report(said));
     }
     if drag::is_released(ui) {
-        match drag.moved {
-            true => actions.push(TransactionAction::Commit),
-            false => actions.push(SelectAction::Keys(drag.clicked)),
+        if drag.moved {
+            actions.push(TransactionAction::Commit);
+        } else {
+            actions.push(SelectAction::Keys(drag.clicked));
         }
         drag::clear(ui);
     }
@@ -302,9 +304,10 @@ fn turn_tangent(
         drag::set(ui, TimelineDrag::Tangent(drag));
     }
     actions.extend(turned(ui, graph, drag, mouse));
-    let said = match drag::is_released(ui) {
-        true => "Turned the tangent",
-        false => "Turn the tangent     Alt this side only · Esc cancel",
+    let said = if drag::is_released(ui) {
+        "Turned the tangent"
+    } else {
+        "Turn the tangent     Alt this side only · Esc cancel"
     };
     actions.push(ShellAction::Report(said.to_owned()));
     if drag::is_released(ui) {
@@ -313,8 +316,8 @@ fn turn_tangent(
     }
 }
 
-/// The action that turns the tangent so that its handle points to the mouse; with Alt, only on the side
-/// of the handle.
+/// The action that turns the tangent so that its handle points to the mouse; with Alt, only on the
+/// side of the handle.
 fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Option<EditAction> {
     /// Least distance of the mouse from the key in time, in points, so that slopes stay finite.
     const LEAST: f32 = 2.0;

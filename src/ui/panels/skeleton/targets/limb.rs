@@ -1,5 +1,5 @@
-//! The joints that a target moves, the whole body or a limb; settings of a limb's target: elbow, hand
-//! and soft limits; the space in which a target or a pole is fixed.
+//! The joints that a target moves, the whole body or a limb; settings of a limb's target: elbow,
+//! hand and soft limits; the space in which a target or a pole is fixed.
 
 use core::mem::discriminant;
 
@@ -234,8 +234,8 @@ fn name(rig: &SkeletonRig, space: TargetSpace) -> &str {
     space.joint().and_then(|joint| rig.skeleton.joint(joint)).map_or("World", |joint| &joint.name)
 }
 
-/// Shows a choice of spaces. `put` writes a space into a target, to find out whether the target could
-/// be evaluated there.
+/// Shows a choice of spaces. `put` writes a space into a target, to find out whether the target
+/// could be evaluated there.
 fn spaces(
     ui: &mut Ui,
     session: &Session,

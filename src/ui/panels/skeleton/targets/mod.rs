@@ -56,8 +56,8 @@ fn row(
     });
 }
 
-/// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if nothing
-/// is.
+/// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if
+/// nothing is.
 fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
     let distance = format::short(report.error);
     if report.error > tolerance {
@@ -161,9 +161,10 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
 fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     ui.horizontal(|ui| {
         // A target that poses pulls the tip with it.
-        let tooltip = match target.is_posing() {
-            true => "Move the target to the tip's FK place; the figure follows into its FK pose",
-            false => "Move the target to the tip; nothing else moves",
+        let tooltip = if target.is_posing() {
+            "Move the target to the tip's FK place; the figure follows into its FK pose"
+        } else {
+            "Move the target to the tip; nothing else moves"
         };
         if widgets::button(ui, "Target to FK", tooltip, None) {
             actions.push(EditAction::MatchTargetToFk(target.joint));

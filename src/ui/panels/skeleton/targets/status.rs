@@ -1,4 +1,4 @@
-//! Whether a target is reached and, if not, why, with what helps.
+//! True if a target is reached and, if not, why, with what helps.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -12,8 +12,8 @@ use crate::session::{Actions, Session};
 use crate::ui::widgets::format;
 use crate::ui::{style, why};
 
-/// Height with the line above, in points, in a panel of a height: a fifth of it, but enough for a cause and a
-/// remedy.
+/// Height with the line above, in points, in a panel of a height: a fifth of it, but enough for a
+/// cause and a remedy.
 pub(in crate::ui) fn height(panel: f32) -> f32 {
     const RANGE: (f32, f32) = (116.0, 150.0);
     (0.2 * panel).clamp(RANGE.0, RANGE.1).round()
@@ -24,20 +24,18 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions
     let Some(report) = session.target_report(target.joint) else { return };
     let (rig, is_held) = (session.skeleton_rig(), why::is_held(ui) || session.is_editing());
     let index = rig.target(target.joint);
-    let why = index.map_or(&[][..], |index| match is_held {
-        true => session.known_why_target(index),
-        false => session.why_target(index),
+    let why = index.map_or(&[][..], |index| {
+        if is_held { session.known_why_target(index) } else { session.why_target(index) }
     });
     ui.separator();
     ScrollArea::vertical().id_salt("note").auto_shrink(false).show(ui, |ui| {
         let end = end(rig, target).map_or("", |end| end.1);
         ui.spacing_mut().item_spacing.y = 3.0;
-        match why.is_empty() {
-            true => {
-                ui.strong(format!("Target of {end}"));
-                status(ui, session, target, report);
-            }
-            false => explain(ui, session, (end, report), why, actions),
+        if why.is_empty() {
+            ui.strong(format!("Target of {end}"));
+            status(ui, session, target, report);
+        } else {
+            explain(ui, session, (end, report), why, actions);
         }
     });
 }
