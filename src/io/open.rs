@@ -2,11 +2,12 @@ use std::io::Read;
 use std::path::Path;
 
 use super::error::{OpenError, Remark};
-use super::file_format::FileFormat;
+use super::formats::FileFormat;
+use super::formats::{bvh, document, gltf, js3d};
 use super::open_options::OpenOptions;
 use super::opened::Opened;
 use super::source::Source;
-use super::{bvh, format, gltf, js3d, turn_up};
+use super::turn_up;
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
 /// detected by the content. `options` choose one of several skeletons and animations, and tell which axis
@@ -80,7 +81,7 @@ fn read_format(
         (FileFormat::Gltf, _) => return gltf::read(source, options),
         (FileFormat::Scene, skeleton) => js3d::read(source, skeleton)?,
         (FileFormat::Motion, skeleton) => bvh::read(source, skeleton)?,
-        (FileFormat::Document, None) => format::read(source, options)?,
+        (FileFormat::Document, None) => document::read(source, options)?,
         (FileFormat::Document, Some(name)) => {
             return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: Vec::new() });
         }

@@ -4,12 +4,12 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::error::OpenError;
-use super::field_error::FieldWarnings;
-use super::file_format::FileFormat;
-use super::json_path::JsonPath;
+use super::formats::FileFormat;
+use super::formats::{gltf, js3d};
+use super::json::FieldWarnings;
+use super::json::JsonPath;
 use super::open_options::OpenOptions;
 use super::source::Source;
-use super::{gltf, js3d};
 use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};

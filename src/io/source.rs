@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::error::{OpenError, Remark, shortened};
-use super::field_error::{FieldError, FieldWarnings};
 use super::foreign::ForeignFormat;
-use super::gltf::chunks::{self, Chunks};
-use super::json_path::{JsonPath, byte_at, line_and_column};
+use super::glb_chunks::{self, Chunks};
+use super::json::{FieldError, FieldWarnings};
+use super::json::{JsonPath, byte_at, line_and_column};
 use super::regular_file::open_regular;
 use super::translation::Translation;
 
@@ -52,9 +52,9 @@ impl Source {
         }
         let mut checksum = crc32fast::Hasher::new();
         checksum.update(&bytes);
-        if bytes.starts_with(chunks::MAGIC) {
+        if bytes.starts_with(glb_chunks::MAGIC) {
             let Chunks { json, binary } =
-                chunks::split(bytes).map_err(|reason| invalid_chunks(file, reason))?;
+                glb_chunks::split(bytes).map_err(|reason| invalid_chunks(file, reason))?;
             return Ok(Self { binary: Some(binary), checksum, ..Self::of_text(name, json) });
         }
         match String::from_utf8(bytes) {
@@ -218,7 +218,7 @@ fn most_bytes(file: &mut File, length: u64) -> io::Result<Option<u64>> {
 
 /// Whether a file that begins with these bytes can be glTF, binary or text.
 fn can_be_gltf(bytes: &[u8]) -> bool {
-    bytes.starts_with(chunks::MAGIC) || bytes.trim_ascii_start().starts_with(b"{")
+    bytes.starts_with(glb_chunks::MAGIC) || bytes.trim_ascii_start().starts_with(b"{")
 }
 
 fn too_large(name: &str, most: u64) -> OpenError {

@@ -1,7 +1,7 @@
 //! Skeletons of files in which z points up.
 
 use super::error::Remark;
-use super::file_format::FileFormat;
+use super::formats::FileFormat;
 use super::opened::Opened;
 use crate::document::RigKind;
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 
-use crate::io::value::JsonPoint;
+use crate::io::json::JsonPoint;
 use crate::kinematics::twist::{Stereographic, TwistReference, TwistReferenceKind};
 
 /// The twist reference of a line: a name, or an object with a pole.

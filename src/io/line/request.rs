@@ -10,7 +10,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use super::error::LineError;
 use super::previous::PreviousLine;
 use super::reference::ReferenceField;
-use crate::io::value::{JsonNumber, JsonPoint};
+use crate::io::json::{JsonNumber, JsonPoint};
 use crate::kinematics::ik::{Ik, IkSolution, IkState};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachError, SoftReachField};
 use crate::kinematics::two_bone::TwoBone;

@@ -1,0 +1,113 @@
+//! All fields of a document's file, and conversions between these fields and a document.
+
+use serde::{Deserialize, Serialize};
+
+use super::arm::ArmFields;
+use super::camera::CameraFields;
+use super::check::above_0;
+use super::follow_path::FollowPathList;
+use super::header::{FORMAT, VERSION};
+use super::keys::{ChannelFields, TimelineFields, keys};
+use super::skeleton::SkeletonFields;
+use super::skin::SkinFields;
+use super::targets::{SolverFields, TargetFields, add_targets};
+use crate::document::{Arm, Document, Keys, Overlay, RigKind, SkeletonRig};
+use crate::io::json::JsonPath;
+use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::json::{JsonNumber, JsonObject, Whole};
+
+#[derive(Serialize, Deserialize)]
+pub struct DocumentFields {
+    format: String,
+    version: Whole,
+    rig: RigKind,
+    arm: Option<JsonObject<ArmFields>>,
+    skeleton: Option<JsonObject<SkeletonFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skin: Option<JsonObject<SkinFields>>,
+    targets: Option<Vec<JsonObject<TargetFields>>>,
+    solver: Option<JsonObject<SolverFields>>,
+    follow_path: Option<FollowPathList>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channels: Option<Vec<JsonObject<ChannelFields>>>,
+    timeline: Option<JsonObject<TimelineFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    metres_per_unit: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation_name: Option<String>,
+    camera: Option<JsonObject<CameraFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_camera: Option<JsonObject<CameraFields>>,
+    overlays: Option<Vec<Overlay>>,
+}
+
+impl DocumentFields {
+    /// Whether the file has a camera for its rig.
+    pub fn has_camera(&self) -> bool {
+        self.camera.is_some()
+    }
+
+    pub fn new(document: &Document) -> Self {
+        let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
+        let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
+        Self {
+            format: FORMAT.to_owned(),
+            version: Whole(VERSION),
+            rig: document.rig,
+            arm: Some(JsonObject(ArmFields::new(&document.arm))),
+            skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
+            skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
+            targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
+            solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
+            follow_path: Some(FollowPathList::new(follow_paths)),
+            channels,
+            timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
+            metres_per_unit: document.metres_per_unit.map(JsonNumber),
+            animation_name: document.animation_name.clone(),
+            camera: Some(JsonObject(CameraFields::new(&document.camera))),
+            other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
+            overlays: Some(document.display.overlays().collect()),
+        }
+    }
+
+    pub fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
+        let at = |key| JsonPath::root().key(key);
+        let arm = self.arm.map(|JsonObject(fields)| fields.arm(&at("arm"))).transpose()?;
+        let mut skeleton_rig = SkeletonRig::default();
+        if let Some(JsonObject(fields)) = self.skeleton {
+            skeleton_rig.skeleton = fields.skeleton(&at("skeleton"), warnings)?.into();
+        }
+        if let Some(JsonObject(fields)) = self.skin {
+            skeleton_rig.skin = Some(fields.skin(&skeleton_rig.skeleton, &at("skin"))?);
+        }
+        add_targets(&mut skeleton_rig, self.targets.unwrap_or_default())?;
+        if let Some(JsonObject(fields)) = self.solver {
+            fields.set(&mut skeleton_rig, &at("solver"))?;
+        }
+        if let Some(paths) = self.follow_path {
+            paths.add_to(&mut skeleton_rig, &at("follow_path"))?;
+        }
+        let camera = self.camera.map(|JsonObject(fields)| fields.camera(&at("camera")));
+        let camera = camera.transpose()?;
+        let other_camera =
+            self.other_camera.map(|JsonObject(fields)| fields.camera(&at("other_camera")));
+        let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline(at("timeline")));
+        let metres =
+            self.metres_per_unit.map(|JsonNumber(metres)| above_0(at("metres_per_unit"), metres));
+        let overlays = self.overlays.map(|overlays| overlays.into_iter().collect());
+        let mut document = Document {
+            rig: self.rig,
+            arm: arm.unwrap_or_else(Arm::default),
+            skeleton_rig,
+            keys: Keys::default(),
+            timeline: timeline.transpose()?.unwrap_or_default(),
+            camera: camera.unwrap_or_default(),
+            other_rig_camera: other_camera.transpose()?,
+            display: overlays.unwrap_or_default(),
+            metres_per_unit: metres.transpose()?,
+            animation_name: self.animation_name,
+        };
+        document.keys = keys(self.channels.unwrap_or_default(), &document)?;
+        Ok(document)
+    }
+}

@@ -1,0 +1,257 @@
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+
+use super::error::GlbError;
+use crate::document::{Arm, Channel, Document, Posed, RigKind, Track};
+use crate::io::formats::gltf::frame::frame;
+use crate::kinematics::Shared;
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::two_bone::TwoBone;
+use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
+
+/// The shown rig, arm or skeleton, as bones in the world, in metres.
+///
+/// Computed in f64, so that a skeleton far from the origin is exact.
+pub struct GltfRig {
+    track: Track,
+    pub metres_per_unit: f64,
+    /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their joints.
+    /// Nodes keep these directions where bones follow connected joints: the skin follows the nodes.
+    axes: Vec<DVec3>,
+    /// The bones, parents before their children.
+    pub bones: Vec<RigBone>,
+    /// Placements of the bones in the bind pose.
+    pub bind_pose: Vec<BonePlacement>,
+}
+
+/// The properties of a bone that do not change over time.
+pub struct RigBone {
+    pub name: String,
+    pub parent: Option<usize>,
+    /// Whether the file has a node at the bone's tip, because the bone has no children or its
+    /// length changes over time.
+    pub has_tip: bool,
+    pub is_leaf: bool,
+    /// The bone that starts at this one's tip and can move against it.
+    pub connected: Option<usize>,
+    /// Radii at base and tip, in metres.
+    pub radii: [f64; 2],
+    /// Index of the bone's colour, 0 or 1.
+    pub shade: usize,
+}
+
+/// The placement of a bone in the world, in metres.
+#[derive(Clone, Copy)]
+pub struct BonePlacement {
+    pub base: DVec3,
+    /// The vector from base to tip.
+    pub along: DVec3,
+    /// An axis of the joint that is not along the bone, of any length: its x axis, or for a bone along that
+    /// its z axis.
+    pub across: DVec3,
+    /// The joint's y axis, of any length.
+    pub y: DVec3,
+}
+
+impl BonePlacement {
+    /// Rotation of the bone's node in the world, with y along the bone, and x as near to
+    /// [`BonePlacement::across`] as possible. For a bone without length, y is along the joint's y axis.
+    pub fn frame(&self) -> DMat3 {
+        let has_direction = self.along.try_normalize().is_some();
+        frame(if has_direction { self.along } else { self.y }, self.across)
+    }
+}
+
+impl GltfRig {
+    pub fn new(document: &Document) -> Result<Self, GlbError> {
+        let metres_per_unit = f64::from(document.metres_per_unit());
+        let mut rig = Self {
+            track: Track::new(document),
+            metres_per_unit,
+            axes: document.skeleton().joints().iter().map(|joint| joint.axis.as_dvec3()).collect(),
+            bones: Vec::new(),
+            bind_pose: Vec::new(),
+        };
+        match document.rig {
+            RigKind::Arm => {
+                rig.bind_pose = rig.metric(straight_arm(document));
+                rig.bones = rig.limbs();
+            }
+            RigKind::Skeleton => {
+                let skeleton = document.skeleton();
+                rig.bind_pose = rig.metric(placements(skeleton, &rig.axes, |_| DMat3::IDENTITY));
+                rig.bones = rig.joints(skeleton.joints());
+            }
+        }
+        if rig.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(rig) }
+    }
+
+    /// Placements of all bones at `time`, in seconds.
+    pub fn at(&self, time: f64) -> Vec<BonePlacement> {
+        let posed = self.track.at(time);
+        self.metric(match posed.document().rig {
+            RigKind::Arm => posed_arm(&posed),
+            RigKind::Skeleton => placements(posed.skeleton(), &self.axes, local_rotation),
+        })
+    }
+
+    /// Whether the pose changes over time.
+    pub fn is_moving(&self) -> bool {
+        self.track.document().is_animated()
+    }
+
+    /// Converts placements from the document's units to metres.
+    fn metric(&self, mut placements: Vec<BonePlacement>) -> Vec<BonePlacement> {
+        for bone in &mut placements {
+            bone.base *= self.metres_per_unit;
+            bone.along *= self.metres_per_unit;
+        }
+        placements
+    }
+
+    fn limbs(&self) -> Vec<RigBone> {
+        let Document { arm, keys, .. } = self.track.document();
+        let rig = arm.rig(&arm.pose());
+        let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
+        let radii = |limb: TaperedCylinder| {
+            [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
+        };
+        vec![
+            RigBone {
+                name: "upper".to_owned(),
+                parent: None,
+                has_tip: keys.has(Channel::Upper) || stretches,
+                is_leaf: false,
+                connected: None,
+                radii: radii(rig.upper()),
+                shade: 0,
+            },
+            RigBone {
+                name: "lower".to_owned(),
+                parent: Some(0),
+                has_tip: true,
+                is_leaf: true,
+                connected: None,
+                radii: radii(rig.lower()),
+                shade: 1,
+            },
+        ]
+    }
+
+    fn joints(&self, joints: &[Shared<Joint>]) -> Vec<RigBone> {
+        let scale = self.track.document().skeleton().transform().as_daffine3().matrix3;
+        let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
+        let reach = f64::from(self.track.document().skeleton_rig.reach()) * self.metres_per_unit;
+        let mut depths = vec![0_usize; joints.len()];
+        let mut are_leaves = vec![true; joints.len()];
+        let mut connected = vec![None; joints.len()];
+        for (index, joint) in joints.iter().enumerate() {
+            if let Some(parent) = joint.parent {
+                depths[index] =
+                    depths[parent.index()] + usize::from(joints[parent.index()].axis != Vec3::ZERO);
+                are_leaves[parent.index()] = false;
+                connected[parent.index()] =
+                    joint.connected.then_some(index).or(connected[parent.index()]);
+            }
+        }
+        let bone = |(index, joint): (usize, &Shared<Joint>)| RigBone {
+            name: joint.name.clone(),
+            parent: joint.parent.map(JointId::index),
+            has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
+            is_leaf: are_leaves[index],
+            connected: connected[index],
+            radii: radii(
+                f64::from(joint.radius) * metres,
+                self.bind_pose[index].along.length(),
+                reach,
+            ),
+            shade: depths[index] % 2,
+        };
+        joints.iter().enumerate().map(bone).collect()
+    }
+}
+
+/// Radii of a bone at its base and its tip, in metres. The radius at the base is the joint's
+/// radius, clamped relative to the bone's length and the skeleton's reach. A slender bone tapers to
+/// the tip.
+fn radii(radius: f64, length: f64, reach: f64) -> [f64; 2] {
+    const THICKEST: (f64, f64) = (0.45, 0.028);
+    const POINT: f64 = 0.02;
+    const TAPER: f64 = 0.6;
+    const SLENDER: f64 = 4.0;
+    let thickest = match length {
+        0.0 => POINT * reach,
+        length => (THICKEST.0 * length).min(THICKEST.1 * reach),
+    };
+    let radius = radius.min(thickest).max(0.25 * thickest);
+    [radius, if length > SLENDER * radius { radius * TAPER } else { radius }]
+}
+
+/// A joint's local rotation, made orthogonal in f64. Otherwise the errors of f32 rounding would add
+/// up along a long chain.
+fn local_rotation(joint: &Joint) -> DMat3 {
+    let rotation = joint.local_rotation().as_dmat3();
+    DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
+}
+
+/// Placements of the bones of a skeleton, which are the `axes` in the spaces of their joints.
+fn placements(
+    skeleton: &Skeleton,
+    axes: &[DVec3],
+    rotation: impl Fn(&Joint) -> DMat3,
+) -> Vec<BonePlacement> {
+    let placement = |(axis, full): (&DVec3, DAffine3)| BonePlacement {
+        base: full.translation,
+        along: full.matrix3 * axis,
+        across: full.matrix3 * across(*axis),
+        y: full.matrix3.y_axis,
+    };
+    axes.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
+}
+
+/// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x, whose
+/// node would not turn with the joint otherwise.
+fn across(axis: DVec3) -> DVec3 {
+    const ALONG: f64 = 0.99;
+    if axis.x.abs() > ALONG * axis.length() { DVec3::Z } else { DVec3::X }
+}
+
+/// Transforms of all joints to the world, in units of the scene, with local rotations by `rotation`.
+pub fn joint_spaces(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<DAffine3> {
+    let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
+    for joint in skeleton.joints() {
+        let parent =
+            joint.parent.map_or(skeleton.transform().as_daffine3(), |parent| full[parent.index()]);
+        full.push(
+            parent * DAffine3::from_mat3_translation(rotation(joint), joint.offset.as_dvec3()),
+        );
+    }
+    full
+}
+
+/// The bind pose of the arm: straight along the Root's +x, bending about z.
+fn straight_arm(document: &Document) -> Vec<BonePlacement> {
+    limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
+}
+
+fn posed_arm(posed: &Posed) -> Vec<BonePlacement> {
+    let (arm, pose) = (posed.arm(), posed.arm_pose());
+    let rig: ArmRig = arm.rig(pose);
+    let socket = rig.local(ArmPart::Limb) * rig.local(ArmPart::Socket);
+    let rotation = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
+    let bones = arm.bones.stretched(pose.stretch);
+    limbs(arm, bones, [rotation(ArmPart::UpperLimb), rotation(ArmPart::LowerLimb)])
+}
+
+/// Placements of the limbs, which have these rotations in the world. A limb is along the x axis of
+/// its rotation and bends about the z axis.
+fn limbs(arm: &Arm, bones: TwoBone, rotations: [DMat3; 2]) -> Vec<BonePlacement> {
+    let lengths = [bones.upper(), bones.lower()].map(f64::from);
+    let mut base = arm.root.as_dvec3();
+    let limb = |(rotation, length): (DMat3, f64)| {
+        let along = rotation.x_axis.normalize_or(DVec3::X) * length;
+        let limb = BonePlacement { base, along, across: rotation.z_axis, y: rotation.x_axis };
+        base += along;
+        limb
+    };
+    rotations.into_iter().zip(lengths).map(limb).collect()
+}

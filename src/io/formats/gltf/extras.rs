@@ -1,0 +1,88 @@
+//! What this program adds to glTF files under `extras`, and reads again from its own files. Other
+//! programs ignore it.
+
+use glam::{DQuat, Quat, Vec3};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
+
+use crate::document::{Quantity, Timeline};
+use crate::io::formats::document::KeyFields;
+use crate::io::json::JsonPath;
+use crate::kinematics::spline::{Knot, Spline};
+
+/// Extras of a sampler: the keys whose curve it is, with times of the file, and in the joint's
+/// angles or as its offsets in metres.
+#[derive(Serialize, Deserialize)]
+pub struct SamplerExtras {
+    #[serde(rename = "ik_arm_keys")]
+    keys: Vec<KeyFields>,
+}
+
+/// Extras of a joint's node: the frame of the joint's angles relative to the node, as a quaternion.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub struct NodeExtras {
+    #[serde(rename = "ik_arm_frame")]
+    frame: [f32; 4],
+}
+
+/// Extras of an animation: the frames in a second of its timeline.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub struct AnimationExtras {
+    #[serde(rename = "ik_arm_frame_rate")]
+    frame_rate: f64,
+}
+
+/// Extras in a file, which may be those of another program.
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub enum ReadExtras<T> {
+    Own(T),
+    Other(IgnoredAny),
+}
+
+impl<T> ReadExtras<T> {
+    pub fn own(&self) -> Option<&T> {
+        match self {
+            Self::Own(extras) => Some(extras),
+            Self::Other(_) => None,
+        }
+    }
+}
+
+impl SamplerExtras {
+    pub fn new(keys: &[Knot<Vec3>]) -> Self {
+        Self { keys: keys.iter().map(|key| KeyFields::new(key, 3)).collect() }
+    }
+
+    /// The keys; `None` if there are none, or one is damaged.
+    pub fn spline(&self) -> Option<Spline<Vec3>> {
+        let key = |key: &KeyFields| key.key(Quantity::Point, &JsonPath::root()).ok();
+        let spline = self.keys.iter().map(key).collect::<Option<Spline<Vec3>>>()?;
+        (!spline.is_empty()).then_some(spline)
+    }
+}
+
+impl NodeExtras {
+    pub fn new(frame: DQuat) -> Self {
+        Self { frame: frame.as_quat().to_array() }
+    }
+
+    /// The rotation; `None` if the numbers are none.
+    pub fn frame(self) -> Option<DQuat> {
+        let frame = Quat::from_array(self.frame).as_dquat();
+        let is_rotation = (frame.length() - 1.0).abs() < 1e-3;
+        is_rotation.then(|| frame.normalize())
+    }
+}
+
+impl AnimationExtras {
+    pub fn new(timeline: Timeline) -> Self {
+        Self { frame_rate: timeline.frame_rate }
+    }
+
+    /// Frames in a second; `None` if no timeline can have as many or as few.
+    pub fn frame_rate(self) -> Option<f64> {
+        let range = Timeline::MIN_FRAME_RATE..=Timeline::MAX_FRAME_RATE;
+        Some(self.frame_rate).filter(|rate| range.contains(rate))
+    }
+}

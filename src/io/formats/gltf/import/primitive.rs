@@ -1,0 +1,199 @@
+use std::collections::BTreeSet;
+
+use glam::{Vec2, Vec3};
+
+use super::buffers::GltfBuffers;
+use super::file::{GltfFile, GltfPrimitive, index_rule};
+use super::rows::{AccessorRows, at_accessor};
+use crate::io::json::FieldError;
+use crate::io::json::JsonPath;
+
+/// The vertices and triangles of a primitive, as the file has them.
+pub struct PrimitiveMesh {
+    pub positions: Vec<Vec3>,
+    /// Normals of any length; empty if the file has none.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates; empty if the file has none.
+    pub coordinates: Vec<Vec2>,
+    /// For each vertex the joints, numbered as in the skin's list, with their weights; empty for a
+    /// primitive without weights.
+    pub weights: Vec<Vec<(usize, f32)>>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Maximum number of sets of four joints for each vertex.
+const MOST_SETS: usize = 16;
+
+/// How corners make triangles.
+#[derive(Clone, Copy)]
+enum Mode {
+    Triangles,
+    Strip,
+    Fan,
+}
+
+impl Mode {
+    /// The mode of a primitive; `None` for points and lines.
+    fn of(primitive: &GltfPrimitive) -> Option<Self> {
+        match primitive.mode.map_or(4, |mode| mode.0) {
+            4 => Some(Self::Triangles),
+            5 => Some(Self::Strip),
+            6 => Some(Self::Fan),
+            _ => None,
+        }
+    }
+
+    fn triangles(self, corners: &[u32]) -> Vec<[u32; 3]> {
+        let turned = |(index, corners): (usize, &[u32])| match index % 2 {
+            0 => [corners[0], corners[1], corners[2]],
+            _ => [corners[0], corners[2], corners[1]],
+        };
+        let all: Vec<[u32; 3]> = match (self, corners) {
+            (Self::Triangles, _) => corners.as_chunks().0.to_vec(),
+            (Self::Strip, _) => corners.windows(3).enumerate().map(turned).collect(),
+            (Self::Fan, [first, others @ ..]) => {
+                others.windows(2).map(|pair| [*first, pair[0], pair[1]]).collect()
+            }
+            (Self::Fan, []) => Vec::new(),
+        };
+        let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        all.into_iter().filter(has_area).collect()
+    }
+}
+
+impl GltfPrimitive {
+    /// Whether the primitive has triangles, rather than points or lines.
+    pub fn is_surface(&self) -> bool {
+        Mode::of(self).is_some() && self.attributes.contains_key("POSITION")
+    }
+
+    /// Accessor of an attribute.
+    fn attribute(&self, name: &str) -> Option<usize> {
+        self.attributes.get(name).map(|accessor| accessor.0 as usize)
+    }
+
+    /// Accessors of the sets of joints, each with that of their weights.
+    fn weights(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..MOST_SETS).map_while(|set| {
+            let joints = self.attribute(&format!("JOINTS_{set}"))?;
+            Some((joints, self.attribute(&format!("WEIGHTS_{set}"))?))
+        })
+    }
+
+    /// The accessors that [`PrimitiveMesh::new`] reads with the texture coordinates `set`.
+    pub fn accessors(&self, set: u32) -> BTreeSet<usize> {
+        let names = ["POSITION", "NORMAL", &format!("TEXCOORD_{set}")];
+        let attributes = names.into_iter().filter_map(|name| self.attribute(name));
+        let weights = self.weights().flat_map(|(joints, weights)| [joints, weights]);
+        let indices = self.indices.iter().map(|indices| indices.0 as usize);
+        attributes.chain(weights).chain(indices).collect()
+    }
+}
+
+impl PrimitiveMesh {
+    /// Reads a primitive, with the texture coordinates `set`. `at` is its path, and `joints` the number of
+    /// joints of the skin.
+    pub fn new(
+        file: &GltfFile<'_>,
+        buffers: &GltfBuffers<'_>,
+        primitive: &GltfPrimitive,
+        set: u32,
+        joints: usize,
+        at: &JsonPath,
+    ) -> Result<Self, FieldError> {
+        let rows = |accessor, shape| AccessorRows::new(file, buffers, accessor, shape);
+        let points = |name: &str| match primitive.attribute(name) {
+            Some(accessor) => Ok(vectors(&rows(accessor, "VEC3")?)),
+            None => Ok(Vec::new()),
+        };
+        let positions = points("POSITION")?;
+        let count = positions.len();
+        let has_as_many = |name: &str, got: usize| {
+            if got == 0 || got == count {
+                return Ok(());
+            }
+            let reason = format!("must have {count} rows like POSITION, got {got}");
+            Err(FieldError::new(at.clone().key("attributes").key(name), reason))
+        };
+        let normals = points("NORMAL")?;
+        has_as_many("NORMAL", normals.len())?;
+        let name = format!("TEXCOORD_{set}");
+        let coordinates = match primitive.attribute(&name) {
+            Some(accessor) => coordinates(&rows(accessor, "VEC2")?),
+            None => Vec::new(),
+        };
+        has_as_many(&name, coordinates.len())?;
+        let mut weights = Vec::new();
+        for (of_joints, of_weights) in primitive.weights() {
+            let (numbers, shares) = (rows(of_joints, "VEC4")?, rows(of_weights, "VEC4")?);
+            has_as_many("JOINTS_n", numbers.len())?;
+            has_as_many("WEIGHTS_n", shares.len())?;
+            weights.resize_with(count, Vec::new);
+            add_weights(&mut weights, [&numbers, &shares], joints, &at_accessor(of_joints))?;
+        }
+        Ok(Self {
+            triangles: triangles(file, buffers, primitive, count)?,
+            positions,
+            normals,
+            coordinates,
+            weights,
+        })
+    }
+}
+
+fn vectors(rows: &AccessorRows<'_>) -> Vec<Vec3> {
+    let vector = |row| Vec3::from_array(rows.row::<3>(row).map(|number| number as f32));
+    (0..rows.len()).map(vector).collect()
+}
+
+fn coordinates(rows: &AccessorRows<'_>) -> Vec<Vec2> {
+    let vector = |row| {
+        let vector = Vec2::from_array(rows.row::<2>(row).map(|number| number as f32));
+        if vector.is_finite() { vector } else { Vec2::ZERO }
+    };
+    (0..rows.len()).map(vector).collect()
+}
+
+/// Adds a set of joints with their weights to the weights of the vertices.
+fn add_weights(
+    weights: &mut [Vec<(usize, f32)>],
+    [joints, shares]: [&AccessorRows<'_>; 2],
+    count: usize,
+    at: &JsonPath,
+) -> Result<(), FieldError> {
+    for (vertex, weights) in weights.iter_mut().enumerate() {
+        let (joints, shares) = (joints.row::<4>(vertex), shares.row::<4>(vertex));
+        for (joint, share) in joints.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
+            let joint = joint as usize;
+            if joint >= count {
+                return Err(FieldError::new(at.clone(), index_rule("joints", count, joint)));
+            }
+            weights.push((joint, share as f32));
+        }
+    }
+    Ok(())
+}
+
+fn triangles(
+    file: &GltfFile<'_>,
+    buffers: &GltfBuffers<'_>,
+    primitive: &GltfPrimitive,
+    count: usize,
+) -> Result<Vec<[u32; 3]>, FieldError> {
+    let Some(mode) = Mode::of(primitive) else { return Ok(Vec::new()) };
+    let corners: Vec<u32> = match primitive.indices {
+        None => (0..count as u32).collect(),
+        Some(accessor) => {
+            let accessor = accessor.0 as usize;
+            let rows = AccessorRows::new(file, buffers, accessor, "SCALAR")?;
+            let corners: Vec<u32> =
+                (0..rows.len()).map(|row| rows.row::<1>(row)[0] as u32).collect();
+            if let Some(corner) = corners.iter().find(|corner| **corner as usize >= count) {
+                let reason = index_rule("vertices", count, *corner as usize);
+                return Err(FieldError::new(at_accessor(accessor), reason));
+            }
+            corners
+        }
+    };
+    Ok(mode.triangles(&corners))
+}

@@ -1,0 +1,282 @@
+use glam::{DQuat, DVec3, DVec4};
+
+use super::buffers::GltfBuffers;
+use super::file::GltfFile;
+use super::nodes::unit;
+use super::part::AnimatedPart;
+use super::rows::{AccessorRows, at_accessor};
+use crate::io::json::FieldError;
+
+/// The keys of one animated part of a node, with their interpolation.
+pub struct KeySampler<'a> {
+    times: AccessorRows<'a>,
+    /// The rows of the keys in the order of their times; `None` if the file has them in this order.
+    order: Option<Vec<u32>>,
+    /// One row per time, or with cubic splines three rows: in-tangent, value, out-tangent.
+    values: AccessorRows<'a>,
+    part: AnimatedPart,
+    interpolation: Interpolation,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    Linear,
+    Step,
+    CubicSpline,
+}
+
+impl Interpolation {
+    pub fn new(name: &str) -> Option<Self> {
+        Some(match name {
+            "LINEAR" => Self::Linear,
+            "STEP" => Self::Step,
+            "CUBICSPLINE" => Self::CubicSpline,
+            _ => return None,
+        })
+    }
+}
+
+/// Maximum difference, in seconds, at which `time` still counts as the time of a key. Times of keys
+/// are inexact: files store them in 32 bits, and some programs write few decimals.
+pub fn tolerance(time: f64) -> f64 {
+    const LEAST: f64 = 1e-4;
+    const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
+    (time.abs() * ROUNDING).max(LEAST)
+}
+
+/// Relative change of a value below which it counts as constant.
+const LEAST: f64 = 1e-6;
+
+/// Index of the in-tangent among the three rows of a cubic spline's key.
+const IN_TANGENT: usize = 0;
+/// Index of the value among the three rows of a cubic spline's key.
+const VALUE: usize = 1;
+/// Index of the out-tangent among the three rows of a cubic spline's key.
+const OUT_TANGENT: usize = 2;
+
+impl<'a> KeySampler<'a> {
+    pub fn new(
+        file: &GltfFile<'_>,
+        buffers: &'a GltfBuffers<'_>,
+        [input, output]: [usize; 2],
+        part: AnimatedPart,
+        interpolation: Interpolation,
+    ) -> Result<Self, FieldError> {
+        let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
+        let shape = if part == AnimatedPart::Rotation { "VEC4" } else { "VEC3" };
+        let values = AccessorRows::new(file, buffers, output, shape)?;
+        if !times.is_float() {
+            let reason = "must be 5126 (float) for times";
+            return Err(FieldError::new(at_accessor(input).key("componentType"), reason));
+        }
+        if !(values.is_float() || part == AnimatedPart::Rotation && values.is_normalized()) {
+            let reason =
+                "must be 5126 (float) for values; rotations may also be normalized integers";
+            return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
+        }
+        if times.len() == 0 {
+            return Err(FieldError::new(
+                at_accessor(input).key("count"),
+                "must be 1 or more, got 0",
+            ));
+        }
+        let values_per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        if values.len() != values_per_key * times.len() {
+            let (count, times) = (values.len(), times.len());
+            let reason =
+                format!("must be {values_per_key} for each of the {times} times, got {count}");
+            return Err(FieldError::new(at_accessor(output).key("count"), reason));
+        }
+        Ok(Self { times, order: None, values, part, interpolation })
+    }
+
+    /// Sorts the keys by time. Of several keys at the same time, the last one counts. Returns
+    /// whether anything changed, or an error that names the accessor `input` if a time is not finite.
+    pub fn sort(&mut self, input: usize) -> Result<bool, FieldError> {
+        let times = || (0..self.times.len()).map(|row| self.row_time(row));
+        if let Some((key, time)) = times().enumerate().find(|(_, time)| !time.is_finite()) {
+            let reason = format!("times must be finite, got {time} as time {key}");
+            return Err(FieldError::new(at_accessor(input), reason));
+        }
+        if times().is_sorted_by(|before, after| before < after) {
+            return Ok(false);
+        }
+        let mut order: Vec<u32> = (0..self.times.len() as u32).collect();
+        let time = |row: &u32| self.row_time(*row as usize);
+        order.sort_by(|a, b| time(a).total_cmp(&time(b)));
+        // The last of equal times is kept: in reverse, it comes first.
+        order.reverse();
+        order.dedup_by(|row, kept| time(row) == time(kept));
+        order.reverse();
+        self.order = Some(order);
+        Ok(true)
+    }
+
+    /// Checks all keys. Fails if values are not finite or a rotation is zero. The error names the
+    /// accessor `output`.
+    pub fn check(&self, output: usize) -> Result<(), FieldError> {
+        for row in 0..self.values.len() {
+            let value: [f64; 4] = self.values.row(row);
+            if !value.into_iter().take(self.width()).all(f64::is_finite) {
+                let reason =
+                    format!("value {row} must be finite, got {:?}", &value[..self.width()]);
+                return Err(FieldError::new(at_accessor(output), reason));
+            }
+        }
+        if self.part == AnimatedPart::Rotation {
+            for key in 0..self.len() {
+                if unit(self.row(key, VALUE)).is_none() {
+                    let reason = format!("rotation {key} must not be four zeros");
+                    return Err(FieldError::new(at_accessor(output), reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the value ever differs from that of the first key, or leaves it on a cubic spline.
+    pub fn varies(&self) -> bool {
+        let width = self.width();
+        let row = |row: usize| -> [f64; 4] { self.values.row(row) };
+        let differs = |a: [f64; 4], b: [f64; 4]| {
+            let size = a.iter().take(width).map(|part| part.abs()).fold(1e-3, f64::max);
+            (0..width).any(|part| (a[part] - b[part]).abs() > LEAST * size)
+        };
+        let is_cubic = self.interpolation == Interpolation::CubicSpline;
+        let (each, value) = if is_cubic { (3, VALUE) } else { (1, 0) };
+        let keys = self.times.len();
+        (1..keys).any(|key| differs(row(value), row(each * key + value)))
+            || is_cubic
+                && keys > 1
+                && (0..keys).any(|key| {
+                    [IN_TANGENT, OUT_TANGENT]
+                        .into_iter()
+                        .any(|which| differs([0.0; 4], row(3 * key + which)))
+                })
+    }
+
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Translation or scale of a key.
+    pub fn key_point(&self, key: usize) -> DVec3 {
+        DVec3::from_array(self.row(key, VALUE))
+    }
+
+    /// Rotation of a key.
+    pub fn key_rotation(&self, key: usize) -> DQuat {
+        unit(self.row(key, VALUE)).unwrap_or_default()
+    }
+
+    /// In-tangent and out-tangent of a key, per second; `None` without cubic splines.
+    pub fn tangents(&self, key: usize) -> Option<[DVec4; 2]> {
+        let row = |which| {
+            let [x, y, z]: [f64; 3] = self.row(key, which);
+            DVec4::new(x, y, z, 0.0)
+        };
+        let is_cubic = self.interpolation == Interpolation::CubicSpline;
+        is_cubic.then(|| [row(IN_TANGENT), row(OUT_TANGENT)])
+    }
+
+    /// Rotation on the cubic spline from a key to the next one, at a part of the way.
+    pub fn spline_rotation(&self, key: usize, part: f64) -> DQuat {
+        unit(self.cubic(key, part).to_array()).unwrap_or_else(|| self.key_rotation(key))
+    }
+
+    /// Number of keys.
+    pub fn len(&self) -> usize {
+        self.order.as_ref().map_or(self.times.len(), Vec::len)
+    }
+
+    /// Time of a key, in seconds.
+    pub fn time(&self, key: usize) -> f64 {
+        self.row_time(self.row_of(key))
+    }
+
+    fn row_time(&self, row: usize) -> f64 {
+        let [time] = self.times.row(row);
+        time
+    }
+
+    /// The row of the file that has a key.
+    fn row_of(&self, key: usize) -> usize {
+        self.order.as_ref().map_or(key, |order| order[key] as usize)
+    }
+
+    pub fn point(&self, time: f64) -> DVec3 {
+        let (key, fraction) = self.locate(time);
+        let at = |key| self.key_point(key);
+        match fraction {
+            None => at(key),
+            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
+                self.cubic(key, fraction).truncate()
+            }
+            Some(fraction) => at(key).lerp(at(key + 1), fraction),
+        }
+    }
+
+    pub fn rotation(&self, time: f64) -> DQuat {
+        let (key, fraction) = self.locate(time);
+        let at = |key| self.key_rotation(key);
+        match fraction {
+            None => at(key),
+            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
+                unit(self.cubic(key, fraction).to_array()).unwrap_or_else(|| at(key))
+            }
+            Some(fraction) => at(key).slerp(at(key + 1), fraction).normalize(),
+        }
+    }
+
+    /// Returns the key at or before `time`, and the fraction of the way from this key to the next.
+    /// The fraction is `None` if the key's own value applies: at the key, after the last key, and
+    /// with step interpolation. Before the first key, returns the first key with `None`.
+    fn locate(&self, time: f64) -> (usize, Option<f64>) {
+        let near = tolerance(time);
+        let (mut until, mut after) = (0, self.len());
+        while until < after {
+            let middle = until + (after - until) / 2;
+            if self.time(middle) <= time + near {
+                until = middle + 1;
+            } else {
+                after = middle;
+            }
+        }
+        let Some(key) = until.checked_sub(1) else { return (0, None) };
+        let start = self.time(key);
+        let is_between = key + 1 < self.len() && time - start > near;
+        if !is_between || self.interpolation == Interpolation::Step {
+            return (key, None);
+        }
+        (key, Some((time - start) / (self.time(key + 1) - start)))
+    }
+
+    /// Interpolates between `key` and the next key, at the fraction `s` of the way, by the cubic
+    /// Hermite polynomial in appendix C of the glTF specification.
+    fn cubic(&self, key: usize, s: f64) -> DVec4 {
+        let span = self.time(key + 1) - self.time(key);
+        let row = |key, which| {
+            let value: [f64; 4] = self.row(key, which);
+            DVec4::from_array(value)
+        };
+        let (s2, s3) = (s * s, s * s * s);
+        row(key, VALUE) * (2.0 * s3 - 3.0 * s2 + 1.0)
+            + row(key, OUT_TANGENT) * (span * (s3 - 2.0 * s2 + s))
+            + row(key + 1, VALUE) * (3.0 * s2 - 2.0 * s3)
+            + row(key + 1, IN_TANGENT) * (span * (s3 - s2))
+    }
+
+    /// The numbers of a key. `which` selects the row of a cubic spline's key; other keys have one
+    /// row.
+    fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
+        let row = self.row_of(key);
+        self.values.row(match self.interpolation {
+            Interpolation::CubicSpline => 3 * row + which,
+            Interpolation::Linear | Interpolation::Step => row,
+        })
+    }
+
+    fn width(&self) -> usize {
+        if self.part == AnimatedPart::Rotation { 4 } else { 3 }
+    }
+}

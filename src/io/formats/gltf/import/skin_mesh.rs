@@ -1,0 +1,379 @@
+//! The mesh of a skin: all surfaces that follow its joints.
+//!
+//! As the file's nodes stand, the node of joint i has the transform N_i in the world, and its inverse bind matrix
+//! IBM_i maps the mesh to the node's own space; so the joint places the mesh by A_i = N_i·IBM_i. The skeleton that
+//! is read has its joint i at the same place, but not turned: X_i is the translation to N_i's origin. The inverse
+//! bind transform of the skeleton's joint is therefore B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without a skin follows
+//! the nearest joint j above it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::{DAffine3, DMat4, DVec3, Vec3};
+
+use super::buffers::{GltfBuffers, is_file};
+use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, Uri, index_rule};
+use super::material::{ImageCache, MaterialSource, PartMaterial};
+use super::node_poser::JointPlacement;
+use super::nodes::{NodeTree, at_node};
+use super::primitive::PrimitiveMesh;
+use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
+use super::skins::{SkinJoints, at_skin};
+use crate::io::json::JsonPath;
+use crate::io::json::Whole;
+use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::source::Source;
+use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::rig::{FileMesh, SkinPart};
+
+/// Maximum number of primitives of all meshes of a skin.
+const MOST_PARTS: usize = 10_000;
+
+/// A skin of a file, with the joints that it becomes.
+pub struct MeshImport<'a> {
+    pub source: &'a Source,
+    pub file: &'a GltfFile<'a>,
+    pub nodes: &'a NodeTree,
+    pub index: usize,
+    pub skin: &'a GltfSkin,
+    pub joints: &'a SkinJoints,
+    pub bind_pose: &'a [JointPlacement],
+}
+
+/// A mesh of the file that follows joints of the skin.
+struct UsedMesh<'a> {
+    node: usize,
+    index: usize,
+    mesh: &'a GltfMesh,
+    /// The joint that all vertices follow; `None` for a mesh with weights of its own.
+    joint: Option<usize>,
+}
+
+impl UsedMesh<'_> {
+    /// The primitives with triangles, each with its path.
+    fn surfaces(&self) -> impl Iterator<Item = (JsonPath, &GltfPrimitive)> {
+        let at = at_mesh(self.index).key("primitives");
+        let primitives = self.mesh.primitives.0.iter().enumerate();
+        let surfaces = primitives.filter(|(_, primitive)| primitive.is_surface());
+        surfaces.map(move |(index, primitive)| (at.clone().index(index), primitive))
+    }
+}
+
+fn at_mesh(mesh: usize) -> JsonPath {
+    JsonPath::root().key("meshes").index(mesh)
+}
+
+impl MeshImport<'_> {
+    /// Reads the mesh, with the CRC-32 of all files that it is read from; `None` if the skin has none. Warns of
+    /// what is not read.
+    pub fn read(
+        &self,
+        warnings: &mut FieldWarnings,
+    ) -> Result<Option<(FileMesh, u32)>, FieldError> {
+        let Self { source, file, nodes, joints, .. } = *self;
+        if let Some(reason) = file.compression() {
+            return Err(FieldError::new(JsonPath::root().key("extensionsRequired"), reason));
+        }
+        let meshes = self.meshes()?;
+        if meshes.iter().all(|mesh| mesh.surfaces().next().is_none()) {
+            return Ok(None);
+        }
+        self.check_size(&meshes)?;
+        let needed = self.buffers(&meshes)?;
+        let buffers = GltfBuffers::read(source, file, &needed)?;
+        let mut checksum = source.checksum();
+        for buffer in needed {
+            let uri = file.buffers.0.get(buffer).and_then(|buffer| buffer.uri.as_ref());
+            if uri.is_some_and(|Uri(uri)| is_file(uri)) {
+                checksum.update(buffers.get(buffer).unwrap_or_default());
+            }
+        }
+        let worlds = nodes.worlds();
+        let attached = self.attached(&worlds, &buffers)?;
+        let mut builder = MeshBuilder::default();
+        let mut materials = BTreeMap::new();
+        let mut images = ImageCache::default();
+        for mesh in &meshes {
+            let rigid =
+                mesh.joint.map(|joint| (joint, attached[joint].inverse() * worlds[mesh.node]));
+            if rigid.is_some_and(|(_, to_mesh)| !to_mesh.is_finite()) {
+                let reason = "its mesh is not read, because its joint has no volume";
+                warnings.push(at_node(mesh.node), reason);
+                continue;
+            }
+            for (at, primitive) in mesh.surfaces() {
+                let material = self.material(primitive, &at)?;
+                let set = material.map_or(0, |(_, material)| material.coordinates());
+                let count = self.skin.joints.len();
+                let read = PrimitiveMesh::new(file, &buffers, primitive, set, count, &at)?;
+                let look = material.map(|(index, material)| {
+                    let new = || {
+                        images.material(
+                            &MaterialSource { source, file, buffers: &buffers },
+                            material,
+                            &mut checksum,
+                            warnings,
+                        )
+                    };
+                    materials.entry(index).or_insert_with(new).clone()
+                });
+                // The corners of a mesh on a mirrored node are in reverse order.
+                let mirrors = rigid.map_or(worlds[mesh.node], |(_, to_mesh)| to_mesh);
+                let is_mirrored = mirrors.matrix3.determinant() < 0.0;
+                let look = look.unwrap_or(PartMaterial::WHITE);
+                builder.add(read, rigid, is_mirrored, look, joints);
+            }
+        }
+        self.warn_of_unread(&meshes, &builder, warnings);
+        let MeshBuilder { mesh, weights, parts, .. } = builder;
+        let binds = attached.iter().zip(self.bind_pose).map(|(attached, joint)| {
+            (DAffine3::from_translation(-joint.base) * *attached).as_affine3a()
+        });
+        let mesh = SkinnedMesh::new(mesh, weights, binds.collect())
+            .map_err(|error| FieldError::new(at_skin(self.index), error.to_string()))?;
+        let parents = joints.parents.iter().map(|parent| parent.map(JointId::new)).collect();
+        Ok(Some((FileMesh { mesh, parents, parts }, checksum.finalize())))
+    }
+
+    /// Checks the numbers of vertices, corners and primitives before anything of them is read.
+    fn check_size(&self, meshes: &[UsedMesh<'_>]) -> Result<(), FieldError> {
+        const MOST_CORNERS: usize = 3 * SkinnedMesh::MOST_TRIANGLES;
+        let count = |accessor: Option<&Whole>| {
+            let accessor = accessor.and_then(|it| self.file.accessors.0.get(it.0 as usize));
+            accessor.map_or(0, |accessor| accessor.count.0 as usize)
+        };
+        let (mut parts, mut vertices, mut corners) = (0, 0_usize, 0_usize);
+        for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
+            parts += 1;
+            vertices = vertices.saturating_add(count(primitive.attributes.get("POSITION")));
+            corners = corners.saturating_add(count(primitive.indices.as_ref()));
+            for (what, most, got) in [
+                ("primitives", MOST_PARTS, parts),
+                ("vertices", SkinnedMesh::MOST_VERTICES, vertices),
+                ("corners of triangles", MOST_CORNERS, corners),
+            ] {
+                if got > most {
+                    let reason =
+                        format!("a skin must have at most {most} {what}, got {got} or more");
+                    return Err(FieldError::new(at, reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The meshes of the nodes with the skin, and those of nodes below its joints.
+    fn meshes(&self) -> Result<Vec<UsedMesh<'_>>, FieldError> {
+        let file = self.file;
+        let nearest = self.nearest_joints();
+        let mut meshes: Vec<UsedMesh<'_>> = Vec::new();
+        let mut with_skin = BTreeSet::new();
+        for (node, fields) in file.nodes.0.iter().enumerate() {
+            let Some(index) = fields.mesh.map(|mesh| mesh.0 as usize) else { continue };
+            let mesh = file.meshes.0.get(index).ok_or_else(|| {
+                let reason = index_rule("meshes", file.meshes.0.len(), index);
+                FieldError::new(at_node(node).key("mesh"), reason)
+            })?;
+            let joint = match (fields.skin, nearest[node]) {
+                // The place of its node makes no difference to a mesh with a skin.
+                (Some(skin), _) if skin.0 as usize == self.index && with_skin.insert(index) => None,
+                (None, Some(joint)) => Some(joint),
+                _ => continue,
+            };
+            meshes.push(UsedMesh { node, index, mesh, joint });
+        }
+        Ok(meshes)
+    }
+
+    /// For each node its joint, or that of its nearest ancestor with one.
+    fn nearest_joints(&self) -> Vec<Option<usize>> {
+        let mut nearest = vec![None; self.nodes.parents.len()];
+        for (joint, node) in self.joints.nodes.iter().enumerate() {
+            nearest[*node] = Some(joint);
+        }
+        for &node in &self.nodes.order {
+            let of_parent = self.nodes.parents[node].and_then(|parent| nearest[parent]);
+            nearest[node] = nearest[node].or(of_parent);
+        }
+        nearest
+    }
+
+    /// The buffers of meshes, of their images and of the inverse bind matrices.
+    fn buffers(&self, meshes: &[UsedMesh<'_>]) -> Result<BTreeSet<usize>, FieldError> {
+        let file = self.file;
+        let mut accessors: BTreeSet<usize> =
+            self.skin.inverse_binds.iter().map(|accessor| accessor.0 as usize).collect();
+        let mut buffers = BTreeSet::new();
+        for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
+            let material = self.material(primitive, &at)?;
+            let set = material.map_or(0, |(_, material)| material.coordinates());
+            accessors.extend(primitive.accessors(set));
+            if let Some(view) = material.and_then(|(_, material)| material.image_view(file)) {
+                buffers.extend(buffer_of_view(file, view, JsonPath::root().key("images")));
+            }
+        }
+        for accessor in accessors {
+            buffers.extend(buffers_of(file, accessor)?);
+        }
+        Ok(buffers)
+    }
+
+    /// The material of a primitive, with its index.
+    fn material(
+        &self,
+        primitive: &GltfPrimitive,
+        at: &JsonPath,
+    ) -> Result<Option<(usize, &GltfMaterial)>, FieldError> {
+        let Some(index) = primitive.material.map(|material| material.0 as usize) else {
+            return Ok(None);
+        };
+        let materials = &self.file.materials.0;
+        let found = materials.get(index).ok_or_else(|| {
+            let reason = index_rule("materials", materials.len(), index);
+            FieldError::new(at.clone().key("material"), reason)
+        })?;
+        Ok(Some((index, found)))
+    }
+
+    /// The transforms A_i of the joints.
+    fn attached(
+        &self,
+        worlds: &[DAffine3],
+        buffers: &GltfBuffers<'_>,
+    ) -> Result<Vec<DAffine3>, FieldError> {
+        let mut attached: Vec<DAffine3> =
+            self.joints.nodes.iter().map(|node| worlds[*node]).collect();
+        let Some(accessor) = self.skin.inverse_binds.map(|accessor| accessor.0 as usize) else {
+            return Ok(attached);
+        };
+        let rows = AccessorRows::new(self.file, buffers, accessor, "MAT4")?;
+        if rows.len() < self.joints.order.len() {
+            let (joints, got) = (self.joints.order.len(), rows.len());
+            let reason = format!("must be at least {joints}, the number of joints, got {got}");
+            return Err(FieldError::new(at_accessor(accessor).key("count"), reason));
+        }
+        for (row, joint) in self.joints.order.iter().enumerate() {
+            attached[*joint] *= DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
+        }
+        Ok(attached)
+    }
+
+    /// Warns once of weights beyond four, and once of everything else that is not read.
+    fn warn_of_unread(
+        &self,
+        meshes: &[UsedMesh<'_>],
+        built: &MeshBuilder,
+        warnings: &mut FieldWarnings,
+    ) {
+        if built.cut > 0 {
+            let (cut, all, most) = (built.cut, built.weights.len(), 100.0 * built.most_cut);
+            let reason = format!(
+                "{cut} of {all} vertices follow more than four joints; the four heaviest are kept, and \
+                 up to {most:.1} % of the weight of a vertex is lost"
+            );
+            warnings.push(at_skin(self.index), reason);
+        }
+        let mut unread: BTreeSet<String> = BTreeSet::new();
+        let name = |name: &str| name.to_owned();
+        let primitives = meshes.iter().flat_map(|mesh| &mesh.mesh.primitives.0);
+        for primitive in primitives {
+            unread.extend((!primitive.is_surface()).then(|| name("points and lines")));
+            unread.extend(primitive.targets.is_some().then(|| name("morph targets")));
+            let is_coloured = primitive.attributes.keys().any(|key| key.starts_with("COLOR_"));
+            unread.extend(is_coloured.then(|| name("colours of vertices")));
+            let material =
+                primitive.material.and_then(|it| self.file.materials.0.get(it.0 as usize));
+            unread.extend(material.into_iter().flat_map(GltfMaterial::unread));
+        }
+        let others = self.other_meshes(meshes);
+        match others {
+            0 => {}
+            1 => unread.extend([name("1 mesh that follows no joint of the skin")]),
+            _ => unread.extend([format!("{others} meshes that follow no joint of the skin")]),
+        }
+        if !unread.is_empty() {
+            let unread: Vec<String> = unread.into_iter().collect();
+            let reason = format!("not read: {}", unread.join(", "));
+            warnings.push(JsonPath::root().key("meshes"), reason);
+        }
+    }
+
+    /// Number of meshes on nodes that are none of `meshes`.
+    fn other_meshes(&self, meshes: &[UsedMesh<'_>]) -> usize {
+        let read: BTreeSet<usize> = meshes.iter().map(|mesh| mesh.index).collect();
+        let used = self.file.nodes.0.iter().filter_map(|node| node.mesh);
+        let others: BTreeSet<usize> =
+            used.map(|mesh| mesh.0 as usize).filter(|mesh| !read.contains(mesh)).collect();
+        others.len()
+    }
+}
+
+/// A mesh in progress.
+#[derive(Default)]
+struct MeshBuilder {
+    mesh: TriangleMesh,
+    weights: Vec<VertexWeights>,
+    parts: Vec<SkinPart>,
+    /// Number of vertices that lost weight.
+    cut: usize,
+    /// The greatest part of its weight that a vertex lost.
+    most_cut: f32,
+}
+
+impl MeshBuilder {
+    fn add(
+        &mut self,
+        primitive: PrimitiveMesh,
+        rigid: Option<(usize, DAffine3)>,
+        is_mirrored: bool,
+        PartMaterial { colour, texture }: PartMaterial,
+        joints: &SkinJoints,
+    ) {
+        let PrimitiveMesh { mut positions, mut normals, coordinates, weights, mut triangles } =
+            primitive;
+        if normals.is_empty() {
+            normals = smooth_normals(&positions, &triangles);
+        }
+        if let Some((_, to_mesh)) = rigid {
+            let of_normals = to_mesh.matrix3.inverse().transpose();
+            for (position, normal) in positions.iter_mut().zip(&mut normals) {
+                *position = to_mesh.transform_point3(position.as_dvec3()).as_vec3();
+                *normal = (of_normals * normal.as_dvec3()).as_vec3();
+            }
+        }
+        if is_mirrored {
+            triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        }
+        let first = self.mesh.positions.len();
+        self.parts.push(SkinPart { triangles: triangles.len(), colour, texture });
+        let shifted = triangles.into_iter().map(|it| it.map(|corner| corner + first as u32));
+        self.mesh.triangles.extend(shifted);
+        let count = positions.len();
+        self.mesh.normals.extend(normals.into_iter().map(|it| it.normalize_or(Vec3::Y)));
+        self.mesh.positions.extend(positions);
+        self.mesh.texture_coordinates.extend(coordinates);
+        self.mesh.texture_coordinates.resize(first + count, glam::Vec2::ZERO);
+        for vertex in 0..count {
+            let of_file = weights.get(vertex).map_or(&[][..], Vec::as_slice);
+            let listed = of_file.iter().map(|(joint, weight)| (joints.order[*joint], *weight));
+            let only = rigid.map(|(joint, _)| (joint, 1.0));
+            let all = listed.filter(|_| rigid.is_none()).chain(only);
+            let (kept, cut) =
+                VertexWeights::heaviest(all.map(|(joint, weight)| (JointId::new(joint), weight)));
+            self.weights.push(kept);
+            self.cut += usize::from(cut > 0.0);
+            self.most_cut = self.most_cut.max(cut);
+        }
+    }
+}
+
+/// Normals of vertices from the triangles around them, by their areas.
+fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![DVec3::ZERO; positions.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| positions[corner as usize].as_dvec3());
+        let area = (b - a).cross(c - a);
+        corners.iter().for_each(|corner| sums[*corner as usize] += area);
+    }
+    sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect()
+}
