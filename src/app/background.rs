@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use winit::event_loop::EventLoopProxy;
 
 use crate::document::{Bake, Baked, Document, Posed, SkeletonRig, Skin, Theme};
-use crate::export::{self, ExportError, ExportOptions, Format};
-use crate::io::{self, OpenError, OpenOptions, Opened, Progress};
+use crate::export::{self, ExportError, ExportFormat, ExportOptions};
+use crate::io::{self, FileFormat, OpenError, OpenOptions, Opened, Progress};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinSource};
 use crate::scene::Scene;
@@ -157,15 +157,14 @@ pub(super) fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy
     /// An answer before this time comes from a system without file dialogs, which answers like a
     /// user who cancels.
     const FASTEST_USER: Duration = Duration::from_millis(400);
-    let export_extensions = Format::EXTENSIONS.map(|(extension, _)| extension);
-    let (name, extensions): (_, &[&str]) = match &dialog {
-        PathDialog::SavePicture { .. } => ("PNG", &["png"]),
-        PathDialog::Open { .. } => ("Scene", &["json", "js3d", "bvh", "glb", "gltf"]),
-        PathDialog::SaveAs { .. } => ("Scene", &["json"]),
-        PathDialog::LocateSkin { .. } => ("Skin", &["glb", "gltf", "js3d"]),
-        PathDialog::Export(_) => ("Export", &export_extensions),
+    let (name, extensions) = match &dialog {
+        PathDialog::SavePicture { .. } => ("PNG", vec!["png"]),
+        PathDialog::Open { .. } => ("Scene", FileFormat::readable()),
+        PathDialog::SaveAs { .. } => ("Scene", FileFormat::DOCUMENT.extensions.to_vec()),
+        PathDialog::LocateSkin { .. } => ("Skin", FileFormat::with_skins()),
+        PathDialog::Export(_) => ("Export", ExportFormat::extensions()),
     };
-    let mut system = rfd::AsyncFileDialog::new().add_filter(name, extensions);
+    let mut system = rfd::AsyncFileDialog::new().add_filter(name, &extensions);
     if let Some(name) = path.file_name() {
         system = system.set_file_name(name.to_string_lossy());
     }

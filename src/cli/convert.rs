@@ -12,22 +12,43 @@ use super::open_args::OpenArgs;
 use super::progress_bar::run_with_bar;
 use super::report::{INTERRUPTED, USAGE, fail, say};
 use super::time_limit::TimeLimitArgs;
-use crate::export::{ExportError, ExportOptions, Format, export};
-use crate::io::{OpenError, SaveError, save};
+use crate::export::{ExportError, ExportOptions, export};
+use crate::io::{ExportOption, FileFormat, OpenError, SaveError, dotted, enumerated, save};
+
+/// The command's line in the list of commands.
+pub fn about() -> String {
+    let written = FileFormat::convertible().map(|format| {
+        if format.is_document() {
+            "a document (.json)".to_owned()
+        } else {
+            dotted(&format.extension())
+        }
+    });
+    format!("Convert a file to {}", enumerated(&written.collect::<Vec<_>>(), "or"))
+}
+
+/// The extensions that OUT can have.
+fn extensions() -> String {
+    let extensions: Vec<_> =
+        FileFormat::convertible().map(|format| dotted(&format.extension())).collect();
+    enumerated(&extensions, "or")
+}
+
+fn after_help() -> String {
+    let row = |format: FileFormat| (dotted(&format.extension()), format.holds);
+    let rows = open::help_rows(FileFormat::convertible().map(row));
+    format!(
+        "The extension of OUT chooses the format:\n{rows}\
+         What the format cannot hold is listed on stderr. ik-arm export also writes tables, meshes and pictures."
+    )
+}
 
 #[derive(clap::Args)]
-#[command(after_help = "The extension of OUT chooses the format:
-  .json    a document of ik-arm, with skeleton, skin, keys and timeline
-  .glb     joints, skinned mesh and motion
-  .bvh     joints and motion
-What the format cannot hold is listed on stderr. ik-arm export also writes tables, meshes and pictures.")]
+#[command(after_help = after_help())]
 pub struct ConvertArgs {
-    /// File to convert: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -
-    /// reads standard input
-    #[arg(value_name = "FILE")]
+    #[arg(help = open::input_help("File to convert"), value_name = "FILE")]
     file: PathBuf,
-    /// File to write: .json, .glb or .bvh
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(help = format!("File to write: {}", extensions()), short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
     open: OpenArgs,
@@ -54,17 +75,10 @@ enum ConvertError {
     Input { file: String, error: ExportError },
     #[error("Ctrl+C cannot be handled: {0}")]
     Interrupt(#[from] ctrlc::Error),
-    #[error("OUT must end in .json, .glb or .bvh, got {0}; ik-arm export writes other formats")]
-    Extension(String),
+    #[error("OUT must end in {}, got {got}; ik-arm export writes other formats", extensions())]
+    Extension { got: String },
     #[error("{0} does not apply to this format")]
     Argument(&'static str),
-}
-
-/// The format of the output.
-#[derive(Clone, Copy, PartialEq)]
-enum Output {
-    Document,
-    Export(Format),
 }
 
 pub fn run(args: &ConvertArgs) -> ExitCode {
@@ -77,7 +91,7 @@ pub fn run(args: &ConvertArgs) -> ExitCode {
             say(&format_args!("{cancelled}; {} is not written", args.output.display()));
             ExitCode::from(INTERRUPTED)
         }
-        Err(error @ (ConvertError::Extension(_) | ConvertError::Argument(_))) => {
+        Err(error @ (ConvertError::Extension { .. } | ConvertError::Argument(_))) => {
             say(&error);
             ExitCode::from(USAGE)
         }
@@ -88,17 +102,17 @@ pub fn run(args: &ConvertArgs) -> ExitCode {
 impl ConvertArgs {
     fn convert(&self) -> Result<Vec<String>, ConvertError> {
         let output = self.output()?;
-        for (is_given, applies, argument) in [
-            (self.fps.is_some(), output != Output::Document, "--fps"),
-            (self.unit.is_some(), output == Output::Export(Format::Bvh), "--unit"),
+        for (is_given, option, argument) in [
+            (self.fps.is_some(), ExportOption::FrameRate, "--fps"),
+            (self.unit.is_some(), ExportOption::Unit, "--unit"),
         ] {
-            if is_given && !applies {
+            if is_given && !output.takes(option) {
                 return Err(ConvertError::Argument(argument));
             }
         }
         let limit = self.time_limit.start_long(&self.file);
         let document = open::open(&self.file, &self.open.options())?.document;
-        if output == Output::Document {
+        if output.is_document() {
             save(&document, &self.output)
                 .map_err(|error| ConvertError::Save { file: open::name(&self.file), error })?;
             return Ok(Vec::new());
@@ -116,13 +130,10 @@ impl ConvertArgs {
         })
     }
 
-    fn output(&self) -> Result<Output, ConvertError> {
-        if open::is_document(&self.output) {
-            return Ok(Output::Document);
-        }
-        match Format::of(&self.output) {
-            Ok(format @ (Format::Glb | Format::Bvh)) => Ok(Output::Export(format)),
-            _ => Err(ConvertError::Extension(self.output.display().to_string())),
-        }
+    /// The format of the output.
+    fn output(&self) -> Result<FileFormat, ConvertError> {
+        let mut formats = FileFormat::convertible();
+        let output = formats.find(|format| format.is_written_to(&self.output));
+        output.ok_or_else(|| ConvertError::Extension { got: self.output.display().to_string() })
     }
 }

@@ -14,26 +14,31 @@ use super::report::{INTERRUPTED, USAGE, fail, say};
 use super::time_limit::TimeLimitArgs;
 use super::view_name::ViewName;
 use crate::document::Document;
-use crate::export::{ExportError, ExportOptions, Format, export};
-use crate::io::{BvhUnit, OpenError, Progress};
+use crate::export::{ExportError, ExportFormat, ExportOptions, export};
+use crate::io::{BvhUnit, ExportOption, OpenError, Progress, dotted};
 use crate::kinematics::skin::Skinning;
 
+/// The command's line in the list of commands.
+pub fn about() -> String {
+    let extensions: Vec<_> = ExportFormat::extensions().iter().map(dotted).collect();
+    format!("Export a file's motion, mesh or pictures: {}", extensions.join(", "))
+}
+
+fn after_help() -> String {
+    let kinds = ExportFormat::all().map(|format| format.kind);
+    let rows = open::help_rows(kinds.map(|kind| (kind.label.to_owned(), kind.help)));
+    format!(
+        "The extension of OUT selects the format:\n{rows}\
+         Frames run from the start of the file's timeline to its end. A file without motion has one frame.\n\
+         Whatever the format cannot hold is listed on stderr. Ctrl+C cancels: no file is written, and the\n\
+         exit code is 130."
+    )
+}
+
 #[derive(clap::Args)]
-#[command(after_help = r#"The extension of OUT selects the format:
-  .glb             skinned, animated model in metres (binary glTF)
-  .bvh             joints and their motion, for animation programs
-  .csv             positions of all joints, one row per frame
-  .obj             posed mesh of the skin at --time: world space, scene units, y up
-  .png             one picture, at --time
-  .png with a #    one picture per frame: walk_####.png gives walk_0000.png, walk_0001.png, ...
-  .apng            all frames in one animated picture
-Frames run from the start of the file's timeline to its end. A file without motion has one frame.
-Whatever the format cannot hold is listed on stderr. Ctrl+C cancels: no file is written, and the
-exit code is 130."#)]
+#[command(after_help = after_help())]
 pub struct ExportArgs {
-    /// File to export: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -
-    /// reads standard input
-    #[arg(value_name = "FILE")]
+    #[arg(help = open::input_help("File to export"), value_name = "FILE")]
     file: PathBuf,
     /// File to write
     #[arg(short, long, value_name = "OUT")]
@@ -109,7 +114,7 @@ pub fn run(args: &ExportArgs) -> ExitCode {
 impl ExportArgs {
     fn export(&self) -> Result<Vec<String>, ExportCommandError> {
         // Checks the arguments first, so that no file is read if one of them does not apply.
-        let format = Format::of(&self.output).map_err(ExportError::from);
+        let format = ExportFormat::of(&self.output).map_err(ExportError::from);
         self.check(format.map_err(ExportCommandError::Output)?)?;
         let limit = self.time_limit.start_long(&self.file);
         let mut document = open::open(&self.file, &self.open.options())?.document;
@@ -128,17 +133,17 @@ impl ExportArgs {
     }
 
     /// Refuses arguments that do not apply to the format.
-    fn check(&self, format: Format) -> Result<(), ExportCommandError> {
-        for (is_given, applies, argument) in [
-            (self.fps.is_some(), !format.is_still(), "--fps"),
-            (self.size.is_some(), format.is_picture(), "--size"),
-            (self.theme.is_some(), format.is_picture(), "--theme"),
-            (self.view.is_some(), format.is_picture(), "--view"),
-            (self.time.is_some(), format.is_still(), "--time"),
-            (self.unit.is_some(), format == Format::Bvh, "--unit"),
-            (self.skinning.is_some(), format == Format::Obj, "--skinning"),
+    fn check(&self, format: ExportFormat) -> Result<(), ExportCommandError> {
+        for (is_given, option, argument) in [
+            (self.fps.is_some(), ExportOption::FrameRate, "--fps"),
+            (self.size.is_some(), ExportOption::Picture, "--size"),
+            (self.theme.is_some(), ExportOption::Picture, "--theme"),
+            (self.view.is_some(), ExportOption::Picture, "--view"),
+            (self.time.is_some(), ExportOption::Time, "--time"),
+            (self.unit.is_some(), ExportOption::Unit, "--unit"),
+            (self.skinning.is_some(), ExportOption::Skinning, "--skinning"),
         ] {
-            if is_given && !applies {
+            if is_given && !format.takes(option) {
                 return Err(ExportCommandError::Argument(argument));
             }
         }

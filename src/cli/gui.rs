@@ -8,12 +8,12 @@ use super::open;
 use super::open_args::OpenArgs;
 use super::report::CommandError;
 use crate::app;
+use crate::io::FileFormat;
 use crate::session::{FileAction, TourStep};
 
 #[derive(clap::Args)]
 pub struct GuiArgs {
-    /// File to open: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf
-    #[arg(value_name = "FILE")]
+    #[arg(help = format!("File to open: {}", FileFormat::inputs()), value_name = "FILE")]
     file: Option<PathBuf>,
     #[command(flatten)]
     open: OpenArgs,

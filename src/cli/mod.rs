@@ -56,9 +56,9 @@ enum Command {
     Pose(PoseArgs),
     /// Draw the arm, a file or a crowd to a PNG, without a window
     Render(RenderArgs),
-    /// Export a file's motion, mesh or pictures: .glb, .bvh, .csv, .obj, .png, .apng
+    #[command(about = export::about())]
     Export(ExportArgs),
-    /// Convert a file to a document (.json), .glb or .bvh
+    #[command(about = convert::about())]
     Convert(ConvertArgs),
     /// Replace a skeleton's targets by keys: a document in, a document out
     Bake(BakeArgs),

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::report::{CommandError, say};
 use crate::io::{
-    OpenError, OpenOptions, Opened, Remark, open as open_file, read, undrawn_textures,
+    FileFormat, OpenError, OpenOptions, Opened, Remark, open as open_file, read, undrawn_textures,
 };
 
 const STANDARD_INPUT: &str = "-";
@@ -16,9 +16,21 @@ pub fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
+/// Help of an argument for a file of any format that can be read.
+pub fn input_help(purpose: &str) -> String {
+    format!("{purpose}: {}; - reads standard input", FileFormat::inputs())
+}
+
+/// Rows of a help text: a name and its description.
+pub fn help_rows<'a>(rows: impl IntoIterator<Item = (String, &'a str)>) -> String {
+    let rows: Vec<_> = rows.into_iter().collect();
+    let width = 4 + rows.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
+    rows.iter().map(|(name, description)| format!("  {name:width$}{description}\n")).collect()
+}
+
 /// True if a path has the extension of a document.
 pub fn is_document(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+    FileFormat::DOCUMENT.is_written_to(path)
 }
 
 /// Opens a file, or standard input for `-`, to draw its skin, too, and prints its warnings.

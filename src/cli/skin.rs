@@ -19,9 +19,7 @@ mesh of a figure from another program. Settings that are not given stay as they 
 blobs, which only a document can have. The numbers of vertices and triangles are listed on stderr."#
 )]
 pub struct SkinArgs {
-    /// File with a skeleton: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; -
-    /// reads standard input
-    #[arg(value_name = "FILE")]
+    #[arg(help = open::input_help("File with a skeleton"), value_name = "FILE")]
     file: PathBuf,
     /// Document to write (.json)
     #[arg(short, long, value_name = "OUT")]

@@ -1,7 +1,7 @@
 use thiserror::Error;
 
 use super::format::FormatError;
-use crate::io::{Cancelled, GlbError, MotionError, ObjError, WriteError};
+use crate::io::{Cancelled, ContentError, MotionError, WriteError};
 use crate::render::{DrawError, GpuError};
 
 /// Reasons why no file is exported.
@@ -14,15 +14,9 @@ pub enum ExportError {
     /// The path selects no format.
     #[error(transparent)]
     Format(#[from] FormatError),
-    /// glTF cannot hold the document.
+    /// The format cannot hold the document.
     #[error(transparent)]
-    Glb(GlbError),
-    /// The motion cannot be exported.
-    #[error(transparent)]
-    Motion(MotionError),
-    /// The mesh cannot be exported.
-    #[error(transparent)]
-    Obj(#[from] ObjError),
+    Content(ContentError),
     /// The time of a single picture is not finite.
     #[error("time must be a finite number of seconds, got {0}")]
     Time(f64),
@@ -48,33 +42,25 @@ impl ExportError {
     pub fn is_about_output(&self) -> bool {
         match self {
             Self::Cancelled(_) | Self::Format(_) | Self::Gpu(_) | Self::Write(_) => true,
-            Self::Glb(_)
-            | Self::Motion(_)
-            | Self::Obj(_)
-            | Self::Time(_)
-            | Self::Draw(_)
-            | Self::Png(_)
-            | Self::Frames(_) => false,
+            Self::Content(_) | Self::Time(_) | Self::Draw(_) | Self::Png(_) | Self::Frames(_) => {
+                false
+            }
         }
     }
 }
 
 /// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
-impl From<GlbError> for ExportError {
-    fn from(error: GlbError) -> Self {
+impl From<ContentError> for ExportError {
+    fn from(error: ContentError) -> Self {
         match error {
-            GlbError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            error => Self::Glb(error),
+            ContentError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Content(error),
         }
     }
 }
 
-/// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
 impl From<MotionError> for ExportError {
     fn from(error: MotionError) -> Self {
-        match error {
-            MotionError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            error => Self::Motion(error),
-        }
+        ContentError::from(error).into()
     }
 }

@@ -4,43 +4,91 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::numbered_name::NumberedName;
+use crate::io::{ExportKind, ExportOption, FileFormat, WriteContent, Writer, dotted};
 
-/// File format of an export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Binary glTF.
-    Glb,
-    /// Biovision hierarchy: joints and their motion.
-    Bvh,
-    /// Joint positions as a table.
-    Csv,
-    /// The mesh of the skin at one time.
-    Obj,
-    /// One picture.
-    Png,
-    /// One picture file per frame.
-    PngSequence,
-    /// All frames in one animated picture.
-    Apng,
+/// A format that an export can write.
+#[derive(Clone, Copy)]
+pub struct ExportFormat {
+    /// Names, descriptions and options.
+    pub kind: ExportKind,
+    pub(super) content: ExportContent,
 }
 
-/// A path whose extension is not that of a [`Format`].
+/// The way in which the content of an export is made.
+#[derive(Clone, Copy)]
+pub(super) enum ExportContent {
+    /// By a writer of [`FileFormat::ALL`].
+    Written(WriteContent),
+    /// One picture.
+    Picture,
+    /// One picture file per frame.
+    PictureSequence,
+    /// All frames in one animated picture.
+    AnimatedPicture,
+}
+
+/// The formats of pictures, beside those of [`FileFormat::ALL`].
+const PICTURES: [ExportFormat; 3] = [
+    ExportFormat {
+        kind: ExportKind {
+            name: "PNG",
+            label: ".png",
+            ending: ".png",
+            help: "one picture, at --time",
+            tooltip: "One picture of the current frame",
+            options: &[ExportOption::Time, ExportOption::Picture],
+        },
+        content: ExportContent::Picture,
+    },
+    ExportFormat {
+        kind: ExportKind {
+            name: "PNG sequence",
+            label: ".png with a #",
+            ending: "_####.png",
+            help: "one picture per frame: walk_####.png gives walk_0000.png, walk_0001.png, ...",
+            tooltip: "One picture a frame; #### becomes the frame number",
+            options: &[ExportOption::FrameRate, ExportOption::Picture],
+        },
+        content: ExportContent::PictureSequence,
+    },
+    ExportFormat {
+        kind: ExportKind {
+            name: "Animated PNG",
+            label: ".apng",
+            ending: ".apng",
+            help: "all frames in one animated picture",
+            tooltip: "One picture file that plays the motion",
+            options: &[ExportOption::FrameRate, ExportOption::Picture],
+        },
+        content: ExportContent::AnimatedPicture,
+    },
+];
+
+/// A path whose extension is not that of an [`ExportFormat`].
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{path}: extension must be one of {}", extensions())]
 pub struct FormatError {
     path: String,
 }
 
-impl Format {
-    /// File extensions with their formats.
-    pub const EXTENSIONS: [(&'static str, Self); 6] = [
-        ("glb", Self::Glb),
-        ("bvh", Self::Bvh),
-        ("csv", Self::Csv),
-        ("obj", Self::Obj),
-        ("png", Self::Png),
-        ("apng", Self::Apng),
-    ];
+impl ExportFormat {
+    /// All formats, in the order in which texts list them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let written = FileFormat::ALL.iter().filter_map(|format| match format.writer? {
+            Writer::Save => None,
+            Writer::Export(kind, write) => {
+                Some(Self { kind, content: ExportContent::Written(write) })
+            }
+        });
+        written.chain(PICTURES)
+    }
+
+    /// All file extensions without the dot.
+    pub fn extensions() -> Vec<&'static str> {
+        let mut extensions: Vec<_> = Self::all().map(|format| format.kind.extension()).collect();
+        extensions.dedup();
+        extensions
+    }
 
     /// Returns the format that a file name selects by its extension and, for PNG, by whether the
     /// name contains `#`.
@@ -50,38 +98,43 @@ impl Format {
     /// Fails if the extension is unknown.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-        let matches = |(known, _): &(&str, Self)| extension.eq_ignore_ascii_case(known);
-        match Self::EXTENSIONS.into_iter().find(matches) {
-            Some((_, Self::Png)) if NumberedName::new(path).is_some() => Ok(Self::PngSequence),
-            Some((_, format)) => Ok(format),
-            None => Err(FormatError { path: path.display().to_string() }),
-        }
+        let is_numbered = NumberedName::new(path).is_some();
+        let mut matching = Self::all().filter(|format| {
+            extension.eq_ignore_ascii_case(format.kind.extension())
+                && (is_numbered || !format.is_sequence())
+        });
+        let first = matching.next();
+        let sequence = matching.find(Self::is_sequence);
+        sequence.or(first).ok_or_else(|| FormatError { path: path.display().to_string() })
     }
 
-    /// Whether the format holds one time instead of a motion.
-    pub fn is_still(self) -> bool {
-        matches!(self, Self::Png | Self::Obj)
+    /// Whether each frame has a file of its own.
+    pub fn is_sequence(&self) -> bool {
+        matches!(self.content, ExportContent::PictureSequence)
     }
 
-    /// Whether a file of the format holds the frames of a motion rather than a single moment.
-    pub fn has_frames(self) -> bool {
-        !matches!(self, Self::Png | Self::Obj)
-    }
-
-    /// Whether the format consists of pictures.
-    pub fn is_picture(self) -> bool {
-        matches!(self, Self::Png | Self::PngSequence | Self::Apng)
+    /// Whether an option applies.
+    pub fn takes(&self, option: ExportOption) -> bool {
+        self.kind.takes(option)
     }
 }
 
+impl PartialEq for ExportFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind == other.kind
+    }
+}
+
+impl Eq for ExportFormat {}
+
 fn extensions() -> String {
-    Format::EXTENSIONS.map(|(extension, _)| format!(".{extension}")).join(", ")
+    ExportFormat::extensions().iter().map(dotted).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the existing file that an export to `path` would overwrite, or the first of several
 /// existing files of a sequence. `None` if no file would be overwritten.
 pub fn existing(path: &Path) -> Option<PathBuf> {
-    let is_sequence = matches!(Format::of(path), Ok(Format::PngSequence));
+    let is_sequence = ExportFormat::of(path).is_ok_and(|format| format.is_sequence());
     let Some(numbered) = NumberedName::new(path).filter(|_| is_sequence) else {
         return path.exists().then(|| path.to_owned());
     };
@@ -97,18 +150,19 @@ mod tests {
 
     #[test]
     fn the_extension_selects_the_format() {
-        for (path, format) in [
-            ("a.glb", Format::Glb),
-            ("b/a.BVH", Format::Bvh),
-            ("a#.csv", Format::Csv),
-            ("a#/a.png", Format::Png),
-            ("a_##.png", Format::PngSequence),
-            ("a.tar.Apng", Format::Apng),
+        for (path, name) in [
+            ("a.glb", "GLB"),
+            ("b/a.BVH", "BVH"),
+            ("a#.csv", "CSV"),
+            ("a#/a.png", "PNG"),
+            ("a_##.png", "PNG sequence"),
+            ("a.tar.Apng", "Animated PNG"),
         ] {
-            assert_eq!(Format::of(Path::new(path)).ok(), Some(format), "{path}");
+            let format = ExportFormat::of(Path::new(path)).expect("a format");
+            assert_eq!(format.kind.name, name, "{path}");
         }
         for path in ["a", "a.mp4", ".png", "png", ""] {
-            let error = Format::of(Path::new(path)).expect_err("no format").to_string();
+            let error = ExportFormat::of(Path::new(path)).err().expect("no format").to_string();
             assert!(error.contains(".glb, .bvh, .csv, .obj, .png, .apng"), "{error}");
         }
     }

@@ -8,21 +8,20 @@ mod error;
 mod format;
 mod frame_writers;
 mod numbered_name;
-mod options;
 mod pictures;
 
 use std::path::Path;
 
+pub use crate::io::ExportOptions;
 pub use error::ExportError;
-pub use format::{Format, FormatError, existing};
-pub use options::ExportOptions;
-
-use numbered_name::NumberedName;
+pub use format::{ExportFormat, FormatError, existing};
 
 use crate::document::Document;
 use crate::io::{self, Exported, Progress};
+use format::ExportContent;
+use numbered_name::NumberedName;
 
-/// Writes a document to a file whose extension selects the [`Format`], and returns notes on what
+/// Writes a document to a file whose extension selects the [`ExportFormat`], and returns notes on what
 /// the format cannot hold.
 ///
 /// # Errors
@@ -35,23 +34,19 @@ pub fn export(
     options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
-    let format = Format::of(path)?;
+    let ExportFormat { content, .. } = ExportFormat::of(path)?;
     progress.step(0, 1)?;
-    if let (Format::PngSequence, Some(name)) = (format, NumberedName::new(path)) {
-        return pictures::sequence(document, path, &name, options, progress);
-    }
-    let Exported { bytes, notes } = match format {
-        Format::Glb => {
-            Exported { bytes: io::glb(document, options.fps, progress)?, notes: Vec::new() }
+    let Exported { bytes, notes } = match (content, NumberedName::new(path)) {
+        (ExportContent::PictureSequence, Some(name)) => {
+            return pictures::sequence(document, path, &name, options, progress);
         }
-        Format::Bvh => io::to_bvh(document, options.fps, options.unit, progress)?,
-        Format::Csv => io::to_csv(document, options.fps, progress)?,
-        Format::Obj => {
-            let time = options.time.unwrap_or(document.timeline.start);
-            io::to_obj(document, time, options.skinning)?
+        (ExportContent::AnimatedPicture, _) => {
+            return pictures::animation(document, path, options, progress);
         }
-        Format::Png | Format::PngSequence => pictures::still(document, options, progress)?,
-        Format::Apng => return pictures::animation(document, path, options, progress),
+        (ExportContent::Picture | ExportContent::PictureSequence, _) => {
+            pictures::still(document, options, progress)?
+        }
+        (ExportContent::Written(write), _) => write(document, options, progress)?,
     };
     io::write(path, &bytes)?;
     Ok(notes)

@@ -23,13 +23,15 @@ pub enum OpenError {
         most_mb: u64,
     },
     /// The file has a format of another program that cannot be read.
-    #[error("{file} is {what}, and only .json, .js3d, .glb, .gltf and .bvh can be read; {advice}")]
+    #[error("{file} is {what}, and only {readable} can be read; {advice}")]
     Foreign {
         /// Name of the file.
         file: String,
         /// The format, like `an FBX file`.
         what: &'static str,
-        /// What usually converts the file.
+        /// Extensions of the formats that can be read.
+        readable: String,
+        /// Program that usually converts the file.
         advice: &'static str,
     },
     /// The content is invalid.

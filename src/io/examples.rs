@@ -1,7 +1,6 @@
-use super::OpenError;
+use super::error::OpenError;
 use super::open::parse;
-use super::open_options::OpenOptions;
-use super::opened::Opened;
+use super::opened::{OpenOptions, Opened};
 use crate::document::Document;
 
 /// An example document that is built into the program.

@@ -1,6 +1,5 @@
+use super::exported::MotionError;
 use crate::document::{Document, Timeline};
-
-use super::MotionError;
 
 /// The times of all frames of an export.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`],
 //! [`to_bvh`], [`to_csv`] and [`to_obj`] write; [`solve_line`] answers the lines of `ik-arm solve`.
-//! docs/files.md describes the formats.
+//! [`FileFormat::ALL`] is the table of formats, from which texts about them are made; docs/files.md
+//! describes their content.
 //!
 //! An [`OpenError`] names the line, the column, the field, the rule and the value. Warnings about a
 //! file that can be opened all the same are [`Remark`]s in [`Opened`]. Content that an export
@@ -14,7 +15,7 @@ mod base64;
 mod bones;
 pub(crate) mod error;
 mod examples;
-mod file_animation;
+mod exported;
 mod file_batch;
 mod file_stamp;
 mod foreign;
@@ -26,42 +27,37 @@ mod json;
 mod json_style;
 mod line;
 mod little_endian;
-mod motion;
 mod open;
-mod open_options;
 mod opened;
-mod progress;
 mod regular_file;
 mod skin_file;
 mod source;
 mod temporary_file;
 mod texture;
-mod translation;
-mod turn_up;
 mod write;
 
 #[cfg(feature = "app")]
 pub(crate) use error::system_reason;
 pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::{Example, Group, new_document};
-pub use file_animation::FileAnimation;
+pub use exported::{BvhUnit, Cancelled, ExportKind, ExportOption, ExportOptions};
+pub use exported::{Exported, MotionError, Progress};
 pub use file_batch::FileBatch;
 pub use file_stamp::FileStamp;
-pub use formats::bvh::{BvhUnit, to_bvh};
+pub use formats::bvh::to_bvh;
 pub use formats::csv::to_csv;
 pub use formats::document::{save, to_json};
 pub use formats::gltf::{GlbError, glb};
 pub use formats::obj::{ObjError, to_obj};
+pub use formats::{ContentError, FileFormat, WriteContent, Writer};
+#[cfg(feature = "app")]
+pub(crate) use formats::{dotted, enumerated};
 pub use frames::ExportFrames;
 pub use line::{Answer, LineError, PreviousLine, solve_line};
-pub use motion::{Exported, MotionError};
 pub use open::{open, parse, read};
-pub use open_options::OpenOptions;
-pub use opened::Opened;
-pub use progress::{Cancelled, Progress};
+pub use opened::{FileAnimation, OpenOptions, Opened, Upwards};
 #[cfg(feature = "app")]
 pub(crate) use regular_file::read_text;
 pub use skin_file::relocated_skin;
 pub use texture::{texture_pixels, undrawn_textures};
-pub use turn_up::Upwards;
 pub use write::{write, write_with};

@@ -2,12 +2,11 @@ use std::io::Read;
 use std::path::Path;
 
 use super::error::{OpenError, Remark};
-use super::formats::FileFormat;
-use super::formats::{bvh, document, gltf, js3d};
-use super::open_options::OpenOptions;
-use super::opened::Opened;
+use super::formats::Reader;
+use super::opened::{OpenOptions, Opened, Upwards};
+use super::skin_file::load_skin;
 use super::source::Source;
-use super::turn_up;
+use crate::document::RigKind;
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
 /// detected by the content. `options` choose one of several skeletons and animations, and tell which axis
@@ -39,22 +38,33 @@ pub fn parse(name: &str, text: &str, options: &OpenOptions) -> Result<Opened, Op
     open_source(&Source::new(name, text), options)
 }
 
-/// Refuses a file that is larger than files other than glTF may be.
+/// Refuses a file that is larger than files of its format may be.
 fn limited(source: Source) -> Result<Source, OpenError> {
-    let is_large = source.text().len() as u64 > OpenError::MAX_BYTES;
-    match is_large && FileFormat::detect(&source)? != FileFormat::Gltf {
-        true => Err(source.too_large()),
-        false => Ok(source),
+    let bytes = source.text().len() as u64;
+    if bytes > OpenError::MAX_BYTES && bytes > Reader::detect(&source)?.most_bytes() {
+        return Err(source.too_large());
     }
+    Ok(source)
 }
 
 fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
-    let format = FileFormat::detect(source)?;
-    let mut opened = read_format(source, format, options)?;
+    let reader = Reader::detect(source)?;
+    let mut opened = reader.read(source, options)?;
+    if let (Some(name), None) = (&options.animation, opened.animation) {
+        let (file, name) = (source.name().to_owned(), name.clone());
+        return Err(OpenError::NoAnimation { file, name, names: Vec::new() });
+    }
+    if reader.is_own() {
+        let warnings = load_skin(&mut opened.document, source.folder());
+        opened.warnings.extend(source.warnings(&warnings));
+    }
     if options.skeleton.is_none() {
         opened.warnings.extend(one_of_several(&opened.skeletons));
     }
-    turn_up::turn_up(&mut opened, format, options.up);
+    // In a document of this program, y points up unless the caller knows better.
+    let is_told = matches!(options.up, Some(Upwards::Y | Upwards::Z));
+    let seems_z = !is_told && !reader.is_own() && opened.document.looks_z_up();
+    turn_up(&mut opened, options.up, seems_z);
     Ok(opened)
 }
 
@@ -70,24 +80,20 @@ fn one_of_several(names: &[String]) -> Option<Remark> {
     Some(Remark::new(reason))
 }
 
-fn read_format(
-    source: &Source,
-    format: FileFormat,
-    options: &OpenOptions,
-) -> Result<Opened, OpenError> {
-    let OpenOptions { skeleton, animation, .. } = options;
-    let (file, skeleton) = (source.name().to_owned(), skeleton.as_deref());
-    let opened = match (format, skeleton) {
-        (FileFormat::Gltf, _) => return gltf::read(source, options),
-        (FileFormat::Scene, skeleton) => js3d::read(source, skeleton)?,
-        (FileFormat::Motion, skeleton) => bvh::read(source, skeleton)?,
-        (FileFormat::Document, None) => document::read(source, options)?,
-        (FileFormat::Document, Some(name)) => {
-            return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: Vec::new() });
-        }
-    };
-    match animation {
-        Some(name) => Err(OpenError::NoAnimation { file, name: name.clone(), names: Vec::new() }),
-        None => Ok(opened),
+/// Turns the skeleton if z points up, or remarks that it seems to.
+fn turn_up(opened: &mut Opened, up: Option<Upwards>, seems_z: bool) {
+    let document = &mut opened.document;
+    let turns = up == Some(Upwards::Z) || up == Some(Upwards::Auto) && seems_z;
+    if turns && document.rig == RigKind::Skeleton {
+        document.turn_y_up();
+        document.camera = document.framing_camera();
+    }
+    if seems_z {
+        let reason = if turns {
+            "z points up: turned to y up"
+        } else {
+            "z seems to point up: --up z, or Edit → Turn to y up, turns it"
+        };
+        opened.warnings.push(Remark::new(reason.to_owned()));
     }
 }

@@ -1,7 +1,51 @@
+//! The choice of what to read of a file, and the result.
+
 use super::error::Remark;
-use super::file_animation::FileAnimation;
 use crate::document::Document;
 use crate::kinematics::skeleton::JointId;
+
+/// The choice of one of several skeletons and animations, and of the axis that points up.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OpenOptions {
+    /// Name of the skeleton; `None` for the first.
+    pub skeleton: Option<String>,
+    /// Name of the animation, or its number in the file, from 0; `None` for the first that moves
+    /// the skeleton.
+    pub animation: Option<String>,
+    /// The axis that points up; `None` for y, with a remark if it seems to be z.
+    pub up: Option<Upwards>,
+    /// Whether a document that has no camera gets the default one, instead of one that frames the
+    /// skeleton: to frame it, its targets are solved for.
+    pub without_camera: bool,
+}
+
+impl OpenOptions {
+    /// Options that choose the skeleton with this name.
+    pub fn of_skeleton(name: &str) -> Self {
+        Self { skeleton: Some(name.to_owned()), ..Self::default() }
+    }
+
+    /// Options that choose the animation with this name or number.
+    pub fn of_animation(name: &str) -> Self {
+        Self { animation: Some(name.to_owned()), ..Self::default() }
+    }
+
+    /// Options that tell which axis points up.
+    pub fn of_up(up: Upwards) -> Self {
+        Self { up: Some(up), ..Self::default() }
+    }
+}
+
+/// The axis that points up in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Upwards {
+    /// The y axis: nothing is turned.
+    Y,
+    /// The z axis: the skeleton is turned.
+    Z,
+    /// The one along which the figure stands: the skeleton is turned if that is z.
+    Auto,
+}
 
 /// A document read from a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,4 +63,24 @@ pub struct Opened {
     pub animations: Vec<FileAnimation>,
     /// Index of the animation that was read; `None` if there is none.
     pub animation: Option<usize>,
+}
+
+/// An animation of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileAnimation {
+    /// Name, unique in the file.
+    pub name: String,
+    /// Time of the first key, in seconds.
+    pub start: f64,
+    /// Time of the last key, in seconds.
+    pub end: f64,
+    /// Number of joints of the skeleton that the animation moves against their parents.
+    pub moving_joints: usize,
+}
+
+impl FileAnimation {
+    /// Whether the animation moves the skeleton.
+    pub fn moves(&self) -> bool {
+        self.moving_joints > 0 && self.start < self.end
+    }
 }

@@ -1,14 +1,12 @@
 //! The files that documents take the meshes of their skins from.
 
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::OpenError;
-use super::formats::FileFormat;
-use super::formats::{gltf, js3d};
-use super::json::FieldWarnings;
-use super::json::JsonPath;
-use super::open_options::OpenOptions;
+use super::formats::Reader;
+use super::json::{FieldWarnings, JsonPath};
+use super::opened::OpenOptions;
 use super::source::Source;
 use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
@@ -57,11 +55,11 @@ fn read(
 ) -> Result<Option<(Shared<FileMesh>, SkinFile)>, OpenError> {
     let source = Source::open(path)?;
     let options = skeleton.map_or_else(OpenOptions::default, OpenOptions::of_skeleton);
-    let opened = match FileFormat::detect(&source)? {
-        FileFormat::Gltf => gltf::read(&source, &options)?,
-        FileFormat::Scene => js3d::read(&source, skeleton)?,
-        FileFormat::Document | FileFormat::Motion => return Ok(None),
-    };
+    let reader = Reader::detect(&source)?;
+    if !reader.has_skins() {
+        return Ok(None);
+    }
+    let opened = reader.read(&source, &options)?;
     Ok(opened.document.skeleton_rig.skin.and_then(|skin| match skin.source {
         SkinSource::Mesh(mesh) => Some((mesh.in_file()?.clone(), mesh.file()?.clone())),
         SkinSource::Bones(_) => None,
@@ -70,10 +68,11 @@ fn read(
 
 /// Reads the file that the skin of a document refers to, from the folder of the document if its path is
 /// relative. Warns if that is impossible or the file has changed; the skin then has no mesh.
-pub fn load_skin(document: &mut Document, folder: Option<&Path>, warnings: &mut FieldWarnings) {
+pub fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
+    let mut warnings = FieldWarnings::default();
     let rig = &mut document.skeleton_rig;
-    let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut rig.skin else { return };
-    let Some(file) = skin.file() else { return };
+    let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut rig.skin else { return warnings };
+    let Some(file) = skin.file() else { return warnings };
     let path = folder.map_or_else(|| file.path.clone(), |folder| folder.join(&file.path));
     let located = SkinFile { path, ..file.clone() };
     let read = relocated_skin(&located.path, &located.skeleton, skin.joints(), &rig.skeleton);
@@ -88,20 +87,5 @@ pub fn load_skin(document: &mut Document, folder: Option<&Path>, warnings: &mut 
             MeshSkin::without_mesh(located, skin.joints().to_vec(), error)
         }
     };
-}
-
-/// The document with the path of its skin's file relative to `folder`, if both exist and that is possible;
-/// otherwise absolute.
-pub fn with_relative_skin(document: &Document, folder: &Path) -> Document {
-    let mut document = document.clone();
-    if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.skeleton_rig.skin {
-        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        // Without links and `..`, whose folders would be others from the document's own folder.
-        let relative = |file: &SkinFile| -> Option<PathBuf> {
-            pathdiff::diff_paths(file.path.canonicalize().ok()?, folder.canonicalize().ok()?)
-        };
-        let relative = |file: &SkinFile| relative(file).unwrap_or_else(|| file.path.clone());
-        *skin = skin.with_path(relative);
-    }
-    document
+    warnings
 }

@@ -10,14 +10,13 @@ use super::glb_chunks::{self, Chunks};
 use super::json::{FieldError, FieldWarnings};
 use super::json::{JsonPath, byte_at, line_and_column};
 use super::regular_file::open_regular;
-use super::translation::Translation;
 
 /// The text of a file, and the file's name for errors.
 pub struct Source {
     name: String,
     text: String,
-    /// The original text of the file and its translation, if `text` is translated.
-    translated: Option<(String, Translation)>,
+    /// The format of a file that cannot be read, which has no text then.
+    foreign: Option<ForeignFormat>,
     /// The binary chunk of a GLB file.
     binary: Option<Vec<u8>>,
     /// The absolute path of the file; `None` if it was not opened by its path.
@@ -47,8 +46,8 @@ impl Source {
     pub fn read(name: &str, input: impl Read) -> Result<Self, OpenError> {
         let file = name.to_owned();
         let bytes = read_limited(name, input)?;
-        if let Some(ForeignFormat { what, advice }) = ForeignFormat::of(&bytes) {
-            return Err(OpenError::Foreign { file, what, advice });
+        if let Some(foreign) = ForeignFormat::of(&bytes) {
+            return Ok(Self { foreign: Some(foreign), ..Self::of_text(name, String::new()) });
         }
         let mut checksum = crc32fast::Hasher::new();
         checksum.update(&bytes);
@@ -76,21 +75,10 @@ impl Source {
         Self {
             name: name.to_owned(),
             text,
-            translated: None,
+            foreign: None,
             binary: None,
             path: None,
             checksum: crc32fast::Hasher::new(),
-        }
-    }
-
-    /// The same file with a translation of its text. Errors keep the positions of the original
-    /// text.
-    pub fn translated(&self, translation: Translation) -> Self {
-        let translated = Self::new(&self.name, &translation.text);
-        Self {
-            path: self.path.clone(),
-            translated: Some((self.text.clone(), translation)),
-            ..translated
         }
     }
 
@@ -105,6 +93,11 @@ impl Source {
 
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The format of a file that cannot be read; `None` for other files.
+    pub fn foreign(&self) -> Option<ForeignFormat> {
+        self.foreign
     }
 
     /// The binary chunk of a GLB file; `None` for other files.
@@ -190,11 +183,9 @@ impl Source {
     }
 
     fn remark_at(&self, byte: usize, field: &JsonPath, reason: &str) -> Remark {
-        let has_lines = self.binary.is_none();
-        let (line, column) = match &self.translated {
-            _ if !has_lines => (0, 0),
+        let (line, column) = match self.binary {
+            Some(_) => (0, 0),
             None => line_and_column(&self.text, byte),
-            Some((text, translation)) => line_and_column(text, translation.byte_before(byte)),
         };
         let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));
         Remark { line, column, field, reason }

@@ -175,11 +175,11 @@ fn a_file_that_is_no_document_is_refused_with_the_reason() {
         ),
         (
             "{\"format\":\"ik-arm\",\n \"version\": 3, \"rig\": {}}",
-            "line 2, column 13: version: must be from 1 to 2, got 3, which needs a newer ik-arm",
+            "line 2, column 13: version: must be 2, got 3, which needs a newer ik-arm",
         ),
         (
             "{\"format\":\"ik-arm\",\"version\":0}",
-            "line 1, column 30: version: must be from 1 to 2, got 0",
+            "line 1, column 30: version: must be 2, the version that is read, got 0",
         ),
         ("{\"format\":\"ik-arm\"}", "line 1, column 1: missing field `version`"),
         (

@@ -49,9 +49,7 @@ show the arm use `ik-arm solve`.
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#
 )]
 pub struct PoseArgs {
-    /// File to pose: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
-    /// standard input
-    #[arg(value_name = "FILE")]
+    #[arg(help = open::input_help("File to pose"), value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     open: OpenArgs,

@@ -6,6 +6,7 @@ use crate::cli::argument::{
     GuidesArgument, LengthArgument, NumberArgument, PointArgument, SizeArgument, ThemeName,
     TimeArgument,
 };
+use crate::cli::open;
 use crate::cli::open_args::OpenArgs;
 use crate::cli::time_limit::TimeLimitArgs;
 use crate::cli::view_name::ViewName;
@@ -19,9 +20,7 @@ With FILE its rig is drawn with its own camera, unless --view is given:
 Measure a crowd without drawing a picture:
   ik-arm render --crowd 100000 --frames 60 --timings --solve gpu")]
 pub struct RenderArgs {
-    /// File to draw: ik-arm document (.json), Scotty3D scene (.js3d), .bvh, .glb or .gltf; - reads
-    /// standard input
-    #[arg(value_name = "FILE", conflicts_with_all = ["hand", "twist", "root", "upper", "lower"])]
+    #[arg(help = open::input_help("File to draw"), value_name = "FILE", conflicts_with_all = ["hand", "twist", "root", "upper", "lower"])]
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub open: OpenArgs,

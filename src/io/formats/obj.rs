@@ -3,7 +3,7 @@ use core::fmt::Write as _;
 use thiserror::Error;
 
 use crate::document::{Document, RigKind};
-use crate::io::motion::Exported;
+use crate::io::exported::Exported;
 use crate::kinematics::skeleton::is_within_numbers;
 use crate::kinematics::skin::{Skinning, TriangleMesh};
 use crate::rig::SkinMeshError;

@@ -5,63 +5,25 @@ use std::path::{Path, PathBuf};
 use egui::{DragValue, Grid, Id, Ui};
 
 use super::path::{browse, folder, prompt, unless_there};
-use crate::export::{ExportOptions, Format};
-use crate::io::ExportFrames;
+use crate::export::{ExportFormat, ExportOptions};
+use crate::io::{ExportFrames, ExportKind, ExportOption};
 use crate::session::{Actions, EditAction, Export, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets::{self, NumberField};
 
-/// A file format with its name, file extension and tooltip.
-struct FormatChoice {
-    format: Format,
-    name: &'static str,
-    ending: &'static str,
-    tooltip: &'static str,
+/// The formats in the order of their buttons: motions before single pictures.
+fn choices() -> Vec<ExportKind> {
+    let kinds = ExportFormat::all().map(|format| format.kind);
+    let (mut pictures, mut choices): (Vec<_>, Vec<_>) =
+        kinds.partition(|kind| kind.takes(ExportOption::Picture));
+    pictures.reverse();
+    choices.append(&mut pictures);
+    choices
 }
 
-const CHOICES: [FormatChoice; 7] = [
-    FormatChoice {
-        format: Format::Glb,
-        name: "GLB",
-        ending: ".glb",
-        tooltip: "glTF: a skinned, animated model for Blender, Unity, Unreal, three.js",
-    },
-    FormatChoice {
-        format: Format::Bvh,
-        name: "BVH",
-        ending: ".bvh",
-        tooltip: "Joints and their motion, the motion capture format",
-    },
-    FormatChoice {
-        format: Format::Csv,
-        name: "CSV",
-        ending: ".csv",
-        tooltip: "A table of joint positions, one row a frame",
-    },
-    FormatChoice {
-        format: Format::Obj,
-        name: "OBJ",
-        ending: ".obj",
-        tooltip: "The posed mesh of the skin in the current frame",
-    },
-    FormatChoice {
-        format: Format::Apng,
-        name: "Animated PNG",
-        ending: ".apng",
-        tooltip: "One picture file that plays the motion",
-    },
-    FormatChoice {
-        format: Format::PngSequence,
-        name: "PNG sequence",
-        ending: "_####.png",
-        tooltip: "One picture a frame; #### becomes the frame number",
-    },
-    FormatChoice {
-        format: Format::Png,
-        name: "PNG",
-        ending: ".png",
-        tooltip: "One picture of the current frame",
-    },
-];
+/// The kind of file that a path selects.
+fn kind(path: &Path) -> Option<ExportKind> {
+    ExportFormat::of(path).ok().map(|format| format.kind)
+}
 
 pub(in crate::ui) fn ui(
     ui: &mut Ui,
@@ -74,10 +36,12 @@ pub(in crate::ui) fn ui(
     let path = export.path.to_string_lossy();
     let change = |export: Export| ShellAction::OpenDialog(PathDialog::Export(export).into());
     let ending = ending(ui, export, is_new);
-    let chosen = Format::of(&with_ending(&export.path, ending)).ok();
+    let chosen = kind(&with_ending(&export.path, ending));
+    let takes = |option| chosen.is_some_and(|kind| kind.takes(option));
     ui.horizontal_wrapped(|ui| {
-        for FormatChoice { format, name, ending, tooltip } in CHOICES {
-            let is_chosen = chosen == Some(format);
+        for choice in choices() {
+            let ExportKind { name, ending, tooltip, .. } = choice;
+            let is_chosen = chosen == Some(choice);
             let button = egui::Button::selectable(is_chosen, name).frame_when_inactive(true);
             if ui.add(button).on_hover_text(tooltip).clicked() && !is_chosen {
                 let path = format!("{}{}", stem(&path), ending).into();
@@ -85,18 +49,17 @@ pub(in crate::ui) fn ui(
             }
         }
     });
-    let described = CHOICES.iter().find(|choice| chosen == Some(choice.format));
-    ui.weak(described.map_or("The file extension chooses the format", |choice| choice.tooltip));
+    ui.weak(chosen.map_or("The file extension chooses the format", |choice| choice.tooltip));
     ui.add_space(4.0);
     Grid::new("export").num_columns(2).show(ui, |ui| {
         let mut changed = export.clone();
-        if chosen.is_some_and(Format::has_frames) {
+        if takes(ExportOption::FrameRate) {
             let name = ui.label("Frames per second");
             ui.add(widgets::frame_rate(&mut changed.frame_rate)).labelled_by(name.id);
             ui.end_row();
-            length(ui, session, export.frame_rate, chosen);
+            length(ui, session, export.frame_rate, takes(ExportOption::Picture));
         }
-        if chosen.is_some_and(Format::is_picture) {
+        if takes(ExportOption::Picture) {
             let name = ui.label("Size in pixels");
             ui.horizontal(|ui| {
                 ui.add(DragValue::new(&mut changed.size.0).range(16..=ExportOptions::MAX_SIDE))
@@ -107,7 +70,7 @@ pub(in crate::ui) fn ui(
             });
             ui.end_row();
         }
-        if matches!(chosen, Some(Format::Glb | Format::Bvh)) {
+        if takes(ExportOption::Metres) {
             ui.label("Metres per unit");
             let tooltip = "Set the scale for other programs";
             let value = session.document().metres_per_unit();
@@ -141,10 +104,10 @@ pub(in crate::ui) fn ui(
 /// The ending of the format that was chosen last, which a name without an extension gets.
 fn ending(ui: &Ui, export: &Export, is_new: bool) -> &'static str {
     let id = Id::unique("ending of the export");
-    let format = Format::of(&export.path).ok();
-    let ending = CHOICES.iter().find(|choice| Some(choice.format) == format).map(|it| it.ending);
-    let before = if is_new { None } else { ui.data(|data| data.get_temp(id)) };
-    let ending = ending.or(before).unwrap_or(CHOICES[0].ending);
+    let before = || if is_new { None } else { ui.data(|data| data.get_temp(id)) };
+    let first = || choices().first().map(|kind| kind.ending);
+    let named = kind(&export.path).map(|kind| kind.ending);
+    let ending = named.or_else(before).or_else(first).unwrap_or_default();
     ui.data_mut(|data| data.insert_temp(id, ending));
     ending
 }
@@ -162,13 +125,14 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
 }
 
 /// Shows the length of the motion, if there is any.
-fn length(ui: &mut Ui, session: &Session, frame_rate: f64, format: Option<Format>) {
+fn length(ui: &mut Ui, session: &Session, frame_rate: f64, is_picture: bool) {
     ui.label("Length");
     let document = session.document();
     let timeline = document.timeline;
-    let frames = match format {
-        Some(format) if format.is_picture() => ExportFrames::of_picture(document, Some(frame_rate)),
-        _ => ExportFrames::of_pose(document, Some(frame_rate)),
+    let frames = if is_picture {
+        ExportFrames::of_picture(document, Some(frame_rate))
+    } else {
+        ExportFrames::of_pose(document, Some(frame_rate))
     };
     ui.label(if frames.is_ok_and(|frames| frames.count() > 1) {
         format!("{:.2} s, from {:.2} s", timeline.duration(), timeline.start)
@@ -181,7 +145,7 @@ fn length(ui: &mut Ui, session: &Session, frame_rate: f64, format: Option<Format
 fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {
     let why_not = if session.export_job().is_some() {
         Some("Another export is running")
-    } else if Format::of(&export.path).is_err() {
+    } else if ExportFormat::of(&export.path).is_err() {
         Some("The file extension must name a format")
     } else {
         None
@@ -205,7 +169,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
 /// `_####`.
 fn stem(path: &str) -> String {
     let path = Path::new(path);
-    let has_format = Format::of(path).is_ok();
+    let has_format = ExportFormat::of(path).is_ok();
     let without = if has_format { path.with_extension("") } else { path.to_owned() };
     let without = without.to_string_lossy();
     without.trim_end_matches('#').trim_end_matches('_').to_owned()

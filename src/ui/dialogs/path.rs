@@ -8,41 +8,44 @@ use egui::text_edit::TextEditState;
 use egui::{Key, Label, RichText, TextEdit, Ui};
 
 use crate::export::existing;
-use crate::io::OpenOptions;
+use crate::io::{FileFormat, OpenOptions, dotted, enumerated};
 use crate::session::{Action, Actions, Dialog, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets;
 
 /// Texts and actions of a path dialog.
 pub(super) struct PathPrompt {
-    prompt: &'static str,
+    prompt: fn() -> String,
     accept: &'static str,
     dialog: fn(String) -> PathDialog,
     action: fn(PathBuf) -> FileAction,
 }
 
 pub(super) const SAVE_PICTURE: PathPrompt = PathPrompt {
-    prompt: "PNG file",
+    prompt: || "PNG file".to_owned(),
     accept: "Save",
     dialog: |path| PathDialog::SavePicture { path },
     action: |path| FileAction::SavePicture(path.display().to_string()),
 };
 
 pub(super) const OPEN: PathPrompt = PathPrompt {
-    prompt: "Document, Scotty3D scene (.js3d), .bvh, .glb or .gltf",
+    prompt: || format!("Document, {}", FileFormat::other_inputs()),
     accept: "Open",
     dialog: |path| PathDialog::Open { path, problem: None },
     action: |path| FileAction::Open { path, options: OpenOptions::default() },
 };
 
 pub(super) const SAVE_AS: PathPrompt = PathPrompt {
-    prompt: "Document file",
+    prompt: || "Document file".to_owned(),
     accept: "Save",
     dialog: |path| PathDialog::SaveAs { path, problem: None },
     action: FileAction::SaveAs,
 };
 
 pub(super) const LOCATE_SKIN: PathPrompt = PathPrompt {
-    prompt: "File with the mesh: .glb, .gltf or .js3d",
+    prompt: || {
+        let extensions: Vec<_> = FileFormat::with_skins().iter().map(dotted).collect();
+        format!("File with the mesh: {}", enumerated(&extensions, "or"))
+    },
     accept: "Locate",
     dialog: |path| PathDialog::LocateSkin { path, problem: None },
     action: FileAction::LocateSkin,
@@ -59,7 +62,7 @@ pub(super) fn ask_path(
     actions: &mut Actions,
 ) {
     ui.set_width(440.0);
-    let (typed, entered) = prompt(ui, question.prompt, path, is_new);
+    let (typed, entered) = prompt(ui, &(question.prompt)(), path, is_new);
     let dialog = (question.dialog)(typed.clone());
     if typed != path {
         actions.push(ShellAction::OpenDialog(dialog.clone().into()));

@@ -40,9 +40,7 @@ mod read;
 mod rig;
 mod text;
 mod transform;
-mod unit;
 mod write;
 
 pub use read::{is_bvh, read};
-pub use unit::BvhUnit;
 pub use write::to_bvh;

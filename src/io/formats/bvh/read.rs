@@ -4,11 +4,11 @@ use super::hierarchy::{self, BvhChannel, BvhNode};
 use super::motion::{self, MotionData};
 use super::names::distinct;
 use super::text::{Scanner, TextError};
-use super::unit::METRES_PER_UNIT;
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointTree};
 use crate::io::error::{OpenError, Remark};
-use crate::io::opened::Opened;
+use crate::io::exported::BvhUnit;
+use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
@@ -19,8 +19,8 @@ pub fn is_bvh(text: &str) -> bool {
 }
 
 /// Reads the skeleton of a file and its motion. The skeleton has the name of its first root. Fails
-/// if `name` is another name.
-pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
+/// if the options choose another name.
+pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let open_error = |error: TextError| {
         let remark = source.remark_about(error.at, &error.joint, &error.reason);
         OpenError::Content { file: source.name().to_owned(), remark }
@@ -29,6 +29,7 @@ pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
     let mut nodes = hierarchy::read(&mut text).map_err(open_error)?;
     let (motion, warning) = motion::read(&mut text, &nodes).map_err(open_error)?;
     let skeletons: Vec<_> = nodes.iter().take(1).map(|root| root.name.clone()).collect();
+    let name = options.skeleton.as_deref();
     if let Some(name) = name.filter(|name| !skeletons.iter().any(|other| other == name)) {
         let file = source.name().to_owned();
         return Err(OpenError::NoSkeleton { file, name: name.to_owned(), names: skeletons });
@@ -99,7 +100,7 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
         skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
-        metres_per_unit: Some(METRES_PER_UNIT),
+        metres_per_unit: Some(BvhUnit::METRES),
         ..Document::default()
     };
     Ok(Document { camera: document.framing_camera(), ..document })

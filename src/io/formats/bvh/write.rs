@@ -5,11 +5,9 @@ use glam::DVec3;
 use super::note::BvhNote;
 use super::rig::{BvhPose, BvhRig};
 use super::transform::SkeletonTransform;
-use super::unit::BvhUnit;
 use crate::document::{Document, RigKind, Track};
-use crate::io::Progress;
+use crate::io::exported::{BvhUnit, Exported, MotionError, Progress};
 use crate::io::frames::ExportFrames;
-use crate::io::motion::{Exported, MotionError};
 use crate::kinematics::skeleton::exact_angles;
 
 /// Numbers of a node in a frame: its offset, and its angles about x, y and z.

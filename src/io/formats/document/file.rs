@@ -6,7 +6,6 @@ use super::arm::ArmFields;
 use super::camera::CameraFields;
 use super::check::above_0;
 use super::follow_path::FollowPathList;
-use super::header::{FORMAT, VERSION};
 use super::keys::{ChannelFields, TimelineFields, keys};
 use super::skeleton::SkeletonFields;
 use super::skin::SkinFields;
@@ -15,6 +14,35 @@ use crate::document::{Arm, Document, Keys, Overlay, RigKind, SkeletonRig};
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
 use crate::io::json::{JsonNumber, JsonObject, Whole};
+
+const FORMAT: &str = "ik-arm";
+/// The version of files.
+const VERSION: u32 = 2;
+
+/// The first two fields: the name of the format and its version.
+#[derive(Deserialize)]
+pub struct Header {
+    format: String,
+    version: Whole,
+}
+
+impl Header {
+    /// Fails if this program cannot read the format or the version.
+    pub fn check(&self) -> Result<(), FieldError> {
+        if self.format != FORMAT {
+            let reason = format!("must be {FORMAT:?}, got {:?}", self.format);
+            return Err(FieldError::new(JsonPath::root().key("format"), reason));
+        }
+        let reason = match self.version.0 {
+            VERSION => return Ok(()),
+            version if version > VERSION => {
+                format!("must be {VERSION}, got {version}, which needs a newer ik-arm")
+            }
+            version => format!("must be {VERSION}, the version that is read, got {version}"),
+        };
+        Err(FieldError::new(JsonPath::root().key("version"), reason))
+    }
+}
 
 #[derive(Serialize, Deserialize)]
 pub struct DocumentFields {

@@ -47,4 +47,7 @@ mod import;
 mod names;
 
 pub use export::{GlbError, glb};
-pub use import::read;
+pub use import::{former, read};
+
+/// The key by which a file is recognized.
+pub const KEY: &str = "asset";

@@ -30,7 +30,7 @@ use crate::io::error::OpenError;
 use crate::io::json::JsonObject;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
-use crate::io::opened::Opened;
+use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::SkinFile;
@@ -38,8 +38,12 @@ use animator::AnimatedSkeleton;
 use bones::SkeletonWithOrder;
 use file::{Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 
-/// Reads the skeleton called `name`, or with `None` the first skeleton.
-pub fn read(source: &Source, name: Option<&str>) -> Result<Opened, OpenError> {
+/// The key of a scene, by which a file is recognized.
+pub const KEY: &str = "scene";
+
+/// Reads the skeleton that the options choose, or else the first one.
+pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
+    let name = options.skeleton.as_deref();
     let JsonObject(file) = source.parse::<JsonObject<Js3dFile>>(|_| {})?;
     let JsonObject(scene) = &file.scene;
     let names: Vec<String> = scene.skeletons().map(|(name, _)| name.to_owned()).collect();

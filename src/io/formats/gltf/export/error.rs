@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use crate::io::progress::Cancelled;
+use crate::io::exported::Cancelled;
 
 /// The reason why a document cannot be exported to glTF.
 #[derive(Debug, Error)]

@@ -15,7 +15,7 @@ mod track_recorder;
 mod writer;
 
 use crate::document::{Document, Timeline};
-use crate::io::progress::Progress;
+use crate::io::exported::Progress;
 pub use error::GlbError;
 use kept_tracks::KeptTracks;
 use limbs::LimbMesh;

@@ -9,7 +9,7 @@ use super::nodes::JointNodes;
 use super::rig::GltfRig;
 use super::track_recorder::{Moment, TrackRecorder};
 use crate::document::Timeline;
-use crate::io::progress::Progress;
+use crate::io::exported::Progress;
 
 /// The animation: the transforms of all nodes that leave the bind pose.
 pub struct JointAnimation {

@@ -6,10 +6,10 @@ use super::nodes::NodeTree;
 use super::skins::SkinJoints;
 use super::tracks::{self, NodeTracks};
 use crate::io::error::OpenError;
-use crate::io::file_animation::FileAnimation;
 use crate::io::formats::gltf::names::UniqueNames;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::opened::FileAnimation;
 use crate::io::source::Source;
 
 /// What an animation moves.

@@ -24,13 +24,13 @@ use std::collections::BTreeSet;
 use crate::document::Timeline;
 use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
-use crate::io::file_animation::FileAnimation;
 use crate::io::foreign::ForeignFormat;
 use crate::io::formats::gltf::extras::ReadExtras;
 use crate::io::json::JsonObject;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
-use crate::io::open_options::OpenOptions;
+use crate::io::opened::FileAnimation;
+use crate::io::opened::OpenOptions;
 use crate::io::opened::Opened;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, JointId};
@@ -52,11 +52,7 @@ const MOST_SAMPLES: usize = 4_000_000;
 /// Reads a skeleton and one of the animations: the skin's joints, or without a skin the nodes that
 /// the animations move.
 pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
-    let parsed = source.parse::<JsonObject<GltfFile<'_>>>(|_| {});
-    let JsonObject(file) = parsed.map_err(|error| gltf_1(source).unwrap_or(error))?;
-    if file.asset.0.is_version_1() {
-        return Err(is_gltf_1(source));
-    }
+    let JsonObject(file) = source.parse::<JsonObject<GltfFile<'_>>>(|_| {})?;
     check(&file).map_err(|error| source.error(&error))?;
     let nodes = NodeTree::new(&file).map_err(|error| source.error(&error))?;
     let scans = animations::scan(source, &file, &nodes);
@@ -104,15 +100,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     })
 }
 
-/// The error for a file of glTF 1, whose lists are objects; `None` for another version.
-fn gltf_1(source: &Source) -> Option<OpenError> {
+/// The first version of glTF, in which lists are objects, if the file has it.
+pub fn former(source: &Source) -> Option<ForeignFormat> {
     let file = source.parse::<VersionedFile>(|_| {}).ok()?;
-    file.asset.is_version_1().then(|| is_gltf_1(source))
-}
-
-fn is_gltf_1(source: &Source) -> OpenError {
-    let ForeignFormat { what, advice } = ForeignFormat::GLTF_1;
-    OpenError::Foreign { file: source.name().to_owned(), what, advice }
+    file.asset.is_version_1().then_some(ForeignFormat::GLTF_1)
 }
 
 fn check(file: &GltfFile<'_>) -> Result<(), FieldError> {
