@@ -124,9 +124,12 @@ impl ConvertArgs {
         };
         let write = |progress: &_| export(&document, &self.output, &options, progress);
         let exported = run_with_bar(&limit, write)?;
-        named(&self.file, exported).map_err(|(file, error)| match error.is_about_output() {
-            true => ConvertError::Output(error),
-            false => ConvertError::Input { file, error },
+        named(&self.file, exported).map_err(|(file, error)| {
+            if error.is_about_output() {
+                ConvertError::Output(error)
+            } else {
+                ConvertError::Input { file, error }
+            }
         })
     }
 

@@ -54,7 +54,8 @@ pub struct ExportArgs {
     /// Colours of a picture [default: dark]
     #[arg(long, value_enum)]
     theme: Option<ThemeName>,
-    /// Camera that frames the whole motion from this side, for pictures [default: the file's camera]
+    /// Camera that frames the whole motion from this side, for pictures [default: the file's
+    /// camera]
     #[arg(long, value_enum)]
     view: Option<ViewName>,
     /// Time of a single picture or mesh in seconds [default: the timeline's start]
@@ -122,9 +123,12 @@ impl ExportArgs {
             document.camera = view.framing(&document, self.size());
         }
         let notes = run_with_bar(&limit, |progress| self.write(&document, progress))?;
-        named(&self.file, notes).map_err(|(file, error)| match error.is_about_output() {
-            true => ExportCommandError::Output(error),
-            false => ExportCommandError::Input { file, error },
+        named(&self.file, notes).map_err(|(file, error)| {
+            if error.is_about_output() {
+                ExportCommandError::Output(error)
+            } else {
+                ExportCommandError::Input { file, error }
+            }
         })
     }
 

@@ -38,7 +38,8 @@ pub enum ExportError {
 }
 
 impl ExportError {
-    /// Whether the error is about the file to write, or about no file, rather than about the document.
+    /// Returns whether the error is about the file to write, or about no file, rather than about
+    /// the document.
     pub fn is_about_output(&self) -> bool {
         match self {
             Self::Cancelled(_) | Self::Format(_) | Self::Gpu(_) | Self::Write(_) => true,

@@ -108,12 +108,12 @@ impl ExportFormat {
         sequence.or(first).ok_or_else(|| FormatError { path: path.display().to_string() })
     }
 
-    /// Whether each frame has a file of its own.
+    /// Returns whether each frame has a file of its own.
     pub fn is_sequence(&self) -> bool {
         matches!(self.content, ExportContent::PictureSequence)
     }
 
-    /// Whether an option applies.
+    /// Returns whether an option applies.
     pub fn takes(&self, option: ExportOption) -> bool {
         self.kind.takes(option)
     }

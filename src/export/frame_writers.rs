@@ -15,7 +15,8 @@ pub struct FrameWriters<'scope> {
 }
 
 impl<'scope> FrameWriters<'scope> {
-    /// Starts the threads. Each calls `write` with the next frame until there are no more, or until it fails.
+    /// Starts the threads. Each calls `write` with the next frame until there are no more, or until
+    /// it fails.
     pub fn new<'env>(
         scope: &'scope Scope<'scope, 'env>,
         write: &'env (impl Fn(Frame) -> Result<(), ExportError> + Sync),
@@ -37,8 +38,8 @@ impl<'scope> FrameWriters<'scope> {
         Self { frames, writers: (0..cores).map(|_| work()).collect() }
     }
 
-    /// Hands a frame over; waits while too many wait. Returns whether it will be written: not if another one
-    /// has failed.
+    /// Hands a frame over; waits while too many wait. Returns whether it will be written: not if
+    /// another one has failed.
     pub fn add(&self, frame: Frame) -> bool {
         self.frames.send(frame).is_ok()
     }

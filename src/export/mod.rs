@@ -21,8 +21,8 @@ use crate::io::{self, Exported, Progress};
 use format::ExportContent;
 use numbered_name::NumberedName;
 
-/// Writes a document to a file whose extension selects the [`ExportFormat`], and returns notes on what
-/// the format cannot hold.
+/// Writes a document to a file whose extension selects the [`ExportFormat`], and returns notes on
+/// what the format cannot hold.
 ///
 /// # Errors
 ///

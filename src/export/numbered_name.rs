@@ -25,7 +25,7 @@ impl NumberedName {
         })
     }
 
-    /// Whether `name` is the name of a file of the sequence, with a number in place of the
+    /// Returns whether `name` is the name of a file of the sequence, with a number in place of the
     /// placeholder.
     pub fn contains(&self, name: &OsStr) -> bool {
         let digits = name.to_str().and_then(|name| {

@@ -9,7 +9,8 @@ use crate::kinematics::skeleton::Joint;
 pub struct Bone {
     /// Vector from the joint to the bone's tip.
     pub axis: Vec3,
-    /// The child at the tip, which continues the chain; `None` for a leaf, and where no child continues it.
+    /// The child at the tip, which continues the chain; `None` for a leaf, and where no child
+    /// continues it.
     pub child: Option<usize>,
 }
 
@@ -59,8 +60,8 @@ impl<'a> JointTree<'a> {
         (0..self.joints.len()).map(bone).collect()
     }
 
-    /// Takes the bones from roots that are no part of the body but the origin that it stands on: their one
-    /// child moves, or is where the body branches.
+    /// Takes the bones from roots that are no part of the body but the origin that it stands on:
+    /// their one child moves, or is where the body branches.
     pub fn free_origins(&self, bones: &mut [Bone], moves: impl Fn(usize) -> bool) {
         for (index, joint) in self.joints.iter().enumerate() {
             let is_origin = match self.children[index][..] {
@@ -75,8 +76,9 @@ impl<'a> JointTree<'a> {
         }
     }
 
-    /// Gives bones to those leaves of which the file tells no end: straight on from their parents, as long
-    /// as the mean of their siblings' bones, otherwise half as long as the way from their parents.
+    /// Gives bones to those leaves of which the file tells no end: straight on from their parents,
+    /// as long as the mean of their siblings' bones, otherwise half as long as the way from their
+    /// parents.
     pub fn guess_leaves(&self, bones: &mut [Bone], has_end: impl Fn(usize) -> bool) {
         let known = bones.to_vec();
         for (index, joint) in self.joints.iter().enumerate() {
@@ -97,8 +99,8 @@ impl<'a> JointTree<'a> {
     }
 
     /// The child that continues the chain: the one that bends least from the direction in which the
-    /// chain arrives, otherwise the one with the most joints below it. `None` without children away from
-    /// the joint, and where several have as many below them.
+    /// chain arrives, otherwise the one with the most joints below it. `None` without children away
+    /// from the joint, and where several have as many below them.
     fn next(&self, joint: usize) -> Option<usize> {
         let away = |child: &usize| self.joints[*child].offset != Vec3::ZERO;
         let children: Vec<usize> = self.children[joint].iter().copied().filter(away).collect();

@@ -68,8 +68,8 @@ pub enum OpenError {
 impl OpenError {
     /// Maximum size of a file that is read, in bytes, except for glTF.
     pub const MAX_BYTES: u64 = 64 << 20;
-    /// Maximum size in bytes of a glTF file, and of its buffers together. Most of it is textures; the numbers
-    /// of keys, vertices and pixels that are read have limits of their own.
+    /// Maximum size in bytes of a glTF file, and of its buffers together. Most of it is textures;
+    /// the numbers of keys, vertices and pixels that are read have limits of their own.
     pub const MAX_GLTF_BYTES: u64 = 1 << 30;
 }
 
@@ -164,6 +164,13 @@ pub(crate) fn system_reason(error: &io::Error) -> String {
     let text = error.to_string();
     let number = error.raw_os_error().map(|number| format!(" (os error {number})"));
     number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
+}
+
+/// The text of a parser's error without the position at its end.
+pub(crate) fn without_position(error: &serde_json::Error) -> String {
+    let position = format!(" at line {} column {}", error.line(), error.column());
+    let text = error.to_string();
+    text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
 /// Replaces the middle of a long message by `…`.

@@ -30,7 +30,7 @@ impl ExportKind {
         self.ending.rsplit('.').next().unwrap_or_default()
     }
 
-    /// Whether an option applies.
+    /// Returns whether an option applies.
     pub fn takes(&self, option: ExportOption) -> bool {
         self.options.contains(&option)
     }
@@ -66,7 +66,7 @@ pub struct ExportOptions {
     pub time: Option<f64>,
     /// Unit of lengths in a BVH file.
     pub unit: BvhUnit,
-    /// How the joints of an OBJ file's mesh are blended; `None` for the document's way.
+    /// Blending of the joints of an OBJ file's mesh; `None` for the document's.
     pub skinning: Option<Skinning>,
 }
 
@@ -156,7 +156,7 @@ impl Progress {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the job is to stop.
+    /// Returns whether the job is to stop.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

@@ -34,8 +34,8 @@ impl FileBatch {
         Ok(Self { folder, temporary, names: Mutex::default() })
     }
 
-    /// Adds a file. Its name must differ from the names of the other files in the batch. Several threads can
-    /// add files at once.
+    /// Adds a file. Its name must differ from the names of the other files in the batch. Several
+    /// threads can add files at once.
     ///
     /// # Errors
     ///

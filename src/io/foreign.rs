@@ -3,9 +3,9 @@
 /// A format that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForeignFormat {
-    /// What a file of this format is, like `an FBX file`.
+    /// Description of a file of this format, like `an FBX file`.
     pub what: &'static str,
-    /// What usually turns it into a file that can be read.
+    /// Program that usually turns it into a file that can be read.
     pub advice: &'static str,
 }
 

@@ -24,7 +24,8 @@ pub fn split(mut bytes: Vec<u8>) -> Result<Chunks, String> {
     Ok(Chunks { json, binary: bytes })
 }
 
-/// Where the contents of the JSON chunk and of the binary chunk are; the second is empty if there is none.
+/// Where the contents of the JSON chunk and of the binary chunk are; the second is empty if there
+/// is none.
 fn parts(bytes: &[u8]) -> Result<(Range<usize>, Range<usize>), String> {
     let short_header = || format!("header must have 12 bytes, got {}", bytes.len());
     let version = number(bytes, 4).ok_or_else(short_header)?;

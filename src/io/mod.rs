@@ -10,27 +10,23 @@
 //! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]. No
 //! other code writes documents or exports.
 
-mod attach_skin;
-mod base64;
 mod bones;
 pub(crate) mod error;
 mod examples;
 mod exported;
 mod file_batch;
-mod file_stamp;
 mod foreign;
 mod formats;
 mod frame_rate;
 mod frames;
 mod glb_chunks;
 mod json;
-mod json_style;
-mod line;
-mod little_endian;
 mod open;
 mod opened;
+mod packed;
 mod regular_file;
 mod skin_file;
+mod solve_line;
 mod source;
 mod temporary_file;
 mod texture;
@@ -43,7 +39,6 @@ pub use examples::{Example, Group, new_document};
 pub use exported::{BvhUnit, Cancelled, ExportKind, ExportOption, ExportOptions};
 pub use exported::{Exported, MotionError, Progress};
 pub use file_batch::FileBatch;
-pub use file_stamp::FileStamp;
 pub use formats::bvh::to_bvh;
 pub use formats::csv::to_csv;
 pub use formats::document::{save, to_json};
@@ -53,11 +48,12 @@ pub use formats::{ContentError, FileFormat, WriteContent, Writer};
 #[cfg(feature = "app")]
 pub(crate) use formats::{dotted, enumerated};
 pub use frames::ExportFrames;
-pub use line::{Answer, LineError, PreviousLine, solve_line};
 pub use open::{open, parse, read};
 pub use opened::{FileAnimation, OpenOptions, Opened, Upwards};
+pub use regular_file::FileStamp;
 #[cfg(feature = "app")]
 pub(crate) use regular_file::read_text;
 pub use skin_file::relocated_skin;
+pub use solve_line::{Answer, LineError, PreviousLine, solve_line};
 pub use texture::{texture_pixels, undrawn_textures};
 pub use write::{write, write_with};

@@ -9,8 +9,8 @@ use super::source::Source;
 use crate::document::RigKind;
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
-/// detected by the content. `options` choose one of several skeletons and animations, and tell which axis
-/// points up.
+/// detected by the content. `options` choose one of several skeletons and animations, and tell
+/// which axis points up.
 ///
 /// # Errors
 ///

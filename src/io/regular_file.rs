@@ -1,9 +1,10 @@
 use std::fs::{self, FileType};
 use std::io::{self, Read as _, Take};
 use std::path::Path;
+use std::time::SystemTime;
 
-/// Opens a file for reading, up to its present length. Reading a pipe or a device may never end, and
-/// neither may reading a file of the system that has no length, like `/proc/kmsg`.
+/// Opens a file for reading, up to its present length. Reading a pipe or a device may never end,
+/// and neither may reading a file of the system that has no length, like `/proc/kmsg`.
 ///
 /// # Errors
 ///
@@ -39,7 +40,7 @@ fn check(kind: FileType) -> io::Result<()> {
     }
 }
 
-/// What is not a regular file; `None` for one.
+/// Name of a kind of file that is not regular; `None` for a regular file.
 fn kind_name(kind: FileType) -> Option<&'static str> {
     if kind.is_file() {
         return None;
@@ -61,4 +62,21 @@ fn kind_name(kind: FileType) -> Option<&'static str> {
         }
     }
     Some("something else")
+}
+
+/// The size of a file and the time of its last change, by which a change of its content by another
+/// program is recognized.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileStamp {
+    length: u64,
+    /// `None` if the system does not know it.
+    modified: Option<SystemTime>,
+}
+
+impl FileStamp {
+    /// The stamp of a file as it is now; `None` if there is no such file.
+    pub fn of(path: &Path) -> Option<Self> {
+        let file = fs::metadata(path).ok()?;
+        Some(Self { length: file.len(), modified: file.modified().ok() })
+    }
 }

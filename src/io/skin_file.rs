@@ -13,12 +13,13 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinSource};
 
-/// Takes the mesh of a skin from the file at `path` as it is now: from the skeleton of the same name, or
-/// from the file's only one.
+/// Takes the mesh of a skin from the file at `path` as it is now: from the skeleton of the same
+/// name, or from the file's only one.
 ///
 /// # Errors
 ///
-/// [`SkinFileError`] if the file cannot be read, has no such mesh, or one for another number of joints.
+/// [`SkinFileError`] if the file cannot be read, has no such mesh, or one for another number of
+/// joints.
 pub fn relocated_skin(
     path: &Path,
     skeleton_name: &str,
@@ -66,8 +67,9 @@ fn read(
     }))
 }
 
-/// Reads the file that the skin of a document refers to, from the folder of the document if its path is
-/// relative. Warns if that is impossible or the file has changed; the skin then has no mesh.
+/// Reads the file that the skin of a document refers to, from the folder of the document if its
+/// path is relative. Warns if that is impossible or the file has changed; the skin then has no
+/// mesh.
 pub fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
     let mut warnings = FieldWarnings::default();
     let rig = &mut document.skeleton_rig;

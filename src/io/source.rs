@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::error::{OpenError, Remark, shortened};
+use super::error::{OpenError, Remark, shortened, without_position};
 use super::foreign::ForeignFormat;
 use super::glb_chunks::{self, Chunks};
 use super::json::{FieldError, FieldWarnings};
@@ -110,8 +110,8 @@ impl Source {
         self.path.as_deref()
     }
 
-    /// The folder of the file, in which other files that it names are looked up; `None` if the file was not
-    /// opened by its path.
+    /// The folder of the file, in which other files that it names are looked up; `None` if the file
+    /// was not opened by its path.
     pub fn folder(&self) -> Option<&Path> {
         self.path()?.parent()
     }
@@ -192,7 +192,8 @@ impl Source {
     }
 }
 
-/// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be read.
+/// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be
+/// read.
 fn most_bytes(file: &mut File, length: u64) -> io::Result<Option<u64>> {
     if length <= OpenError::MAX_BYTES {
         return Ok(None);
@@ -200,14 +201,12 @@ fn most_bytes(file: &mut File, length: u64) -> io::Result<Option<u64>> {
     let mut head = [0; 64];
     let read = file.read(&mut head)?;
     file.rewind()?;
-    let most = match can_be_gltf(&head[..read]) {
-        true => OpenError::MAX_GLTF_BYTES,
-        false => OpenError::MAX_BYTES,
-    };
+    let most =
+        if can_be_gltf(&head[..read]) { OpenError::MAX_GLTF_BYTES } else { OpenError::MAX_BYTES };
     Ok((length > most).then_some(most))
 }
 
-/// Whether a file that begins with these bytes can be glTF, binary or text.
+/// Returns whether a file that begins with these bytes can be glTF, binary or text.
 fn can_be_gltf(bytes: &[u8]) -> bool {
     bytes.starts_with(glb_chunks::MAGIC) || bytes.trim_ascii_start().starts_with(b"{")
 }
@@ -216,8 +215,8 @@ fn too_large(name: &str, most: u64) -> OpenError {
     OpenError::TooLarge { file: name.to_owned(), most_mb: most >> 20 }
 }
 
-/// Reads all bytes of a file, if there are not too many. A file that is longer than others may be is read on
-/// only if it can be glTF.
+/// Reads all bytes of a file, if there are not too many. A file that is longer than others may be
+/// is read on only if it can be glTF.
 fn read_limited(name: &str, input: impl Read) -> Result<Vec<u8>, OpenError> {
     let read_error = |source| OpenError::Read { file: name.to_owned(), source };
     let mut bytes = Vec::new();
@@ -251,10 +250,4 @@ fn not_utf8(file: String, bytes: &[u8]) -> OpenError {
     let byte = bytes.get(valid.len()).copied().unwrap_or_default();
     let reason = format!("text must be UTF-8, got byte {byte:#04x}");
     OpenError::Content { file, remark: Remark { line, column, field: String::new(), reason } }
-}
-
-fn without_position(error: &serde_json::Error) -> String {
-    let position = format!(" at line {} column {}", error.line(), error.column());
-    let text = error.to_string();
-    text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }

@@ -6,13 +6,13 @@ use super::WriteError;
 use super::temporary_file::temporary_file;
 
 /// Writes a file whole or not at all: writes a temporary file in the same folder and renames it. An
-/// existing file keeps its owner and permissions, and a link stays a link, also one to a file that is
-/// not there yet. A pipe or a device is written to directly.
+/// existing file keeps its owner and permissions, and a link stays a link, also one to a file that
+/// is not there yet. A pipe or a device is written to directly.
 ///
 /// # Errors
 ///
-/// Fails if the folder or the file cannot be written, the file is write-protected, or its owner cannot
-/// be kept.
+/// Fails if the folder or the file cannot be written, the file is write-protected, or its owner
+/// cannot be kept.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
 }
@@ -85,8 +85,8 @@ fn persist(
     Ok(())
 }
 
-/// Fails if an existing file is write-protected. Renaming would replace it all the same, because that
-/// needs the permission of the folder only.
+/// Fails if an existing file is write-protected. Renaming would replace it all the same, because
+/// that needs the permission of the folder only.
 pub(super) fn check_writable(path: &Path, existing: &fs::Metadata) -> io::Result<()> {
     // Root may write to any file, but does not mean to overwrite one that nobody may write to.
     if existing.permissions().readonly() {

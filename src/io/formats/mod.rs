@@ -48,7 +48,7 @@ pub struct FileFormat {
 #[derive(Clone, Copy)]
 pub struct Reader {
     signature: Signature,
-    /// Whether files have meshes on their skeletons, which the skin of a document can refer to.
+    /// True if files have meshes on their skeletons, which the skin of a document can refer to.
     has_skins: bool,
     /// Maximum size of a file in bytes.
     most_bytes: u64,
@@ -218,7 +218,7 @@ impl FileFormat {
         writer: Some(Writer::Save),
     };
 
-    /// Whether files of the format are written to this path, judged by its extension.
+    /// Returns whether files of the format are written to this path, judged by its extension.
     pub fn is_written_to(&self, path: &Path) -> bool {
         let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
         self.writer.is_some() && extension.eq_ignore_ascii_case(self.extension())
@@ -229,12 +229,12 @@ impl FileFormat {
         self.extensions.first().copied().unwrap_or_default()
     }
 
-    /// Whether this is the program's own format.
+    /// Returns whether this is the program's own format.
     pub fn is_document(&self) -> bool {
         matches!(self.writer, Some(Writer::Save))
     }
 
-    /// Whether an option applies to an export.
+    /// Returns whether an option applies to an export.
     pub fn takes(&self, option: ExportOption) -> bool {
         matches!(self.writer, Some(Writer::Export(kind, _)) if kind.takes(option))
     }
@@ -261,7 +261,8 @@ impl FileFormat {
         extensions
     }
 
-    /// The files that can be read except for documents, like `Scotty3D scene (.js3d), .bvh or .glb`.
+    /// The files that can be read except for documents, like `Scotty3D scene (.js3d), .bvh or
+    /// .glb`.
     pub fn other_inputs() -> String {
         let readable = |format: &&Self| format.reader.is_some();
         let others = || Self::ALL[1..].iter().filter(readable);
@@ -277,7 +278,8 @@ impl FileFormat {
         format!("{}, {}", Self::DOCUMENT.titled(), Self::other_inputs())
     }
 
-    /// Title and extension, like `ik-arm document (.json)`, or the extension of a format without title.
+    /// Title and extension, like `ik-arm document (.json)`, or the extension of a format without
+    /// title.
     pub fn titled(&self) -> String {
         let extension = dotted(&self.extension());
         self.title.map_or_else(|| extension.clone(), |title| format!("{title} ({extension})"))
@@ -339,12 +341,12 @@ impl Reader {
         }
     }
 
-    /// Whether this is the program's own format.
+    /// Returns whether this is the program's own format.
     pub fn is_own(&self) -> bool {
         self.key().is_some_and(|(key, _)| key == document::KEY)
     }
 
-    /// Whether files have meshes on their skeletons.
+    /// Returns whether files have meshes on their skeletons.
     pub fn has_skins(&self) -> bool {
         self.has_skins
     }

@@ -25,9 +25,9 @@ pub enum ObjError {
     Time(f64),
 }
 
-/// The posed mesh of the shown skeleton at a time in seconds as Wavefront OBJ: positions, normals and
-/// triangles in world space and in units of the scene, with y up. `None` takes the document's way of blending
-/// joints.
+/// The posed mesh of the shown skeleton at a time in seconds as Wavefront OBJ: positions, normals
+/// and triangles in world space and in units of the scene, with y up. `None` takes the document's
+/// way of blending joints.
 ///
 /// # Errors
 ///

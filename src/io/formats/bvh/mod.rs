@@ -28,14 +28,12 @@
 //!
 //! # Import
 //!
-//! Channels can have any order and number. The bone of a joint goes to its End Site or to the
-//! child that continues the chain, see [`bones`](crate::io::bones), all at the first frame. Values that
+//! Channels can have any order and number. The bone of a joint goes to its End Site or to the child
+//! that continues the chain, see [`bones`](crate::io::bones), all at the first frame. Values that
 //! change over time become keys; constant values are set on the skeleton.
 
 mod hierarchy;
 mod motion;
-mod names;
-mod note;
 mod read;
 mod rig;
 mod text;

@@ -2,7 +2,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::hierarchy::{self, BvhChannel, BvhNode};
 use super::motion::{self, MotionData};
-use super::names::distinct;
+use super::rig::distinct;
 use super::text::{Scanner, TextError};
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointTree};
@@ -13,7 +13,7 @@ use crate::io::source::Source;
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 
-/// Whether a text is BVH, judged by its first word.
+/// Returns whether a text is BVH, judged by its first word.
 pub fn is_bvh(text: &str) -> bool {
     Scanner::new(text).word().is("HIERARCHY")
 }

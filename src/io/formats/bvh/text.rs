@@ -29,9 +29,10 @@ impl<'a> Scanner<'a> {
     /// Reads the next word or brace. The token is empty at the end of the text.
     pub fn word(&mut self) -> Token<'a> {
         let rest = self.skip_space();
-        let end = match rest.starts_with(is_brace) {
-            true => 1,
-            false => rest.find(|c: char| c.is_whitespace() || is_brace(c)).unwrap_or(rest.len()),
+        let end = if rest.starts_with(is_brace) {
+            1
+        } else {
+            rest.find(|c: char| c.is_whitespace() || is_brace(c)).unwrap_or(rest.len())
         };
         self.take(end)
     }

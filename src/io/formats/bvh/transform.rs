@@ -23,8 +23,8 @@ impl SkeletonTransform {
         Self { matrix, translation, orthogonal: orthogonal(matrix) }
     }
 
-    /// Whether the transform makes every rotation in the skeleton a rotation in the world, as it
-    /// does without uneven scale, shear and zero scale.
+    /// Returns whether the transform makes every rotation in the skeleton a rotation in the world,
+    /// as it does without uneven scale, shear and zero scale.
     pub fn is_even(&self) -> bool {
         self.orthogonal.is_some()
     }
@@ -68,7 +68,8 @@ impl SkeletonTransform {
 pub struct BvhNodeTransform {
     /// Rotation relative to the parent, in world axes.
     pub rotation: DMat3,
-    /// Converts a vector of the joint's space to the node's space: an offset of a child, or the bone.
+    /// Converts a vector of the joint's space to the node's space: an offset of a child, or the
+    /// bone.
     pub vectors: DMat3,
 }
 

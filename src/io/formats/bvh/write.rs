@@ -1,8 +1,8 @@
+use std::fmt;
 use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::note::BvhNote;
 use super::rig::{BvhPose, BvhRig};
 use super::transform::SkeletonTransform;
 use crate::document::{Document, RigKind, Track};
@@ -112,7 +112,7 @@ impl<'a> BvhMotion<'a> {
         Ok(vector.to_array())
     }
 
-    /// Whether a node has position channels. The first one always does.
+    /// Returns whether a node has position channels. The first one always does.
     fn has_position(&self, node: usize) -> bool {
         node == 0 || self.offsets[node]
     }
@@ -144,9 +144,10 @@ impl<'a> BvhMotion<'a> {
             line(&mut text, depth, "{");
             let offset = if parent.is_none() { DVec3::ZERO } else { pose.offsets[node] };
             line(&mut text, depth + 1, &format!("OFFSET{}", self.vector(node, offset)?));
-            let channels = match self.has_position(node) {
-                true => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
-                false => "3 Zrotation Yrotation Xrotation",
+            let channels = if self.has_position(node) {
+                "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation"
+            } else {
+                "3 Zrotation Yrotation Xrotation"
             };
             line(&mut text, depth + 1, &format!("CHANNELS {channels}"));
             if let Some(end) = pose.ends[node] {
@@ -177,7 +178,8 @@ impl<'a> BvhMotion<'a> {
         text.push('\n');
     }
 
-    /// The three numbers of a vector in units of the file, each after a space. Errors name the node.
+    /// The three numbers of a vector in units of the file, each after a space. Errors name the
+    /// node.
     fn vector(&self, node: usize, vector: DVec3) -> Result<String, MotionError> {
         let mut text = String::new();
         for number in self.in_file(node, vector)? {
@@ -228,4 +230,37 @@ fn line(text: &mut String, depth: usize, line: &str) {
     text.extend(std::iter::repeat_n('\t', depth.min(DEEPEST)));
     text.push_str(line);
     text.push('\n');
+}
+
+/// Motion that BVH cannot hold.
+pub enum BvhNote<'a> {
+    /// The skeleton's transform has uneven scale, shear or zero scale.
+    Uneven,
+    /// The bones without children with these names change their length or direction.
+    Ends(&'a [&'a str]),
+}
+
+impl fmt::Display for BvhNote<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Uneven => f.write_str(
+                "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations \
+                 only: the nearest rotations are written; the joints' positions are exact",
+            ),
+            Self::Ends(names) => {
+                /// Maximum number of names that are listed. Further bones are only counted.
+                const MOST: usize = 10;
+                let named: Vec<_> =
+                    names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
+                write!(f, "the last bone of {}", named.join(", "))?;
+                if let Some(more) = names.len().checked_sub(MOST).filter(|more| *more > 0) {
+                    write!(f, " and {more} more joints")?;
+                }
+                f.write_str(
+                    " changes in time, but BVH has constant end sites: that of the first frame is \
+                     written",
+                )
+            }
+        }
+    }
 }

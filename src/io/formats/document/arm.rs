@@ -3,8 +3,8 @@
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
+use super::check::SoftReachFields;
 use super::check::{UNIT_TOLERANCE, above_0, fraction, number, unit_vector};
-use super::soft_reach::SoftReachFields;
 use crate::document::{Arm, Cursor, HandOrientation, HandSpace, TwistReferenceKind};
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;

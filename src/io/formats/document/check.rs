@@ -1,10 +1,13 @@
-//! Range checks of numbers in files. Errors name the field, the rule and the value.
+//! Range checks of numbers in files, and the fields of soft limits. Errors name the field, the rule
+//! and the value.
+
+use core::f32::consts::PI;
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
-use crate::io::json::FieldError;
-use crate::io::json::JsonPath;
-use crate::io::json::{JsonNumber, Whole};
+use crate::io::json::{FieldError, JsonNumber, JsonPath, Whole};
+use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
 
 /// Tolerance for unit vectors in a file: the maximum difference of a length from 1, and the maximum
 /// absolute cosine of the angle between two vectors that must be perpendicular.
@@ -30,9 +33,10 @@ pub fn within(at: JsonPath, value: f32, limit: f32) -> Result<f32, FieldError> {
 }
 
 pub fn from_1_to(at: JsonPath, Whole(count): Whole, max: u32) -> Result<u32, FieldError> {
-    match (1..=max).contains(&count) {
-        true => Ok(count),
-        false => Err(FieldError::new(at, format!("must be from 1 to {max}, got {count}"))),
+    if (1..=max).contains(&count) {
+        Ok(count)
+    } else {
+        Err(FieldError::new(at, format!("must be from 1 to {max}, got {count}")))
     }
 }
 
@@ -62,8 +66,39 @@ pub fn joint(at: JsonPath, Whole(joint): Whole, joints: usize) -> Result<usize, 
 }
 
 fn checked(holds: bool, at: JsonPath, value: f32, rule: &str) -> Result<f32, FieldError> {
-    match holds {
-        true => Ok(value),
-        false => Err(FieldError::new(at, format!("must be {rule}, got {value}"))),
+    if holds { Ok(value) } else { Err(FieldError::new(at, format!("must be {rule}, got {value}"))) }
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct SoftReachFields {
+    softness: Option<JsonNumber>,
+    max_stretch: Option<JsonNumber>,
+    min_elbow_angle: Option<JsonNumber>,
+}
+
+impl SoftReachFields {
+    pub fn new(soft_reach: SoftReach) -> Self {
+        Self {
+            softness: Some(JsonNumber(soft_reach.softness())),
+            max_stretch: Some(JsonNumber(soft_reach.max_stretch())),
+            min_elbow_angle: Some(JsonNumber(soft_reach.min_elbow_angle())),
+        }
+    }
+
+    pub fn soft_reach(&self, at: &JsonPath) -> Result<SoftReach, FieldError> {
+        let default = SoftReach::default();
+        let soft_reach = SoftReach::new(
+            number(self.softness, default.softness()),
+            number(self.max_stretch, default.max_stretch()),
+            number(self.min_elbow_angle, default.min_elbow_angle()),
+        );
+        soft_reach.map_err(|error| {
+            let range = match error.field {
+                SoftReachField::MinElbowAngle => format!("from 0 to less than {PI}"),
+                _ => error.range.to_owned(),
+            };
+            let reason = format!("must be {range}, got {}", error.value);
+            FieldError::new(at.clone().key(&error.field.to_string()), reason)
+        })
     }
 }

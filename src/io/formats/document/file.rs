@@ -1,19 +1,20 @@
 //! All fields of a document's file, and conversions between these fields and a document.
 
+use core::f32::consts::FRAC_PI_2;
+
 use serde::{Deserialize, Serialize};
 
 use super::arm::ArmFields;
-use super::camera::CameraFields;
-use super::check::above_0;
+use super::check::{above_0, number, within};
 use super::follow_path::FollowPathList;
 use super::keys::{ChannelFields, TimelineFields, keys};
 use super::skeleton::SkeletonFields;
 use super::skin::SkinFields;
 use super::targets::{SolverFields, TargetFields, add_targets};
-use crate::document::{Arm, Document, Keys, Overlay, RigKind, SkeletonRig};
-use crate::io::json::JsonPath;
-use crate::io::json::{FieldError, FieldWarnings};
-use crate::io::json::{JsonNumber, JsonObject, Whole};
+use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig};
+use crate::io::json::{
+    FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPath, JsonPoint, Whole,
+};
 
 const FORMAT: &str = "ik-arm";
 /// The version of files.
@@ -70,7 +71,7 @@ pub struct DocumentFields {
 }
 
 impl DocumentFields {
-    /// Whether the file has a camera for its rig.
+    /// Returns whether the file has a camera for its rig.
     pub fn has_camera(&self) -> bool {
         self.camera.is_some()
     }
@@ -137,5 +138,38 @@ impl DocumentFields {
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document)?;
         Ok(document)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct CameraFields {
+    target: Option<JsonPoint>,
+    yaw: Option<JsonNumber>,
+    pitch: Option<JsonNumber>,
+    distance: Option<JsonNumber>,
+    orthographic: Option<bool>,
+}
+
+impl CameraFields {
+    pub fn new(camera: &Camera) -> Self {
+        Self {
+            target: Some(JsonPoint(camera.target)),
+            yaw: Some(JsonNumber(camera.yaw)),
+            pitch: Some(JsonNumber(camera.pitch)),
+            distance: Some(JsonNumber(camera.distance)),
+            orthographic: Some(camera.orthographic),
+        }
+    }
+
+    pub fn camera(&self, at: &JsonPath) -> Result<Camera, FieldError> {
+        let default = Camera::default();
+        let at = |key| at.clone().key(key);
+        Ok(Camera {
+            target: self.target.map_or(default.target, |JsonPoint(target)| target),
+            yaw: number(self.yaw, default.yaw),
+            pitch: within(at("pitch"), number(self.pitch, default.pitch), FRAC_PI_2)?,
+            distance: above_0(at("distance"), number(self.distance, default.distance))?,
+            orthographic: self.orthographic.unwrap_or(default.orthographic),
+        })
     }
 }

@@ -1,5 +1,5 @@
-//! Fields of a skin whose mesh comes from a file of another program: either the name of that file, or the
-//! mesh itself, whose lists of numbers are little-endian bytes in base64.
+//! Fields of a skin whose mesh comes from a file of another program: either the name of that file,
+//! or the mesh itself, whose lists of numbers are little-endian bytes in base64.
 
 use std::path::PathBuf;
 
@@ -7,11 +7,10 @@ use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::check::{fraction, joint};
-use crate::io::base64;
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
 use crate::io::json::{JsonNumbers, JsonObject, Whole};
-use crate::io::little_endian;
+use crate::io::packed;
 use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -69,11 +68,11 @@ impl Bytes {
     }
 
     fn new(bytes: impl IntoIterator<Item = u8>) -> Self {
-        Self(base64::encode(&bytes.into_iter().collect::<Vec<u8>>()))
+        Self(packed::encode_base64(&bytes.into_iter().collect::<Vec<u8>>()))
     }
 
     fn decoded(&self, at: &JsonPath) -> Result<Vec<u8>, FieldError> {
-        base64::decode(&self.0).map_err(|reason| FieldError::new(at.clone(), reason))
+        packed::decode_base64(&self.0).map_err(|reason| FieldError::new(at.clone(), reason))
     }
 
     /// Rows of `N` floats.
@@ -84,7 +83,7 @@ impl Bytes {
             let reason = format!("must have a multiple of {row} bytes, got {got}");
             return Err(FieldError::new(at.clone(), reason));
         }
-        Ok(little_endian::floats(&bytes).as_chunks().0.to_vec())
+        Ok(packed::floats(&bytes).as_chunks().0.to_vec())
     }
 
     fn vectors(&self, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
@@ -113,8 +112,8 @@ impl MeshSkinFields {
         }
     }
 
-    /// Converts the fields to a skin of `skeleton`. `at` is their path. The file of a skin that has one
-    /// is still to be read.
+    /// Converts the fields to a skin of `skeleton`. `at` is their path. The file of a skin that has
+    /// one is still to be read.
     pub fn skin(self, skeleton: &Skeleton, at: &JsonPath) -> Result<MeshSkin, FieldError> {
         let count = skeleton.joints().len();
         let at_joint = |index| at.clone().key("joints").index(index);
@@ -186,7 +185,10 @@ impl FileMeshFields {
                 .iter()
                 .map(|part| JsonObject(SkinPartFields::new(part, &textures)))
                 .collect(),
-            textures: textures.iter().map(|texture| Bytes(base64::encode(&texture.file))).collect(),
+            textures: textures
+                .iter()
+                .map(|texture| Bytes(packed::encode_base64(&texture.file)))
+                .collect(),
         }
     }
 
@@ -209,7 +211,7 @@ impl FileMeshFields {
                 .into_iter()
                 .map(Vec2::from_array)
                 .collect(),
-            triangles: little_endian::wholes(&self.triangles.decoded(&at("triangles"))?)
+            triangles: packed::wholes(&self.triangles.decoded(&at("triangles"))?)
                 .as_chunks()
                 .0
                 .to_vec(),

@@ -1,34 +1,32 @@
 //! The program's own format: JSON, described in docs/files.md field by field.
 //!
-//! serde parses the text to [fields](file::DocumentFields), where `None` stands for a field that the
-//! file leaves out. The fields are converted to a document: missing fields get defaults, and [ranges
-//! are checked](check). Saving converts the document to fields, and serde writes the fields as text.
+//! serde parses the text to [fields](file::DocumentFields), where `None` stands for a field that
+//! the file leaves out. The fields are converted to a document: missing fields get defaults, and
+//! [ranges are checked](check). Saving converts the document to fields, and serde writes the fields
+//! as text.
 
 mod arm;
-mod camera;
 mod check;
 mod file;
 mod follow_path;
-mod key;
 mod keys;
 mod mesh_skin;
 mod skeleton;
 mod skin;
-mod soft_reach;
 mod targets;
 
 use std::path::{Path, PathBuf};
 
 use crate::document::{Document, RigKind, Skin};
 use crate::io::error::{OpenError, SaveError};
+use crate::io::json::to_styled_json;
 use crate::io::json::{FieldWarnings, JsonObject};
-use crate::io::json_style::to_styled_json;
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::io::write::write;
 use crate::rig::{SkinFile, SkinSource};
 use file::{DocumentFields, Header};
-pub use key::KeyFields;
+pub use keys::KeyFields;
 
 /// The key by which a file is recognized.
 pub const KEY: &str = "format";
@@ -72,13 +70,13 @@ pub fn to_json(document: &Document) -> Result<String, serde_json::Error> {
     to_styled_json(&DocumentFields::new(document))
 }
 
-/// Writes a document to a file, whole or not at all. The file of its skin's mesh is named by its path from
-/// the folder of the document.
+/// Writes a document to a file, whole or not at all. The file of its skin's mesh is named by its
+/// path from the folder of the document.
 ///
 /// # Errors
 ///
-/// Fails if the folder or the file cannot be written, the document is too large to be opened again, or a
-/// number of it is not finite.
+/// Fails if the folder or the file cannot be written, the document is too large to be opened again,
+/// or a number of it is not finite.
 pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let document = with_relative_skin(document, folder);
@@ -89,8 +87,8 @@ pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
     Ok(write(path, text.as_bytes())?)
 }
 
-/// The document with the path of its skin's file relative to `folder`, if both exist and that is possible;
-/// otherwise absolute.
+/// The document with the path of its skin's file relative to `folder`, if both exist and that is
+/// possible; otherwise absolute.
 fn with_relative_skin(document: &Document, folder: &Path) -> Document {
     let mut document = document.clone();
     if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.skeleton_rig.skin {

@@ -1,12 +1,12 @@
-//! Fields of targets and of the solver in a file, and conversions between these fields and a skeleton's
-//! rig.
+//! Fields of targets and of the solver in a file, and conversions between these fields and a
+//! skeleton's rig.
 
 use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
+use super::check::SoftReachFields;
 use super::check::{above_0, fraction, from_1_to, joint, number};
-use super::soft_reach::SoftReachFields;
 use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;

@@ -1,5 +1,5 @@
-//! What this program adds to glTF files under `extras`, and reads again from its own files. Other
-//! programs ignore it.
+//! Fields under `extras` that this program adds to glTF files and reads again from its own files.
+//! Other programs ignore them. The program that has written a file is named by `asset.generator`.
 
 use glam::{DQuat, Quat, Vec3};
 use serde::de::IgnoredAny;
@@ -85,4 +85,16 @@ impl AnimationExtras {
         let range = Timeline::MIN_FRAME_RATE..=Timeline::MAX_FRAME_RATE;
         Some(self.frame_rate).filter(|rate| range.contains(rate))
     }
+}
+
+const NAME: &str = "ik-arm ";
+
+/// The name that this program writes.
+pub fn this_program() -> String {
+    format!("{NAME}{}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Returns whether this is the name that any version of this program writes.
+pub fn is_this_program(generator: &str) -> bool {
+    generator.starts_with(NAME)
 }

@@ -10,8 +10,8 @@
 //! animator.splines.*.CHANNEL.knots    [time, value, time, value, …], times in frames
 //! ```
 //!
-//! ID is the `channel_id` of the bone or handle. Scotty3D interpolates numbers by the Catmull–Rom splines of
-//! this program, angles one by one, and switches by steps.
+//! ID is the `channel_id` of the bone or handle. Scotty3D interpolates numbers by the Catmull–Rom
+//! splines of this program, angles one by one, and switches by steps.
 
 use std::collections::HashMap;
 
@@ -63,8 +63,8 @@ impl<'a> AnimatedSkeleton<'a> {
     }
 }
 
-/// Gives the document the keys of the skeleton's channels, and a timeline to their last one. Counts what is
-/// left out in a warning.
+/// Gives the document the keys of the skeleton's channels, and a timeline to their last one. Counts
+/// what is left out in a warning.
 pub fn add_keys(
     document: &mut Document,
     animator: &Js3dAnimator,

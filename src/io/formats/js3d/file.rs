@@ -73,8 +73,8 @@ enum Js3dMeshField {
     Other(Unread),
 }
 
-/// A half-edge mesh. Half-edges 2·i and 2·i + 1 are the two sides of an edge. Lists are texts of a type, a
-/// colon and base64, like `uint32:AgAAAA`.
+/// A half-edge mesh. Half-edges 2·i and 2·i + 1 are the two sides of an edge. Lists are texts of a
+/// type, a colon and base64, like `uint32:AgAAAA`.
 #[derive(Deserialize)]
 pub struct Js3dMesh {
     #[serde(rename = "FORMAT")]
@@ -103,8 +103,8 @@ pub struct Js3dMesh {
     /// For each face a half-edge around it.
     #[serde(default, rename = "face_halfedges")]
     pub faces: String,
-    /// For each face a bit, from the highest of a byte to the lowest: 1 for a hole. A bit 1 follows the last
-    /// face.
+    /// For each face a bit, from the highest of a byte to the lowest: 1 for a hole. A bit 1 follows
+    /// the last face.
     #[serde(default, rename = "face_boundaries")]
     pub boundaries: String,
 }

@@ -5,20 +5,19 @@ use std::collections::HashMap;
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::file::Js3dMesh;
-use crate::io::base64;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
-use crate::io::little_endian;
+use crate::io::packed;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::FileMesh;
 
-/// Reads a mesh in the space of its skeleton. `order` has the joint of each bone of the file, and `at` is the
-/// path of the mesh.
+/// Reads a mesh in the space of its skeleton. `order` has the joint of each bone of the file, and
+/// `at` is the path of the mesh.
 ///
-/// The weights are those of the file. If it has none, each bone weighs by the share max(0, 1 − d/r) of its
-/// radius r that is left at the distance d from it, as in Scotty3D. Vertices without weights follow the
-/// nearest bone, with a warning.
+/// The weights are those of the file. If it has none, each bone weighs by the share max(0, 1 − d/r)
+/// of its radius r that is left at the distance d from it, as in Scotty3D. Vertices without weights
+/// follow the nearest bone, with a warning.
 pub fn read(
     mesh: &Js3dMesh,
     skeleton: &Skeleton,
@@ -51,9 +50,10 @@ pub fn read(
             };
             let has_weights = weights.iter().any(|(_, weight)| *weight > 0.0);
             loose += usize::from(!has_weights);
-            match has_weights {
-                true => VertexWeights::heaviest(weights).0,
-                false => VertexWeights::rigid(by_distance.nearest(*position)),
+            if has_weights {
+                VertexWeights::heaviest(weights).0
+            } else {
+                VertexWeights::rigid(by_distance.nearest(*position))
             }
         })
         .collect();
@@ -125,8 +125,8 @@ impl HalfEdges {
         })
     }
 
-    /// The half-edges around the face with the half-edge `start`; none if they do not lead back to it, or
-    /// another face has one of them. `is_used` marks those of the faces so far.
+    /// The half-edges around the face with the half-edge `start`; none if they do not lead back to
+    /// it, or another face has one of them. `is_used` marks those of the faces so far.
     fn around(&self, start: usize, is_used: &mut [bool]) -> Vec<usize> {
         let mut edges = Vec::new();
         let mut edge = start;
@@ -138,7 +138,8 @@ impl HalfEdges {
         if edge == start { edges } else { Vec::new() }
     }
 
-    /// Triangles with a vertex for each different corner, and for each of these the vertex of the file.
+    /// Triangles with a vertex for each different corner, and for each of these the vertex of the
+    /// file.
     fn mesh(&self, positions: &[Vec3]) -> (TriangleMesh, Vec<usize>) {
         let mut mesh = TriangleMesh::default();
         let mut of_vertex = Vec::new();
@@ -177,8 +178,8 @@ impl HalfEdges {
     }
 }
 
-/// For each half-edge the vertex from which it goes. From a half-edge, the next one after its other side goes
-/// from the same vertex.
+/// For each half-edge the vertex from which it goes. From a half-edge, the next one after its other
+/// side goes from the same vertex.
 fn origins(nexts: &[usize], starts: &[usize]) -> Vec<Option<usize>> {
     let mut origins = vec![None; nexts.len()];
     for (vertex, start) in starts.iter().enumerate() {
@@ -201,7 +202,8 @@ fn newell(corners: impl Iterator<Item = Vec3> + Clone) -> Vec3 {
 /// The joints that a vertex follows, with their weights.
 type BoneWeights = Vec<(JointId, f32)>;
 
-/// The weights of the file by vertex, each with the joint of its bone; `None` if it has none at all.
+/// The weights of the file by vertex, each with the joint of its bone; `None` if it has none at
+/// all.
 fn listed_weights(
     mesh: &Js3dMesh,
     vertices: usize,
@@ -277,7 +279,7 @@ fn bytes(text: &str, kind: &str, at: &JsonPath) -> Result<Vec<u8>, FieldError> {
         return Ok(Vec::new());
     }
     match text.split_once(':') {
-        Some((found, data)) if found == kind => base64::decode(data).map_err(error),
+        Some((found, data)) if found == kind => packed::decode_base64(data).map_err(error),
         _ => Err(error(format!("must begin with \"{kind}:\""))),
     }
 }
@@ -288,7 +290,7 @@ fn rows<const N: usize>(
     kind: &str,
     at: &JsonPath,
 ) -> Result<Vec<[f32; N]>, FieldError> {
-    Ok(little_endian::floats(&bytes(text, kind, at)?).as_chunks().0.to_vec())
+    Ok(packed::floats(&bytes(text, kind, at)?).as_chunks().0.to_vec())
 }
 
 fn points(text: &str, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
@@ -296,6 +298,6 @@ fn points(text: &str, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
 }
 
 fn wholes(text: &str, at: &JsonPath) -> Result<Vec<usize>, FieldError> {
-    let numbers = little_endian::wholes(&bytes(text, "uint32", at)?);
+    let numbers = packed::wholes(&bytes(text, "uint32", at)?);
     Ok(numbers.into_iter().map(|number| number as usize).collect())
 }

@@ -13,23 +13,22 @@
 //! Bones are numbered from 0 in the file's order. A parent may come after its children; the number
 //! 4294967295 stands for no parent. The angles of a bone are measured in the frame
 //! [`Js3dBone::frame`](file::Js3dBone::frame). The skeleton has the transform of the first instance
-//! of its mesh. The splines of the skeleton become keys, see [`animator`]. Everything else in the scene is
-//! not read, with a warning.
+//! of its mesh. The splines of the skeleton become keys, see [`animator`]. Everything else in the
+//! scene is not read, with a warning.
 
 mod animator;
 mod bones;
 mod file;
 mod mesh;
-mod transform;
 
 use glam::DAffine3;
 
 use crate::document::{Document, RigKind, SkeletonRig, Target};
-use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
 use crate::io::json::JsonObject;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::opened::attach_skin;
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
@@ -84,7 +83,8 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     })
 }
 
-/// Gives the skeleton the mesh called `name`. A mesh that cannot be read is left out, with a warning.
+/// Gives the skeleton the mesh called `name`. A mesh that cannot be read is left out, with a
+/// warning.
 fn add_skin(
     document: &mut Document,
     source: &Source,
@@ -148,7 +148,7 @@ fn rig(
     warnings: &mut FieldWarnings,
 ) -> Result<ImportedRig, FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
-    let transform = transform::of_mesh(scene, name, warnings)?;
+    let transform = bones::world_of_mesh(scene, name, warnings)?;
     let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
     skeleton.set_transform(transform.as_affine3a()).map_err(|error| {
         FieldError::new(JsonPath::root().key("scene").key("transforms"), error.to_string())
@@ -160,8 +160,9 @@ fn rig(
     Ok(ImportedRig { rig, order, handles, transform })
 }
 
-/// Converts handles to targets, each with the index of its handle. Of several handles on the same bone, the first enabled handle is
-/// used, or the first handle if none is enabled; the others are ignored, with a warning each.
+/// Converts handles to targets, each with the index of its handle. Of several handles on the same
+/// bone, the first enabled handle is used, or the first handle if none is enabled; the others are
+/// ignored, with a warning each.
 fn targets(
     at: &JsonPath,
     file: &Js3dSkeleton,

@@ -17,13 +17,13 @@ use serde_json::value::to_raw_value;
 
 use super::error::GlbError;
 use super::joint_track::JointTrack;
-use super::mesh_part::{MeshPart, RigMesh};
+use super::mesh::{MeshPart, RigMesh};
 use super::motion::JointAnimation;
 use super::nodes::JointNodes;
 use super::writer::{AccessorKind, GltfWriter, floats};
-use crate::io::formats::gltf::colour::linear;
+use crate::io::formats::gltf::conversions::linear;
+use crate::io::formats::gltf::extras;
 use crate::io::formats::gltf::extras::{AnimationExtras, NodeExtras, SamplerExtras};
-use crate::io::formats::gltf::generator;
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
 
@@ -34,7 +34,7 @@ pub fn write(
     name: Option<&str>,
 ) -> Result<Vec<u8>, GlbError> {
     let mut writer = GltfWriter::default();
-    writer.root.asset = Asset { generator: Some(generator::this_program()), ..Asset::default() };
+    writer.root.asset = Asset { generator: Some(extras::this_program()), ..Asset::default() };
     let [armature, mesh_node] = add_nodes(&mut writer, bones);
     for (node, frame) in &motion.frames {
         writer.root.nodes[*node].extras = Some(to_raw_value(&NodeExtras::new(*frame))?);
@@ -316,9 +316,10 @@ impl AnimationWriter<'_> {
                 output,
                 interpolation: Valid(track.curve),
                 extensions: None,
-                extras: match track.keys.is_empty() {
-                    true => None,
-                    false => Some(to_raw_value(&SamplerExtras::new(&track.keys))?),
+                extras: if track.keys.is_empty() {
+                    None
+                } else {
+                    Some(to_raw_value(&SamplerExtras::new(&track.keys))?)
                 },
             },
         );

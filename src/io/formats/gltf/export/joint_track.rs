@@ -36,7 +36,8 @@ pub struct JointTrack<const N: usize> {
     /// Times of the keys in the file, in seconds.
     pub times: Rc<Vec<f32>>,
     pub curve: Curve,
-    /// One value for each key; for cubic splines the arriving slope, the value and the leaving slope.
+    /// One value for each key; for cubic splines the arriving slope, the value and the leaving
+    /// slope.
     pub values: Vec<[f32; N]>,
     /// The keys whose curve a cubic spline is, as the file has them in `extras`; none for other
     /// curves.
@@ -48,7 +49,7 @@ pub struct JointTrack<const N: usize> {
 const LEAST: f64 = 1e-6;
 
 impl JointTrack<4> {
-    /// Whether the rotation ever leaves the bind pose.
+    /// Returns whether the rotation ever leaves the bind pose.
     pub fn turns(&self, bind_pose: &RigidTransform) -> bool {
         let turns = |value: &[f32; 4]| {
             let rotation = DQuat::from_array(value.map(f64::from));
@@ -68,7 +69,7 @@ impl JointTrack<4> {
 }
 
 impl JointTrack<3> {
-    /// Whether the node ever leaves the bind pose.
+    /// Returns whether the node ever leaves the bind pose.
     pub fn moves(&self, bind_pose: &RigidTransform) -> bool {
         if self.curve == Curve::CubicSpline {
             return true;

@@ -1,10 +1,10 @@
 //! Tracks of joints whose keys glTF can have as they are, or as exact as is needed.
 //!
 //! A node's frame is its joint's space turned by a constant C. Relative to its parent it turns by
-//! C_parentᵀ · R · C with the joint's rotation R, and is moved by a constant matrix times the joint's offset:
-//! a slerp or steps of R, and lines, steps and cubics of the offset, stay what they are. Curves of
-//! angles become splines of quaternions. Of curves that are cubics in the file, the keys are
-//! written, too.
+//! C_parentᵀ · R · C with the joint's rotation R, and is moved by a constant matrix times the
+//! joint's offset: a slerp or steps of R, and lines, steps and cubics of the offset, stay what they
+//! are. Curves of angles become splines of quaternions. Of curves that are cubics in the file, the
+//! keys are written, too.
 
 use ::gltf::json::animation::Interpolation as Curve;
 use std::rc::Rc;
@@ -43,7 +43,8 @@ pub struct KeptTracks {
 }
 
 impl KeptTracks {
-    /// The tracks of a skeleton that is posed by its keys alone, and not scaled unevenly or mirrored.
+    /// The tracks of a skeleton that is posed by its keys alone, and not scaled unevenly or
+    /// mirrored.
     pub fn new(document: &Document, rig: &GltfRig, timeline: Timeline) -> Self {
         let skeleton = document.skeleton();
         let is_posed_by_keys = document.rig == RigKind::Skeleton
@@ -118,7 +119,7 @@ impl KeptTracks {
     }
 }
 
-/// How a joint's angles turn its node.
+/// The rotation of a node by its joint's angles.
 fn node_rotation(rig: &GltfRig, joint: JointId, own: &Joint, transform: DMat3) -> NodeRotation {
     let world = |index: usize| DQuat::from_mat3(&rig.bind_pose[index].frame()).normalize();
     let turned = transform * transform.determinant().cbrt().recip();
@@ -153,7 +154,7 @@ fn in_metres(
     track.knots().iter().map(key).collect()
 }
 
-/// Whether a matrix turns and scales evenly, without mirroring.
+/// Returns whether a matrix turns and scales evenly, without mirroring.
 fn is_even(matrix: DMat3) -> bool {
     const ROUNDING: f64 = 1e-6;
     let scale = matrix.determinant().cbrt();
@@ -226,7 +227,7 @@ fn slopes_at(track: &Spline<Vec3>, time: f64, to_node: DMat3) -> Slopes<Vec3> {
     }
 }
 
-/// Whether the track has two keys or more, and no curve is a step.
+/// Returns whether the track has two keys or more, and no curve is a step.
 fn is_continuous(track: &Spline<Vec3>) -> bool {
     let Some((_, before)) = track.knots().split_last() else { return false };
     !before.is_empty() && before.iter().all(|knot| knot.interpolation != Interpolation::Step)
@@ -239,8 +240,9 @@ fn one_interpolation(track: &Spline<Vec3>) -> Option<Interpolation> {
     before.iter().all(|knot| knot.interpolation == first).then_some(first)
 }
 
-/// The times of the keys, with the timeline's ends, where the value is that of the nearest key. `None` if
-/// keys are outside the timeline, or so near to each other that single precision cannot tell them apart.
+/// The times of the keys, with the timeline's ends, where the value is that of the nearest key.
+/// `None` if keys are outside the timeline, or so near to each other that single precision cannot
+/// tell them apart.
 fn padded(track: &Spline<Vec3>, timeline: Timeline) -> Option<Vec<f64>> {
     let mut times: Vec<f64> = track.knots().iter().map(|knot| knot.time).collect();
     let (first, last) = (*times.first()?, *times.last()?);

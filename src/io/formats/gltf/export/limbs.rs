@@ -3,7 +3,7 @@ use core::f64::consts::{PI, TAU};
 use glam::{DMat3, DVec3};
 
 use super::error::GlbError;
-use super::mesh_part::{MeshPart, RigMesh};
+use super::mesh::{MeshPart, RigMesh};
 use super::nodes::JointNodes;
 use super::rig::GltfRig;
 
@@ -125,7 +125,7 @@ impl MeshPart {
         u32::try_from(self.positions.len()).unwrap_or_default()
     }
 
-    /// Whether the vertices of the most recently added bone are finite.
+    /// Returns whether the vertices of the most recently added bone are finite.
     fn is_finite(&self) -> bool {
         const MAX_VERTICES_OF_BONE: usize = 76;
         let last = self.positions.iter().rev().take(MAX_VERTICES_OF_BONE);

@@ -5,13 +5,11 @@ mod file;
 mod joint_track;
 mod kept_tracks;
 mod limbs;
-mod mesh_part;
+mod mesh;
 mod motion;
 mod nodes;
 mod quaternion_spline;
 mod rig;
-mod skin_mesh;
-mod track_recorder;
 mod writer;
 
 use crate::document::{Document, Timeline};
@@ -19,15 +17,16 @@ use crate::io::exported::Progress;
 pub use error::GlbError;
 use kept_tracks::KeptTracks;
 use limbs::LimbMesh;
-use mesh_part::RigMesh;
+use mesh::RigMesh;
 use motion::JointAnimation;
 use nodes::JointNodes;
 use rig::GltfRig;
 
-/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is the skin of
-/// the skeleton; without one, cones around the bones. The motion has a key at every frame. The frame
-/// rate is `frames_per_second`, or with `None` that of the timeline, clamped to the range 0.01
-/// to 1000. With `None`, tracks whose keys glTF can have are written as they are. Lengths are in metres, and no node has a scale.
+/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is
+/// the skin of the skeleton; without one, cones around the bones. The motion has a key at every
+/// frame. The frame rate is `frames_per_second`, or with `None` that of the timeline, clamped to
+/// the range 0.01 to 1000. With `None`, tracks whose keys glTF can have are written as they are.
+/// Lengths are in metres, and no node has a scale.
 ///
 /// # Errors
 ///

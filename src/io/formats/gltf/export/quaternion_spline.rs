@@ -9,6 +9,7 @@ use core::ops::{Add, Mul};
 use glam::{DQuat, DVec3, Vec3};
 
 use super::joint_track::same_side;
+use crate::io::formats::gltf::conversions::hermite;
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::spline::{Interpolation, Spline};
 
@@ -147,7 +148,7 @@ impl Turn {
         pieces
     }
 
-    /// Whether the cubics of this many pieces are as near to the curve as [`EXACT`].
+    /// Returns whether the cubics of this many pieces are as near to the curve as [`EXACT`].
     fn is_exact(&self, pieces: usize, first: DQuat) -> bool {
         const INSIDE: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
         let span = (self.end - self.start) / pieces as f64;
@@ -172,9 +173,6 @@ fn cubic<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(
     [from, leaving, to, arriving]: [T; 4],
     s: f64,
 ) -> T {
-    let (s2, s3) = (s * s, s * s * s);
-    from * (2.0 * s3 - 3.0 * s2 + 1.0)
-        + leaving * (s3 - 2.0 * s2 + s)
-        + to * (3.0 * s2 - 2.0 * s3)
-        + arriving * (s3 - s2)
+    let [of_from, of_leaving, of_to, of_arriving] = hermite(s);
+    from * of_from + leaving * of_leaving + to * of_to + arriving * of_arriving
 }

@@ -2,7 +2,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::error::GlbError;
 use crate::document::{Arm, Channel, Document, Posed, RigKind, Track};
-use crate::io::formats::gltf::frame::frame;
+use crate::io::formats::gltf::conversions::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;
@@ -14,8 +14,9 @@ use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
 pub struct GltfRig {
     track: Track,
     pub metres_per_unit: f64,
-    /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their joints.
-    /// Nodes keep these directions where bones follow connected joints: the skin follows the nodes.
+    /// The vectors from base to tip of a skeleton's bones in the bind pose, in the spaces of their
+    /// joints. Nodes keep these directions where bones follow connected joints: the skin follows
+    /// the nodes.
     axes: Vec<DVec3>,
     /// The bones, parents before their children.
     pub bones: Vec<RigBone>,
@@ -27,7 +28,7 @@ pub struct GltfRig {
 pub struct RigBone {
     pub name: String,
     pub parent: Option<usize>,
-    /// Whether the file has a node at the bone's tip, because the bone has no children or its
+    /// True if the file has a node at the bone's tip, because the bone has no children or its
     /// length changes over time.
     pub has_tip: bool,
     pub is_leaf: bool,
@@ -45,8 +46,8 @@ pub struct BonePlacement {
     pub base: DVec3,
     /// The vector from base to tip.
     pub along: DVec3,
-    /// An axis of the joint that is not along the bone, of any length: its x axis, or for a bone along that
-    /// its z axis.
+    /// An axis of the joint that is not along the bone, of any length: its x axis, or for a bone
+    /// along that its z axis.
     pub across: DVec3,
     /// The joint's y axis, of any length.
     pub y: DVec3,
@@ -54,7 +55,8 @@ pub struct BonePlacement {
 
 impl BonePlacement {
     /// Rotation of the bone's node in the world, with y along the bone, and x as near to
-    /// [`BonePlacement::across`] as possible. For a bone without length, y is along the joint's y axis.
+    /// [`BonePlacement::across`] as possible. For a bone without length, y is along the joint's y
+    /// axis.
     pub fn frame(&self) -> DMat3 {
         let has_direction = self.along.try_normalize().is_some();
         frame(if has_direction { self.along } else { self.y }, self.across)
@@ -94,7 +96,7 @@ impl GltfRig {
         })
     }
 
-    /// Whether the pose changes over time.
+    /// Returns whether the pose changes over time.
     pub fn is_moving(&self) -> bool {
         self.track.document().is_animated()
     }
@@ -208,14 +210,15 @@ fn placements(
     axes.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
 }
 
-/// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x, whose
-/// node would not turn with the joint otherwise.
+/// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x,
+/// whose node would not turn with the joint otherwise.
 fn across(axis: DVec3) -> DVec3 {
     const ALONG: f64 = 0.99;
     if axis.x.abs() > ALONG * axis.length() { DVec3::Z } else { DVec3::X }
 }
 
-/// Transforms of all joints to the world, in units of the scene, with local rotations by `rotation`.
+/// Transforms of all joints to the world, in units of the scene, with local rotations by
+/// `rotation`.
 pub fn joint_spaces(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> Vec<DAffine3> {
     let mut full: Vec<DAffine3> = Vec::with_capacity(skeleton.joints().len());
     for joint in skeleton.joints() {

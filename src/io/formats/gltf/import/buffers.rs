@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::{Component, Path};
 
 use super::file::{GltfBuffer, GltfFile, Uri, index_rule};
-use crate::io::base64;
 use crate::io::error::{OpenError, system_reason};
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
+use crate::io::packed;
 use crate::io::regular_file::open_regular;
 use crate::io::source::Source;
 
@@ -82,13 +82,13 @@ fn bytes<'a>(
     Ok(bytes)
 }
 
-/// Whether a URI names a file, rather than containing data.
+/// Returns whether a URI names a file, rather than containing data.
 pub fn is_file(uri: &str) -> bool {
     !uri.starts_with("data:")
 }
 
-/// Reads a data URI, or at most `most` bytes of a file in the folder of the glTF file. The error is the reason
-/// why that is impossible.
+/// Reads a data URI, or at most `most` bytes of a file in the folder of the glTF file. The error is
+/// the reason why that is impossible.
 pub fn read_uri(source: &Source, uri: &str, most: usize) -> Result<Vec<u8>, String> {
     match uri.strip_prefix("data:") {
         Some(data) => decode_data_uri(data),
@@ -103,7 +103,7 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     if !kind.ends_with(";base64") {
         return Err(format!("must be data:…;base64,…, got data:{kind},…"));
     }
-    base64::decode(data)
+    packed::decode_base64(data)
 }
 
 /// Reads the first `length` bytes of a file in the folder of the glTF file.

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! Slerp commutes with constant factors, and W is affine. So every key of the node becomes a key of
-//! the joint with the same interpolation. Only the quaternion splines of rotations are no splines of
-//! angles: they get keys in between, until the angles are as exact as f32.
+//! the joint with the same interpolation. Only the quaternion splines of rotations are no splines
+//! of angles: they get keys in between, until the angles are as exact as f32.
 //!
 //! Files of this program have the keys of cubic splines beside them, see
 //! [`extras`](crate::io::formats::gltf::extras). They are taken if their curve is that of the file.
@@ -21,17 +21,17 @@ use core::cell::Cell;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
-use super::clip;
+use super::animations;
 use super::file::GltfFile;
 use super::joint_tracks::JointTracks;
 use super::node_poser::JointPlacement;
 use super::nodes::{NodeTransform, NodeTree};
-use super::part::AnimatedPart;
+use super::sampler::AnimatedPart;
 use super::sampler::{self, KeySampler};
 use super::skins::SkinJoints;
 use super::tracks::NodeTracks;
 use crate::document::{Channel, Keys, Timeline};
-use crate::io::formats::gltf::frame::frame;
+use crate::io::formats::gltf::conversions::{frame, hermite};
 use crate::kinematics::skeleton::{JointId, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
@@ -51,7 +51,8 @@ pub struct ExactTracks<'a> {
     worlds: Vec<DAffine3>,
     /// For each node, whether it and all nodes above it scale evenly and constantly.
     is_even: Vec<bool>,
-    /// How many pieces of curves may still be tried. Bounds the time for curves that turn wildly.
+    /// Number of pieces of curves that may still be tried. Bounds the time for curves that turn
+    /// wildly.
     left: Cell<usize>,
 }
 
@@ -157,7 +158,7 @@ impl<'a> ExactTracks<'a> {
     /// precision.
     fn on_frames(&self, track: &Spline<Vec3>) -> Spline<Vec3> {
         let moved = |knot: &Knot<Vec3>| {
-            let time = self.timeline.map_or(knot.time, |it| clip::on_frame(knot.time, it));
+            let time = self.timeline.map_or(knot.time, |it| animations::on_frame(knot.time, it));
             Knot { time, ..*knot }
         };
         track.knots().iter().map(moved).collect()
@@ -206,7 +207,7 @@ impl<'a> ExactTracks<'a> {
     }
 }
 
-/// Whether a matrix scales evenly, without mirroring.
+/// Returns whether a matrix scales evenly, without mirroring.
 fn is_similarity(matrix: DMat3) -> bool {
     const EVEN: f64 = 1e-6;
     let square = matrix.transpose() * matrix;
@@ -315,8 +316,8 @@ impl RotationCurve<'_> {
         (near * 4.0 - here * 3.0 - far) / (2.0 * step * self.span)
     }
 
-    /// The number of equal pieces into which the curve is cut, so that a cubic through each is as exact
-    /// as needed.
+    /// The number of equal pieces into which the curve is cut, so that a cubic through each is as
+    /// exact as needed.
     fn pieces(&self, near: DVec3) -> usize {
         const MOST: usize = 256;
         let mut pieces = 1;
@@ -331,7 +332,8 @@ impl RotationCurve<'_> {
         pieces
     }
 
-    /// Whether cubics through `pieces` pieces differ from the curve by less than can be seen.
+    /// Returns whether cubics through `pieces` pieces differ from the curve by less than can be
+    /// seen.
     fn is_exact(&self, pieces: usize, mut near: DVec3) -> bool {
         /// Largest difference in radians.
         const EXACT: f64 = 3e-7;
@@ -345,11 +347,9 @@ impl RotationCurve<'_> {
             let arriving = self.slopes(end, start, to) * (width * self.span);
             near = to;
             INSIDE.into_iter().all(|s| {
-                let (s2, s3) = (s * s, s * s * s);
-                let cubic = from * (2.0 * s3 - 3.0 * s2 + 1.0)
-                    + leaving * (s3 - 2.0 * s2 + s)
-                    + to * (3.0 * s2 - 2.0 * s3)
-                    + arriving * (s3 - s2);
+                let [of_from, of_leaving, of_to, of_arriving] = hermite(s);
+                let cubic =
+                    from * of_from + leaving * of_leaving + to * of_to + arriving * of_arriving;
                 let exact = self.at(start + s * width, cubic);
                 (exact - cubic).abs().max_element() < EXACT
             })

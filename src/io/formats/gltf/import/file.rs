@@ -8,8 +8,8 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
+use crate::io::formats::gltf::extras::is_this_program;
 use crate::io::formats::gltf::extras::{AnimationExtras, NodeExtras, ReadExtras, SamplerExtras};
-use crate::io::formats::gltf::generator::is_this_program;
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
 use crate::io::json::{JsonNumbers, JsonObject, JsonPoint, Whole};
@@ -48,8 +48,8 @@ pub struct VersionedFile {
 }
 
 impl GltfFile<'_> {
-    /// Why compressed data cannot be read, and what makes them readable; `None` for a file whose data are all
-    /// there without extensions.
+    /// Why compressed data cannot be read, and what makes them readable; `None` for a file whose
+    /// data are all there without extensions.
     pub fn compression(&self) -> Option<String> {
         let name = self.required.iter().find(|name| name.ends_with("_compression"))?;
         let advice = match name.as_str() {
@@ -86,12 +86,12 @@ pub struct GltfAsset {
 }
 
 impl GltfAsset {
-    /// Whether the file is of the first version of glTF.
+    /// Returns whether the file is of the first version of glTF.
     pub fn is_version_1(&self) -> bool {
         self.version.split('.').next() == Some("1")
     }
 
-    /// Whether this program has written the file.
+    /// Returns whether this program has written the file.
     pub fn is_of_this_program(&self) -> bool {
         self.generator.as_deref().is_some_and(is_this_program)
     }

@@ -1,5 +1,13 @@
-use glam::{Mat3, Vec3};
+//! The motions of joints, and their samples at every frame.
 
+use glam::{DMat3, DVec3, Mat3, Mat3A, Vec3};
+
+use super::node_poser::{JointPlacement, NodePoser};
+use super::nodes::at_node;
+use super::tracks::NodeTracks;
+use crate::document::Timeline;
+use crate::io::json::FieldError;
+use crate::kinematics::skeleton::Joint;
 use crate::kinematics::spline::{Knot, Spline};
 
 /// The keys of a joint; a spline without knots if the value is constant.
@@ -17,18 +25,20 @@ pub struct JointTracks {
 const LEAST: f32 = 1e-6;
 
 impl JointTracks {
-    /// Whether the joint turns.
+    /// Returns whether the joint turns.
     pub fn turns(&self) -> bool {
         changes(&self.rotation, |_| 2.0 * LEAST)
     }
 
-    /// Whether the joint's offset changes. `size` is the length of the skeleton's longest offset.
+    /// Returns whether the joint's offset changes. `size` is the length of the skeleton's longest
+    /// offset.
     pub fn moves(&self, size: f32) -> bool {
         changes(&self.offset, |first| LEAST * first.length().max(1e-3 * size))
     }
 }
 
-/// Whether a value changes by more than `least` of its first key, or a slope leads away from it.
+/// Returns whether a value changes by more than `least` of its first key, or a slope leads away
+/// from it.
 fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
     let Some(first) = track.knots().first().map(|knot| knot.value) else { return false };
     let least = least(first);
@@ -37,4 +47,47 @@ fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
         track.knots().len() > 1 && slopes.into_iter().any(|slope| slope.length() > least)
     };
     track.knots().iter().any(|knot| knot.value.distance(first) > least || leads_away(knot))
+}
+
+/// Samples the motions of all joints in the first `frames` frames of `timeline`: keys at every
+/// frame, with angles unwrapped from frame to frame. Leaves the angles of the last frame in
+/// `joints`.
+pub fn sample(
+    poser: &mut NodePoser<'_>,
+    tracks: &NodeTracks<'_>,
+    timeline: Timeline,
+    frames: usize,
+    joints: &mut [Joint],
+    bind_pose: &[JointPlacement],
+) -> Result<Vec<JointTracks>, FieldError> {
+    let mut motions: Vec<JointTracks> = joints.iter().map(|_| JointTracks::default()).collect();
+    for frame in 0..frames {
+        let time = timeline.time(frame);
+        let placements = poser.at(tracks, time)?;
+        let rotations: Vec<DMat3> = placements
+            .iter()
+            .zip(bind_pose)
+            .map(|(now, bind)| now.frame * bind.frame.transpose())
+            .collect();
+        for (index, motion) in motions.iter_mut().enumerate() {
+            let joint = &mut joints[index];
+            let (parent_inverse, origin) = match joint.parent {
+                Some(parent) => {
+                    (rotations[parent.index()].transpose(), placements[parent.index()].base)
+                }
+                None => (DMat3::IDENTITY, DVec3::ZERO),
+            };
+            let offset = (parent_inverse * (placements[index].base - origin)).as_vec3();
+            if !offset.is_finite() {
+                let reason = "must be within ±3.4028235e38 m of its parent";
+                return Err(FieldError::new(at_node(poser.joints()[index]), reason));
+            }
+            // Unwrapped: the angles nearest to those of the previous frame.
+            joint.rotation =
+                joint.angles_of(Mat3A::from((parent_inverse * rotations[index]).as_mat3()));
+            motion.rotation.insert(time, joint.rotation);
+            motion.offset.insert(time, offset);
+        }
+    }
+    Ok(motions)
 }

@@ -6,7 +6,7 @@ use super::file::{
 };
 use super::rows::view_bytes;
 use crate::io::error::OpenError;
-use crate::io::formats::gltf::colour::srgb;
+use crate::io::formats::gltf::conversions::srgb;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
 use crate::io::json::{JsonNumbers, JsonObject};

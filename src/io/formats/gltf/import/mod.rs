@@ -2,18 +2,15 @@
 
 mod animations;
 mod buffers;
-mod clip;
 mod exact_tracks;
 mod file;
 mod joint_tracks;
 mod material;
 mod node_poser;
 mod nodes;
-mod part;
 mod primitive;
 mod rig;
 mod rows;
-mod sampled_tracks;
 mod sampler;
 mod skin_mesh;
 mod skins;
@@ -22,7 +19,6 @@ mod tracks;
 use std::collections::BTreeSet;
 
 use crate::document::Timeline;
-use crate::io::attach_skin::attach_skin;
 use crate::io::error::OpenError;
 use crate::io::foreign::ForeignFormat;
 use crate::io::formats::gltf::extras::ReadExtras;
@@ -32,6 +28,7 @@ use crate::io::json::{FieldError, FieldWarnings};
 use crate::io::opened::FileAnimation;
 use crate::io::opened::OpenOptions;
 use crate::io::opened::Opened;
+use crate::io::opened::attach_skin;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
@@ -226,13 +223,13 @@ impl GltfImport<'_> {
         let channels = tracks::used_channels(animation, &at, self.nodes, &poser.is_needed())?;
         let buffers = tracks::buffers(self.source, self.file, &channels)?;
         let tracks = NodeTracks::new(self.file, &buffers, &channels, warnings)?;
-        let Some((start, _)) = clip::time_range(&tracks) else {
+        let Some((start, _)) = animations::time_range(&tracks) else {
             return Ok((Vec::new(), None));
         };
         let is_own = self.file.asset.0.is_of_this_program();
         let extras = animation.extras.as_ref().and_then(ReadExtras::own).filter(|_| is_own);
         let own_rate = extras.and_then(|extras| extras.frame_rate());
-        let timeline = clip::timeline(&tracks, own_rate, &at)?;
+        let timeline = animations::timeline(&tracks, own_rate, &at)?;
         let own = is_own.then_some(self.file);
         let exact = ExactTracks::new(self.nodes, self.joints, &tracks, bind_pose, timeline, own);
         let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
@@ -248,8 +245,7 @@ impl GltfImport<'_> {
             return Err(FieldError::new(at, reason));
         }
         let frame_times = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-        let sampled =
-            sampled_tracks::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
+        let sampled = joint_tracks::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
         let motions = exact.into_iter().zip(sampled);
         let motions = motions.map(|(exact, sampled)| exact.unwrap_or(sampled)).collect();
         Ok((motions, timeline))

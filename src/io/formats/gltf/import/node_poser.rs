@@ -3,7 +3,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::nodes::{NodeTransform, NodeTree, at_node};
 use super::skins::SkinJoints;
 use super::tracks::NodeTracks;
-use crate::io::formats::gltf::frame::frame;
+use crate::io::formats::gltf::conversions::frame;
 use crate::io::json::FieldError;
 
 /// The placement of a joint in the world, in metres.

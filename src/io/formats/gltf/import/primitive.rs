@@ -24,7 +24,7 @@ pub struct PrimitiveMesh {
 /// Maximum number of sets of four joints for each vertex.
 const MOST_SETS: usize = 16;
 
-/// How corners make triangles.
+/// Rule by which corners make triangles.
 #[derive(Clone, Copy)]
 enum Mode {
     Triangles,
@@ -62,7 +62,7 @@ impl Mode {
 }
 
 impl GltfPrimitive {
-    /// Whether the primitive has triangles, rather than points or lines.
+    /// Returns whether the primitive has triangles, rather than points or lines.
     pub fn is_surface(&self) -> bool {
         Mode::of(self).is_some() && self.attributes.contains_key("POSITION")
     }
@@ -91,8 +91,8 @@ impl GltfPrimitive {
 }
 
 impl PrimitiveMesh {
-    /// Reads a primitive, with the texture coordinates `set`. `at` is its path, and `joints` the number of
-    /// joints of the skin.
+    /// Reads a primitive, with the texture coordinates `set`. `at` is its path, and `joints` the
+    /// number of joints of the skin.
     pub fn new(
         file: &GltfFile<'_>,
         buffers: &GltfBuffers<'_>,

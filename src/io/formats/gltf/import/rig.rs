@@ -50,14 +50,14 @@ pub struct ImportedRig {
 pub struct BoneEnds {
     /// For each joint the end of its bone relative to it, in its axes.
     pub of: Vec<Option<Vec3>>,
-    /// Whether leaves without an end have no bone, rather than one that the file does not tell.
+    /// True if leaves without an end have no bone, rather than one that the file does not tell.
     pub are_complete: bool,
 }
 
 impl BoneEnds {
-    /// The ends of leaves, and of joints whose end is straighter ahead than any child: a node below that is
-    /// no joint and has nothing to draw, as many programs write for the tips of fingers and heads. Files of
-    /// this program are complete.
+    /// The ends of leaves, and of joints whose end is straighter ahead than any child: a node below
+    /// that is no joint and has nothing to draw, as many programs write for the tips of fingers and
+    /// heads. Files of this program are complete.
     pub fn new(
         file: &GltfFile<'_>,
         nodes: &NodeTree,
@@ -155,8 +155,8 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     joints.iter().enumerate().map(is_tip).collect()
 }
 
-/// The bone of each joint: to its tip, to one of the `ends`, to the child along the joint's y axis (as
-/// Blender has its bones), or to the child that continues the chain.
+/// The bone of each joint: to its tip, to one of the `ends`, to the child along the joint's y axis
+/// (as Blender has its bones), or to the child that continues the chain.
 fn bones(joints: &[Joint], are_tips: &[bool], moves: &[bool], ends: &BoneEnds) -> Vec<Bone> {
     /// Cosine of the greatest angle between the y axis and a bone along it.
     const ALONG: f64 = 0.999;

@@ -175,7 +175,7 @@ impl<'a> AccessorRows<'a> {
         self.count
     }
 
-    /// Whether the numbers are floats, rather than integers.
+    /// Returns whether the numbers are floats, rather than integers.
     pub fn is_float(&self) -> bool {
         self.component == Component::F32
     }
@@ -221,8 +221,8 @@ struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// Finds `count` rows of `row` bytes that begin at byte `offset` of the view `index`. `at` is the path of
-    /// what has these rows.
+    /// Finds `count` rows of `row` bytes that begin at byte `offset` of the view `index`. `at` is
+    /// the path of what has these rows.
     fn new(
         file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,

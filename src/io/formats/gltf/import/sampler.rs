@@ -3,8 +3,8 @@ use glam::{DQuat, DVec3, DVec4};
 use super::buffers::GltfBuffers;
 use super::file::GltfFile;
 use super::nodes::unit;
-use super::part::AnimatedPart;
 use super::rows::{AccessorRows, at_accessor};
+use crate::io::formats::gltf::conversions::hermite;
 use crate::io::json::FieldError;
 
 /// The keys of one animated part of a node, with their interpolation.
@@ -91,7 +91,8 @@ impl<'a> KeySampler<'a> {
     }
 
     /// Sorts the keys by time. Of several keys at the same time, the last one counts. Returns
-    /// whether anything changed, or an error that names the accessor `input` if a time is not finite.
+    /// whether anything changed, or an error that names the accessor `input` if a time is not
+    /// finite.
     pub fn sort(&mut self, input: usize) -> Result<bool, FieldError> {
         let times = || (0..self.times.len()).map(|row| self.row_time(row));
         if let Some((key, time)) = times().enumerate().find(|(_, time)| !time.is_finite()) {
@@ -134,7 +135,8 @@ impl<'a> KeySampler<'a> {
         Ok(())
     }
 
-    /// Whether the value ever differs from that of the first key, or leaves it on a cubic spline.
+    /// Returns whether the value ever differs from that of the first key, or leaves it on a cubic
+    /// spline.
     pub fn varies(&self) -> bool {
         let width = self.width();
         let row = |row: usize| -> [f64; 4] { self.values.row(row) };
@@ -259,11 +261,11 @@ impl<'a> KeySampler<'a> {
             let value: [f64; 4] = self.row(key, which);
             DVec4::from_array(value)
         };
-        let (s2, s3) = (s * s, s * s * s);
-        row(key, VALUE) * (2.0 * s3 - 3.0 * s2 + 1.0)
-            + row(key, OUT_TANGENT) * (span * (s3 - 2.0 * s2 + s))
-            + row(key + 1, VALUE) * (3.0 * s2 - 2.0 * s3)
-            + row(key + 1, IN_TANGENT) * (span * (s3 - s2))
+        let [of_from, of_leaving, of_to, of_arriving] = hermite(s);
+        row(key, VALUE) * of_from
+            + row(key, OUT_TANGENT) * (span * of_leaving)
+            + row(key + 1, VALUE) * of_to
+            + row(key + 1, IN_TANGENT) * (span * of_arriving)
     }
 
     /// The numbers of a key. `which` selects the row of a cubic spline's key; other keys have one
@@ -279,4 +281,12 @@ impl<'a> KeySampler<'a> {
     fn width(&self) -> usize {
         if self.part == AnimatedPart::Rotation { 4 } else { 3 }
     }
+}
+
+/// The part of a node's transform that an animation channel changes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub enum AnimatedPart {
+    Translation,
+    Rotation,
+    Scale,
 }

@@ -1,10 +1,11 @@
 //! The mesh of a skin: all surfaces that follow its joints.
 //!
-//! As the file's nodes stand, the node of joint i has the transform N_i in the world, and its inverse bind matrix
-//! IBM_i maps the mesh to the node's own space; so the joint places the mesh by A_i = N_i·IBM_i. The skeleton that
-//! is read has its joint i at the same place, but not turned: X_i is the translation to N_i's origin. The inverse
-//! bind transform of the skeleton's joint is therefore B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without a skin follows
-//! the nearest joint j above it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
+//! As the file's nodes stand, the node of joint i has the transform N_i in the world, and its
+//! inverse bind matrix IBM_i maps the mesh to the node's own space; so the joint places the mesh by
+//! A_i = N_i·IBM_i. The skeleton that is read has its joint i at the same place, but not turned:
+//! X_i is the translation to N_i's origin. The inverse bind transform of the skeleton's joint is
+//! therefore B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without a skin follows the nearest joint j above
+//! it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,8 +65,8 @@ fn at_mesh(mesh: usize) -> JsonPath {
 }
 
 impl MeshImport<'_> {
-    /// Reads the mesh, with the CRC-32 of all files that it is read from; `None` if the skin has none. Warns of
-    /// what is not read.
+    /// Reads the mesh, with the CRC-32 of all files that it is read from; `None` if the skin has
+    /// none. Warns of what is not read.
     pub fn read(
         &self,
         warnings: &mut FieldWarnings,

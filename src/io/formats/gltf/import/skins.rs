@@ -22,8 +22,8 @@ pub struct SkinJoints {
 }
 
 /// Returns a unique name for each skin: its own name, otherwise the name of the first node with the
-/// skin, otherwise `skin_` and its number. A file without skins has one skeleton if nodes move, with
-/// the name of the first root of the `moving` nodes.
+/// skin, otherwise `skin_` and its number. A file without skins has one skeleton if nodes move,
+/// with the name of the first root of the `moving` nodes.
 pub fn names(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<String> {
     if file.skins.0.is_empty() {
         let roots = nodes.roots();
@@ -91,8 +91,8 @@ impl SkinJoints {
         Ok(Self::sorted(nodes, &listed, &added))
     }
 
-    /// For a file without a skin, the `moving` nodes with their ancestors up to the nearest one that
-    /// all moving nodes of a tree have in common. `None` if no node moves.
+    /// For a file without a skin, the `moving` nodes with their ancestors up to the nearest one
+    /// that all moving nodes of a tree have in common. `None` if no node moves.
     pub fn of_moving(nodes: &NodeTree, moving: &BTreeSet<usize>) -> Option<Self> {
         let mut below = vec![0_usize; nodes.parents.len()];
         for node in nodes.order.iter().rev().copied() {

@@ -1,8 +1,10 @@
+//! The pose that answers a line, and the state that it passes on to the next line.
+
 use glam::Vec3;
 use serde::Serialize;
 
 use super::error::LineError;
-use crate::kinematics::ik::IkSolution;
+use crate::kinematics::ik::{IkSolution, IkState};
 use crate::kinematics::twist::TwistReference;
 use crate::kinematics::two_bone::Reach;
 
@@ -57,4 +59,16 @@ fn in_world(joint: &'static str, root: Vec3, joint_root: Vec3) -> Result<Vec3, L
         return Err(LineError::OutOfWorld { joint, root });
     }
     Ok(joint_world)
+}
+
+/// State that a line with the transport reference passes on to the next line: its Pointer, and the
+/// frame in which its twist was measured. The Pointer is used if the hand of the next line is at
+/// the shoulder, or straight above or below the shoulder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PreviousLine(pub(super) IkState);
+
+impl PreviousLine {
+    pub(super) fn new(solved: &IkSolution) -> Self {
+        Self(solved.state())
+    }
 }

@@ -1,8 +1,14 @@
-use super::answer::Answer;
-use super::error::LineError;
-use super::previous::PreviousLine;
-use super::request::Request;
+//! The protocol of `ik-arm solve`: one line, and the pose that answers it. The fuzzer uses it
+//! without the program's windows and commands.
+
+mod answer;
+mod error;
+mod request;
+
 use crate::kinematics::twist::TwistReference;
+pub use answer::{Answer, PreviousLine};
+pub use error::LineError;
+use request::Request;
 
 /// Solves one line of `ik-arm solve`, given without its line ending. `previous` is the state after
 /// the nearest valid line before this one; it becomes the state after this line. An invalid line

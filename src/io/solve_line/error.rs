@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde_path_to_error::{Path, Segment};
 use thiserror::Error;
 
-use crate::io::error::shortened;
+use crate::io::error::{shortened, without_position};
 use crate::kinematics::two_bone::LengthError;
 
 /// The reason why a line has no pose. Messages start with the field, if it is known.
@@ -123,13 +123,6 @@ fn renamed(reason: String) -> String {
         Some((old, new)) => format!("unknown field `{old}`; it is called `{new}`"),
         None => reason,
     }
-}
-
-/// The error's text without the position at its end, because the parser numbers every line as 1.
-fn without_position(error: &serde_json::Error) -> String {
-    let position = format!(" at line {} column {}", error.line(), error.column());
-    let text = error.to_string();
-    text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
 /// The path of the invalid field with a colon and a space. Empty if the path is unknown or `reason`
