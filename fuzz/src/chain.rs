@@ -4,7 +4,7 @@ use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Vec3};
 use ik_arm::kinematics::chain_ik::{
     ChainSolver, Method, Report, Root, SolverOptions, TipTarget, jacobian,
 };
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 
 use super::bits::Bits;
 use super::opened::is_readable;
@@ -55,7 +55,11 @@ fn joint(bits: &mut Bits<'_>, index: usize, before: &[Joint]) -> Joint {
         offset: if what & 4 == 0 { on_tip.unwrap_or_default() } else { bits.vector() },
         rotation: if what & 8 == 0 { Vec3::ZERO } else { bits.vector() },
         frame: if what & 16 == 0 { Mat3::IDENTITY } else { Mat3::from_quat(bits.rotation()) },
-        limits: if what & 32 == 0 { [None; 3] } else { [(); 3].map(|()| limit(bits)) },
+        limits: if what & 32 == 0 {
+            JointLimits::NONE
+        } else {
+            JointLimits::new([(); 3].map(|()| limit(bits)))
+        },
         locked: what & 192 == 192,
         ..joint
     }
@@ -154,7 +158,7 @@ impl Case<'_> {
         for ((joint, was), is) in before.iter().zip(after.joints()) {
             let by = options.method;
             assert!(is.rotation.is_finite() && is.offset.is_finite(), "{by:?}: {is:?}");
-            assert_eq!(is.clamped(is.rotation), is.rotation, "{by:?}: {is:?}");
+            assert_eq!(is.limits.project(is.rotation), is.rotation, "{by:?}: {is:?}");
             let may_move = is_free && is.parent.is_none() && on_path.contains(&joint);
             let is_locked = was.locked || (options.root == Root::Locked && was.parent.is_none());
             let may_turn = !is_locked && on_path.contains(&joint);

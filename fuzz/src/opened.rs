@@ -106,7 +106,7 @@ fn check_poses(document: &Document) {
         }
         for joint in skeleton.joints() {
             assert!(joint.rotation.is_finite() && joint.offset.is_finite(), "{joint:?} at {time}");
-            assert_eq!(joint.clamped(joint.rotation), joint.rotation, "{joint:?} at {time}");
+            assert_eq!(joint.limits.project(joint.rotation), joint.rotation, "{joint:?} at {time}");
         }
     }
 }

@@ -24,7 +24,7 @@ impl Swing {
     /// The skeleton with the angle changed by `by`, in radians, whatever its limits are.
     pub fn posed(&self, skeleton: &Skeleton, by: f32) -> Skeleton {
         let mut posed = skeleton.clone();
-        posed.write_local(self.joint, |joint| joint.rotation[self.axis as usize] += by);
+        posed.write_local(self.joint, |joint| joint.rotation[self.axis.index()] += by);
         posed
     }
 
@@ -44,7 +44,7 @@ impl Swing {
     ///
     /// If the skeleton has no such joints.
     pub fn predicted_at(&self, skeleton: &Skeleton, by: f32) -> Vec3 {
-        let column = jacobian(skeleton, self.tip)[self.joint.index()][self.axis as usize];
+        let column = jacobian(skeleton, self.tip)[self.joint.index()][self.axis.index()];
         skeleton.tip(self.tip) + by * skeleton.transform().transform_vector3(column)
     }
 }

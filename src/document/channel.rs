@@ -469,7 +469,7 @@ fn translate(rig: &mut SkeletonRig, translation: Vec3) {
 
 fn rotate(rig: &mut SkeletonRig, joint: JointId, rotation: Vec3) {
     let Some(before) = rig.skeleton.joint(joint) else { return };
-    let rotation = before.clamped(rotation);
+    let rotation = before.limits.project(rotation);
     if !is_identical(before.rotation, rotation) {
         rig.skeleton_mut().write_local(joint, |joint| joint.rotation = rotation);
     }

@@ -61,7 +61,7 @@ impl Document {
                 if orphan.needs_offset_keys(&self.keys) {
                     key(Channel::Offset, offset);
                 }
-                after.skeleton_mut().change(joint, |joint| joint.widen_limits(*angles))?;
+                after.skeleton_mut().change(joint, |joint| joint.limits.widen(*angles))?;
             }
         }
         *self = after;

@@ -250,7 +250,7 @@ impl Session {
                 }
             }
             (Grip::Shoulder(axis), DragKind::Turn(turn)) => {
-                angles[axis] = turn.angle();
+                angles[axis.index()] = turn.angle();
                 self.set_shoulder(angles);
             }
             (Grip::Bend, DragKind::Turn(turn)) => {
@@ -278,7 +278,7 @@ impl Session {
             }
             (Grip::HandRing(axis), DragKind::Turn(turn)) => {
                 let mut angles = hand_orientation.angles;
-                angles[axis] = turn.angle();
+                angles[axis.index()] = turn.angle();
                 self.set_hand_orientation(angles);
             }
             (Grip::Orientation(joint, axis), DragKind::Turn(turn)) => {

@@ -8,6 +8,7 @@ use super::turn_drag::{GripRing, TurnDrag};
 use crate::document::{Arm, HandSpace, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
 use crate::kinematics::fk::limb_rotations;
+use crate::kinematics::skeleton::RotationAxis;
 
 /// Drags of the arm.
 impl Session {
@@ -46,8 +47,8 @@ impl Session {
         let Arm { twist, fk, hand_orientation, .. } = *self.arm();
         let start = match grip {
             Grip::Twist => twist,
-            Grip::Shoulder(axis) => fk.shoulder[axis],
-            Grip::HandRing(axis) => hand_orientation.angles[axis],
+            Grip::Shoulder(axis) => fk.shoulder[axis.index()],
+            Grip::HandRing(axis) => hand_orientation.angles[axis.index()],
             _ => fk.bend,
         };
         if let Some(ring) = self.arm_ring(grip) {
@@ -129,7 +130,7 @@ impl Session {
         Some(GripRing { centre, axis })
     }
 
-    fn hand_ring(&self, axis: usize) -> GripRing {
+    fn hand_ring(&self, axis: RotationAxis) -> GripRing {
         let (arm, pose) = (self.arm(), self.pose());
         let axis = turned_axis(arm.hand_orientation.angles, axis).as_dvec3();
         let axis = match arm.hand_orientation.space {
@@ -140,14 +141,14 @@ impl Session {
     }
 }
 
-/// The axis about which the angle x, y or z (0, 1, 2) of a ball joint of the arm turns, in the
+/// The axis about which the angle x, y or z of a ball joint of the arm turns, in the
 /// space of the angles: see [`euler`].
-fn turned_axis(angles: Vec3, axis: usize) -> Vec3 {
+fn turned_axis(angles: Vec3, axis: RotationAxis) -> Vec3 {
     let yaw = Mat3::from_rotation_y(angles.y);
     match axis {
-        1 => Vec3::Y,
-        2 => yaw.z_axis,
-        _ => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+        RotationAxis::X => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+        RotationAxis::Y => Vec3::Y,
+        RotationAxis::Z => yaw.z_axis,
     }
 }
 

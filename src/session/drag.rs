@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::arm_joint::ArmJoint;
 use super::point_drag::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn_drag::TurnDrag;
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
 
 /// A part of a gizmo that can be dragged in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,12 +20,12 @@ pub enum Grip {
     Limb,
     /// The Upper limb in FK; dragging it turns the shoulder.
     UpperLimb,
-    /// The ring of the shoulder's angle about x, y or z (0, 1, 2).
-    Shoulder(usize),
+    /// The ring of the shoulder's angle about x, y or z.
+    Shoulder(RotationAxis),
     /// The elbow's bend: its ring, or the Lower limb in FK.
     Bend,
-    /// The ring of the hand's angle about x, y or z (0, 1, 2).
-    HandRing(usize),
+    /// The ring of the hand's angle about x, y or z.
+    HandRing(RotationAxis),
     /// The target of a joint.
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
@@ -34,15 +34,15 @@ pub enum Grip {
     Head(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
-    /// The ring of a joint's angle about x, y or z (0, 1, 2).
-    Ring(JointId, usize),
-    /// The ring of the angle about x, y or z (0, 1, 2) of the orientation that the target of a
+    /// The ring of a joint's angle about x, y or z.
+    Ring(JointId, RotationAxis),
+    /// The ring of the angle about x, y or z of the orientation that the target of a
     /// joint holds.
-    Orientation(JointId, usize),
+    Orientation(JointId, RotationAxis),
 }
 
 impl Grip {
-    /// Whether the grip's axis, if it has one, is 0, 1 or 2.
+    /// Whether the axis of the grip's handle, if it has one, is 0, 1 or 2.
     pub(super) fn has_valid_axis(self) -> bool {
         match self {
             Self::Hand(handle)
@@ -52,11 +52,14 @@ impl Grip {
             | Self::LimbPole(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
-            Self::Shoulder(axis)
-            | Self::HandRing(axis)
-            | Self::Ring(_, axis)
-            | Self::Orientation(_, axis) => axis < 3,
-            Self::Bend | Self::Twist | Self::Limb | Self::UpperLimb => true,
+            Self::Shoulder(_)
+            | Self::HandRing(_)
+            | Self::Ring(..)
+            | Self::Orientation(..)
+            | Self::Bend
+            | Self::Twist
+            | Self::Limb
+            | Self::UpperLimb => true,
         }
     }
 

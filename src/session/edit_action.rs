@@ -8,7 +8,7 @@ use crate::document::{
 };
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::kinematics::diagnosis::Remedy;
-use crate::kinematics::skeleton::{JointId, Limit};
+use crate::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::spline::{Interpolation, Slopes};
 use crate::rig::TargetSpace;
@@ -110,8 +110,8 @@ pub enum EditAction {
     SetLimit {
         /// The joint.
         joint: JointId,
-        /// Axis of the angle: 0, 1 or 2 for x, y or z.
-        axis: usize,
+        /// Axis of the angle.
+        axis: RotationAxis,
         /// The limit, in radians; `None` for an unlimited angle.
         limit: Option<Limit>,
     },

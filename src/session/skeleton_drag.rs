@@ -6,7 +6,7 @@ use super::session::Session;
 use super::turn_drag::{GripRing, TurnDrag};
 use crate::document::{Channel, Overlay, PathKind, Ray, Target};
 use crate::kinematics::limb_ik::{ElbowReference, Limb};
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::rig::EvaluatedSkeleton;
 
 /// Smallest slope of the view, as the height that it loses per length, for which a head is dragged on
@@ -76,37 +76,36 @@ impl Session {
         self.begin_edit(Some(Drag::new(grip, DragKind::Point(drag))));
     }
 
-    pub(super) fn grab_ring(&mut self, joint: JointId, axis: usize, ray: Ray) {
+    pub(super) fn grab_ring(&mut self, joint: JointId, axis: RotationAxis, ray: Ray) {
         let Some(ring) = self.ring(joint, axis) else { return };
-        let start = self.skeleton()[joint].rotation[axis];
+        let start = self.skeleton()[joint].rotation[axis.index()];
         let drag = TurnDrag::new(ring, start, ray);
         self.begin_edit(Some(Drag::new(Grip::Ring(joint, axis), DragKind::Turn(drag))));
     }
 
-    pub(super) fn grab_orientation(&mut self, joint: JointId, axis: usize, ray: Ray) {
+    pub(super) fn grab_orientation(&mut self, joint: JointId, axis: RotationAxis, ray: Ray) {
         let (Some(ring), Some(angles)) =
             (self.orientation_ring(joint, axis), self.held_orientation(joint))
         else {
             return;
         };
-        let drag = TurnDrag::new(ring, angles[axis], ray);
+        let drag = TurnDrag::new(ring, angles[axis.index()], ray);
         self.begin_edit(Some(Drag::new(Grip::Orientation(joint, axis), DragKind::Turn(drag))));
     }
 
-    /// The ring, at the target of a joint and in world space, of the angle about x, y or z (0, 1,
-    /// 2) of the orientation that the target holds. `None` if it holds none, or if there is no hand
+    /// The ring, at the target of a joint and in world space, of the angle about x, y or z of the
+    /// orientation that the target holds. `None` if it holds none, or if there is no hand
     /// or foot.
-    pub fn orientation_ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
+    pub fn orientation_ring(&self, joint: JointId, axis: RotationAxis) -> Option<GripRing> {
         let angles = self.held_orientation(joint)?;
         let rig = self.skeleton_rig();
         Limb::ending_at(&rig.skeleton, joint).ok()?.hand?;
         let space = rig.targets[rig.target(joint)?].space;
         let turn = Quat::from_rotation_z(angles.z);
         let local = match axis {
-            0 => turn * (Quat::from_rotation_y(angles.y) * Vec3::X),
-            1 => turn * Vec3::Y,
-            2 => Vec3::Z,
-            _ => return None,
+            RotationAxis::X => turn * (Quat::from_rotation_y(angles.y) * Vec3::X),
+            RotationAxis::Y => turn * Vec3::Y,
+            RotationAxis::Z => Vec3::Z,
         };
         let axis = space.rotation(&self.evaluated_skeleton().solved) * local;
         Some(GripRing { centre: self.target_report(joint)?.position, axis })
@@ -119,14 +118,13 @@ impl Session {
         rig.targets[rig.target(joint)?].limb()?.orientation
     }
 
-    /// The ring, in world space, of a joint's FK angle about x, y or z (0, 1, 2). `None` if a limit
-    /// fixes the angle, if there is no such joint or axis, or if a target alone poses the joint and the
-    /// FK pose is hidden.
-    pub fn ring(&self, joint: JointId, axis: usize) -> Option<GripRing> {
+    /// The ring, in world space, of a joint's FK angle about x, y or z. `None` if a limit fixes the
+    /// angle, if there is no such joint, or if a target alone poses the joint and the FK pose is
+    /// hidden.
+    pub fn ring(&self, joint: JointId, axis: RotationAxis) -> Option<GripRing> {
         let rig = self.skeleton_rig();
         let own = rig.skeleton.joint(joint)?;
-        let limit = own.limits.get(axis)?;
-        if limit.is_some_and(|limit| limit.min == limit.max) {
+        if own.limits.is_fixed(axis) {
             return None;
         }
         let EvaluatedSkeleton { fk, solved, .. } = self.evaluated_skeleton();
@@ -202,16 +200,16 @@ impl Session {
     }
 
     /// Sets one of the angles of the orientation that the target of a joint holds.
-    pub(super) fn turn_target(&mut self, joint: JointId, axis: usize, angle: f32) {
+    pub(super) fn turn_target(&mut self, joint: JointId, axis: RotationAxis, angle: f32) {
         let Some(index) = self.skeleton_rig().target(joint) else { return };
         let mut target = self.skeleton_rig().targets[index];
         if let Some(angles) = target.limb_mut().and_then(|limb| limb.orientation.as_mut()) {
-            angles[axis] = angle;
+            angles[axis.index()] = angle;
             self.set_target(target);
         }
     }
 
-    pub(super) fn turn_joint(&mut self, joint: JointId, axis: usize, angle: f32) {
-        self.change_joint(joint, |joint| joint.rotation[axis] = angle);
+    pub(super) fn turn_joint(&mut self, joint: JointId, axis: RotationAxis, angle: f32) {
+        self.change_joint(joint, |joint| joint.rotation[axis.index()] = angle);
     }
 }

@@ -4,7 +4,9 @@ use super::body_part::BodyPart;
 use super::session::{ASPECT, Session};
 use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::chain_ik::SolverOptions;
-use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Limit, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{
+    Joint, JointId, JointRemap, Limit, RotationAxis, Skeleton, SkeletonError,
+};
 
 /// Edits of the skeleton.
 impl Session {
@@ -119,12 +121,8 @@ impl Session {
         }
     }
 
-    pub(super) fn set_limit(&mut self, joint: JointId, axis: usize, limit: Option<Limit>) {
-        if axis < 3 {
-            self.change_joint(joint, |joint| joint.limits[axis] = limit);
-        } else {
-            self.fail(format!("The axis of a joint must be 0, 1 or 2, got {axis}"));
-        }
+    pub(super) fn set_limit(&mut self, joint: JointId, axis: RotationAxis, limit: Option<Limit>) {
+        self.change_joint(joint, |joint| joint.limits.set_range(axis, limit));
     }
 
     pub(super) fn bind_pose(&mut self) {

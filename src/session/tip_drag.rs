@@ -5,7 +5,7 @@ use crate::document::{Posed, Target, Track};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 /// Maximum number of iterations per frame of a drag.
 const ITERATIONS: u32 = 64;
@@ -57,8 +57,9 @@ impl Session {
             return true;
         }
         let influences = rig.influences();
-        let is_free = |limit: &Option<Limit>| limit.is_none_or(|limit| limit.min < limit.max);
-        let can_turn = |joint: &Joint| !joint.locked && joint.limits.iter().any(is_free);
+        let can_turn = |joint: &Joint| {
+            !joint.locked && RotationAxis::ALL.into_iter().any(|axis| !joint.limits.is_fixed(axis))
+        };
         let mut above = rig.skeleton.ancestors(joint);
         above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
     }

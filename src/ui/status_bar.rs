@@ -174,7 +174,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let joints = session.skeleton().joints();
     let angle = match grip {
         Grip::Ring(joint, axis) => {
-            joints.get(joint.index()).map(|joint| joint.rotation[axis.min(2)])
+            joints.get(joint.index()).map(|joint| joint.rotation[axis.index()])
         }
         _ => None,
     };
@@ -185,7 +185,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
         | Grip::Shoulder(axis)
         | Grip::HandRing(axis)
         | Grip::Orientation(_, axis) => {
-            format!("Rotate about {}", ["x", "y", "z"][axis.min(2)])
+            format!("Rotate about {axis}")
         }
         Grip::Twist | Grip::Limb => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),

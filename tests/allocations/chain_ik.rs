@@ -21,7 +21,7 @@ fn iterations_after_the_first_allocate_nothing() {
             for joint in 1..skeleton.joints().len() {
                 let limits = [is_limited.then(|| limit(&mut random)), None, None];
                 skeleton
-                    .change(JointId::new(joint), |joint| joint.limits = limits)
+                    .change(JointId::new(joint), |joint| joint.limits = limits.into())
                     .expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &tips);

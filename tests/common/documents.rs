@@ -11,7 +11,7 @@ use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
@@ -217,10 +217,10 @@ fn skeleton(random: &mut Random) -> Skeleton {
                 1 => Mat3::from_cols(Vec3::new(1.0, -0.0, 0.0), Vec3::Y, Vec3::Z),
                 _ => Mat3::IDENTITY,
             },
-            limits: [(); 3].map(|()| {
+            limits: JointLimits::new([(); 3].map(|()| {
                 let (a, b) = (random.finite(), random.finite());
                 random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
-            }),
+            })),
             locked: random.coin(),
             connected: random.coin(),
             radius: random.finite().abs(),

@@ -10,7 +10,7 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
@@ -91,7 +91,7 @@ examples! {
     SetAxis: [EditAction::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
     SetLimit: [EditAction::SetLimit {
         joint: JointId::new(INNER),
-        axis: 1,
+        axis: RotationAxis::Y,
         limit: Some(Limit { min: -0.1, max: 0.1 }),
     }];
     SetLocked: [

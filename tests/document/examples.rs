@@ -69,7 +69,7 @@ impl Posed {
 
 fn assert_within_limits(posed: &Posed) {
     for (_, joint) in posed.skeleton.iter() {
-        let clamped = joint.clamped(joint.rotation);
+        let clamped = joint.limits.project(joint.rotation);
         assert!(clamped.distance(joint.rotation) < 1e-5, "{} at {} s", joint.name, posed.time);
     }
 }

@@ -84,7 +84,7 @@ fn angles_stay_within_the_limits_of_their_joint() {
     let limits = [Some(Limit { min: -0.5, max: 0.5 }), None, None];
     document
         .skeleton_mut()
-        .change(JointId::new(1), |joint| joint.limits = limits)
+        .change(JointId::new(1), |joint| joint.limits = limits.into())
         .expect("possible");
     document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::new(3.0, 30.0, -3.0));
     let joint = document.at(0.0).into_document().skeleton().joints()[1].clone();

@@ -9,7 +9,7 @@ use ik_arm::document::{
 };
 use ik_arm::io::{Example, FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
@@ -45,6 +45,10 @@ fn rays() -> impl Strategy<Value = Ray> {
     })
 }
 
+fn rotation_axes() -> impl Strategy<Value = RotationAxis> {
+    proptest::sample::select(&RotationAxis::ALL)
+}
+
 fn grips() -> impl Strategy<Value = Grip> {
     let handles = prop_oneof![
         Just(PointHandle::Free),
@@ -56,16 +60,16 @@ fn grips() -> impl Strategy<Value = Grip> {
         handles.clone().prop_map(Grip::Pole),
         handles.clone().prop_map(Grip::Root),
         Just(Grip::Twist),
-        (0..3_usize).prop_map(Grip::Shoulder),
+        rotation_axes().prop_map(Grip::Shoulder),
         Just(Grip::Bend),
         Just(Grip::Limb),
         Just(Grip::UpperLimb),
-        (0..3_usize).prop_map(Grip::HandRing),
-        (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Orientation(joint, axis)),
+        rotation_axes().prop_map(Grip::HandRing),
+        (joints(), rotation_axes()).prop_map(|(joint, axis)| Grip::Orientation(joint, axis)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Head(joint, handle)),
         (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
-        (joints(), 0..3_usize).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
+        (joints(), rotation_axes()).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
     ]
 }
 
@@ -85,7 +89,7 @@ fn building() -> impl Strategy<Value = Action> {
         2 => (joints(), proptest::option::of(joints()))
             .prop_map(|(joint, parent)| Action::from(EditAction::ReparentJoint { joint, parent })),
         1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(EditAction::SetAxis { joint, axis })),
-        1 => (joints(), 0..3_usize, numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
+        1 => (joints(), rotation_axes(), numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
             Action::from(EditAction::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
         }),
         1 => (joints(), any::<bool>())
@@ -246,7 +250,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
         prop_assert!(joint.rotation.is_finite() && joint.axis.is_finite());
         prop_assert!(joint.offset.is_finite(), "{} at {}", joint.name, joint.offset);
         prop_assert!(names.insert(&joint.name), "two are called {}", joint.name);
-        prop_assert_eq!(joint.clamped(joint.rotation), joint.rotation);
+        prop_assert_eq!(joint.limits.project(joint.rotation), joint.rotation);
     }
     let mut targeted = std::collections::HashSet::new();
     for target in &rig.targets {
@@ -696,9 +700,9 @@ fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) < 1e-3, "{tip}");
     assert_eq!(session.skeleton(), before.skeleton());
-    assert_eq!(session.ring(target.joint, 0), None, "its angles pose nothing");
+    assert_eq!(session.ring(target.joint, RotationAxis::X), None, "its angles pose nothing");
     session.apply(EditAction::SetTarget(Target { influence: 0.5, ..target }));
-    let ring = session.ring(target.joint, 0).expect("a movable angle");
+    let ring = session.ring(target.joint, RotationAxis::X).expect("a movable angle");
     assert_eq!(ring.centre, session.skeleton_pose().base(target.joint));
     assert_eq!(session.skeleton(), before.skeleton());
     session.apply(TransactionAction::Undo);

@@ -73,7 +73,7 @@ fn joints_after_a_limited_one_start_where_it_ends_and_point_at_the_path() {
     let lengths: Vec<f32> = snake.joints().iter().map(|joint| joint.axis.length()).collect();
     for index in (2..24).step_by(5) {
         let limits = [Some(Limit { min: -0.02, max: 0.02 }); 3];
-        snake.change(JointId::new(index), |joint| joint.limits = limits).expect("limited");
+        snake.change(JointId::new(index), |joint| joint.limits = limits.into()).expect("limited");
     }
     let (mut limited, mut free) = (0, 0);
     for step in 0..50 {
@@ -89,7 +89,7 @@ fn joints_after_a_limited_one_start_where_it_ends_and_point_at_the_path() {
             let (base, tip) = (pose.base(JointId::new(index)), pose.tip(JointId::new(index)));
             let direction = (tip - base).normalize();
             let aside = direction.cross((points[index + 1] - base).normalize()).length();
-            if joint.is_limited() && joint.rotation.abs().max_element() > 0.0199 {
+            if joint.limits.is_limited() && joint.rotation.abs().max_element() > 0.0199 {
                 limited += usize::from(aside > 1e-2);
             } else {
                 free += 1;

@@ -158,7 +158,10 @@ fn a_limited_joint_turns_within_its_limits_and_the_next_one_starts_where_it_ends
     let mut document = keyed_snake(&mut random);
     let limits = [Some(Limit { min: -0.05, max: 0.05 }); 3];
     for joint in [4, 9, 14].map(JointId::new) {
-        document.skeleton_mut().change(joint, |joint| joint.limits = limits).expect("limited");
+        document
+            .skeleton_mut()
+            .change(joint, |joint| joint.limits = limits.into())
+            .expect("limited");
     }
     let mut stopped = 0;
     for step in 0..50 {

@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3, Vec3A};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions, TipTarget, solve};
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 use ik_arm::rig::{EvaluatedSkeleton, SkeletonRig};
 use serde_json::Value;
 
@@ -23,7 +23,7 @@ fn human() -> Skeleton {
         let mut joint = Joint::new(name, parent, vector(&json["axis"]).expect("axis"));
         joint.offset = vector(&json["offset"]).unwrap_or(tip);
         joint.locked = json["locked"].as_bool().unwrap_or(false);
-        joint.limits = ["x", "y", "z"].map(|axis| limit(&json["limits"][axis]));
+        joint.limits = RotationAxis::ALL.map(|axis| limit(&json["limits"][axis.name()])).into();
         joints.push(joint);
     }
     Skeleton::from_joints(joints).expect("a tree")
@@ -51,9 +51,11 @@ fn joint(skeleton: &Skeleton, name: &str) -> JointId {
 fn pose_within_limits(random: &mut Random, skeleton: &mut Skeleton, joint: JointId) {
     for joint in skeleton.ancestors(joint).collect::<Vec<_>>() {
         if !skeleton[joint].locked {
-            let limits = skeleton[joint].limits.map(|limit| limit.expect("a limited leg"));
-            let angles =
-                limits.map(|Limit { min, max }| min + (max - min) * random.within(0.0..1.0));
+            let limits = skeleton[joint].limits;
+            let angles = RotationAxis::ALL.map(|axis| {
+                let Limit { min, max } = limits.range(axis).expect("a limited leg");
+                min + (max - min) * random.within(0.0..1.0)
+            });
             skeleton.set_rotation(joint, Vec3::from_array(angles)).expect("angles");
         }
     }
@@ -64,7 +66,7 @@ fn pose_within_limits(random: &mut Random, skeleton: &mut Skeleton, joint: Joint
 fn assert_knee_is_forward(skeleton: &Skeleton, method: Method) {
     let [thigh, shin] = ["left_thigh", "left_shin"].map(|name| joint(skeleton, name));
     for (_, joint) in skeleton.iter() {
-        assert_eq!(joint.clamped(joint.rotation), joint.rotation, "{method:?}");
+        assert_eq!(joint.limits.project(joint.rotation), joint.rotation, "{method:?}");
     }
     let Vec3 { x, y, z } = skeleton[thigh].rotation;
     let forward =
@@ -139,7 +141,9 @@ fn feet_whose_ankles_bend_too_little_are_said_to_miss_their_rotation() {
     let (mut rig, _) = squat(0.2);
     let foot = joint(&rig.skeleton, "right_foot");
     let stiff = Some(Limit { min: -0.6, max: 0.8 });
-    rig.skeleton_mut().change(foot, |foot| foot.limits[0] = stiff).expect("a joint");
+    rig.skeleton_mut()
+        .change(foot, |foot| foot.limits.set_range(RotationAxis::X, stiff))
+        .expect("a joint");
     let found = rig.diagnose(0.0);
     assert_eq!(found.len(), 1, "{found:?}");
     let sentence = rig.sentence(&found[0]);

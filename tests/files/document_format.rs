@@ -558,7 +558,7 @@ fn the_human_stands_on_the_ground_within_its_limits() {
     let human = Example::find("human").expect("there").open().expect("opens").document.skeleton_rig;
     let joints = human.skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
-    assert!(joints.iter().filter(|joint| joint.is_limited()).count() >= 12);
+    assert!(joints.iter().filter(|joint| joint.limits.is_limited()).count() >= 12);
     let heights: Vec<_> = human.skeleton.pose().points().map(|point| point.y).collect();
     let highest = heights.iter().copied().fold(f32::MIN, f32::max);
     let lowest = heights.iter().copied().fold(f32::MAX, f32::min);

@@ -5,6 +5,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::HandSpace;
+use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::session::{ArmJoint, Drag, EditAction, Grip, PoseMode, TransactionAction};
 
 use crate::bench::{Bench, bits};
@@ -207,7 +208,7 @@ fn hidden_handles_say_what_they_do() {
 fn a_click_on_the_hand_shows_rings_that_turn_it() {
     const RING: f32 = 104.0;
     for space in [HandSpace::LowerLimb, HandSpace::World] {
-        for axis in 0..3 {
+        for axis in RotationAxis::ALL {
             let mut bench = Bench::after([
                 EditAction::SetHandOrientation(Vec3::new(0.3, 0.2, -0.25)),
                 EditAction::SetHandSpace(space),
@@ -234,8 +235,8 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
             bench.move_to(to);
             let now = bench.session().arm().hand_orientation.angles;
             let old = before.hand_orientation.angles;
-            assert!((now[axis] - old[axis] - 0.3).abs() < 5e-3, "{now} was {old}");
-            for other in (0..3).filter(|other| *other != axis) {
+            assert!((now[axis.index()] - old[axis.index()] - 0.3).abs() < 5e-3, "{now} was {old}");
+            for other in (0..3).filter(|other| *other != axis.index()) {
                 assert_eq!(now[other].to_bits(), old[other].to_bits());
             }
             let turn = glam::DMat3::from_axis_angle(ring.axis.as_dvec3(), 0.3);

@@ -5,6 +5,7 @@ use egui::{PointerButton, Pos2, vec2};
 use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
+use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
     Action, EditAction, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
@@ -98,7 +99,7 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
         EditAction::SetShoulder(Vec3::ZERO),
     ]);
     bench.apply([EditAction::SetBend(0.8)]);
-    for grip in [Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
+    for grip in [Grip::Shoulder(RotationAxis::Y), Grip::Shoulder(RotationAxis::Z), Grip::Bend] {
         let ring = bench.session().arm_ring(grip).expect("a ring");
         let centre = bench.on_screen(ring.centre);
         let before = *bench.session().arm();
@@ -131,8 +132,12 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
             now.shoulder.z != was.shoulder.z,
             now.bend != was.bend,
         ];
-        let expected =
-            [false, grip == Grip::Shoulder(1), grip == Grip::Shoulder(2), grip == Grip::Bend];
+        let expected = [
+            false,
+            grip == Grip::Shoulder(RotationAxis::Y),
+            grip == Grip::Shoulder(RotationAxis::Z),
+            grip == Grip::Bend,
+        ];
         assert_eq!(changed, expected, "{grip:?}");
         bench.apply([TransactionAction::Undo]);
         assert_eq!(bench.session().arm().fk, was);

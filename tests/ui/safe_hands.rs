@@ -14,7 +14,7 @@ use ik_arm::session::{
 
 use crate::bench::Bench;
 use ik_arm::kinematics::chain_ik::Status;
-use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
@@ -231,12 +231,12 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
     ]);
     let limits = bench.session().skeleton().joints()[joint.index()].limits;
     let free: Vec<_> =
-        (0..3).filter(|axis| limits[*axis].is_none_or(|limit| limit.min < limit.max)).collect();
+        RotationAxis::ALL.into_iter().filter(|axis| !limits.is_fixed(*axis)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
-    let limit = limits[axis].expect("limited");
+    let limit = limits.range(axis).expect("limited");
     let ring =
         bench.session().ring(JointId::new(joint.index()), axis).expect("the free axis has a ring");
-    for fixed in (0..3).filter(|other| *other != axis) {
+    for fixed in RotationAxis::ALL.into_iter().filter(|other| *other != axis) {
         assert_eq!(
             bench.session().ring(JointId::new(joint.index()), fixed),
             None,
@@ -244,14 +244,14 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
         );
     }
     let grip = Grip::Ring(joint, axis);
-    let before = bench.session().skeleton().joints()[joint.index()].rotation[axis];
+    let before = bench.session().skeleton().joints()[joint.index()].rotation[axis.index()];
     let projection = bench.session().camera().projection(1.0);
     let ray = projection.ray(projection.project(ring.centre).expect("seen") + glam::Vec2::X * 0.05);
     bench.apply([TransactionAction::Grab { grip, ray, forward: projection.forward }]);
     let most = (limit.max - limit.min).to_degrees();
     bench.apply([TransactionAction::TypeOffset(format!("{}", most + 90.0))]);
     bench.apply([TransactionAction::Drag(DragInput { ray, precise: false, snap: false })]);
-    let now = bench.session().skeleton().joints()[joint.index()].rotation[axis];
+    let now = bench.session().skeleton().joints()[joint.index()].rotation[axis.index()];
     assert_eq!(now, limit.max);
     let turned = (now - before).to_degrees();
     assert!(bench.says(&format!("{turned:+.1}°, at its limit")), "{turned}");

@@ -8,7 +8,7 @@ use egui::{DroppedFile, Event, Key, Modifiers};
 use glam::Vec3;
 use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::Method;
-use ik_arm::kinematics::skeleton::{JointId, Limit};
+use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::session::{
     Action, EditAction, Effect, FileAction, PanelTab, PlaybackAction, SelectAction, SolverAction,
 };
@@ -101,7 +101,7 @@ fn focusing_a_number_field_changes_no_bit_of_its_value() {
         EditAction::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
         EditAction::SetLimit {
             joint,
-            axis: 0,
+            axis: RotationAxis::X,
             limit: Some(Limit { min: -1.234_567, max: 0.7654 }),
         },
         EditAction::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
@@ -141,7 +141,7 @@ fn a_number_can_be_typed_with_its_unit() {
     bench.click(Role::CheckBox, "Limit x");
     enter_field(&mut bench, "x maximum", "30°", Key::Enter);
     let joint = bench.session().selected().expect("one");
-    let limit = bench.session().skeleton().joints()[joint.index()].limits[0].expect("limited");
+    let limit = bench.session().skeleton()[joint].limits.range(RotationAxis::X).expect("limited");
     assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
 }
 

@@ -16,7 +16,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
-use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::skeleton::{JointId, JointLimits};
 
 /// A root with three joints in a chain, built by pressing buttons.
 fn built() -> Bench {
@@ -195,7 +195,7 @@ fn a_limit_holds_the_angle_and_can_be_set_by_its_ends() {
     bench.settle();
     assert!((rotation(&bench) - 30.0).abs() < 1e-4);
     bench.click(Role::CheckBox, "Limit z");
-    assert_eq!(bench.session().skeleton().joints()[3].limits, [None; 3]);
+    assert_eq!(bench.session().skeleton().joints()[3].limits, JointLimits::NONE);
 }
 
 #[test]

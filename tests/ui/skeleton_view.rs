@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
-use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm::session::{
     Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
     ViewAction,
@@ -65,7 +65,7 @@ fn bone_place(bench: &Bench, name: &str) -> Pos2 {
 }
 
 /// A point of a ring around the selected joint, so many radians along from where it starts.
-fn ring_place(bench: &Bench, axis: usize, radius: f32, angle: f32) -> Pos2 {
+fn ring_place(bench: &Bench, axis: RotationAxis, radius: f32, angle: f32) -> Pos2 {
     let selected = bench.session().selected().expect("one");
     let ring = bench.session().ring(selected, axis).expect("a ring");
     let (u, v) = ring.axis.any_orthonormal_pair();
@@ -188,7 +188,7 @@ fn a_root_that_is_a_point_moves_with_its_subtree() {
 
 #[test]
 fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
-    for axis in 0..3 {
+    for axis in RotationAxis::ALL {
         let mut bench = bench();
         let b = joint(&bench, "b");
         bench.apply([SelectAction::Joints(vec![b])]);
@@ -215,8 +215,11 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
             let at = ring_place(&bench, axis, 56.0, from + angle);
             bench.move_to(at);
             let rotation = bench.session().skeleton().joints()[b.index()].rotation;
-            assert!((rotation[axis] - angle).abs() < 0.02, "{rotation} for {angle} about {axis}");
-            for other in (0..3).filter(|other| *other != axis) {
+            assert!(
+                (rotation[axis.index()] - angle).abs() < 0.02,
+                "{rotation} for {angle} about {axis}"
+            );
+            for other in (0..3).filter(|other| *other != axis.index()) {
                 assert_eq!(rotation[other], 0.0);
             }
         }
@@ -234,7 +237,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     bench.apply([SelectAction::Joints(vec![b])]);
     let tips: Vec<Pos2> = ["root", "a", "b", "c", "d"].map(|name| tip_place(&bench, name)).into();
     let free = (0..64).map(|part| part as f32 * PI / 32.0).find(|angle| {
-        let at = ring_place(&bench, 1, RADIUS, *angle);
+        let at = ring_place(&bench, RotationAxis::Y, RADIUS, *angle);
         bench.move_to(at);
         bench.press(LEFT);
         let grip = bench.session().drag().map(Drag::grip);
@@ -243,15 +246,16 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
         bench.apply([SelectAction::Joints(vec![b])]);
         // So that the next press is no double click.
         bench.skip(1.0);
-        grip == Some(Grip::Ring(b, 1)) && tips.iter().all(|tip| tip.distance(at) > 24.0)
+        grip == Some(Grip::Ring(b, RotationAxis::Y))
+            && tips.iter().all(|tip| tip.distance(at) > 24.0)
     });
     let angle = free.expect("a free place of the ring");
-    let on_ring = ring_place(&bench, 1, RADIUS, angle);
+    let on_ring = ring_place(&bench, RotationAxis::Y, RADIUS, angle);
     let rect = bench.viewport();
     let projection = bench.session().camera().projection(rect.aspect_ratio());
-    let centre = bench.session().ring(b, 1).expect("a ring").centre;
+    let centre = bench.session().ring(b, RotationAxis::Y).expect("a ring").centre;
     // Outwards from the ring's curve, on screen.
-    let along = ring_place(&bench, 1, RADIUS, angle + 0.02) - on_ring;
+    let along = ring_place(&bench, RotationAxis::Y, RADIUS, angle + 0.02) - on_ring;
     let outwards = along.rot90().normalized();
     let outwards = outwards * outwards.dot(on_ring - bench.on_screen(centre)).signum();
     let at = on_ring + outwards * aside;
@@ -276,9 +280,9 @@ fn grip_at(bench: &mut Bench, at: Pos2) -> Option<Grip> {
 fn the_ring_of_the_selected_joint_wins_over_the_tip_of_another_bone_on_it() {
     let (mut bench, _, [_, on_ring]) = beside_a_ring(0.0);
     let b = joint(&bench, "b");
-    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, 1)));
+    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, RotationAxis::Y)));
     let (mut bench, _, [_, on_ring]) = beside_a_ring(6.0);
-    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, 1)));
+    assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, RotationAxis::Y)));
 }
 
 #[test]
@@ -294,7 +298,7 @@ fn digits_type_the_degrees_that_a_ring_turns() {
     let b = joint(&bench, "b");
     let forward = bench.session().camera().projection(1.0).forward;
     let ray = bench.session().camera().projection(1.0).ray(glam::Vec2::new(0.3, 0.3));
-    bench.apply([TransactionAction::Grab { grip: Grip::Ring(b, 2), ray, forward }]);
+    bench.apply([TransactionAction::Grab { grip: Grip::Ring(b, RotationAxis::Z), ray, forward }]);
     bench.apply([TransactionAction::TypeOffset("37.5".to_owned())]);
     let rotation = bench.session().skeleton().joints()[b.index()].rotation;
     assert!((rotation.z.to_degrees() - 37.5).abs() < 1e-4);

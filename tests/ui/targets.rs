@@ -8,7 +8,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Target};
 use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
     Action, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
@@ -353,7 +353,7 @@ fn held(bench: &Bench, name: &str) -> Option<Vec3> {
 
 #[test]
 fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
-    for axis in 0..3 {
+    for axis in RotationAxis::ALL {
         let mut bench = human();
         select(&mut bench, "left_foot");
         let (shin, foot) = (joint(&bench, "left_shin"), joint(&bench, "left_foot"));
@@ -368,8 +368,11 @@ fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
         bench.move_to(to);
         assert!(bench.says("Rotate about"));
         let now = held(&bench, "left_shin").expect("held");
-        assert!((now[axis] - before[axis] - 0.1).abs() < 2e-3, "{now} was {before}");
-        for other in (0..3).filter(|other| *other != axis) {
+        assert!(
+            (now[axis.index()] - before[axis.index()] - 0.1).abs() < 2e-3,
+            "{now} was {before}"
+        );
+        for other in (0..3).filter(|other| *other != axis.index()) {
             assert_eq!(now[other].to_bits(), before[other].to_bits());
         }
         let expected = glam::DQuat::from_axis_angle(ring.axis.as_dvec3(), 0.1) * was;
@@ -394,9 +397,9 @@ fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
     let mut bench = human();
     select(&mut bench, "right_foot");
     let shin = joint(&bench, "right_shin");
-    let ring = bench.session().orientation_ring(shin, 1).expect("a ring");
+    let ring = bench.session().orientation_ring(shin, RotationAxis::Y).expect("a ring");
     bench.apply([PlaybackAction::SetAutoKey(true)]);
-    let to = bench.take_ring(Grip::Orientation(shin, 1), ring, RING, 0.2);
+    let to = bench.take_ring(Grip::Orientation(shin, RotationAxis::Y), ring, RING, 0.2);
     bench.hold(Modifiers::COMMAND | Modifiers::CTRL);
     bench.move_to(to);
     bench.release(LEFT);
@@ -413,10 +416,10 @@ fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     let mut bench = human();
     select(&mut bench, "left_hand");
     let (forearm, hand) = (joint(&bench, "left_forearm"), joint(&bench, "left_hand"));
-    assert_eq!(bench.session().orientation_ring(forearm, 0), None);
+    assert_eq!(bench.session().orientation_ring(forearm, RotationAxis::X), None);
     let before = bench.session().skeleton()[hand].rotation;
-    let ring = bench.session().ring(hand, 2).expect("a ring");
-    let to = bench.take_ring(Grip::Ring(hand, 2), ring, RING, 0.2);
+    let ring = bench.session().ring(hand, RotationAxis::Z).expect("a ring");
+    let to = bench.take_ring(Grip::Ring(hand, RotationAxis::Z), ring, RING, 0.2);
     bench.drag(LEFT, to, to);
     bench.release(LEFT);
     let after = bench.session().skeleton()[hand].rotation;
@@ -425,6 +428,6 @@ fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
 
     bench.reveal(Role::RadioButton, "Keep orientation");
     bench.click(Role::RadioButton, "Keep orientation");
-    assert_eq!(bench.session().ring(hand, 2), None, "the target turns the hand");
-    assert!(bench.session().orientation_ring(forearm, 2).is_some());
+    assert_eq!(bench.session().ring(hand, RotationAxis::Z), None, "the target turns the hand");
+    assert!(bench.session().orientation_ring(forearm, RotationAxis::Z).is_some());
 }

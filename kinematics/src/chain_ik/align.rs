@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3, Vec3A};
 
-use crate::skeleton::Limit;
+use crate::skeleton::{JointLimits, RotationAxis};
 use crate::{normalize, rotation_between};
 
 /// A point to be rotated and its destination, both relative to the centre of rotation.
@@ -34,23 +34,23 @@ pub(super) fn align(pairs: &[PointPair]) -> Quat {
 ///
 /// `axes` are the rotation axes of the three angles before the call.
 pub(super) fn align_within(
-    limits: &[Option<Limit>; 3],
+    limits: &JointLimits,
     axes: [Vec3A; 3],
     angles: &mut Vec3,
     pairs: &mut [PointPair],
 ) -> Quat {
     let mut whole = Quat::IDENTITY;
-    for (index, axis) in axes.into_iter().enumerate() {
+    for (about, axis) in RotationAxis::ALL.into_iter().zip(axes) {
         let best = best_angle(axis, pairs);
-        let by = match limits[index] {
-            Some(Limit { min, max }) => {
-                let from = angles[index];
-                let to = (from + best_within(best, min - from, max - from)).clamp(min, max);
-                angles[index] = to;
-                to - from
+        let by = match limits.room(*angles, about) {
+            Some(room) => {
+                let from = angles[about.index()];
+                angles[about.index()] += best_within(best, *room.start(), *room.end());
+                *angles = limits.project(*angles);
+                angles[about.index()] - from
             }
             None => {
-                angles[index] += best;
+                angles[about.index()] += best;
                 best
             }
         };

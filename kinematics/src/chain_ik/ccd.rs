@@ -97,7 +97,7 @@ impl Ccd {
             to: problem.effectors[*effector].target - base,
             weight: problem.effectors[*effector].weight,
         }));
-        let rotation = if link.is_limited() {
+        let rotation = if link.limits.is_limited() {
             let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
             let axes = Mat3A::from_quat(parent * self.mounts[index])
                 * JointAngles(config.angles[index]).axes();
@@ -120,7 +120,7 @@ impl Ccd {
             if let Some(parent) = link.parent {
                 self.rotations[index] = self.rotations[parent] * self.rotations[index];
             }
-            config.orientations[index] = if link.is_limited() {
+            config.orientations[index] = if link.limits.is_limited() {
                 let parent =
                     link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
                 let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());

@@ -72,7 +72,7 @@ impl Configuration {
     /// Euler angles of a link. If they follow from orientations, they are those nearest to `near`.
     pub fn angles_near(&self, problem: &Problem, index: usize, near: Vec3) -> Vec3 {
         let link = &problem.links[index];
-        if link.is_limited() || self.orientations.is_empty() {
+        if link.limits.is_limited() || self.orientations.is_empty() {
             return self.angles[index];
         }
         let parent = link.parent.map_or(Quat::IDENTITY, |parent| self.orientations[parent]);

@@ -19,6 +19,7 @@ use super::coordinates::Coordinates;
 use super::inside::{Event, Recorder};
 use super::jacobian::{Wrenches, advance};
 use super::problem::Problem;
+use crate::skeleton::RotationAxis;
 
 /// Maximum length of a residual, in chain lengths; longer residuals are clamped.
 const MAX_RESIDUAL: f32 = 0.3;
@@ -214,17 +215,15 @@ impl DampedLeastSquares {
     /// Fixes angles that would leave their limits. Returns whether any angle was newly fixed.
     fn fix_angles(&mut self, problem: &Problem) -> bool {
         let mut any = false;
-        for (index, link) in problem.links.iter().enumerate().filter(|(_, link)| link.is_limited())
+        for (index, link) in
+            problem.links.iter().enumerate().filter(|(_, link)| link.limits.is_limited())
         {
-            for (angle, limit) in link.limits.iter().enumerate() {
-                let (from, by) =
-                    (self.before.angles[index][angle], &mut self.step.angles[index][angle]);
-                let axis = self.axes[index].col_mut(angle);
+            for about in RotationAxis::ALL {
+                let by = &mut self.step.angles[index][about.index()];
+                let axis = self.axes[index].col_mut(about.index());
                 if *axis == Vec3A::ZERO {
                     *by = 0.0;
-                } else if limit.is_some_and(|limit| {
-                    (from <= limit.min && *by < 0.0) || (from >= limit.max && *by > 0.0)
-                }) {
+                } else if link.limits.stops(self.before.angles[index], about, *by, 0.0) {
                     *axis = Vec3A::ZERO;
                     any = true;
                 }

@@ -15,7 +15,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 use super::configuration::Configuration;
 use super::coordinates::Coordinates;
 use super::problem::Problem;
-use crate::skeleton::{JointAngles, JointId, Skeleton, clamp_to_limits};
+use crate::skeleton::{JointAngles, JointId, Skeleton};
 
 /// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
 /// space and per radian; zero for joints other than the joint and its ancestors.
@@ -107,7 +107,7 @@ pub(super) fn advance(
     for (index, link) in problem.links.iter().enumerate() {
         let (before, angles) = (from.angles[index], from.angles[index] + factor * by.angles[index]);
         let angles = if angles.is_finite() { angles } else { before };
-        config.angles[index] = clamp_to_limits(&link.limits, angles);
+        config.angles[index] = link.limits.project(angles);
     }
     if problem.free_roots {
         // The square of the chain's length converts the units of angles to those of shifts.

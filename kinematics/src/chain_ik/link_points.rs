@@ -16,7 +16,7 @@ use glam::{Mat3A, Quat, Vec3A};
 use super::align::{PointPair, ROTATIONS, align, align_within};
 use super::configuration::Configuration;
 use super::inside::LinkSegment;
-use super::problem::{Link, Problem};
+use super::problem::Problem;
 use crate::skeleton::JointAngles;
 use crate::{normalize, rotation_between};
 
@@ -73,7 +73,7 @@ impl LinkPoints {
         let mut points = Self {
             grounds: vec![Vec::new(); problem.trees.len()],
             mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
-            limited: problem.links.iter().any(Link::is_limited),
+            limited: problem.links.iter().any(|link| link.limits.is_limited()),
             base_destinations: vec![Vec3A::ZERO; problem.links.len()],
             ..Self::default()
         };
@@ -237,7 +237,7 @@ impl LinkPoints {
         let mounted = parent * self.mounts[index];
         let own =
             |config: &Configuration| Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
-        if link.is_limited() {
+        if link.limits.is_limited() {
             config.orientations[index] = (mounted * own(config)).normalize();
         }
         self.pairs.clear();
@@ -249,8 +249,8 @@ impl LinkPoints {
                 weight,
             });
         }
-        for _ in 0..if to - from > 1 || link.is_limited() { ROTATIONS } else { 1 } {
-            if link.is_limited() {
+        for _ in 0..if to - from > 1 || link.limits.is_limited() { ROTATIONS } else { 1 } {
+            if link.limits.is_limited() {
                 let axes = Mat3A::from_quat(mounted) * JointAngles(config.angles[index]).axes();
                 let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
                 align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs);
@@ -260,7 +260,7 @@ impl LinkPoints {
                 config.orientations[index] = (rotation * config.orientations[index]).normalize();
             }
         }
-        if link.is_limited() {
+        if link.limits.is_limited() {
             config.orientations[index] = (mounted * own(config)).normalize();
         }
         for point in from..to {

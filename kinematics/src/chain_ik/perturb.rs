@@ -12,7 +12,7 @@ use super::align::{PointPair, align_within};
 use super::configuration::Configuration;
 use super::problem::Problem;
 use crate::normalize;
-use crate::skeleton::{Limit, clamp_to_limits};
+use crate::skeleton::RotationAxis;
 
 /// Relative distance from a line, and relative moment, below which methods move a joint slowly.
 const STRAIGHT: f32 = 1e-3;
@@ -64,15 +64,9 @@ pub(super) fn leave_limits(problem: &Problem, config: &mut Configuration, start:
     let fraction = FRACTIONS[start as usize / 2 % FRACTIONS.len()];
     let mut any = false;
     for (link, angles) in problem.links.iter().zip(&mut config.angles) {
-        for (axis, limit) in link.limits.iter().enumerate() {
-            let Some(Limit { min, max }) = *limit else { continue };
-            let is_at_limit = angles[axis] <= min || angles[axis] >= max;
-            if is_at_limit || start % 2 == 1 {
-                let inside = (min + fraction * (max - min)).clamp(min, max);
-                any |= inside != angles[axis];
-                angles[axis] = inside;
-            }
-        }
+        let inside = link.limits.moved_inside(*angles, fraction, start % 2 == 1);
+        any |= inside != *angles;
+        *angles = inside;
     }
     config.forward(problem);
     any
@@ -92,7 +86,7 @@ pub(super) fn bent_angles(
     for (axis, unit) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
         let swing = config.axes[link].col(axis).cross(line).length();
         for side in [by, -by] {
-            let bent = clamp_to_limits(limits, angles + unit * side);
+            let bent = limits.project(angles + unit * side);
             let swung = swing * (bent - angles).length();
             // A margin, so that rounding does not decide between equal swings.
             if swung > best.0 * 1.01 {
@@ -145,12 +139,10 @@ fn is_held(problem: &Problem, config: &Configuration, effector: usize, link: usi
     let residual = problem.effectors[effector].target - config.tips[effector];
     let moments = config.axes[link].transpose() * arm.cross(residual);
     let least = STRAIGHT * arm.length() * residual.length();
-    (0..3).all(|axis| {
-        let (moment, angle) = (moments[axis], config.angles[link][axis]);
-        let is_at_limit = |limit: Limit| {
-            if moment > 0.0 { angle >= limit.max } else { angle <= limit.min }
-        };
-        moment.abs() <= least || problem.links[link].limits[axis].is_some_and(is_at_limit)
+    RotationAxis::ALL.into_iter().all(|axis| {
+        let moment = moments[axis.index()];
+        let limits = &problem.links[link].limits;
+        moment.abs() <= least || limits.stops(config.angles[link], axis, moment, 0.0)
     })
 }
 

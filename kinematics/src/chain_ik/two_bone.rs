@@ -13,7 +13,7 @@ use super::inside::{Event, Recorder};
 use super::perturb::bent_angles;
 use super::problem::Problem;
 use super::{SolveError, TwoBoneRefusal};
-use crate::skeleton::{JointId, Limit, Skeleton, angle_triples, clamp_to_limits};
+use crate::skeleton::{JointId, Skeleton, angle_triples};
 use crate::two_bone::TwoBone;
 use crate::{normalize, rotation_between};
 
@@ -130,13 +130,7 @@ fn rotate_link(problem: &Problem, config: &mut Configuration, index: usize, rota
     let parent = link.parent.map_or(Mat3A::IDENTITY, |parent| config.frames[parent]);
     let own = (parent * link.mount).transpose() * rotation * config.frames[index];
     let [near, far] = angle_triples(own, config.angles[index]);
-    let is_within = |angles: Vec3| {
-        let fits = |(angle, limit): (f32, Option<Limit>)| {
-            limit.is_none_or(|limit| (limit.min..=limit.max).contains(&angle))
-        };
-        angles.to_array().into_iter().zip(link.limits).all(fits)
-    };
-    let angles = if is_within(far) && !is_within(near) { far } else { near };
-    config.angles[index] = clamp_to_limits(&link.limits, angles);
+    let is_farther = link.limits.contains(far) && !link.limits.contains(near);
+    config.angles[index] = link.limits.project(if is_farther { far } else { near });
     config.forward(problem);
 }

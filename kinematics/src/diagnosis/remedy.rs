@@ -87,7 +87,7 @@ impl Remedy {
             Self::Lengthen { joint, factor } => lengthen(skeleton, *joint, *factor),
             Self::WidenLimits(widened) => widened.iter().try_for_each(|widened| {
                 skeleton.change(widened.joint, |joint| {
-                    joint.limits[widened.axis as usize] = Some(widened.limit);
+                    joint.limits.set_range(widened.axis, Some(widened.limit));
                 })
             }),
             Self::Unlock(joints) => joints

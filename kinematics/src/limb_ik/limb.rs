@@ -2,7 +2,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
-use crate::skeleton::{Joint, JointId, Limit, Skeleton};
+use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 /// Two bones of a skeleton that a target poses together, such as an arm or a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,8 +100,8 @@ fn hand(skeleton: &Skeleton, joint: JointId) -> Option<JointId> {
 
 /// Whether limits let a joint turn through a right angle about one of its axes.
 fn can_bend(joint: &Joint) -> bool {
-    let range = |limit: &Option<Limit>| limit.map_or(f32::INFINITY, |it| it.max - it.min);
-    !joint.locked && joint.limits.iter().any(|limit| range(limit) >= FRAC_PI_2)
+    let is_wide = |axis| joint.limits.span(axis) >= FRAC_PI_2;
+    !joint.locked && RotationAxis::ALL.into_iter().any(is_wide)
 }
 
 fn has_length(bone: glam::Vec3) -> bool {

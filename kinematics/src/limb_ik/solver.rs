@@ -5,7 +5,7 @@ use super::bend::Bend;
 use super::joint_space::JointSpace;
 use super::limb::Limb;
 use crate::saturate::saturate;
-use crate::skeleton::{AnglesWithin, Joint, JointId, Limit, Skeleton};
+use crate::skeleton::{AnglesWithin, Joint, JointId, RotationAxis, Skeleton};
 use crate::soft_reach::SoftReach;
 use crate::twist::Stereographic;
 use crate::two_bone::opposite_side;
@@ -192,7 +192,7 @@ struct FkLimb {
     /// β in the FK pose.
     angle: f64,
     /// The Euler angle, x, y or z, that β is; `None` if the lower joint turns about another axis.
-    free_angle: Option<usize>,
+    free_angle: Option<RotationAxis>,
 }
 
 impl FkLimb {
@@ -233,24 +233,23 @@ impl FkLimb {
 }
 
 /// The bend of a lower joint, its angle β in the FK pose, and the Euler angle that β is, if any.
-fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<usize>) {
+fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<RotationAxis>) {
     // Sine of the elbow's angle below which the limb counts as straight.
     const STRAIGHT: f64 = 1e-6;
     const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
     let axis = lower.axis.as_dvec3();
-    let about = |index: usize| {
-        let angles = Vec3::from_array(core::array::from_fn(|it| {
-            if it == index { 0.0 } else { lower.rotation[it] }
-        }));
-        let about = mount.rotation * lower.rotation_axes_f64(lower.rotation).col(index);
+    let about = |hinge: RotationAxis| {
+        let mut angles = lower.rotation;
+        angles[hinge.index()] = 0.0;
+        let about = mount.rotation * lower.rotation_axes_f64(lower.rotation).col(hinge.index());
         let unbent = mount.rotation * lower.rotation_f64(angles) * axis;
-        let limits = lower.limits[index]
-            .map_or(UNLIMITED, |limit| (f64::from(limit.min), f64::from(limit.max)));
+        let range = lower.limits.range(hinge);
+        let limits = range.map_or(UNLIMITED, |it| (f64::from(it.min), f64::from(it.max)));
         let bend = Bend::new(about, mount.origin, unbent, limits);
-        (bend, f64::from(lower.rotation[index]), Some(index))
+        (bend, f64::from(lower.rotation[hinge.index()]), Some(hinge))
     };
-    let is_fixed = |limit: &Option<Limit>| limit.is_some_and(|it| it.max - it.min < 1e-6);
-    let movable: Vec<usize> = (0..3).filter(|index| !is_fixed(&lower.limits[*index])).collect();
+    let mut movable = RotationAxis::ALL.to_vec();
+    movable.retain(|hinge| lower.limits.span(*hinge) >= 1e-6);
     if let ([hinge], false) = (&movable[..], lower.locked) {
         return about(*hinge);
     }
@@ -266,15 +265,15 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<usize>) {
         return free(normal.normalize(), UNLIMITED);
     }
     // Straight: the angle by which the limb may bend most, weighted by how far it swings the bone.
-    let swing = |index: usize| {
-        let (bend, angle, _) = about(index);
+    let swing = |hinge: RotationAxis| {
+        let (bend, angle, _) = about(hinge);
         let room = f64::max(bend.limits.1 - angle, angle - bend.limits.0);
         room.min(core::f64::consts::PI) * bend.axis.cross(turned.normalize_or_zero()).length()
     };
-    let rank = |one: &usize, other: &usize| swing(*one).total_cmp(&(swing(*other) + 1e-6));
+    let rank = |one, other| swing(one).total_cmp(&(swing(other) + 1e-6));
     let widest = movable.into_iter().reduce(
-        |best, index| {
-            if rank(&index, &best).is_gt() { index } else { best }
+        |best, hinge| {
+            if rank(hinge, best).is_gt() { hinge } else { best }
         },
     );
     widest.map_or_else(|| free(DVec3::X, (0.0, 0.0)), about)
@@ -361,10 +360,11 @@ impl FkLimb {
     /// the FK pose within the limits.
     fn lower_angles(&self, lower: &Joint, distance: f64) -> LowerAngles {
         let angles_at = |bend: f64| {
-            if let Some(index) = self.free_angle {
+            if let Some(angle) = self.free_angle {
                 let mut angles = lower.rotation;
-                angles[index] = bend as f32;
-                return LowerAngles { angles: lower.clamped(angles), bend, is_limited: false };
+                angles[angle.index()] = bend as f32;
+                let angles = lower.limits.project(angles);
+                return LowerAngles { angles, bend, is_limited: false };
             }
             let turn = DMat3::from_axis_angle(self.bend.axis, bend);
             let turned = self.mount.rotation.transpose()

@@ -119,7 +119,8 @@ impl<'a> PathChain<'a> {
             };
             let bone = Vec3A::from(bone);
             let turn = rotation_between(start * bone, above.transpose() * Vec3A::from(tip - base));
-            let mut rotation = joint.clamped(joint.angles_of(Mat3A::from_quat(turn) * start));
+            let mut rotation =
+                joint.limits.project(joint.angles_of(Mat3A::from_quat(turn) * start));
             let mut offset = if joint.parent.is_none() { base } else { joint.offset };
             // Squared lengths of very long bones overflow; such a joint stays unchanged.
             if !(rotation.is_finite() && offset.is_finite()) {

@@ -103,7 +103,7 @@ impl Skeleton {
             let joint = self.joints[child.index()].make_mut();
             (joint.parent, joint.offset, joint.rotation) = (parent, offset, rotation);
             joint.connected = false;
-            joint.widen_limits(rotation);
+            joint.limits.widen(rotation);
         }
         self.remove(joints)
     }

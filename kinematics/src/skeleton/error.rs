@@ -3,8 +3,8 @@ use core::fmt;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::JointId;
 use super::joint_id::MOST_JOINTS;
+use super::{JointId, RotationAxis};
 
 /// An invalid skeleton, or an invalid edit of one.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -101,33 +101,6 @@ impl fmt::Display for JointField {
             Self::Offset => "offset",
             Self::Axis => "axis",
             Self::Rotation => "rotation",
-        })
-    }
-}
-
-/// The axis of an Euler angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RotationAxis {
-    /// The frame's x-axis.
-    X,
-    /// The frame's y-axis.
-    Y,
-    /// The frame's z-axis.
-    Z,
-}
-
-impl RotationAxis {
-    /// All axes, in the order of [`Joint::limits`](super::Joint::limits).
-    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
-}
-
-/// "x", "y" or "z".
-impl fmt::Display for RotationAxis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
         })
     }
 }

@@ -1,8 +1,7 @@
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
 use super::{
-    JointAngles, JointField, JointId, Limit, RotationAxis, SkeletonError, clamp_to_limits,
-    nearest_angles,
+    JointAngles, JointField, JointId, JointLimits, RotationAxis, SkeletonError, nearest_angles,
 };
 
 /// A ball joint and its bone.
@@ -24,8 +23,8 @@ pub struct Joint {
     pub rotation: Vec3,
     /// The frame A in which the angles are measured: a right-handed orthonormal basis as columns.
     pub frame: Mat3,
-    /// Range of each angle, in the order x, y, z; `None` for an unlimited angle.
-    pub limits: [Option<Limit>; 3],
+    /// Limits of the rotation.
+    pub limits: JointLimits,
     /// Whether solvers leave the rotation unchanged.
     pub locked: bool,
     /// Whether keys that move this joint also move the tip of its parent's bone, so that the bone ends
@@ -45,7 +44,7 @@ impl Joint {
             axis,
             rotation: Vec3::ZERO,
             frame: Mat3::IDENTITY,
-            limits: [None; 3],
+            limits: JointLimits::NONE,
             locked: false,
             connected: false,
             radius: (axis.as_dvec3().length() * 0.1) as f32,
@@ -78,10 +77,10 @@ impl Joint {
         frame * rotation * frame.transpose()
     }
 
-    /// Unit axis about which the joint's angle x, y or z (`axis` 0, 1 or 2) turns, in the space of the
-    /// joint's base: A·R_z·R_y·e_x, A·R_z·e_y or A·e_z with the joint's frame A.
-    pub fn rotation_axis(&self, axis: usize) -> Vec3 {
-        (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis).into()
+    /// Unit axis about which the joint's angle x, y or z turns, in the space of the joint's base:
+    /// A·R_z·R_y·e_x, A·R_z·e_y or A·e_z with the joint's frame A.
+    pub fn rotation_axis(&self, axis: RotationAxis) -> Vec3 {
+        (Mat3A::from(self.frame) * JointAngles(self.rotation).axes()).col(axis.index()).into()
     }
 
     /// Transform T(offset) · R from the joint's own space to its parent's.
@@ -105,32 +104,12 @@ impl Joint {
     /// Of all angles equivalent to `angles` and within the limits, those nearest to `near`. Without
     /// any, `angles`.
     pub fn equivalent_angles(&self, angles: Vec3, near: Vec3) -> Vec3 {
-        let triples = super::equivalent_triples(angles, near).into_iter();
-        let mut within = triples.filter(|triple| self.clamped(*triple) == *triple);
-        within.next().unwrap_or(angles)
-    }
-
-    /// The Euler angles `rotation` clamped to the limits.
-    pub fn clamped(&self, rotation: Vec3) -> Vec3 {
-        clamp_to_limits(&self.limits, rotation)
-    }
-
-    /// Widens the limits just enough to contain `angles`.
-    pub fn widen_limits(&mut self, angles: Vec3) {
-        for (limit, angle) in self.limits.iter_mut().zip(angles.to_array()) {
-            if let Some(Limit { min, max }) = limit {
-                (*min, *max) = (min.min(angle), max.max(angle));
-            }
-        }
-    }
-
-    /// Whether any angle has a limit.
-    pub fn is_limited(&self) -> bool {
-        self.limits.iter().any(Option::is_some)
+        let triples = super::equivalent_triples(angles, near);
+        triples.into_iter().find(|triple| self.limits.contains(*triple)).unwrap_or(angles)
     }
 
     pub(super) fn clamp(&mut self) {
-        self.rotation = self.clamped(self.rotation);
+        self.rotation = self.limits.project(self.rotation);
     }
 
     pub(super) fn check(&self, joint: JointId) -> Result<(), SkeletonError> {
@@ -158,13 +137,6 @@ impl Joint {
         if !(squared.abs_diff_eq(Mat3::IDENTITY, ORTHONORMAL) && self.frame.determinant() > 0.0) {
             return Err(SkeletonError::Frame { joint });
         }
-        for (axis, limit) in RotationAxis::ALL.into_iter().zip(self.limits) {
-            if let Some(Limit { min, max }) = limit
-                && !(min.is_finite() && max.is_finite() && min <= max)
-            {
-                return Err(SkeletonError::Limit { joint, axis, min, max });
-            }
-        }
-        Ok(())
+        self.limits.check(joint)
     }
 }

@@ -45,7 +45,7 @@ impl Joint {
         let frame = Mat3A::from(self.frame);
         let all = angle_triples(frame.transpose() * rotation * frame, self.rotation);
         let [first, second] = all.map(|angles| {
-            let within = self.clamped(angles);
+            let within = self.limits.project(angles);
             let changed = (within - angles).abs().max_element();
             (AnglesWithin { angles: within, is_limited: changed > ROUNDING }, changed)
         });

@@ -49,21 +49,20 @@ mod joint_angles;
 mod joint_id;
 mod joint_remap;
 mod joint_rotation;
-mod limit;
+mod limits;
 mod pose;
 #[cfg(feature = "serde")]
 mod serialize;
 mod tree;
 
-pub use error::{JointField, RotationAxis, SkeletonError};
+pub use error::{JointField, SkeletonError};
 pub use joint::Joint;
 pub use joint_angles::nearest_angles;
 pub use joint_id::JointId;
 pub use joint_remap::JointRemap;
-pub use limit::Limit;
+pub use limits::{JointLimits, Limit, RotationAxis};
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 
 pub(crate) use joint_angles::{JointAngles, angle_triples, equivalent_triples};
 pub(crate) use joint_rotation::AnglesWithin;
-pub(crate) use limit::clamp_to_limits;

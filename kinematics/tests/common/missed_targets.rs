@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use glam::{Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{Method, SolverOptions, Status, TipTarget, solve};
-use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 
 use super::Random;
 use super::skeletons::{ITERATIVE, chain, length, reachable, shake, target, transform, tree};
@@ -67,7 +67,7 @@ fn hinge(random: &mut Random, most: f32) -> (Skeleton, [f32; 2]) {
     let fixed = Some(Limit { min: 0.0, max: 0.0 });
     let lower = Joint {
         offset: Vec3::Y * lengths[0],
-        limits: [fixed, fixed, Some(Limit { min: 0.0, max: most })],
+        limits: [fixed, fixed, Some(Limit { min: 0.0, max: most })].into(),
         ..Joint::new("lower", Some(upper), Vec3::Y * lengths[1])
     };
     skeleton.add(lower).expect("joint");
@@ -124,7 +124,7 @@ pub fn stiff_chain(random: &mut Random) -> MissedTargets {
         joint.offset = offset;
         if index > 0 {
             let most = random.within(0.02..0.09);
-            joint.limits = [Some(Limit { min: -most, max: most }); 3];
+            joint.limits = [Some(Limit { min: -most, max: most }); 3].into();
         }
         skeleton.add(joint).expect("joint");
         offset = axis;
@@ -207,7 +207,7 @@ pub fn stalled(random: &mut Random) -> MissedTargets {
                 let (min, max) = (random.within(-2.0..-0.1), random.within(0.1..2.0));
                 random.chance(0.7).then_some(Limit { min, max })
             });
-            skeleton.change(joint.into(), |joint| joint.limits = limits).expect("limits");
+            skeleton.change(joint.into(), |joint| joint.limits = limits.into()).expect("limits");
         }
         let targets = reachable(random, &skeleton, &[tip]);
         shake(random, &mut skeleton);
@@ -230,7 +230,7 @@ fn in_gimbal_lock(random: &mut Random) -> MissedTargets {
     let right = FRAC_PI_2 * [1.0, -1.0][random.below(2)];
     let angles = Vec3::new(random.within(-3.0..3.0), right, random.within(-3.0..3.0));
     skeleton.set_rotation(bone, angles).expect("angles");
-    let axes = [1, 2].map(|axis| skeleton[bone].rotation_axis(axis));
+    let axes = [RotationAxis::Y, RotationAxis::Z].map(|axis| skeleton[bone].rotation_axis(axis));
     let lost = axes[0].cross(axes[1]).normalize();
     let tip = axis.length() * random.direction().reject_from_normalized(lost).normalize();
     let axis = skeleton[bone].local_rotation().transpose() * tip;

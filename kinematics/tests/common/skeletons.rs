@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
 use ik_arm_kinematics::chain_ik::{Method, TipTarget};
-use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 
 use super::Random;
 
@@ -72,8 +72,8 @@ pub fn forest(random: &mut Random, joints: usize) -> Skeleton {
         if random.chance(0.5) {
             joint.frame = random.rotation();
         }
-        for each in &mut joint.limits {
-            *each = random.chance(0.2).then(|| limit(random));
+        for axis in RotationAxis::ALL {
+            joint.limits.set_range(axis, random.chance(0.2).then(|| limit(random)));
         }
         list.push(joint);
     }

@@ -247,7 +247,7 @@ fn anything(random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
 }
 
 fn is_within_limits(skeleton: &Skeleton) -> bool {
-    skeleton.joints().iter().all(|joint| joint.clamped(joint.rotation) == joint.rotation)
+    skeleton.joints().iter().all(|joint| joint.limits.contains(joint.rotation))
 }
 
 #[test]
@@ -295,7 +295,7 @@ fn targets_within_the_limits_are_reached() {
             for joint in 1..=5 {
                 let limits = [(); 3].map(|()| Some(limit(&mut random)));
                 skeleton
-                    .change(JointId::new(joint), |joint| joint.limits = limits)
+                    .change(JointId::new(joint), |joint| joint.limits = limits.into())
                     .expect("limits");
             }
             let targets = reachable(&mut random, &skeleton, &[JointId::new(5)]);
@@ -447,7 +447,7 @@ fn a_straight_knee_bends_the_way_its_limits_allow() {
             let mut shin = Joint::new("shin", Some(JointId::new(0)), -Vec3::Y);
             shin.offset = -Vec3::Y;
             let still = Some(Limit { min: 0.0, max: 0.0 });
-            shin.limits = [Some(Limit { min: range.start, max: range.end }), still, still];
+            shin.limits = [Some(Limit { min: range.start, max: range.end }), still, still].into();
             skeleton.add(shin).expect("shin");
             let targets = [target(JointId::new(1), Vec3::Y * -1.4)];
             let report =

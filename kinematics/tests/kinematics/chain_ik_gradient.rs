@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{DAffine3, DVec3, Vec3};
 use ik_arm_kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget};
-use ik_arm_kinematics::skeleton::{JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{JointId, Limit, RotationAxis, Skeleton};
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::Random;
@@ -28,11 +28,12 @@ impl Twin {
             let mut skeleton = forest(random, joints);
             skeleton.set_transform(transform(random)).expect("transform");
             for joint in skeleton.ids() {
-                let angle = |limit: Option<Limit>| match limit {
+                let limits = skeleton[joint].limits;
+                let angle = |axis| match limits.range(axis) {
                     Some(Limit { min, max }) => min + (max - min) * random.within(0.1..0.9),
                     None => random.within(-PI..PI),
                 };
-                let angles = skeleton[joint].limits.map(angle);
+                let angles = RotationAxis::ALL.map(angle);
                 skeleton.set_rotation(joint, Vec3::from_array(angles)).expect("angles");
             }
             let mut near = skeleton.clone();
@@ -89,16 +90,16 @@ impl Twin {
         let mut angles = self.angles.clone();
         let mut all = Vec::new();
         for joint in self.skeleton.ids() {
-            for axis in 0..3 {
+            for about in RotationAxis::ALL {
+                let axis = about.index();
                 let mut at = |by: f64| {
                     angles[joint.index()][axis] = self.angles[joint.index()][axis] + by;
                     of(&angles)
                 };
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 angles[joint.index()] = self.angles[joint.index()];
-                let limit = self.skeleton[joint].limits[axis];
-                let is_fixed = limit.is_some_and(|limit| limit.min == limit.max);
-                let is_still = is_fixed || self.skeleton[joint].locked;
+                let own = &self.skeleton[joint];
+                let is_still = own.limits.is_fixed(about) || own.locked;
                 all.push(if is_still { zero.clone() } else { difference });
             }
         }
@@ -132,7 +133,7 @@ impl Twin {
             if by == DVec3::ZERO {
                 return *angles;
             }
-            joint.clamped((*angles + by).as_vec3()).as_dvec3()
+            joint.limits.project((*angles + by).as_vec3()).as_dvec3()
         };
         self.skeleton.ids().zip(&self.angles).map(of_joint).collect()
     }

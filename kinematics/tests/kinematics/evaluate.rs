@@ -6,7 +6,7 @@ use ik_arm_kinematics::rig::{
     EvaluatedSkeleton, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetOutcome,
     TargetPath, TargetSpace,
 };
-use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
 
 use crate::common::Random;
@@ -29,7 +29,7 @@ impl Figure {
         let chest = add(Joint::new("chest", Some(pelvis), Vec3::Y * 0.5));
         let hinge = |min, max| {
             let fixed = Some(Limit { min: 0.0, max: 0.0 });
-            [Some(Limit { min, max }), fixed, fixed]
+            JointLimits::new([Some(Limit { min, max }), fixed, fixed])
         };
         let mut lower = Vec::new();
         for (name, side) in [("left", 1.0), ("right", -1.0)] {
@@ -159,9 +159,10 @@ fn limits_and_bone_lengths_hold_in_every_evaluated_pose() {
         let evaluated = rig.evaluate(random.within(0.0..10.0).into());
         for (joint, before) in rig.skeleton.iter() {
             let after = &evaluated.solved[joint];
-            let beyond = (before.clamped(after.rotation) - after.rotation).abs().max_element();
+            let beyond =
+                (before.limits.project(after.rotation) - after.rotation).abs().max_element();
             let was_beyond =
-                (before.clamped(before.rotation) - before.rotation).abs().max_element();
+                (before.limits.project(before.rotation) - before.rotation).abs().max_element();
             assert!(beyond <= was_beyond, "{case}: {joint} is {beyond} beyond its limits");
             assert_eq!(after.axis, before.axis, "{case}: {joint}");
             assert_eq!(after.offset, before.offset, "{case}: {joint}");
@@ -207,7 +208,11 @@ fn hands_and_feet_stay_at_their_targets_when_the_pelvis_moves() {
             }
             let after = &evaluated.solved[*joint];
             assert_eq!((after.rotation.y, after.rotation.z), (0.0, 0.0), "{case}: about the hinge");
-            assert_eq!(after.clamped(after.rotation), after.rotation, "{case}: within the limits");
+            assert_eq!(
+                after.limits.project(after.rotation),
+                after.rotation,
+                "{case}: within the limits"
+            );
         }
     }
     assert!(reached > 2_000, "most targets are within reach: {reached}");
@@ -339,7 +344,7 @@ fn the_missing_angle_of_a_foot_is_the_one_computed_in_f64_and_0_within_its_limit
         let is_limited = case % 2 == 0;
         let limits = [-0.6..0.8, -0.4..0.4, -0.4..0.4_f32];
         let limits = limits.map(|it| is_limited.then_some(Limit { min: it.start, max: it.end }));
-        skeleton.change(foot, |joint| joint.limits = limits).expect("limits");
+        skeleton.change(foot, |joint| joint.limits = limits.into()).expect("limits");
         let space =
             if case % 4 < 2 { TargetSpace::World } else { TargetSpace::Joint(figure.pelvis) };
         let angles = random.vector(2.5);

@@ -5,7 +5,7 @@ use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm_kinematics::limb_ik::{
     ElbowReference, Limb, LimbReach, LimbReport, LimbTarget, fk_twist, solve,
 };
-use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
 use ik_arm_kinematics::twist::Stereographic;
 
@@ -61,18 +61,20 @@ fn transform(random: &mut Random) -> Affine3A {
 }
 
 /// Fixes all angles of the lower joint but one.
-fn with_hinge(random: &mut Random, mut skeleton: Skeleton, limb: Limb) -> (Skeleton, usize) {
-    let free = random.below(3);
+fn with_hinge(random: &mut Random, mut skeleton: Skeleton, limb: Limb) -> (Skeleton, RotationAxis) {
+    let free = random.one_of(&RotationAxis::ALL);
     skeleton
         .change(limb.lower, |knee| {
-            for axis in 0..3 {
-                let angle = knee.rotation[axis];
-                knee.limits[axis] = (axis != free).then_some(Limit { min: angle, max: angle });
+            for axis in RotationAxis::ALL {
+                let angle = knee.rotation[axis.index()];
+                let fixed = (axis != free).then_some(Limit { min: angle, max: angle });
+                knee.limits.set_range(axis, fixed);
             }
             if random.coin() {
-                let angle = knee.rotation[free];
+                let angle = knee.rotation[free.index()];
                 let (below, above) = (random.within(0.0..2.5), random.within(0.0..2.5));
-                knee.limits[free] = Some(Limit { min: angle - below, max: angle + above });
+                let range = Limit { min: angle - below, max: angle + above };
+                knee.limits.set_range(free, Some(range));
             }
         })
         .expect("limits");
@@ -83,7 +85,7 @@ fn with_hinge(random: &mut Random, mut skeleton: Skeleton, limb: Limb) -> (Skele
 fn reachable(random: &mut Random, skeleton: &Skeleton, limb: Limb) -> Vec3 {
     let mut other = skeleton.clone();
     for joint in [limb.upper, limb.lower] {
-        let rotation = skeleton[joint].clamped(random.vector(3.0));
+        let rotation = skeleton[joint].limits.project(random.vector(3.0));
         other.set_rotation(joint, rotation).expect("a joint");
     }
     other.tip(limb.lower)
@@ -99,13 +101,13 @@ fn length(skeleton: &Skeleton, limb: Limb) -> f32 {
 fn changes_of_distance(skeleton: &Skeleton, limb: Limb) -> impl Iterator<Item = f32> + '_ {
     let distance =
         move |skeleton: &Skeleton| skeleton.base(limb.upper).distance(skeleton.tip(limb.lower));
-    let is_fixed = |limit: Limit| limit.min == limit.max;
     let knee = &skeleton[limb.lower];
-    (0..3).filter(move |axis| !knee.limits[*axis].is_some_and(is_fixed)).map(move |axis| {
+    let free = RotationAxis::ALL.into_iter().filter(|axis| !knee.limits.is_fixed(*axis));
+    free.map(move |axis| {
         let mut other = skeleton.clone();
         let change = |knee: &mut Joint| {
-            knee.limits = [None; 3];
-            knee.rotation[axis] += 0.01;
+            knee.limits = JointLimits::NONE;
+            knee.rotation[axis.index()] += 0.01;
         };
         other.change(limb.lower, change).expect("a joint");
         (distance(&other) - distance(skeleton)).abs()
@@ -137,11 +139,11 @@ fn a_hinged_limb_reaches_every_target_within_its_limits_about_its_hinge_alone() 
         assert_eq!(report.reach, LimbReach::Reached, "{case}");
         let (knee, before) = (&after[limb.lower], &skeleton[limb.lower]);
         for axis in 0..3 {
-            if axis != free {
+            if axis != free.index() {
                 assert_eq!(knee.rotation[axis], before.rotation[axis], "{case}: a fixed angle");
             }
         }
-        assert_eq!(knee.clamped(knee.rotation), knee.rotation, "{case}: limits");
+        assert_eq!(knee.limits.project(knee.rotation), knee.rotation, "{case}: limits");
         let others =
             skeleton.iter().filter(|(joint, _)| *joint != limb.upper && *joint != limb.lower);
         for (joint, before) in others {
@@ -356,7 +358,7 @@ fn a_straight_limb_bends_to_the_side_that_its_limits_allow() {
         let thigh = Joint::new("thigh", Some(JointId::new(0)), Vec3::NEG_Y * 0.43);
         let thigh = skeleton.add(thigh).expect("thigh");
         let shin = Joint::new("shin", Some(thigh), Vec3::NEG_Y * 0.41);
-        let shin = Joint { offset: Vec3::NEG_Y * 0.43, limits, ..shin };
+        let shin = Joint { offset: Vec3::NEG_Y * 0.43, limits: limits.into(), ..shin };
         let shin = skeleton.add(shin).expect("shin");
         let limb = Limb::ending_at(&skeleton, shin).expect("a limb");
         for case in 0..1_000 {
@@ -373,7 +375,7 @@ fn a_straight_limb_bends_to_the_side_that_its_limits_allow() {
 #[test]
 fn limits_of_the_upper_joint_are_held_and_named() {
     let mut skeleton = Skeleton::with_root("root");
-    let limits = [Some(Limit { min: -0.2, max: 0.2 }); 3];
+    let limits = JointLimits::new([Some(Limit { min: -0.2, max: 0.2 }); 3]);
     let upper = Joint { limits, ..Joint::new("upper", Some(JointId::new(0)), Vec3::X) };
     let upper = skeleton.add(upper).expect("upper");
     let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(upper), Vec3::X) };
@@ -381,7 +383,7 @@ fn limits_of_the_upper_joint_are_held_and_named() {
     let limb = Limb::ending_at(&skeleton, lower).expect("a limb");
     let (after, report) = solved(&skeleton, limb, &LimbTarget::new(Vec3::new(-1.5, 0.3, 0.2)));
     assert_eq!(report.reach, LimbReach::Limited(upper));
-    assert_eq!(after[upper].clamped(after[upper].rotation), after[upper].rotation);
+    assert_eq!(after[upper].limits.project(after[upper].rotation), after[upper].rotation);
     assert!((after.tip(lower).distance(Vec3::new(-1.5, 0.3, 0.2)) - report.error).abs() < 1e-6);
 }
 

@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
 use ik_arm_kinematics::skeleton::{
-    Joint, JointField, JointId, Limit, RotationAxis, Skeleton, SkeletonError,
+    Joint, JointField, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
 };
 
 use crate::common::Random;
@@ -74,7 +74,7 @@ fn turning_a_joint_moves_its_subtree_and_nothing_else() {
         let mut skeleton = forest(&mut random, 12);
         let turned = JointId::new(random.below(12));
         let before = skeleton.pose();
-        skeleton.change(turned, |joint| joint.limits = [None; 3]).expect("joint");
+        skeleton.change(turned, |joint| joint.limits = JointLimits::NONE).expect("joint");
         let angles = skeleton[turned].rotation + Vec3::new(0.3, -0.4, 0.5);
         skeleton.set_rotation(turned, angles).expect("angles");
         let after = skeleton.pose();
@@ -140,7 +140,7 @@ fn assert_is_one(skeleton: &Skeleton) {
     assert_eq!(again.joints(), skeleton.joints());
     for (id, joint) in skeleton.iter() {
         assert!(joint.parent.is_none_or(|parent| parent < id));
-        assert_eq!(joint.clamped(joint.rotation), joint.rotation);
+        assert_eq!(joint.limits.project(joint.rotation), joint.rotation);
         assert_eq!(skeleton.find(&joint.name), Some(id));
         let children: Vec<_> = skeleton.children(id).collect();
         assert!(children.iter().all(|child| skeleton[*child].parent == Some(id)));
@@ -174,7 +174,7 @@ fn any_change(random: &mut Random, skeleton: &mut Skeleton) -> bool {
         3 => skeleton.set_rotation(joint, random.angles()).is_ok(),
         4 => {
             let limits = [(); 3].map(|()| random.chance(0.5).then(|| limit(random)));
-            skeleton.change(joint, |joint| joint.limits = limits).is_ok()
+            skeleton.change(joint, |joint| joint.limits = limits.into()).is_ok()
         }
         5 if random.chance(0.3) => {
             let count = skeleton.joints().len();
@@ -204,7 +204,7 @@ fn reparent(skeleton: &mut Skeleton, joint: JointId, parent: Option<JointId>) ->
     assert_eq!(skeleton.joints()[now.index()].parent, parent.and_then(|parent| moved.get(parent)));
     for old in before.ids() {
         let new = moved.get(old).expect("all are still there");
-        if before.joints()[joint.index()].is_limited() && before.is_in_subtree(old, joint) {
+        if before.joints()[joint.index()].limits.is_limited() && before.is_in_subtree(old, joint) {
             continue;
         }
         let (here, there) = (before.tip(old), skeleton.tip(new));
@@ -273,7 +273,7 @@ fn invalid_joints_are_refused() {
     }
     let limit = Limit { min: 1.0, max: 0.5 };
     assert_eq!(
-        added(Joint { limits: [None, Some(limit), None], ..child() }),
+        added(Joint { limits: [None, Some(limit), None].into(), ..child() }),
         SkeletonError::Limit { joint: second, axis: RotationAxis::Y, min: 1.0, max: 0.5 }
     );
     let flat = Affine3A::from_translation(value);
@@ -287,7 +287,8 @@ fn invalid_joints_are_refused() {
 fn skeletons_round_trip_through_serde_and_invalid_ones_are_refused() {
     let mut skeleton = Skeleton::with_root("root");
     let limits = [Some(Limit { min: -1.0, max: 0.5 }), None, None];
-    let child = Joint { limits, ..Joint::new("child", Some(JointId::new(0)), Vec3::Y) };
+    let child =
+        Joint { limits: limits.into(), ..Joint::new("child", Some(JointId::new(0)), Vec3::Y) };
     skeleton.add(child).expect("a joint");
     let json = serde_json::to_string(&skeleton).expect("finite numbers");
     assert_eq!(serde_json::from_str::<Skeleton>(&json).expect("the same"), skeleton);

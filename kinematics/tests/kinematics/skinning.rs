@@ -1,7 +1,7 @@
 //! Skinned meshes against independent formulations in f64.
 
 use glam::{Affine3A, DMat3, DMat4, DQuat, DVec3, Mat3, Mat3A, Vec3};
-use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Skeleton};
 use ik_arm_kinematics::skin::{
     SkinError, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
@@ -267,7 +267,7 @@ fn in_the_pose_in_which_it_was_attached_a_mesh_stays() {
             let place = case.skeleton.transform();
             let unposed = case.skeleton.joints().iter().map(|joint| Joint {
                 rotation: Vec3::ZERO,
-                limits: [None; 3],
+                limits: JointLimits::NONE,
                 ..Joint::clone(joint)
             });
             case.skeleton = Skeleton::from_joints(unposed.collect()).expect("skeleton");

@@ -33,7 +33,9 @@ fn cases(method: Method, mut check: impl FnMut(&mut Random, Case)) {
         if is_limited {
             for joint in 1..skeleton.joints().len() {
                 let limits = [(); 3].map(|()| random.chance(0.5).then(|| limit(&mut random)));
-                skeleton.change(joint.into(), |joint| joint.limits = limits).expect("limits");
+                skeleton
+                    .change(joint.into(), |joint| joint.limits = limits.into())
+                    .expect("limits");
             }
         }
         let mut targets = reachable(&mut random, &skeleton, &tips);
@@ -92,7 +94,7 @@ fn velocity(pose: &Skeleton, column: &Column) -> DVec3 {
     let at = |by: f64| {
         let mut angles: Vec<DVec3> =
             pose.iter().map(|(_, joint)| joint.rotation.as_dvec3()).collect();
-        angles[column.joint.index()][column.axis as usize] += by;
+        angles[column.joint.index()][column.axis.index()] += by;
         let space = space_f64(pose, column.tip, &angles);
         let tip = space.transform_point3(pose[column.tip].axis.as_dvec3());
         pose.transform().as_daffine3().transform_point3(tip)
@@ -206,7 +208,7 @@ fn the_gradient_is_the_pull_of_all_targets_along_the_columns() {
             let heaviest = case.targets.iter().map(|it| it.weight).fold(0.0, f32::max);
             for change in &taken.changes {
                 let columns = jacobian.columns.iter().filter(|column| {
-                    (column.joint, column.axis as usize) == (change.joint, change.axis as usize)
+                    (column.joint, column.axis.index()) == (change.joint, change.axis.index())
                 });
                 let pull: f32 = columns
                     .map(|column| {
@@ -232,10 +234,10 @@ fn a_step_changes_the_angles_and_moves_the_tips_as_it_says() {
                 let SubStepKind::Step(taken) = &pair[1].kind else { continue };
                 for change in &taken.changes {
                     let angle =
-                        |step: &SubStep| step.pose[change.joint].rotation[change.axis as usize];
+                        |step: &SubStep| step.pose[change.joint].rotation[change.axis.index()];
                     let by = angle(&pair[1]) - angle(&pair[0]);
                     assert!((by - change.by).abs() < 1e-5, "{by} {}", change.by);
-                    let limit = pair[1].pose[change.joint].limits[change.axis as usize];
+                    let limit = pair[1].pose[change.joint].limits.range(change.axis);
                     assert!(!change.is_at_limit || limit.is_some());
                 }
                 for tip in &taken.tips {

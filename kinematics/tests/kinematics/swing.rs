@@ -27,7 +27,7 @@ fn cases(mut check: impl FnMut(&mut Random, &Skeleton, Swing)) {
 fn tip_f64(skeleton: &Skeleton, swing: Swing, by: f64) -> DVec3 {
     let mut angles: Vec<DVec3> =
         skeleton.iter().map(|(_, joint)| joint.rotation.as_dvec3()).collect();
-    angles[swing.joint.index()][swing.axis as usize] += by;
+    angles[swing.joint.index()][swing.axis.index()] += by;
     let tip = skeleton[swing.tip].axis.as_dvec3();
     let in_skeleton = space_f64(skeleton, swing.tip, &angles).transform_point3(tip);
     skeleton.transform().as_daffine3().transform_point3(in_skeleton)
@@ -75,7 +75,7 @@ fn a_swing_changes_one_angle_whatever_its_limits_are() {
         for (joint, before) in skeleton.iter() {
             let mut expected = before.rotation;
             if joint == swing.joint {
-                expected[swing.axis as usize] += by;
+                expected[swing.axis.index()] += by;
             }
             assert_eq!(posed[joint].rotation, expected);
         }

@@ -20,7 +20,7 @@ fn figure(random: &mut Random) -> Figure {
     let is_hinge = random.coin();
     let mut skeleton = Skeleton::default();
     let mut add = |mut joint: Joint| {
-        joint.rotation = joint.clamped(random.angles() * 0.6);
+        joint.rotation = joint.limits.project(random.angles() * 0.6);
         skeleton.add(joint).expect("a joint")
     };
     let trunk = add(Joint::new("trunk", None, Vec3::Y));
@@ -31,7 +31,7 @@ fn figure(random: &mut Random) -> Figure {
         Joint { offset: Vec3::new(0.4, 0.0, 0.05), ..Joint::new("fore", Some(upper), bone) };
     if is_hinge {
         let fixed = Some(Limit { min: 0.0, max: 0.0 });
-        fore.limits = [fixed, fixed, Some(Limit { min: 0.0, max: 2.5 })];
+        fore.limits = [fixed, fixed, Some(Limit { min: 0.0, max: 2.5 })].into();
     }
     let forearm = add(fore);
     add(Joint { offset: bone, ..Joint::new("hand", Some(forearm), Vec3::X * 0.1) });

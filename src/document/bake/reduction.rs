@@ -232,7 +232,10 @@ impl BakedTrack {
     fn changed(&self, placement: Placement, value: Vec3, motion: &Motion) -> Placement {
         match self.channel {
             Channel::Offset(_) => Placement { offset: value, ..placement },
-            _ => Placement { rotation: motion.skeleton[self.joint].clamped(value), ..placement },
+            _ => Placement {
+                rotation: motion.skeleton[self.joint].limits.project(value),
+                ..placement
+            },
         }
     }
 }

@@ -98,7 +98,7 @@ impl InsideDrawing<'_> {
         let is_selected = |column: &&Column| self.selection.contains(&column.joint);
         let any = columns.iter().any(|column| is_selected(&column));
         for column in columns.iter().filter(|column| !any || is_selected(column)) {
-            let colour = scene.palette.axes[column.axis as usize];
+            let colour = scene.palette.axes[column.axis.index()];
             self.add_arrow(scene, column.at, column.by, THIN, colour);
             if column.by.length() > LONG * self.reach {
                 let at = column.at + column.by;
@@ -135,10 +135,10 @@ impl InsideDrawing<'_> {
         for change in step.changes.iter().filter(|change| change.by.abs() > LEAST_TURN) {
             let joint = &pose[change.joint];
             let parent = joint.parent.map_or(pose.transform(), |parent| in_world.full(parent));
-            let axis = joint.rotation_axis(change.axis as usize);
+            let axis = joint.rotation_axis(change.axis);
             let axis = parent.transform_vector3(axis).normalize_or_zero();
             let radius = axis.any_orthonormal_vector() * ARC * self.reach;
-            let colour = scene.palette.axes[change.axis as usize];
+            let colour = scene.palette.axes[change.axis.index()];
             let centre = in_world.base(change.joint);
             scene.add_arc(centre, radius, axis, change.by, colour);
         }

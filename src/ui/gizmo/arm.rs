@@ -7,6 +7,7 @@ use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::screen::{ScreenProjection, bright};
 use super::translate::TranslateHandles;
 use crate::document::{Overlay, TwistReferenceKind};
+use crate::kinematics::skeleton::RotationAxis;
 use crate::session::{ArmJoint, Grip, PointHandle, Session};
 use crate::ui::style;
 
@@ -29,11 +30,12 @@ impl ArmGizmo {
         let hand = (arm.influence == 1.0).then(|| arm.root + pose.hand);
         let is_led = arm.uses_ik();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
-        let angles = (0..3).map(Grip::Shoulder).chain([Grip::Bend]);
+        let angles = RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]);
         let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, RADIUS);
         let is_hand_selected = session.selected_arm_joint() == Some(ArmJoint::Hand)
             && session.shown().display.shows(Overlay::Hand);
-        let of_hand = (0..3).map(Grip::HandRing).filter(|_| is_hand_selected);
+        let of_hand = RotationAxis::ALL.into_iter().map(Grip::HandRing);
+        let of_hand = of_hand.filter(|_| is_hand_selected);
         let outer = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, OUTER_RADIUS);
         Self {
             hand: is_led
@@ -89,7 +91,7 @@ impl ArmGizmo {
         }
         for ring in &self.rings {
             let colour = style::colour(match ring.grip {
-                Grip::Shoulder(axis) | Grip::HandRing(axis) => palette.axes[axis.min(2)],
+                Grip::Shoulder(axis) | Grip::HandRing(axis) => palette.axes[axis.index()],
                 _ => palette.accent,
             });
             let stands_out = dragged.or(pointed) == Some(ring.grip);

@@ -8,7 +8,7 @@ use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::screen::{ScreenProjection, bright, to_segment};
 use super::translate::TranslateHandles;
 use crate::document::Target;
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::rig::TargetReport;
 use crate::session::{Grip, PointHandle, Session};
 use crate::ui::style;
@@ -135,7 +135,7 @@ impl SkeletonGizmo {
         let axes = style::palette(ui).axes.map(style::colour);
         for ring in &self.rings {
             let colour = match ring.grip {
-                Grip::Ring(_, axis) | Grip::Orientation(_, axis) => axes[axis],
+                Grip::Ring(_, axis) | Grip::Orientation(_, axis) => axes[axis.index()],
                 _ => continue,
             };
             ring.paint(painter, faded(ring.grip, colour), stand_out(ring.grip));
@@ -263,5 +263,6 @@ fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
         let ring = session.orientation_ring(target, axis)?;
         RotateRing::new(screen, Grip::Orientation(target, axis), ring, OUTER_RADIUS)
     };
-    (0..3).filter_map(own).chain((0..3).filter_map(of_target)).collect()
+    let all = RotationAxis::ALL.into_iter();
+    all.clone().filter_map(own).chain(all.filter_map(of_target)).collect()
 }

@@ -13,7 +13,7 @@ use super::gizmo::{Gizmo, locked_axis, view_axes};
 use super::keyboard::{self, focus};
 use super::{commands, mouse_hints, pose_summary, why};
 use crate::document::{Camera, Overlay, RigKind};
-use crate::kinematics::skeleton::{JointId, RotationAxis};
+use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, EditAction, Grip,
     PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
@@ -190,7 +190,7 @@ fn joint_at(
 fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actions) {
     let is_asked = ui.input(|input| input.modifiers.alt && !input.pointer.any_down());
     let wiggled = match pointed.filter(|_| is_asked) {
-        Some(Grip::Ring(joint, axis)) => RotationAxis::ALL.get(axis).map(|axis| (joint, *axis)),
+        Some(Grip::Ring(joint, axis)) => Some((joint, axis)),
         _ => None,
     };
     if wiggled != session.wiggled() {

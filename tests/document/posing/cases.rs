@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3, Vec3};
 use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
+use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::session::{
@@ -115,7 +116,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
 #[test]
 fn a_ring_turns_its_own_angle_in_fk() {
     let mut session = session([EditAction::SwitchPoseMode(PoseMode::Angles)]);
-    for grip in [Grip::Shoulder(0), Grip::Shoulder(1), Grip::Shoulder(2), Grip::Bend] {
+    for grip in RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]) {
         let ring = session.arm_ring(grip).expect("a ring");
         let fk = session.arm().fk;
         let forearm = |session: &Session| (session.pose().hand - session.pose().elbow).as_dvec3();
@@ -124,7 +125,7 @@ fn a_ring_turns_its_own_angle_in_fk() {
         match grip {
             Grip::Shoulder(axis) => {
                 let mut angles = fk.shoulder;
-                angles[axis] += 0.2;
+                angles[axis.index()] += 0.2;
                 session.apply(EditAction::SetShoulder(angles));
             }
             _ => {

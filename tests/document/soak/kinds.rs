@@ -2,7 +2,6 @@
 
 use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::OpenOptions;
-use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
@@ -116,7 +115,7 @@ kinds! {
         };
         SetRotation: Build 6, |v| EditAction::SetRotation { joint: v.joint(), rotation: v.angles() };
         SetAxis: Build 3, |v| EditAction::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
-        SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.axis(), limit: v.limit() };
+        SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.rotation_axis(), limit: v.limit() };
         SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
         AddSkin: Build 1, |_| EditAction::AddSkin;
         ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
@@ -165,7 +164,7 @@ kinds! {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
         Hover: Look 2, |v| SelectAction::Hover(v.body_part());
         Wiggle: Look 1, |v| {
-            let axis = v.one_of(&RotationAxis::ALL);
+            let axis = v.rotation_axis();
             SelectAction::Wiggle(if v.coin() { None } else { Some((v.joint(), axis)) })
         };
         ArmJoint: Look 1, |v| {

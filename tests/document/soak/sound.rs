@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, SkeletonRig, Target};
 use ik_arm::kinematics::chain_ik::SolverOptions;
 use ik_arm::kinematics::ik::IkState;
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 use ik_arm::kinematics::skin::VertexWeights;
 use ik_arm::rig::{Skin, SkinSource};
 use ik_arm::session::Session;
@@ -174,11 +174,11 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
     let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
     hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
     hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
-    for limit in limits.iter().flatten() {
+    for limit in RotationAxis::ALL.into_iter().filter_map(|axis| limits.range(axis)) {
         let Limit { min, max } = limit;
         hold!(min.is_finite() && max.is_finite() && min <= max, "{name:?} has limits: {limit:?}");
     }
-    hold!(joint.clamped(*rotation) == *rotation, "{name:?} is within its limits: {joint:?}");
+    hold!(joint.limits.contains(*rotation), "{name:?} is within its limits: {joint:?}");
     Ok(())
 }
 

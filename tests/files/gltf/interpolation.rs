@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3, DVec4, Quat, Vec3};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io;
-use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::kinematics::skeleton::{JointId, JointLimits};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 use serde_json::{Value, json};
 
@@ -302,7 +302,8 @@ fn keyed(random: &mut Random, kinds: [&[Interpolation]; 2]) -> Document {
     document.timeline = ik_arm::document::Timeline { start: 0.5, end: 4.5, frame_rate: 24.0 };
     let joints = document.skeleton().joints().len();
     for joint in (0..joints).map(JointId::new) {
-        let unlimited = document.skeleton_mut().change(joint, |joint| joint.limits = [None; 3]);
+        let unlimited =
+            document.skeleton_mut().change(joint, |joint| joint.limits = JointLimits::NONE);
         unlimited.expect("limits may go");
         let offset = document.skeleton()[joint].offset;
         let channels = [Channel::Rotation(joint), Channel::Offset(joint)];

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::solve_inputs::SolveInputs;
 use crate::chain_ik::{TipTarget, jacobian};
-use crate::skeleton::{JointId, Limit, RotationAxis, Skeleton};
+use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 /// The moment about one angle of a joint with which a target pulls at a tip, as a fraction of the
 /// longest lever arm times the residual.
@@ -41,7 +41,7 @@ impl Pulls {
         let free = |pull: &&Pull| !pose[pull.joint].locked;
         let speed = |towards: Vec3| {
             let columns =
-                all.iter().filter(free).map(|it| columns[it.joint.index()][it.axis as usize]);
+                all.iter().filter(free).map(|it| columns[it.joint.index()][it.axis.index()]);
             columns.map(|column| column.dot(towards).powi(2)).sum::<f32>().sqrt()
         };
         let greatest = [Vec3::X, Vec3::Y, Vec3::Z].map(speed).into_iter().fold(0.0, f32::max);
@@ -54,7 +54,7 @@ impl Pulls {
     pub fn against_limits<'a>(&'a self, pose: &'a Skeleton) -> impl Iterator<Item = Pull> + 'a {
         self.all.iter().copied().filter(|pull| {
             let joint = &pose[pull.joint];
-            pull.strength() > 0.0 && !joint.locked && pull.is_outward(joint.limits, joint.rotation)
+            pull.strength() > 0.0 && !joint.locked && pull.is_outward(joint)
         })
     }
 
@@ -78,17 +78,11 @@ impl Pull {
         if size > LEAST { size } else { 0.0 }
     }
 
-    fn is_outward(&self, limits: [Option<Limit>; 3], angles: Vec3) -> bool {
+    /// Whether a limit of the joint is in the way.
+    fn is_outward(&self, joint: &Joint) -> bool {
         // Angles this near to a limit are at it.
         const AT: f32 = 1e-4;
-        let axis = self.axis as usize;
-        limits[axis].is_some_and(|limit| {
-            if self.moment > 0.0 {
-                angles[axis] >= limit.max - AT
-            } else {
-                angles[axis] <= limit.min + AT
-            }
-        })
+        joint.limits.stops(joint.rotation, self.axis, self.moment, AT)
     }
 }
 

@@ -107,7 +107,7 @@ impl World<'_> {
                         axis,
                         tip: effector.joint,
                         at: self.point(effector.tree, tip),
-                        by: self.vector(config.axes[index].col(axis as usize).cross(arm)),
+                        by: self.vector(config.axes[index].col(axis.index()).cross(arm)),
                     });
                 }
             }
@@ -138,12 +138,10 @@ impl World<'_> {
         let links = self.problem.links.iter().enumerate();
         let changes = links.flat_map(|(index, link)| {
             RotationAxis::ALL.into_iter().map(move |axis| {
-                let nth = axis as usize;
-                let angle = after.angles[index][nth];
-                let is_at_limit =
-                    link.limits[nth].is_some_and(|it| angle <= it.min || angle >= it.max);
+                let nth = axis.index();
+                let is_at_limit = link.limits.is_at_end(after.angles[index], axis);
                 let gradient = -before.descent.angles[index][nth];
-                let by = angle - before.config.angles[index][nth];
+                let by = after.angles[index][nth] - before.config.angles[index][nth];
                 let gradient = (f64::from(gradient) * self.scale().powi(2)) as f32;
                 AngleChange { joint: link.joint, axis, gradient, by, is_at_limit }
             })

@@ -1,7 +1,7 @@
 use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
 use crate::chain_ik::TipTarget;
-use crate::skeleton::{JointId, Limit};
+use crate::skeleton::{JointId, JointLimits};
 
 /// A joint that rotates, with everything that is rigidly attached to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,17 +14,11 @@ pub struct Link {
     /// the tree's origin.
     pub pivot: Vec3A,
     pub mount: Mat3A,
-    pub limits: [Option<Limit>; 3],
+    pub limits: JointLimits,
     /// End effectors at the link and below, as a range of [`Problem::below`].
     pub below: (usize, usize),
     /// Euler angles before the run, in radians.
     pub start: Vec3,
-}
-
-impl Link {
-    pub fn is_limited(&self) -> bool {
-        self.limits.iter().any(Option::is_some)
-    }
 }
 
 /// A tip with its target.

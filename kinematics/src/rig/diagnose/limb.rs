@@ -156,7 +156,7 @@ impl RigCase<'_> {
         let remedy = self.widened(&angles)?;
         let Remedy::WidenLimits(widened) = &remedy else { return None };
         let mut axes = [false; 3];
-        widened.iter().for_each(|it| axes[it.axis as usize] = true);
+        widened.iter().for_each(|it| axes[it.axis.index()] = true);
         let tried = Vec::from_iter(self.try_rotation_remedy(remedy));
         Some(self.diagnosis(Cause::RotationLimits { missing, axes }, vec![hand], tried))
     }

@@ -6,7 +6,7 @@ use ik_arm_kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy};
 use ik_arm_kinematics::rig::{
     LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetPath, TargetSpace,
 };
-use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
 
 use crate::common::Random;
@@ -179,7 +179,7 @@ fn the_limits_of_an_elbow_that_keep_a_limb_from_its_target_are_named() {
             });
             let skeleton = rig.skeleton_mut();
             let fixed = Some(Limit { min: 0.0, max: 0.0 });
-            let hinge = [fixed, fixed, Some(Limit { min: 0.0, max: most })];
+            let hinge = JointLimits::new([fixed, fixed, Some(Limit { min: 0.0, max: most })]);
             let along = Vec3::Y * skeleton[UPPER].axis.length();
             skeleton.set_axis(UPPER, along).expect("axis");
             let axis = Vec3::Y * skeleton[LOWER].axis.length();
@@ -219,7 +219,7 @@ fn turned_hand(random: &mut Random, axis: usize, angle: f32) -> SkeletonRig {
     let mut rig = limb(random, inside);
     rig.skeleton_mut().set_rotation(HAND, Vec3::ZERO).expect("angles");
     let limits = HAND_LIMITS.map(|most| Some(Limit { min: -most, max: most }));
-    rig.skeleton_mut().change(HAND, |joint| joint.limits = limits).expect("limits");
+    rig.skeleton_mut().change(HAND, |joint| joint.limits = limits.into()).expect("limits");
     let pose = rig.skeleton_at(0.0);
     let turn = Quat::from_axis_angle(Vec3::AXES[axis], angle);
     let wanted = pose.rotation_in_world(LOWER).as_quat() * turn;
@@ -253,7 +253,7 @@ fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_
 
         let tried = remedies.first().expect("a remedy");
         let Remedy::WidenLimits(widened) = &tried.remedy else { panic!("{tried:?}") };
-        assert!(matches!(&widened[..], [one] if one.joint == HAND && one.axis as usize == axis));
+        assert!(matches!(&widened[..], [one] if one.joint == HAND && one.axis.index() == axis));
         assert!(widened[0].by >= beyond - 1e-4 && widened[0].by < beyond + 0.02, "{widened:?}");
         rig.apply_remedy(&tried.remedy, 0.0).expect("limits");
         let report = &rig.evaluate(0.0).targets[0];

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
 use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
-use crate::kinematics::skeleton::{Joint, JointId, Limit, Skeleton, SkeletonError};
+use crate::kinematics::skeleton::{
+    Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
+};
 
 #[derive(Serialize, Deserialize)]
 pub struct SkeletonFields {
@@ -63,7 +65,7 @@ impl SkeletonFields {
         let mut joints: Vec<Joint> = Vec::new();
         for (index, JsonObject(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
             let joint = fields.joint(&joints);
-            if is_beyond_limits(&joint) {
+            if !joint.limits.contains(joint.rotation) {
                 let field = at_joints.clone().index(index).key("rotation");
                 warnings.push(field, "must be within the joint's limits; clamped");
             }
@@ -112,8 +114,8 @@ impl JointFields {
         // Compares bits, because −0 equals 0: a frame with −0 must be written.
         let is_identity =
             frame.map(f32::to_bits) == Mat3::IDENTITY.to_cols_array().map(f32::to_bits);
-        let [x, y, z] =
-            joint.limits.map(|limit| limit.map(|Limit { min, max }| JsonNumbers([min, max])));
+        let [x, y, z] = RotationAxis::ALL
+            .map(|axis| joint.limits.range(axis).map(|Limit { min, max }| JsonNumbers([min, max])));
         Self {
             name: joint.name.clone(),
             parent: joint.parent.and_then(|parent| u32::try_from(parent.index()).ok()).map(Whole),
@@ -121,7 +123,7 @@ impl JointFields {
             axis: Some(JsonPoint(joint.axis)),
             rotation: Some(JsonPoint(joint.rotation)),
             frame: (!is_identity).then_some(JsonNumbers(frame)),
-            limits: joint.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
+            limits: joint.limits.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
             locked: joint.locked.then_some(true),
             connected: joint.connected.then_some(true),
             radius: Some(JsonNumber(joint.radius)),
@@ -142,18 +144,14 @@ impl JointFields {
             frame: self
                 .frame
                 .map_or(Mat3::IDENTITY, |JsonNumbers(frame)| Mat3::from_cols_array(&frame)),
-            limits: [limits.x, limits.y, limits.z]
-                .map(|limit| limit.map(|JsonNumbers([min, max])| Limit { min, max })),
+            limits: JointLimits::new(
+                [limits.x, limits.y, limits.z]
+                    .map(|limit| limit.map(|JsonNumbers([min, max])| Limit { min, max })),
+            ),
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),
             radius: self.radius.map_or(default.radius.min(f32::MAX), |JsonNumber(radius)| radius),
             ..default
         }
     }
-}
-
-fn is_beyond_limits(joint: &Joint) -> bool {
-    let angles = joint.rotation.to_array().into_iter();
-    let mut limited = angles.zip(joint.limits).filter_map(|(angle, limit)| Some((angle, limit?)));
-    limited.any(|(angle, Limit { min, max })| angle < min || angle > max)
 }

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::targets;
 use crate::document::Channel;
-use crate::kinematics::skeleton::{Joint, JointId, Limit};
+use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
@@ -22,7 +22,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
         ui.weak(format!("{count} joints selected; this is the last one."));
     }
     rotation(ui, session, index, joint, actions);
-    limits(ui, session, index.index(), joint, actions);
+    limits(ui, session, index, joint, actions);
     bone(ui, session, index, joint, actions);
     parent(ui, session, index, joint, actions);
     let mut locked = joint.locked;
@@ -45,19 +45,19 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         let how = if target.influence < 1.0 { "Blended with" } else { "Posed by" };
         ui.weak(format!("{how} the target of {end}; below are the FK angles."));
     }
-    for (axis, label) in AXES.into_iter().enumerate() {
-        let limit = joint.limits[axis];
-        let is_stiff = limit.is_some_and(|limit| limit.min == limit.max);
-        let range = limit
-            .filter(|_| !is_stiff)
-            .map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
+    for axis in RotationAxis::ALL {
+        let label = axis.name();
+        let is_stiff = joint.limits.is_fixed(axis);
+        let limit = joint.limits.range(axis).filter(|_| !is_stiff);
+        let range =
+            limit.map_or((-180.0, 180.0), |limit| (limit.min.to_degrees(), limit.max.to_degrees()));
         let slider = Slider {
             name: &format!("Rotation {label}"),
             label: &format!("Rotate {label}"),
-            colour: Some(style::colour(colours[axis])),
+            colour: Some(style::colour(colours[axis.index()])),
             term: None,
             tooltip: &format!("Rotate about {label} (Euler order x, y, z)"),
-            value: shown[axis].to_degrees(),
+            value: shown[axis.index()].to_degrees(),
             range,
             default: 0.0,
             unit: "°",
@@ -67,17 +67,17 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         };
         slider.show(ui, session, actions, |degrees| {
             let mut rotation = joint.rotation;
-            rotation[axis] = degrees.to_radians();
+            rotation[axis.index()] = degrees.to_radians();
             EditAction::SetRotation { joint: index, rotation }
         });
     }
 }
 
 /// Shows, for each axis, a check box that limits the rotation, with the range beside it.
-fn limits(ui: &mut Ui, session: &Session, index: usize, joint: &Joint, actions: &mut Actions) {
-    for (axis, label) in AXES.into_iter().enumerate() {
-        let limit = joint.limits[axis];
-        let set = |limit| EditAction::SetLimit { joint: JointId::new(index), axis, limit };
+fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
+    for axis in RotationAxis::ALL {
+        let (label, limit) = (axis.name(), joint.limits.range(axis));
+        let set = |limit| EditAction::SetLimit { joint: index, axis, limit };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let mut limited = limit.is_some();

@@ -127,6 +127,10 @@ impl Values<'_> {
         if self.is_wild() { self.one_of(&[3, 99, usize::MAX]) } else { self.random.below(3) }
     }
 
+    pub fn rotation_axis(&mut self) -> RotationAxis {
+        self.one_of(&RotationAxis::ALL)
+    }
+
     pub fn limit(&mut self) -> Option<Limit> {
         let (a, b) = (self.angle(), self.angle());
         match self.random.below(5) {
@@ -235,7 +239,7 @@ impl Values<'_> {
             2 => Remedy::SetRoot(self.one_of(&Root::ALL)),
             3 => {
                 let limit = self.limit().unwrap_or(Limit { min: 0.0, max: 0.0 });
-                let axis = self.one_of(&RotationAxis::ALL);
+                let axis = self.rotation_axis();
                 Remedy::WidenLimits(vec![WidenedLimit {
                     joint: self.joint(),
                     axis,

@@ -65,7 +65,7 @@ impl Values<'_> {
         match self.random.below(15) {
             0 | 1 => Grip::Hand(self.handle()),
             2 => Grip::Pole(self.handle()),
-            3 => Grip::Shoulder(self.axis()),
+            3 => Grip::Shoulder(self.rotation_axis()),
             4 => Grip::Bend,
             5 => Grip::Target(self.aimed(), self.handle()),
             6 => Grip::Tip(joint, self.handle()),
@@ -74,9 +74,9 @@ impl Values<'_> {
             9 => Grip::Head(joint, self.handle()),
             10 => Grip::Limb,
             11 => Grip::UpperLimb,
-            12 => Grip::HandRing(self.axis()),
-            13 => Grip::Orientation(self.aimed(), self.axis()),
-            _ => Grip::Ring(joint, self.axis()),
+            12 => Grip::HandRing(self.rotation_axis()),
+            13 => Grip::Orientation(self.aimed(), self.rotation_axis()),
+            _ => Grip::Ring(joint, self.rotation_axis()),
         }
     }
 

@@ -58,7 +58,9 @@ impl KeptTracks {
         let mut kept = Self::default();
         for (joint, own) in skeleton.iter() {
             let track = |channel| document.keys.track(channel);
-            if let Some(turns) = track(Channel::Rotation(joint)).filter(|_| !own.is_limited()) {
+            if let Some(turns) =
+                track(Channel::Rotation(joint)).filter(|_| !own.limits.is_limited())
+            {
                 kept.add_rotation(joint, turns, timeline, || {
                     node_rotation(rig, joint, own, transform)
                 });
