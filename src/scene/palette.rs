@@ -107,15 +107,30 @@ impl Palette {
 
     /// Colour of a solver method in the comparison of solvers.
     pub fn method(&self, method: Method) -> Colour {
-        let [dark, light] = match method {
-            Method::TransposeFixed => [0xc9a227, 0x7d6300],
-            Method::Transpose => [0xf2d06b, 0x9a7b1c],
-            Method::DampedLeastSquares => [0x3fb8a5, 0x0b7466],
-            Method::Ccd => [0x8fd460, 0x3f7a15],
-            Method::Fabrik => [0xb397f5, 0x6a42c4],
-            Method::Relaxation => [0x5ccbe8, 0x0d7896],
-            Method::TwoBone => [0xf08fb4, 0xb02a63],
-        };
+        self.series(match method {
+            Method::TransposeFixed => 0,
+            Method::Transpose => 1,
+            Method::DampedLeastSquares => 2,
+            Method::Ccd => 3,
+            Method::Fabrik => 4,
+            Method::Relaxation => 5,
+            Method::TwoBone => 6,
+        })
+    }
+
+    /// Colour of a curve or part of a diagram, from a series of seven that differ in hue or brightness.
+    pub fn series(&self, index: usize) -> Colour {
+        /// For the dark and the light theme.
+        const SERIES: [[u32; 2]; 7] = [
+            [0xc9a227, 0x7d6300],
+            [0xf2d06b, 0x9a7b1c],
+            [0x3fb8a5, 0x0b7466],
+            [0x8fd460, 0x3f7a15],
+            [0xb397f5, 0x6a42c4],
+            [0x5ccbe8, 0x0d7896],
+            [0xf08fb4, 0xb02a63],
+        ];
+        let [dark, light] = SERIES[index % SERIES.len()];
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 

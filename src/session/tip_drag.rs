@@ -110,10 +110,8 @@ impl Session {
             return self.say("A target poses this bone; drag the target instead");
         }
         let target = TipTarget { joint, point: start.tip(joint) + moved, weight: 1.0 };
-        let method = match before.solver.method {
-            Method::TwoBone => Method::Fabrik,
-            method => method,
-        };
+        let method = before.solver.method;
+        let method = if method.is_closed_form() { Method::default() } else { method };
         let options = SolverOptions { method, iterations: Some(ITERATIONS), ..before.solver };
         self.edit_document(|document| {
             let mut solved = start.clone();

@@ -1,7 +1,6 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
 use crate::document::{Channel, Overlay, PathKind, RigKind, Target, TwistReferenceKind};
-use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Session};
 
@@ -126,21 +125,6 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
         TwistReferenceKind::Transport => {
             "Transport along the hand's path; never flips; keys use Stereographic"
         }
-    }
-}
-
-/// Tooltip of a solver.
-pub(in crate::ui) fn method_tooltip(method: Method) -> &'static str {
-    match method {
-        Method::TransposeFixed => "Descend the gradient with a fixed step: smooth but slow",
-        Method::Transpose => "Descend the gradient with steps that fit its curvature",
-        Method::DampedLeastSquares => {
-            "Solve damped least squares: few iterations, handles limits and many targets"
-        }
-        Method::Ccd => "Rotate one joint at a time, tip to root: cheap, bends tips",
-        Method::Fabrik => "Move joint positions along the chain: very cheap, may stall at limits",
-        Method::Relaxation => "Move both ends of each bone in turn: smooth, many iterations",
-        Method::TwoBone => "Solve the target's joint and its parent in closed form",
     }
 }
 

@@ -3,7 +3,7 @@ use core::fmt;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::Method;
+use super::method::{Method, TwoBoneRefusal, TwoBonesRefused};
 use crate::skeleton::JointId;
 
 /// A skeleton, target or option that cannot be solved.
@@ -98,23 +98,8 @@ impl fmt::Display for OptionField {
     }
 }
 
-/// Reason why [`Method::TwoBone`](super::Method::TwoBone) cannot move a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum TwoBoneRefusal {
-    /// The joint is a root.
-    #[error("it has no parent")]
-    NoParent,
-    /// The joint is locked, or a locked root.
-    #[error("it is locked")]
-    Locked,
-    /// The joint's parent is locked, or a locked root.
-    #[error("its parent is locked")]
-    ParentLocked,
-    /// One of the two bones has length 0, or a length that the closed form cannot solve.
-    #[error("one of its two bones has no length")]
-    NoLength,
-    /// The joint or its parent belongs to the limb of another target.
-    #[error("another target moves the same joint")]
-    Shared,
+impl From<TwoBonesRefused> for SolveError {
+    fn from(TwoBonesRefused { joint, reason }: TwoBonesRefused) -> Self {
+        Self::TwoBone { joint, reason }
+    }
 }

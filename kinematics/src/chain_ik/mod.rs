@@ -40,38 +40,28 @@
 //!   start loses precision.
 
 mod align;
-mod barzilai_borwein;
-mod ccd;
 mod configuration;
 mod coordinates;
-mod damped_least_squares;
 mod diagnose;
 mod error;
-mod escape;
-mod fabrik;
 mod inside;
 mod jacobian;
-mod link_points;
 mod method;
-mod method_state;
 mod options;
 mod perturb;
 mod problem;
-mod relaxation;
 mod report;
 mod solver;
 mod stall;
 mod target;
-mod transpose;
-mod two_bone;
 
 pub use diagnose::{diagnose, diagnose_targets};
-pub use error::{OptionField, SolveError, TwoBoneRefusal};
+pub use error::{OptionField, SolveError};
 pub use inside::{
     AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
 };
 pub use jacobian::jacobian;
-pub use method::{Method, ParseMethodError};
+pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use options::{Root, SolverOptions};
 pub use report::{Report, Status};
 pub use solver::{ChainSolver, solve};

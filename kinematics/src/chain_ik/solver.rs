@@ -1,9 +1,8 @@
 use super::configuration::Configuration;
-use super::escape::Escape;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
-use super::method_state::MethodState;
+use super::method::{MethodInputs, MethodState};
 use super::problem::{self, Problem};
-use super::stall::StallDetector;
+use super::stall::{Escape, StallDetector};
 use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
 use crate::saturate::saturate;
 use crate::skeleton::Skeleton;
@@ -78,7 +77,7 @@ impl ChainSolver {
     ) -> Result<Self, SolveError> {
         options.check()?;
         let problem = problem::build(skeleton, targets, options)?;
-        let (method, of_iteration) = (options.method, options.method.work(&problem));
+        let (method, of_iteration) = (options.method, (options.method.row().work)(&problem));
         if of_iteration > work {
             let (targets, links) = (targets.len(), problem.links.len());
             return Err(SolveError::TooMuchWork { method, targets, links });
@@ -95,16 +94,17 @@ impl ChainSolver {
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         let tolerance = options.tolerance.map_or(1e-4 * problem.world_length(), f64::from);
-        let state = MethodState::new(&problem, skeleton, options)?;
+        let SolverOptions { method, damping, step, .. } = *options;
+        let inputs = MethodInputs { problem: &problem, skeleton, damping, step };
+        let state = MethodState::new(method, &inputs)?;
         let mut config = Configuration::new(&problem);
-        if state.uses_orientations() {
+        if method.row().uses_orientations {
             config.set_orientations();
         }
-        let stall =
-            StallDetector::new(options.method, problem.length_from_world(tolerance), &config);
-        let report =
-            Report { method: options.method, iterations: 0, error: 0.0, status: Status::Iterating };
-        let max_iterations = options.iterations.unwrap_or(options.method.budget());
+        let least = problem.length_from_world(tolerance);
+        let stall = StallDetector::new(method.row().patience, least, &config);
+        let report = Report { method, iterations: 0, error: 0.0, status: Status::Iterating };
+        let max_iterations = options.iterations.unwrap_or(method.budget());
         let (start, escape) = (config.clone(), Escape::new(&config));
         let mut solver = Self {
             report,
@@ -124,7 +124,7 @@ impl ChainSolver {
 
     /// Work of the iterations so far, in the units of [`ChainSolver::bounded`].
     pub(crate) fn work(&self) -> u64 {
-        let of_iteration = self.report.method.work(&self.problem);
+        let of_iteration = (self.report.method.row().work)(&self.problem);
         of_iteration.saturating_mul(u64::from(self.report.iterations.max(1)))
     }
 
@@ -304,8 +304,7 @@ impl ChainSolver {
 
     /// Whether the method may start from another pose than it has come to.
     fn can_escape(&self) -> bool {
-        let is_closed_form = matches!(self.state, MethodState::TwoBone(_));
-        !is_closed_form && !self.problem.free_roots
+        !self.report.method.is_closed_form() && !self.problem.free_roots
     }
 
     /// Changes the configuration's angles. If `change` returns `false`, nothing has changed but for
@@ -316,7 +315,7 @@ impl ChainSolver {
         }
         let config = &mut self.config;
         self.state.update_orientations(config);
-        let uses_orientations = self.state.uses_orientations();
+        let uses_orientations = self.report.method.row().uses_orientations;
         if uses_orientations {
             config.update_angles(&self.problem);
             config.forward(&self.problem);
@@ -331,7 +330,7 @@ impl ChainSolver {
     /// Returns to the best configuration so far and starts again from there in another way. If all
     /// ways have failed, the solver has stalled: another run from there would change nothing.
     fn escape_or_stall(&mut self) {
-        if matches!(self.state, MethodState::TwoBone(_)) {
+        if self.report.method.is_closed_form() {
             self.report.status = Status::Stalled;
             return;
         }

@@ -1,6 +1,38 @@
-use super::Method;
 use super::configuration::Configuration;
 use super::problem::Problem;
+
+/// Number of iterations without an improvement after which a method has stalled, and the decrease of
+/// the distance that is an improvement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Patience {
+    iterations: u32,
+    /// Whether the method repeats the same steps from the same angles.
+    repeats_steps: bool,
+    /// See [`StallDetector::least_moving`].
+    least_moving: f64,
+}
+
+impl Patience {
+    /// Of a method that repeats the same steps from the same angles.
+    pub const fn of_repeated_steps(iterations: u32) -> Self {
+        Self { iterations, repeats_steps: true, least_moving: f64::INFINITY }
+    }
+
+    /// Of a method that works on orientations. Written angles are rounded, and another run from them
+    /// takes other steps. For that run to find no improvement, almost none may be left.
+    pub const fn of_orientations(iterations: u32, least_moving: f64) -> Self {
+        Self { iterations, repeats_steps: false, least_moving }
+    }
+
+    /// Decrease of the distance up to which an iteration is idle. `tolerance` is in the problem's
+    /// units.
+    fn least_decrease(self, tolerance: f64) -> f64 {
+        let rounding = f64::from(f32::EPSILON);
+        // At this rate of improvement, 500 iterations together improve by less than one tolerance.
+        let fraction = f64::from(self.iterations) / 500.0;
+        if self.repeats_steps { (fraction * tolerance).max(rounding) } else { 2.0 * rounding }
+    }
+}
 
 /// Detects when iterations have ceased to improve on a reference configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,35 +58,15 @@ pub(super) struct StallDetector {
 }
 
 impl StallDetector {
-    pub fn new(method: Method, tolerance: f64, config: &Configuration) -> Self {
-        let patience = match method {
-            // The fixed step overshoots for longer before it settles, and the poses that points of
-            // relaxation give are not nearer after every pass.
-            Method::TransposeFixed | Method::Relaxation => 100,
-            _ => 20,
-        };
-        // At this rate of improvement, 500 iterations together improve by less than one tolerance.
-        let fraction = f64::from(patience) / 500.0;
-        let rounding = f64::from(f32::EPSILON);
-        let (least, least_moving) = match method {
-            // Written angles are rounded, and another run from them takes other steps. For that run
-            // to find no improvement, almost none may be left. In exact arithmetic no sweep
-            // increases the distance.
-            Method::Ccd => (2.0 * rounding, -rounding),
-            // With conflicting targets, FABRIK converges near the minimum, not at it.
-            Method::Fabrik => (2.0 * rounding, -1e-5),
-            Method::Relaxation => (2.0 * rounding, f64::INFINITY),
-            // From the same angles these methods repeat the same steps.
-            _ => ((fraction * tolerance).max(rounding), f64::INFINITY),
-        };
+    pub fn new(patience: Patience, tolerance: f64, config: &Configuration) -> Self {
         Self {
             reference: config.clone(),
             distance: 0.0,
             mean: 0.0,
             idle: 0,
-            patience,
-            least,
-            least_moving,
+            patience: patience.iterations,
+            least: patience.least_decrease(tolerance),
+            least_moving: patience.least_moving,
             drifts: 0,
         }
     }
@@ -93,5 +105,52 @@ impl StallDetector {
     fn is_moving(&self, problem: &Problem, config: &Configuration) -> bool {
         const STILL: f32 = 1e-5;
         config.max_displacement(&self.reference) > STILL * problem.length
+    }
+}
+
+/// Attempts to leave a local minimum, and the best configuration found before them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Escape {
+    /// Number of attempts since the best configuration was found.
+    pub attempts: u32,
+    pub best: Configuration,
+    /// Root mean square distance of the best configuration from the targets, in the problem's
+    /// units; infinite without a best configuration.
+    distance: f64,
+    /// Space for a configuration before it is changed.
+    pub scratch: Configuration,
+}
+
+impl Escape {
+    pub fn new(config: &Configuration) -> Self {
+        Self { attempts: 0, best: config.clone(), distance: f64::INFINITY, scratch: config.clone() }
+    }
+
+    /// Forgets the best configuration and all attempts.
+    pub fn reset(&mut self) {
+        self.attempts = 0;
+        self.distance = f64::INFINITY;
+    }
+
+    /// Replaces `config` by the best configuration if that is nearer to the targets.
+    pub fn restore_best(&self, problem: &Problem, config: &mut Configuration) {
+        if self.distance < config.distance(problem) {
+            config.copy_from(&self.best);
+        }
+    }
+
+    /// Makes `config` the best configuration if it is nearer to the targets. All attempts may be made
+    /// again if it is much nearer, and the first one if it is nearer at all.
+    pub fn observe(&mut self, problem: &Problem, config: &Configuration) {
+        // Relative decrease of the distance that is worth the same attempts again.
+        const WORTH: f64 = 1e-3;
+        let distance = config.distance(problem);
+        if distance < self.distance {
+            if self.attempts <= 1 || distance < (1.0 - WORTH) * self.distance {
+                self.attempts = 0;
+            }
+            self.best.copy_from(config);
+            self.distance = distance;
+        }
     }
 }

@@ -5,7 +5,6 @@ use core::time::Duration;
 use egui::{Align, Color32, Grid, Layout, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 
-use crate::kinematics::chain_ik::Method;
 use crate::scene::Palette;
 use crate::ui::frame_times::{FrameTime, FrameTimes, Machine};
 use crate::ui::style;
@@ -28,25 +27,25 @@ const PARTS: [FramePart; 5] = [
         name: "Solve",
         tooltip: "Actions, solvers and playback",
         of: |frame| frame.solve,
-        colour: |palette| style::colour(palette.method(Method::DampedLeastSquares)),
+        colour: |palette| style::colour(palette.series(2)),
     },
     FramePart {
         name: "Panels",
         tooltip: "Layout and tessellation of the panels",
         of: |frame| frame.panels,
-        colour: |palette| style::colour(palette.method(Method::Fabrik)),
+        colour: |palette| style::colour(palette.series(4)),
     },
     FramePart {
         name: "Scene",
         tooltip: "Making the scene from the document",
         of: |frame| frame.scene,
-        colour: |palette| style::colour(palette.method(Method::TwoBone)),
+        colour: |palette| style::colour(palette.series(6)),
     },
     FramePart {
         name: "Encode",
         tooltip: "Upload of changes and GPU commands",
         of: |frame| frame.encode,
-        colour: |palette| style::colour(palette.method(Method::Transpose)),
+        colour: |palette| style::colour(palette.series(1)),
     },
     FramePart {
         name: "Wait",

@@ -120,12 +120,13 @@ impl Problem {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
             let axis = self.scaled(skeleton[target.joint].axis);
             let reach = attachment.path as f32 + axis.length();
-            // Of a target out of reach only the direction counts. The fixed step is stable while
-            // the target is less than about twice as far away as the tip can be; the other methods
-            // only need the tip's position not to be lost to rounding.
-            let max_distance = match method {
-                Method::TransposeFixed if !self.free_roots => 1.25 * f64::from(reach),
-                _ => 1e4 * f64::from(self.length.max(1.0)),
+            // Of a target out of reach only the direction counts, unless it loses the tip's position
+            // to rounding or the method is not stable that far away.
+            let stable_distance = method.row().stable_distance;
+            let max_distance = if stable_distance.is_finite() && !self.free_roots {
+                stable_distance * f64::from(reach)
+            } else {
+                1e4 * f64::from(self.length.max(1.0))
             };
             self.effectors.push(EndEffector {
                 joint: target.joint,

@@ -7,7 +7,7 @@ use egui::{
     Align, Color32, Grid, Layout, Rect, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
-use crate::kinematics::chain_ik::{Method, Report, Status};
+use crate::kinematics::chain_ik::{Report, Status};
 use crate::session::{Actions, ComparedSolver, Session, SolverAction};
 use crate::ui::widgets::{self, format};
 use crate::ui::{labels, style};
@@ -65,12 +65,12 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-        let said = format!("{}: {}", short_name(solver.method), status(solver));
+        let said = format!("{}: {}", solver.method.short_title(), status(solver));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
         let has_converged = solver.run.as_ref().is_ok_and(|run| run.report().converged());
         square(ui, rect, colour, has_converged);
         response.on_hover_text(said);
-        let label = ui.label(short_name(solver.method));
+        let label = ui.label(solver.method.short_title());
         label.on_hover_text(format!("{}. {}", solver.method.title(), status(solver)));
     });
     let texts = match &solver.run {
@@ -97,18 +97,6 @@ fn status(solver: &ComparedSolver) -> String {
             let Report { status, iterations, .. } = run.report();
             format!("{status} after {iterations} iterations")
         }
-    }
-}
-
-fn short_name(method: Method) -> &'static str {
-    match method {
-        Method::TransposeFixed => "Fixed step",
-        Method::Transpose => "Transpose",
-        Method::DampedLeastSquares => "Damped l. s.",
-        Method::Ccd => "CCD",
-        Method::Fabrik => "FABRIK",
-        Method::Relaxation => "Relaxation",
-        Method::TwoBone => "Two-bone",
     }
 }
 

@@ -25,7 +25,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
     ui.label(RichText::new(title).strong().color(style::accent(ui)));
     legend(ui, session, &parts[shown].kind, actions);
-    if run.method() == Method::DampedLeastSquares {
+    if run.method().uses_damping() {
         damping(ui, session, actions);
     }
     numbers(ui, session, run, shown);

@@ -9,7 +9,6 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
-use crate::ui::labels;
 use crate::ui::widgets::{self, NumberField, format};
 use comparison::why_not;
 
@@ -73,14 +72,14 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let response = combo.show_ui(ui, |ui| {
         for method in Method::ALL {
             let item = ui.selectable_label(method == options.method, method.title());
-            if item.on_hover_text(labels::method_tooltip(method)).clicked() {
+            if item.on_hover_text(method.summary()).clicked() {
                 actions.push(EditAction::SetSolver(SolverOptions { method, ..options }));
             }
         }
     });
     let response = response.response;
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Method"));
-    response.on_hover_text(labels::method_tooltip(options.method));
+    response.on_hover_text(options.method.summary());
 }
 
 fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -112,33 +111,25 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             });
     });
     tolerance(ui, session, actions);
-    match options.method {
-        Method::DampedLeastSquares => {
-            widgets::term_pair(ui, "Damping λ", "Damping", actions, |ui, actions| {
-                let tooltip = "Set the damping λ, in chain lengths: more is stabler, slower";
-                let value = options.damping;
-                NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }
-                    .show(ui, session, actions, |damping| {
-                        set(SolverOptions { damping, ..options })
-                    });
-            });
-        }
-        Method::TransposeFixed => {
-            widgets::pair(ui, "Step", |ui| {
-                let tooltip = "Set the step, as a fraction of the largest stable one";
-                NumberField {
-                    name: "Step length",
-                    value: options.step,
-                    unit: "",
-                    step: 0.1,
-                    digits: 2,
-                    tooltip,
-                }
+    if options.method.uses_damping() {
+        widgets::term_pair(ui, "Damping λ", "Damping", actions, |ui, actions| {
+            let tooltip = "Set the damping λ, in chain lengths: more is stabler, slower";
+            let value = options.damping;
+            NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
+                ui,
+                session,
+                actions,
+                |damping| set(SolverOptions { damping, ..options }),
+            );
+        });
+    }
+    if options.method.uses_step() {
+        widgets::pair(ui, "Step", |ui| {
+            let tooltip = "Set the step, as a fraction of the largest stable one";
+            let value = options.step;
+            NumberField { name: "Step length", value, unit: "", step: 0.1, digits: 2, tooltip }
                 .show(ui, session, actions, |step| set(SolverOptions { step, ..options }));
-            });
-        }
-        Method::Transpose | Method::Ccd | Method::Fabrik | Method::Relaxation | Method::TwoBone => {
-        }
+        });
     }
     roots(ui, options, actions);
 }

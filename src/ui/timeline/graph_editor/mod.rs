@@ -14,7 +14,6 @@ use super::time_scale::TimeScale;
 use super::value_scale::{ChannelCurve, ValueKind, ValueScales};
 use super::{context_menu, ruler};
 use crate::document::{Channel, RigKind};
-use crate::kinematics::chain_ik::Method;
 use crate::session::{Actions, Session};
 use crate::ui::widgets::plot;
 use crate::ui::{labels, style};
@@ -169,7 +168,7 @@ fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
         Channel::Upper => vec![palette.upper],
         Channel::Lower => vec![palette.lower],
         _ if channel.quantity().width() == 3 => palette.axes.to_vec(),
-        _ => vec![palette.method(Method::ALL[index % Method::ALL.len()])],
+        _ => vec![palette.series(index)],
     };
     (colours.into_iter().map(style::colour).collect(), style)
 }

@@ -24,17 +24,17 @@
 //! safeguard); E. Birgin, J. Martínez, M. Raydan, *Nonmonotone spectral projected gradient methods on
 //! convex sets*, 2000 (P).
 
-use super::configuration::Configuration;
-use super::coordinates::Coordinates;
-use super::inside::{Event, Recorder};
-use super::jacobian::{Wrenches, advance};
-use super::problem::Problem;
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::jacobian::{Wrenches, advance};
+use crate::chain_ik::problem::Problem;
 
 /// Number of iterations whose costs bound the cost of the next one.
 const COSTS: usize = 10;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct BarzilaiBorwein {
+pub(in crate::chain_ik) struct BarzilaiBorwein {
     /// The step τ of the first iteration.
     initial_step: f32,
     /// The last step τ.
@@ -68,10 +68,11 @@ impl BarzilaiBorwein {
         }
     }
 
-    /// Forgets the last steps.
-    pub fn restart(&mut self) {
+    /// Forgets the last steps and returns `true`.
+    pub fn restart(&mut self) -> bool {
         self.step = self.initial_step;
         self.iterations = 0;
+        true
     }
 
     /// Makes a step and returns `true`. If no step is accepted, restores the configuration and

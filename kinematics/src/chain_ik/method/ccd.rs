@@ -18,14 +18,14 @@
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use super::align::{PointPair, align, align_within};
-use super::configuration::Configuration;
-use super::inside::{Event, Recorder};
-use super::problem::Problem;
+use crate::chain_ik::align::{PointPair, align, align_within};
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::problem::Problem;
 use crate::skeleton::JointAngles;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Ccd {
+pub(in crate::chain_ik) struct Ccd {
     /// Rotation `mount` of each link: from the link's space to its parent's, without the link's own
     /// rotation E.
     mounts: Vec<Quat>,
@@ -43,12 +43,13 @@ impl Ccd {
         }
     }
 
+    /// Makes a sweep and returns `true`.
     pub fn iterate(
         &mut self,
         problem: &Problem,
         config: &mut Configuration,
         recorder: &mut Recorder,
-    ) {
+    ) -> bool {
         for index in (0..problem.links.len()).rev() {
             self.rotations[index] = self.rotate(problem, config, index);
             self.record(problem, config, index, recorder);
@@ -58,6 +59,7 @@ impl Ccd {
             move_roots(problem, config);
             recorder.record(config, || Event::MoveRoots);
         }
+        true
     }
 
     /// Records the rotation of a link, with the configuration in which the links before it in the
@@ -136,7 +138,7 @@ impl Ccd {
 /// A sweep after passes over points, which ignore limits on their way to the roots: made where the
 /// passes do not halve the cost. Passes that do not lower it are undone before the sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct SweepAfterPasses {
+pub(in crate::chain_ik) struct SweepAfterPasses {
     /// The configuration before the passes.
     before: Configuration,
     ccd: Ccd,
@@ -191,7 +193,7 @@ fn update_points(problem: &Problem, config: &mut Configuration) {
 
 /// Shifts each tree by the weighted mean vector from its tips to their targets, unless that
 /// overflows.
-pub(super) fn move_roots(problem: &Problem, config: &mut Configuration) {
+pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configuration) {
     for tree in 0..problem.trees.len() {
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
         for (effector, tip) in

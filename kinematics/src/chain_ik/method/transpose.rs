@@ -9,20 +9,20 @@
 //! such a direction: bending the knee hardly moves the ankle. From the straight bind pose, the
 //! example figure's ankle reaches 953 of 1000 random targets in 500 iterations, 977 in 1000, 996 in
 //! 2000 and all in the default 4000, and never stalls. A variable step reaches them all in 500
-//! ([`Method::Transpose`](super::Method::Transpose)).
+//! ([`Method::Transpose`](crate::chain_ik::Method::Transpose)).
 //!
 //! # Sources
 //!
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2b; Buss 2004, section 4.
 
-use super::configuration::Configuration;
-use super::coordinates::Coordinates;
-use super::inside::{Event, Recorder};
-use super::jacobian::{Wrenches, advance};
-use super::problem::Problem;
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::jacobian::{Wrenches, advance};
+use crate::chain_ik::problem::Problem;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Transpose {
+pub(in crate::chain_ik) struct Transpose {
     /// The step τ.
     step: f32,
     wrenches: Wrenches,
@@ -36,12 +36,13 @@ impl Transpose {
         Self { step, ..Self::default() }
     }
 
+    /// Makes a step and returns `true`.
     pub fn iterate(
         &mut self,
         problem: &Problem,
         config: &mut Configuration,
         recorder: &mut Recorder,
-    ) {
+    ) -> bool {
         self.wrenches.descend(problem, config, &mut self.descent);
         recorder
             .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
@@ -53,5 +54,6 @@ impl Transpose {
             tries: 0,
             damping: None,
         });
+        true
     }
 }

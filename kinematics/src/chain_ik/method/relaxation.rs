@@ -26,16 +26,16 @@
 
 use glam::Vec3A;
 
-use super::align::{PointPair, ROTATIONS, align};
 use super::ccd::SweepAfterPasses;
-use super::configuration::Configuration;
-use super::inside::{Event, Recorder};
 use super::link_points::LinkPoints;
-use super::problem::Problem;
+use crate::chain_ik::align::{PointPair, ROTATIONS, align};
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::problem::Problem;
 use crate::normalize;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Relaxation {
+pub(in crate::chain_ik) struct Relaxation {
     /// The destinations are the points as the last pass left them.
     points: LinkPoints,
     sweep: SweepAfterPasses,
@@ -64,18 +64,21 @@ impl Relaxation {
         std::mem::take(&mut self.goes_on)
     }
 
+    /// Makes the passes and returns `true`.
     pub fn iterate(
         &mut self,
         problem: &Problem,
         config: &mut Configuration,
         recorder: &mut Recorder,
-    ) {
-        if !self.points.are_limited() {
-            return self.relax(problem, config, recorder);
+    ) -> bool {
+        if self.points.are_limited() {
+            self.sweep.start(config);
+            self.relax(problem, config, recorder);
+            self.sweep.finish(problem, config, recorder);
+        } else {
+            self.relax(problem, config, recorder);
         }
-        self.sweep.start(config);
-        self.relax(problem, config, recorder);
-        self.sweep.finish(problem, config, recorder);
+        true
     }
 
     /// Makes one pass over all bones, then lays the links out.

@@ -14,18 +14,18 @@
 use glam::{Mat3A, Vec3, Vec3A};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::configuration::Configuration;
-use super::coordinates::Coordinates;
-use super::inside::{Event, Recorder};
-use super::jacobian::{Wrenches, advance};
-use super::problem::Problem;
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::jacobian::{Wrenches, advance};
+use crate::chain_ik::problem::{Link, Problem};
 use crate::skeleton::RotationAxis;
 
 /// Maximum length of a residual, in chain lengths; longer residuals are clamped.
 const MAX_RESIDUAL: f32 = 0.3;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct DampedLeastSquares {
+pub(in crate::chain_ik) struct DampedLeastSquares {
     /// λ before it is raised, in the problem's units.
     damping: f32,
     /// Factor by which λ is raised, at least 1.
@@ -60,9 +60,10 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Resets λ to its initial value.
-    pub fn restart(&mut self) {
+    /// Resets λ to its initial value and returns `true`.
+    pub fn restart(&mut self) -> bool {
         self.raised = 1.0;
+        true
     }
 
     /// Makes a step that lowers the cost and returns `true`. If there is no such step, restores the
@@ -231,4 +232,15 @@ impl DampedLeastSquares {
         }
         any
     }
+}
+
+/// Work of the pairs of targets at each joint, and of the factorization of a matrix with three rows for
+/// each target.
+pub(super) fn work(problem: &Problem) -> u64 {
+    /// Multiplications that take as long as a visit of a joint.
+    const MULTIPLICATIONS: u64 = 64;
+    let pairs = |link: &Link| (problem.below(link).len() as u64).pow(2);
+    let rows = 3 * problem.effectors.len() as u64;
+    let factor = rows.saturating_pow(3) / (3 * MULTIPLICATIONS);
+    problem.links.iter().map(pairs).sum::<u64>() + factor
 }

@@ -13,16 +13,16 @@ use core::ops::Range;
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use super::align::{PointPair, ROTATIONS, align, align_within};
-use super::configuration::Configuration;
-use super::inside::LinkSegment;
-use super::problem::Problem;
+use crate::chain_ik::align::{PointPair, ROTATIONS, align, align_within};
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::inside::LinkSegment;
+use crate::chain_ik::problem::Problem;
 use crate::skeleton::JointAngles;
 use crate::{normalize, rotation_between};
 
 /// A point fixed to a link, with the child joints and tips that are at this point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LinkPoint {
+pub(in crate::chain_ik) struct LinkPoint {
     /// Position in the link's space.
     pub position: Vec3A,
     /// Distance from the link's joint.
@@ -34,14 +34,14 @@ pub(super) struct LinkPoint {
 
 /// A child joint or a tip at a point of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PointMember {
+pub(in crate::chain_ik) struct PointMember {
     pub kind: MemberKind,
     /// Sum of the weights of the tip, or of all end effectors at the child joint and below.
     pub weight: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum MemberKind {
+pub(in crate::chain_ik) enum MemberKind {
     /// Joint of the link with this index.
     Base(usize),
     /// Tip of the end effector with this index.
@@ -50,7 +50,7 @@ pub(super) enum MemberKind {
 
 /// Points of all links, with their destinations.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct LinkPoints {
+pub(in crate::chain_ik) struct LinkPoints {
     all: Vec<LinkPoint>,
     /// Range of each link's points in `all`.
     ranges: Vec<(usize, usize)>,

@@ -6,16 +6,44 @@
 //! limits.
 
 use glam::{Mat3A, Vec3, Vec3A};
+use thiserror::Error;
 
 use super::ccd::move_roots;
-use super::configuration::Configuration;
-use super::inside::{Event, Recorder};
-use super::perturb::bent_angles;
-use super::problem::Problem;
-use super::{SolveError, TwoBoneRefusal};
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::perturb::bent_angles;
+use crate::chain_ik::problem::Problem;
 use crate::skeleton::{JointId, Skeleton, angle_triples};
 use crate::two_bone::TwoBone;
 use crate::{normalize, rotation_between};
+
+/// Reason why [`Method::TwoBone`](crate::chain_ik::Method::TwoBone) cannot move a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum TwoBoneRefusal {
+    /// The joint is a root.
+    #[error("it has no parent")]
+    NoParent,
+    /// The joint is locked, or a locked root.
+    #[error("it is locked")]
+    Locked,
+    /// The joint's parent is locked, or a locked root.
+    #[error("its parent is locked")]
+    ParentLocked,
+    /// One of the two bones has length 0, or a length that the closed form cannot solve.
+    #[error("one of its two bones has no length")]
+    NoLength,
+    /// The joint or its parent belongs to the limb of another target.
+    #[error("another target moves the same joint")]
+    Shared,
+}
+
+/// A target whose joint the closed form cannot move.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::chain_ik) struct TwoBonesRefused {
+    pub joint: JointId,
+    pub reason: TwoBoneRefusal,
+}
 
 /// The two links above one end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,16 +55,16 @@ struct LinkPair {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TwoBones {
+pub(in crate::chain_ik) struct TwoBones {
     /// Limbs, sorted from the roots to the tips.
     limbs: Vec<LinkPair>,
 }
 
 impl TwoBones {
-    pub fn new(problem: &Problem, skeleton: &Skeleton) -> Result<Self, SolveError> {
+    pub fn new(problem: &Problem, skeleton: &Skeleton) -> Result<Self, TwoBonesRefused> {
         let mut limbs: Vec<LinkPair> = Vec::new();
         for (index, effector) in problem.effectors.iter().enumerate() {
-            let refuse = |reason| SolveError::TwoBone { joint: effector.joint, reason };
+            let refuse = |reason| TwoBonesRefused { joint: effector.joint, reason };
             let parent = skeleton[effector.joint].parent;
             let parent = parent.ok_or_else(|| refuse(TwoBoneRefusal::NoParent))?;
             // All ancestors of a target that may turn have links.
@@ -58,7 +86,13 @@ impl TwoBones {
         Ok(Self { limbs })
     }
 
-    pub fn solve(&self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
+    /// Solves all limbs and returns `false`: a second time would change nothing.
+    pub fn iterate(
+        &self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
         for limb in &self.limbs {
             self.bend_if_straight(problem, config, *limb);
             place_elbow(problem, config, *limb);
@@ -71,6 +105,7 @@ impl TwoBones {
             config.forward(problem);
             recorder.record(config, || Event::MoveRoots);
         }
+        false
     }
 
     /// Bends a limb that is too straight to define a plane.

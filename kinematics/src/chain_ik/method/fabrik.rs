@@ -27,14 +27,14 @@
 use glam::Vec3A;
 
 use super::ccd::SweepAfterPasses;
-use super::configuration::Configuration;
-use super::inside::{Event, Recorder};
 use super::link_points::LinkPoints;
-use super::problem::Problem;
+use crate::chain_ik::configuration::Configuration;
+use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::problem::Problem;
 use crate::normalize;
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Fabrik {
+pub(in crate::chain_ik) struct Fabrik {
     points: LinkPoints,
     sweep: SweepAfterPasses,
 }
@@ -48,18 +48,21 @@ impl Fabrik {
         &self.points
     }
 
+    /// Makes the passes and returns `true`.
     pub fn iterate(
         &mut self,
         problem: &Problem,
         config: &mut Configuration,
         recorder: &mut Recorder,
-    ) {
-        if !self.points.are_limited() {
-            return self.reach(problem, config, recorder);
+    ) -> bool {
+        if self.points.are_limited() {
+            self.sweep.start(config);
+            self.reach(problem, config, recorder);
+            self.sweep.finish(problem, config, recorder);
+        } else {
+            self.reach(problem, config, recorder);
         }
-        self.sweep.start(config);
-        self.reach(problem, config, recorder);
-        self.sweep.finish(problem, config, recorder);
+        true
     }
 
     /// Makes the inward and the outward pass.

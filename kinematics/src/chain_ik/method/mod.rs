@@ -1,0 +1,393 @@
+//! Methods of solvers: one row of [`METHODS`] and one file for each.
+
+mod barzilai_borwein;
+mod ccd;
+mod damped_least_squares;
+mod fabrik;
+mod link_points;
+mod relaxation;
+mod transpose;
+mod two_bone;
+
+use core::fmt;
+use core::str::FromStr;
+
+use thiserror::Error;
+
+use self::barzilai_borwein::BarzilaiBorwein;
+use self::ccd::Ccd;
+use self::damped_least_squares::DampedLeastSquares;
+use self::fabrik::Fabrik;
+use self::relaxation::Relaxation;
+use self::transpose::Transpose;
+pub use self::two_bone::TwoBoneRefusal;
+use self::two_bone::TwoBones;
+pub(super) use self::two_bone::TwoBonesRefused;
+use super::configuration::Configuration;
+use super::inside::Recorder;
+use super::problem::Problem;
+use super::stall::Patience;
+use crate::skeleton::Skeleton;
+
+/// Method of a [`ChainSolver`](super::ChainSolver).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "String", into = "&'static str")
+)]
+pub enum Method {
+    /// Jacobian transpose with a fixed step length.
+    TransposeFixed,
+    /// Jacobian transpose with a variable step length (Barzilai and Borwein).
+    Transpose,
+    /// Damped least squares (Levenberg–Marquardt).
+    DampedLeastSquares,
+    /// Cyclic coordinate descent.
+    Ccd,
+    /// Forward and backward reaching (FABRIK).
+    #[default]
+    Fabrik,
+    /// Constraint relaxation: the length of each bone is restored in turn by moving both of its
+    /// ends.
+    Relaxation,
+    /// Closed form for two joints: a target's joint and its parent.
+    TwoBone,
+}
+
+/// Names, defaults and abilities of a method, and the function that prepares it.
+pub(super) struct MethodRow {
+    method: Method,
+    name: &'static str,
+    title: &'static str,
+    short_title: &'static str,
+    summary: &'static str,
+    /// Default maximum number of iterations.
+    budget: u32,
+    pub patience: Patience,
+    uses_damping: bool,
+    uses_step: bool,
+    is_closed_form: bool,
+    /// Whether the method works on orientations instead of angles.
+    pub uses_orientations: bool,
+    /// Distance of a target from the root, in lengths of the path to the tip, up to which the
+    /// iteration is stable; infinite if it always is.
+    pub stable_distance: f64,
+    /// Work of one iteration: the joints and the pairs of a joint and a target that it visits, or
+    /// what takes as long.
+    pub work: fn(&Problem) -> u64,
+    prepare: fn(&MethodInputs<'_>) -> Result<MethodState, TwoBonesRefused>,
+}
+
+/// Inputs of the first iteration of any method.
+pub(super) struct MethodInputs<'a> {
+    pub problem: &'a Problem,
+    pub skeleton: &'a Skeleton,
+    /// Initial damping λ, in chain lengths.
+    pub damping: f32,
+    /// Step length of the fixed step.
+    pub step: f32,
+}
+
+/// All methods, in the order in which lists show them.
+const METHODS: [MethodRow; 7] = [
+    MethodRow {
+        method: Method::TransposeFixed,
+        name: "transpose-fixed",
+        title: "Jacobian transpose, fixed step",
+        short_title: "Fixed step",
+        summary: "Descend the gradient with a fixed step: smooth but slow",
+        budget: 4_000,
+        // The fixed step overshoots for longer before it settles.
+        patience: Patience::of_repeated_steps(100),
+        uses_damping: false,
+        uses_step: true,
+        is_closed_form: false,
+        uses_orientations: false,
+        // Up to about twice the distance; the direction is all that counts of a target out of reach.
+        stable_distance: 1.25,
+        work: visits,
+        prepare: |it| Ok(MethodState::Transpose(Transpose::new(it.problem, it.step))),
+    },
+    MethodRow {
+        method: Method::Transpose,
+        name: "transpose",
+        title: "Jacobian transpose",
+        short_title: "Transpose",
+        summary: "Descend the gradient with steps that fit its curvature",
+        budget: 500,
+        patience: Patience::of_repeated_steps(20),
+        uses_damping: false,
+        uses_step: false,
+        is_closed_form: false,
+        uses_orientations: false,
+        stable_distance: f64::INFINITY,
+        work: visits,
+        prepare: |it| Ok(MethodState::BarzilaiBorwein(BarzilaiBorwein::new(it.problem))),
+    },
+    MethodRow {
+        method: Method::DampedLeastSquares,
+        name: "dls",
+        title: "Damped least squares",
+        short_title: "Damped l. s.",
+        summary: "Solve damped least squares: few iterations, handles limits and many targets",
+        budget: 500,
+        patience: Patience::of_repeated_steps(20),
+        uses_damping: true,
+        uses_step: false,
+        is_closed_form: false,
+        uses_orientations: false,
+        stable_distance: f64::INFINITY,
+        work: |problem| visits(problem) + damped_least_squares::work(problem),
+        prepare: |it| {
+            let damped = DampedLeastSquares::new(it.problem, it.damping);
+            Ok(MethodState::DampedLeastSquares(damped))
+        },
+    },
+    MethodRow {
+        method: Method::Ccd,
+        name: "ccd",
+        title: "Cyclic coordinate descent",
+        short_title: "CCD",
+        summary: "Rotate one joint at a time, tip to root: cheap, bends tips",
+        budget: 2_000,
+        // In exact arithmetic no sweep increases the distance.
+        patience: Patience::of_orientations(20, -(f32::EPSILON as f64)),
+        uses_damping: false,
+        uses_step: false,
+        is_closed_form: false,
+        uses_orientations: true,
+        stable_distance: f64::INFINITY,
+        work: visits,
+        prepare: |it| Ok(MethodState::Ccd(Ccd::new(it.problem))),
+    },
+    MethodRow {
+        method: Method::Fabrik,
+        name: "fabrik",
+        title: "FABRIK",
+        short_title: "FABRIK",
+        summary: "Move joint positions along the chain: very cheap, may stall at limits",
+        budget: 2_000,
+        // With conflicting targets, FABRIK converges near the minimum, not at it.
+        patience: Patience::of_orientations(20, -1e-5),
+        uses_damping: false,
+        uses_step: false,
+        is_closed_form: false,
+        uses_orientations: true,
+        stable_distance: f64::INFINITY,
+        work: visits,
+        prepare: |it| Ok(MethodState::Fabrik(Fabrik::new(it.problem))),
+    },
+    MethodRow {
+        method: Method::Relaxation,
+        name: "relaxation",
+        title: "Constraint relaxation",
+        short_title: "Relaxation",
+        summary: "Move both ends of each bone in turn: smooth, many iterations",
+        budget: 2_000,
+        // The poses that points of relaxation give are not nearer after every pass.
+        patience: Patience::of_orientations(100, f64::INFINITY),
+        uses_damping: false,
+        uses_step: false,
+        is_closed_form: false,
+        uses_orientations: true,
+        stable_distance: f64::INFINITY,
+        work: visits,
+        prepare: |it| Ok(MethodState::Relaxation(Relaxation::new(it.problem))),
+    },
+    MethodRow {
+        method: Method::TwoBone,
+        name: "two-bone",
+        title: "Two-bone",
+        short_title: "Two-bone",
+        summary: "Solve the target's joint and its parent in closed form",
+        budget: 1,
+        patience: Patience::of_repeated_steps(20),
+        uses_damping: false,
+        uses_step: false,
+        is_closed_form: true,
+        uses_orientations: false,
+        stable_distance: f64::INFINITY,
+        work: visits,
+        prepare: |it| Ok(MethodState::TwoBone(TwoBones::new(it.problem, it.skeleton)?)),
+    },
+];
+
+// Each row is where `Method::row` looks for it.
+const _: () = {
+    let mut index = 0;
+    while index < METHODS.len() {
+        let method = METHODS[index].method;
+        assert!(method as usize == index && method.row().method as usize == index);
+        index += 1;
+    }
+};
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; METHODS.len()] = {
+        let mut all = [Self::Fabrik; METHODS.len()];
+        let mut index = 0;
+        while index < all.len() {
+            all[index] = METHODS[index].method;
+            index += 1;
+        }
+        all
+    };
+
+    /// A method without a row does not compile.
+    pub(super) const fn row(self) -> &'static MethodRow {
+        match self {
+            Self::TransposeFixed => &METHODS[0],
+            Self::Transpose => &METHODS[1],
+            Self::DampedLeastSquares => &METHODS[2],
+            Self::Ccd => &METHODS[3],
+            Self::Fabrik => &METHODS[4],
+            Self::Relaxation => &METHODS[5],
+            Self::TwoBone => &METHODS[6],
+        }
+    }
+
+    /// Name on screen.
+    pub const fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// Name on screen where there is little space.
+    pub const fn short_title(self) -> &'static str {
+        self.row().short_title
+    }
+
+    /// What it does, in a few words that begin with a verb.
+    pub const fn summary(self) -> &'static str {
+        self.row().summary
+    }
+
+    /// Name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Default maximum number of iterations of [`ChainSolver::run`](super::ChainSolver::run).
+    pub const fn budget(self) -> u32 {
+        self.row().budget
+    }
+
+    /// Whether the method reads [`SolverOptions::damping`](super::SolverOptions::damping).
+    pub const fn uses_damping(self) -> bool {
+        self.row().uses_damping
+    }
+
+    /// Whether the method reads [`SolverOptions::step`](super::SolverOptions::step).
+    pub const fn uses_step(self) -> bool {
+        self.row().uses_step
+    }
+
+    /// Whether one iteration is all: the method solves limbs of two bones at once and refuses others.
+    pub const fn is_closed_form(self) -> bool {
+        self.row().is_closed_form
+    }
+}
+
+/// The joints and the pairs of a joint and a target.
+fn visits(problem: &Problem) -> u64 {
+    problem.links.len() as u64 + problem.below.len() as u64
+}
+
+/// Writes the [name](Method::name).
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Reads a [name](Method::name).
+impl FromStr for Method {
+    type Err = ParseMethodError;
+
+    fn from_str(name: &str) -> Result<Self, ParseMethodError> {
+        let found = Self::ALL.into_iter().find(|method| method.name() == name);
+        found.ok_or_else(|| ParseMethodError(name.to_owned()))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<String> for Method {
+    type Error = ParseMethodError;
+
+    fn try_from(name: String) -> Result<Self, ParseMethodError> {
+        name.parse()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Method> for &'static str {
+    fn from(method: Method) -> Self {
+        method.name()
+    }
+}
+
+/// Error for a text that is not the [name](Method::name) of a method.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("must be one of {names}, got {0:?}", names = Method::ALL.map(Method::name).join(", "))]
+pub struct ParseMethodError(String);
+
+/// A method with the state that it keeps between iterations.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum MethodState {
+    Transpose(Transpose),
+    BarzilaiBorwein(BarzilaiBorwein),
+    DampedLeastSquares(DampedLeastSquares),
+    Ccd(Ccd),
+    Fabrik(Fabrik),
+    Relaxation(Relaxation),
+    TwoBone(TwoBones),
+}
+
+impl MethodState {
+    pub fn new(method: Method, inputs: &MethodInputs<'_>) -> Result<Self, TwoBonesRefused> {
+        (method.row().prepare)(inputs)
+    }
+
+    /// Makes one iteration. Returns whether another iteration could improve the result.
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
+        match self {
+            Self::Transpose(transpose) => transpose.iterate(problem, config, recorder),
+            Self::BarzilaiBorwein(descent) => descent.iterate(problem, config, recorder),
+            Self::DampedLeastSquares(damped) => damped.iterate(problem, config, recorder),
+            Self::Ccd(ccd) => ccd.iterate(problem, config, recorder),
+            Self::Fabrik(fabrik) => fabrik.iterate(problem, config, recorder),
+            Self::Relaxation(relaxation) => relaxation.iterate(problem, config, recorder),
+            Self::TwoBone(limbs) => limbs.iterate(problem, config, recorder),
+        }
+    }
+
+    /// Updates orientations that iterations leave behind the points that they move.
+    pub fn update_orientations(&self, config: &mut Configuration) {
+        match self {
+            Self::Fabrik(fabrik) => fabrik.points().update_orientations(config),
+            Self::Relaxation(relaxation) => relaxation.points().update_orientations(config),
+            Self::Transpose(_)
+            | Self::BarzilaiBorwein(_)
+            | Self::DampedLeastSquares(_)
+            | Self::Ccd(_)
+            | Self::TwoBone(_) => {}
+        }
+    }
+
+    /// Forgets what the method has kept from earlier iterations: step lengths that it has learnt,
+    /// and points. Returns whether it keeps anything.
+    pub fn restart(&mut self) -> bool {
+        match self {
+            Self::BarzilaiBorwein(descent) => descent.restart(),
+            Self::DampedLeastSquares(damped) => damped.restart(),
+            Self::Relaxation(relaxation) => relaxation.restart(),
+            Self::Transpose(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
+        }
+    }
+}
