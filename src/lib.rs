@@ -11,6 +11,7 @@
 //! | module | contents | feature |
 //! | --- | --- | --- |
 //! | `kinematics` | [`ik_arm_kinematics`], re-exported: arms, skeletons and their solvers; its floors are listed there | |
+//! | [`words`] | diagnoses and their remedies as sentences | |
 //! | [`document`] | saved state: both rigs, keys, timeline, camera, display; bakes | |
 //! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
 //! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
@@ -64,6 +65,7 @@ pub mod scene;
 pub mod session;
 #[cfg(feature = "app")]
 pub mod ui;
+pub mod words;
 
 pub use ik_arm_kinematics as kinematics;
 pub use ik_arm_kinematics::rig;

@@ -1,8 +1,9 @@
 use super::Arm;
-use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Names};
+use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
+use crate::words::{self, Names};
 
 impl Arm {
     /// Why the hand is not at the Cursor in a pose of the arm; `None` if it is, or if FK alone
@@ -48,7 +49,8 @@ impl Arm {
             SHOULDER => "the shoulder".to_owned(),
             _ => "the hand".to_owned(),
         };
-        let sentence = self.diagnose(pose)?.sentence(Names { joint: &joint, tip: &joint });
+        let names = Names { joint: &joint, tip: &joint };
+        let sentence = words::cause_with(&self.diagnose(pose)?, names);
         let (first, rest) = sentence.split_at_checked(1)?;
         Some(format!("{}{rest}.", first.to_uppercase()))
     }

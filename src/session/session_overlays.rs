@@ -26,7 +26,7 @@ impl Session {
         overlays.concerned.clear();
         if let (Some(found), true) = (self.known_why().first(), self.solvers.is_idle()) {
             // The sentence calls a limb's target by its hand.
-            overlays.concerned.extend(self.skeleton_rig().named_tip(found));
+            overlays.concerned.extend(self.skeleton_rig().end_of_target(found.target));
             overlays.concerned.extend_from_slice(&found.joints);
         }
         overlays.inside = self.inside();

@@ -1,8 +1,9 @@
 use super::session::Session;
 use crate::document::RigKind;
-use crate::kinematics::diagnosis::{Diagnosis, Remedy, significant};
+use crate::kinematics::diagnosis::{Diagnosis, Remedy};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::SkeletonRig;
+use crate::words::{self, significant};
 
 /// Why targets are not reached.
 impl Session {
@@ -76,7 +77,7 @@ impl Session {
             return;
         }
         let rig = self.skeleton_rig();
-        let done = rig.remedy_done(remedy);
+        let done = words::remedy_done(rig, remedy);
         let result = match rig.target(target).filter(|index| rig.targets[*index].enabled) {
             Some(index) => self.describe_result(rig, index),
             None => String::new(),

@@ -7,6 +7,7 @@ use crate::rig::Crowd;
 use crate::session::{Session, ShownIteration};
 use crate::ui::labels::count_of_keys;
 use crate::ui::widgets::format::{decimals_of_cell, grouped};
+use crate::words;
 
 /// One sentence about the reach of the arm.
 pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
@@ -56,7 +57,7 @@ fn describe_crowd(crowd: &Crowd) -> String {
 fn describe_skeleton(session: &Session) -> String {
     let rig = session.skeleton_rig();
     if let (Some(found), None) = (session.known_why().first(), session.shown_iteration()) {
-        return rig.sentence(found);
+        return words::cause(rig, found);
     }
     let joints = rig.skeleton.joints();
     let count = |count: usize, one: &str| match count {

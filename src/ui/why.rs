@@ -6,6 +6,7 @@ use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
 use crate::rig::SkeletonRig;
 use crate::session::{Actions, EditAction, Session};
 use crate::ui::widgets::{self, format};
+use crate::words;
 
 /// Why the target is not reached that the session examines. While a mouse button is down nothing is
 /// found out that is not known, so that scrubbing does not wait.
@@ -19,7 +20,7 @@ pub(in crate::ui) fn is_held(ui: &Ui) -> bool {
 
 /// Shows the cause of a diagnosis as a sentence.
 pub(in crate::ui) fn cause(ui: &mut Ui, session: &Session, found: &Diagnosis) {
-    let sentence = session.skeleton_rig().sentence(found);
+    let sentence = words::cause(session.skeleton_rig(), found);
     ui.add(Label::new(RichText::new(sentence)).wrap());
 }
 
@@ -33,7 +34,7 @@ pub(in crate::ui) fn remedies(
 ) {
     for tried in found.remedies.iter().take(most) {
         let remedy = &tried.remedy;
-        let name = session.skeleton_rig().remedy_sentence(remedy);
+        let name = words::remedy(session.skeleton_rig(), remedy);
         let tooltip = format!("Apply this; {}", left(session, found, tried));
         if widgets::button(ui, &name, &tooltip, None) {
             let (target, remedy) = (found.target, remedy.clone());

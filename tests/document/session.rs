@@ -17,6 +17,7 @@ use ik_arm::session::{
     PathDialog, PlaybackAction, PointHandle, PoseMode, SelectAction, Session, ShellAction,
     SolverAction, TransactionAction, ViewAction,
 };
+use ik_arm::words;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -861,7 +862,7 @@ fn what_a_diagnosis_names_is_outlined() {
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
     session.apply(EditAction::SetTarget(target));
     let found = session.why().first().expect("it is too far away");
-    let said = session.skeleton_rig().sentence(found);
+    let said = words::cause(session.skeleton_rig(), found);
     assert!(said.starts_with("left_hand cannot reach that far"), "{said}");
     let outlined = session.overlays().concerned;
     assert!(outlined.contains(&hand) && outlined.contains(&forearm), "{outlined:?}");

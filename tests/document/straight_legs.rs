@@ -5,6 +5,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 use ik_arm::rig::{EvaluatedSkeleton, SkeletonRig};
+use ik_arm::words;
 use serde_json::Value;
 
 use crate::common::Random;
@@ -146,7 +147,7 @@ fn feet_whose_ankles_bend_too_little_are_said_to_miss_their_rotation() {
         .expect("a joint");
     let found = rig.diagnose(0.0);
     assert_eq!(found.len(), 1, "{found:?}");
-    let sentence = rig.sentence(&found[0]);
+    let sentence = words::cause(&rig, &found[0]);
     let end = "° short of its target's rotation: its limit about x is in the way";
     assert!(sentence.starts_with("right_foot is ") && sentence.ends_with(end), "{sentence}");
 }

@@ -5,11 +5,12 @@ use egui::{PointerButton, vec2};
 use glam::Vec3;
 use ik_arm::document::Target;
 use ik_arm::io::Example;
-use ik_arm::kinematics::diagnosis::{Remedy, significant};
+use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
     EditAction, FileAction, PlaybackAction, SelectAction, SolverAction, TransactionAction,
 };
+use ik_arm::words;
 
 use crate::bench::Bench;
 
@@ -86,7 +87,7 @@ fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
     let tried: Vec<_> = bench.session().why().iter().flat_map(|it| it.remedies.clone()).collect();
     assert!(matches!(tried[..], [_, _]), "{tried:?}");
     for tried in tried {
-        let name = bench.session().skeleton_rig().remedy_sentence(&tried.remedy);
+        let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
         if matches!(tried.remedy, Remedy::Stretch { .. }) {
             // It may be below the edge of the note.
             bench.node(Role::Button, &name).click_accesskit();
@@ -162,7 +163,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
     let [some, more] = ["80", "120"].map(|degrees| {
         let bench = foot_turned_by(degrees);
         let missing = missing_degrees(&bench);
-        let sentence = bench.session().skeleton_rig().sentence(&bench.session().why()[0]);
+        let sentence = words::cause(bench.session().skeleton_rig(), &bench.session().why()[0]);
         assert!(sentence.starts_with("left_foot is "), "{sentence}");
         assert!(sentence.contains("its limit about x is in the way"), "{sentence}");
         assert_eq!(labels(&bench, &sentence), 4, "as many as for a place that is not reached");
@@ -171,7 +172,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
             "not reached"
         );
         assert!(bench.count("° of its rotation missing") == 1, "{missing}");
-        let short = significant(missing);
+        let short = words::significant(missing);
         assert_eq!(
             bench.count(&format!("{short}°")),
             6,
@@ -186,7 +187,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
 fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     let mut bench = foot_turned_by("80");
     let tried = bench.session().why()[0].remedies[0].clone();
-    let name = bench.session().skeleton_rig().remedy_sentence(&tried.remedy);
+    let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
     assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
     let target = joint(&bench, "left_shin");
     bench.apply([EditAction::ApplyRemedy { target, remedy: tried.remedy }]);

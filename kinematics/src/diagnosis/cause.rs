@@ -1,11 +1,8 @@
-use core::fmt;
-
 use crate::skeleton::JointId;
 
 /// The reason why a tip is not at its target, or a hand not turned as its target asks, with its
 /// evidence. Lengths are in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Cause {
     /// The target is farther from the chain's base than the bones reach, or closer than they fold.
     OutOfReach {
@@ -81,12 +78,5 @@ impl Cause {
             Self::OutOfIterations { .. } => "out_of_iterations",
             Self::Influence { .. } => "influence",
         }
-    }
-}
-
-/// Writes the [name](Cause::name).
-impl fmt::Display for Cause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }

@@ -10,10 +10,8 @@ mod cause;
 mod diagnosis;
 mod remedy;
 pub(crate) mod widening;
-mod words;
 
 pub use cause::{Boundary, Cause};
 pub(crate) use diagnosis::in_turn;
 pub use diagnosis::{Diagnosis, TriedRemedy};
 pub use remedy::{Remedy, Start, WidenedLimit};
-pub use words::{Names, significant};

@@ -6,7 +6,6 @@ mod attached_mesh;
 mod bone_skin;
 mod crowd;
 mod diagnose;
-mod diagnosis_words;
 mod evaluate;
 mod file_mesh;
 mod follow_path;

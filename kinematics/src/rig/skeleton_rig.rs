@@ -109,6 +109,11 @@ impl SkeletonRig {
         limb.and_then(|limb| limb.hand).unwrap_or(target.joint)
     }
 
+    /// [`Self::end_of`] the target of a joint; `None` if the joint has none.
+    pub fn end_of_target(&self, joint: JointId) -> Option<JointId> {
+        self.target(joint).map(|index| self.end_of(&self.targets[index]))
+    }
+
     /// Index in [`Self::targets`] of the target that a joint is posed by as an end: the joint's own, or
     /// that of the limb whose hand it is.
     pub fn target_of_end(&self, joint: JointId) -> Option<usize> {

@@ -7,6 +7,7 @@ use crate::kinematics::chain_ik::Report;
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{JointId, is_within_numbers};
 use crate::rig::TargetKind;
+use crate::words;
 
 /// Output of the command: one line of JSON.
 #[derive(Serialize)]
@@ -139,8 +140,8 @@ impl<'a> WhyLine<'a> {
             cause: found.cause.name(),
             target: name(found.target),
             joints: found.joints.iter().map(|joint| name(*joint)).collect(),
-            sentence: rig.sentence(found),
-            remedy: best.map(|tried| rig.remedy_sentence(&tried.remedy)),
+            sentence: words::cause(rig, found),
+            remedy: best.map(|tried| words::remedy(rig, &tried.remedy)),
             residual_with_remedy: best.map(|tried| tried.residual),
             rotation_error_with_remedy_deg: best.map(|tried| tried.rotation_residual.to_degrees()),
         }

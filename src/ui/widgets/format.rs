@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-use crate::kinematics::diagnosis::significant;
+use crate::words::significant;
 
 /// Stands for a number that is not finite, or that was clamped to the largest one.
 pub(in crate::ui) const OVERFLOW: &str = "overflow";

@@ -241,15 +241,10 @@ fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_
 
         let found = rig.diagnose(0.0);
         let [Diagnosis { cause, joints, remedies, .. }] = &found[..] else { panic!("{found:?}") };
-        let Cause::RotationLimits { missing, axes } = *cause else { panic!("{case}: {cause}") };
+        let Cause::RotationLimits { missing, axes } = *cause else { panic!("{case}: {cause:?}") };
         assert!((missing - beyond).abs() < 1e-4, "{case}: {missing}, {beyond}");
         assert_eq!(axes, [0, 1, 2].map(|it| it == axis), "{case}");
         assert_eq!(joints, &[HAND], "{case}");
-        let sentence = rig.sentence(&found[0]);
-        let about = ["x", "y", "z"][axis];
-        let end =
-            format!("° short of its target's rotation: its limit about {about} is in the way");
-        assert!(sentence.starts_with("hand is ") && sentence.ends_with(&end), "{sentence}");
 
         let tried = remedies.first().expect("a remedy");
         let Remedy::WidenLimits(widened) = &tried.remedy else { panic!("{tried:?}") };
@@ -346,21 +341,12 @@ fn causes_of_several_targets_come_in_turn_the_farthest_target_first() {
 }
 
 #[test]
-fn sentences_name_hands_joints_and_lengths() {
+fn a_limb_out_of_reach_has_remedies_by_target_and_stretch() {
     let mut random = Random(2);
     let mut rig = limb(&mut random, |_, [upper, lower]| 2.0 * (upper + lower));
     let found = &rig.diagnose(0.0)[0];
     let Cause::OutOfReach { distance, longest, .. } = found.cause else { panic!("{found:?}") };
     assert!((distance / longest - 2.0).abs() < 1e-3);
-    let sentence = rig.sentence(found);
-    assert!(sentence.starts_with("hand cannot reach that far: the target is "), "{sentence}");
-    assert!(sentence.contains("from upper, the bones are"), "{sentence}");
-    let remedies: Vec<_> =
-        found.remedies.iter().map(|tried| rig.remedy_sentence(&tried.remedy)).collect();
-    assert_eq!(
-        remedies,
-        ["Move the target of hand within reach", "Let the limb stretch by up to 101 %"]
-    );
     let stretch = found.remedies.iter().find(|it| matches!(it.remedy, Remedy::Stretch { .. }));
     rig.apply_remedy(&stretch.expect("stretch").remedy, 0.0).expect("a limb");
     assert_eq!(rig.diagnose(0.0), []);

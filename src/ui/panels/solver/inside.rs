@@ -4,7 +4,7 @@
 use egui::{Align, Color32, Grid, Layout, RichText, Sense, Slider, Ui, vec2};
 
 use crate::kinematics::chain_ik::{
-    AngleChange, Ellipsoid, Gradient, Method, SolverOptions, StepTaken, SubStep, SubStepKind, Turn,
+    AngleChange, Ellipsoid, Gradient, SolverOptions, StepTaken, SubStep, SubStepKind, Turn,
 };
 use crate::kinematics::skeleton::JointId;
 use crate::session::{

@@ -1,0 +1,319 @@
+//! Diagnoses and their remedies as English sentences, without a full stop.
+
+use crate::kinematics::chain_ik::Root;
+use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
+use crate::kinematics::skeleton::{JointId, RotationAxis};
+use crate::rig::SkeletonRig;
+
+/// The cause of a diagnosis, such as "The limits of elbow keep hand away from its target". A limb's
+/// target is named after its hand.
+pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
+    with_names(rig, |names| cause_with(found, names))
+}
+
+/// A remedy as an imperative, such as "Unlock elbow".
+pub fn remedy(rig: &SkeletonRig, remedy: &Remedy) -> String {
+    with_names(rig, |names| {
+        let (verb, rest) = verb_and_rest(remedy, names);
+        format!("{} {rest}", verb.imperative())
+    })
+}
+
+/// A remedy that was applied, such as "Unlocked elbow".
+pub fn remedy_done(rig: &SkeletonRig, remedy: &Remedy) -> String {
+    with_names(rig, |names| {
+        let (verb, rest) = verb_and_rest(remedy, names);
+        format!("{} {rest}", verb.past())
+    })
+}
+
+fn with_names(rig: &SkeletonRig, say: impl FnOnce(Names<'_>) -> String) -> String {
+    let joint =
+        |joint: JointId| rig.skeleton.joint(joint).map_or_else(String::new, |it| it.name.clone());
+    let tip = |of: JointId| joint(rig.end_of_target(of).unwrap_or(of));
+    say(Names { joint: &joint, tip: &tip })
+}
+
+/// Names for sentences.
+#[derive(Clone, Copy)]
+pub struct Names<'a> {
+    /// The name of a joint.
+    pub joint: &'a dyn Fn(JointId) -> String,
+    /// The name of what the target of a joint moves: the hand of an arm's lower bone, or the joint.
+    pub tip: &'a dyn Fn(JointId) -> String,
+}
+
+/// [`cause`] with other names.
+pub fn cause_with(found: &Diagnosis, names: Names<'_>) -> String {
+    let target = (names.tip)(found.target);
+    match found.cause {
+        Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
+            let base = (names.joint)(base);
+            out_of_reach([&target, &base], distance, [shortest, longest], boundary)
+        }
+        Cause::Limits if found.joints == [found.target] => {
+            format!("The limits of {target} itself keep its tip away from the target")
+        }
+        Cause::Limits => {
+            format!(
+                "The limits of {} keep {target} away from its target",
+                listed(&found.joints, names)
+            )
+        }
+        Cause::RotationLimits { missing, axes } => {
+            let (degrees, limits) = (significant(missing.to_degrees()), limits_about(axes));
+            format!("{target} is {degrees}° short of its target's rotation: {limits} in the way")
+        }
+        Cause::Locked => {
+            let verb = if found.joints.len() == 1 { "is" } else { "are" };
+            format!(
+                "{} {verb} locked, and {target} needs to turn there",
+                listed(&found.joints, names)
+            )
+        }
+        Cause::Conflict { with } => {
+            let other = (names.tip)(with);
+            format!("{target} and {other} reach their targets one at a time, not together")
+        }
+        Cause::Stalled => {
+            format!("The solver stopped where no small turn helps, though {target} can get nearer")
+        }
+        Cause::Singular { .. } => {
+            format!("No joint can move {target} in the direction of its target")
+        }
+        Cause::OutOfIterations { iterations } => {
+            let s = if iterations == 1 { "" } else { "s" };
+            format!(
+                "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
+            )
+        }
+        Cause::Influence { influence: 0.0 } => {
+            format!("The target of {target} has no influence: the joint angles alone pose it")
+        }
+        Cause::Influence { influence } => {
+            let percent = significant(100.0 * influence);
+            format!("{target} is only {percent} % of the way from its FK pose to its target")
+        }
+    }
+}
+
+fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
+    let tip = |joint: &JointId| (names.tip)(*joint);
+    match remedy {
+        Remedy::MoveTarget { joint, .. } => {
+            (Verb::Move, format!("the target of {} within reach", tip(joint)))
+        }
+        Remedy::Lengthen { factor, .. } => {
+            (Verb::Lengthen, format!("the bones by {}", percent(*factor - 1.0)))
+        }
+        Remedy::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
+        Remedy::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
+        Remedy::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),
+        Remedy::WidenLimits(widened) => (Verb::Widen, widen(widened, names)),
+        Remedy::Unlock(joints) => (Verb::Unlock, listed(joints, names)),
+        Remedy::SwitchOff(joint) => (Verb::SwitchOff, format!("the target of {}", tip(joint))),
+        Remedy::SetWeight { joint, weight } => {
+            let weight = significant(*weight);
+            (Verb::Set, format!("the weight of the target of {} to {weight}", tip(joint)))
+        }
+        Remedy::UseMethod(method) => (Verb::Set, format!("the solver to {}", method.title())),
+        Remedy::StartFrom(Start { is_bend: true, .. }) => {
+            (Verb::Bend, "the chain a little".to_owned())
+        }
+        Remedy::StartFrom(_) => (Verb::Move, "the joints to the middle of their limits".to_owned()),
+        Remedy::AllowIterations(iterations) => (Verb::Allow, format!("{iterations} iterations")),
+        Remedy::FullInfluence(joint) => {
+            (Verb::Set, format!("the influence of the target of {} to 1", tip(joint)))
+        }
+        Remedy::Stretch { max_stretch, .. } => {
+            (Verb::Let, format!("the limb stretch by up to {}", percent(*max_stretch - 1.0)))
+        }
+        Remedy::HardLimits(_) => (Verb::SwitchOff, "the soft limits".to_owned()),
+    }
+}
+
+/// The verb of a remedy.
+enum Verb {
+    Allow,
+    Bend,
+    Lengthen,
+    Let,
+    Lock,
+    Move,
+    Set,
+    SwitchOff,
+    Unlock,
+    Widen,
+}
+
+impl Verb {
+    fn imperative(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allow",
+            Self::Bend => "Bend",
+            Self::Lengthen => "Lengthen",
+            Self::Let => "Let",
+            Self::Lock => "Lock",
+            Self::Move => "Move",
+            Self::Set => "Set",
+            Self::SwitchOff => "Switch off",
+            Self::Unlock => "Unlock",
+            Self::Widen => "Widen",
+        }
+    }
+
+    fn past(&self) -> &'static str {
+        match self {
+            Self::Allow => "Allowed",
+            Self::Bend => "Bent",
+            Self::Lengthen => "Lengthened",
+            Self::Lock => "Locked",
+            Self::Move => "Moved",
+            Self::Let | Self::Set => self.imperative(),
+            Self::SwitchOff => "Switched off",
+            Self::Unlock => "Unlocked",
+            Self::Widen => "Widened",
+        }
+    }
+}
+
+fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
+    let degrees = |it: &WidenedLimit| it.by.to_degrees().round();
+    match widened {
+        [one] => {
+            format!(
+                "the limit of {} about {} by {}°",
+                (names.joint)(one.joint),
+                one.axis,
+                degrees(one)
+            )
+        }
+        several => {
+            let most = several.iter().map(degrees).fold(0.0, f32::max);
+            format!("{} limits by up to {most}°", several.len())
+        }
+    }
+}
+
+/// Joints as a list in words, at most three of them by name.
+fn listed(joints: &[JointId], names: Names<'_>) -> String {
+    let names: Vec<_> = joints.iter().map(|joint| (names.joint)(*joint)).collect();
+    match &names[..] {
+        [] => "the chain".to_owned(),
+        [one] => one.clone(),
+        [one, two] => format!("{one} and {two}"),
+        [one, two, three] => format!("{one}, {two} and {three}"),
+        [one, two, rest @ ..] => format!("{one}, {two} and {} more joints", rest.len()),
+    }
+}
+
+/// Limits of a joint with their verb, such as "its limits about x and z are".
+fn limits_about(axes: [bool; 3]) -> String {
+    let named: Vec<String> = RotationAxis::ALL
+        .into_iter()
+        .zip(axes)
+        .filter(|(_, is_in_the_way)| *is_in_the_way)
+        .map(|(axis, _)| axis.to_string())
+        .collect();
+    match &named[..] {
+        [] => "its limits are".to_owned(),
+        [one] => format!("its limit about {one} is"),
+        [first @ .., last] => format!("its limits about {} and {last} are", first.join(", ")),
+    }
+}
+
+fn out_of_reach(
+    [target, base]: [&str; 2],
+    distance: f32,
+    [shortest, longest]: [f32; 2],
+    boundary: Boundary,
+) -> String {
+    let (at, least, most) = (significant(distance), significant(shortest), significant(longest));
+    let is_far = distance > 0.5 * (shortest + longest);
+    match boundary {
+        Boundary::Bones if is_far => format!(
+            "{target} cannot reach that far: the target is {at} from {base}, the bones are {most} long"
+        ),
+        Boundary::Bones => format!(
+            "{target} cannot come that near: the target is {at} from {base}, the bones fold to {least}"
+        ),
+        Boundary::SoftLimit => {
+            let end = if is_far { "straight" } else { "folded" };
+            format!("The soft limits slow {target} down before the limb is {end}")
+        }
+        Boundary::ElbowAngle => format!(
+            "The smallest elbow angle keeps {target} away from its target, {at} from {base}"
+        ),
+    }
+}
+
+/// A fraction in percent, rounded up.
+fn percent(fraction: f32) -> String {
+    format!("{} %", (100.0 * fraction).ceil())
+}
+
+/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`, and in
+/// scientific notation if it is very large.
+pub fn significant(value: f32) -> String {
+    const LARGE: f32 = 1e9;
+    match value.abs() {
+        size if size.is_nan() || size >= f32::MAX => return "more than numbers hold".to_owned(),
+        LARGE.. => return format!("{value:.2e}"),
+        _ => {}
+    }
+    let magnitude = value.abs().log10().floor();
+    let decimals =
+        if magnitude.is_finite() { (2.0 - magnitude).clamp(0.0, 8.0) as usize } else { 0 };
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::kinematics::skeleton::{Joint, Skeleton};
+    use crate::rig::{LimbSettings, Target, TargetKind};
+
+    #[test]
+    fn sentences_name_hands_joints_and_lengths() {
+        let mut skeleton = Skeleton::with_root("root");
+        let mut parent = JointId::new(0);
+        for (name, length, offset) in [("upper", 1.0, 0.0), ("lower", 0.7, 1.0), ("hand", 0.2, 0.7)]
+        {
+            let joint = Joint::new(name, Some(parent), Vec3::X * length);
+            parent = skeleton.add(Joint { offset: Vec3::X * offset, ..joint }).expect("a joint");
+        }
+        let mut rig = SkeletonRig::new(skeleton);
+        let mut target = Target::new(JointId::new(2), Vec3::Y * 3.4, 1.0);
+        target.influence = 1.0;
+        target.kind = TargetKind::Limb(LimbSettings::default());
+        rig.targets.push(target);
+        let found = &rig.diagnose(0.0)[0];
+        assert_eq!(
+            cause(&rig, found),
+            "hand cannot reach that far: the target is 3.4 from upper, the bones are 1.7 long"
+        );
+        let remedies: Vec<_> =
+            found.remedies.iter().map(|tried| remedy(&rig, &tried.remedy)).collect();
+        assert_eq!(
+            remedies,
+            ["Move the target of hand within reach", "Let the limb stretch by up to 101 %"]
+        );
+        assert_eq!(remedy_done(&rig, &Remedy::Unlock(found.joints.clone()))[..9], *"Unlocked ");
+    }
+
+    #[test]
+    fn limits_in_the_way_are_named_by_their_axes() {
+        let about = |axes: [usize; 3]| limits_about(axes.map(|is_limited| is_limited == 1));
+        assert_eq!(about([0, 0, 0]), "its limits are");
+        assert_eq!(about([0, 1, 0]), "its limit about y is");
+        assert_eq!(about([1, 0, 1]), "its limits about x and z are");
+        assert_eq!(about([1, 1, 1]), "its limits about x, y and z are");
+    }
+}
