@@ -1,10 +1,9 @@
 use core::ops::Range;
 
-use super::array::Points;
-use super::error::{BatchArray, BatchError};
-use super::input::{BatchBones, BatchTwist};
+use super::array::{
+    BatchArray, BatchBones, BatchError, BatchPositions, BatchRotations, BatchTwist, Points,
+};
 use super::kernel::{self, BLOCK, Block, BlockArray, PoseBlock, PositionBlock};
-use super::output::{BatchPositions, BatchRotations};
 use crate::two_bone::TwoBone;
 
 /// Arms to solve: bones, cursors and twists.

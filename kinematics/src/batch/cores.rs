@@ -1,10 +1,8 @@
 //! Division of a batch among threads.
 
 use super::arm_batch::ArmBatch;
-use super::array::{PointsMut, QuaternionsMut};
-use super::error::BatchError;
+use super::array::{BatchError, BatchPositions, BatchRotations, PointsMut, QuaternionsMut};
 use super::kernel::BLOCK;
-use super::output::{BatchPositions, BatchRotations};
 
 /// Maximum number of arms of a task. They are many blocks, so that starting a task costs little
 /// beside solving its arms.

@@ -55,13 +55,10 @@ mod arm_batch;
 mod array;
 #[cfg(feature = "parallel")]
 mod cores;
-mod error;
-mod input;
 mod kernel;
-mod output;
 
 pub use arm_batch::ArmBatch;
+pub use array::{BatchArray, BatchError};
+pub use array::{BatchBones, BatchTwist};
+pub use array::{BatchPositions, BatchRotations};
 pub use array::{Points, PointsMut, QuaternionsMut};
-pub use error::{BatchArray, BatchError};
-pub use input::{BatchBones, BatchTwist};
-pub use output::{BatchPositions, BatchRotations};

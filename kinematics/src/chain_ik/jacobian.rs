@@ -12,8 +12,7 @@
 
 use glam::{Mat3A, Vec3, Vec3A};
 
-use super::configuration::Configuration;
-use super::coordinates::Coordinates;
+use super::configuration::{Configuration, Coordinates};
 use super::problem::Problem;
 use crate::skeleton::{JointAngles, JointId, Skeleton};
 

@@ -41,7 +41,6 @@
 
 mod align;
 mod configuration;
-mod coordinates;
 mod diagnose;
 mod error;
 mod inside;

@@ -9,9 +9,9 @@ mod cause;
 #[expect(clippy::module_inception, reason = "the type Diagnosis, in the file of its name")]
 mod diagnosis;
 mod remedy;
-pub(crate) mod widening;
 
 pub use cause::{Boundary, Cause};
 pub(crate) use diagnosis::in_turn;
 pub use diagnosis::{Diagnosis, TriedRemedy};
+pub(crate) use remedy::{Angle, is_fixed, limited_angles, remove_limits, widen_to_contain};
 pub use remedy::{Remedy, Start, WidenedLimit};

@@ -143,13 +143,12 @@
 
 pub mod batch;
 mod chain;
-mod correction;
 mod error;
 mod fast_path;
 mod half_angle;
 mod stages;
 mod two_bone_job;
 
-pub use correction::TwoBoneCorrection;
 pub use error::{JobError, JobField};
+pub use two_bone_job::TwoBoneCorrection;
 pub use two_bone_job::TwoBoneJob;

@@ -37,7 +37,6 @@
 
 mod aim;
 mod bend;
-mod joint_space;
 mod limb;
 mod solver;
 

@@ -2,8 +2,7 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::aim::Aim;
 use super::bend::Bend;
-use super::joint_space::JointSpace;
-use super::limb::Limb;
+use super::limb::{JointSpace, Limb};
 use crate::saturate::saturate;
 use crate::skeleton::{AnglesWithin, Joint, JointId, RotationAxis, Skeleton};
 use crate::soft_reach::SoftReach;

@@ -1,8 +1,7 @@
 use glam::{DQuat, DVec3, Vec3};
 
-use super::limb_settings::LimbSettings;
 use super::skeleton_rig::SkeletonRig;
-use super::target::{Target, TargetKind};
+use super::target::{LimbSettings, Target, TargetKind};
 use super::target_order::LimbOrder;
 use crate::Shared;
 use crate::chain_ik::{ChainSolver, Report, SolveError, TipTarget};

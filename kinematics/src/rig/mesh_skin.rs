@@ -2,10 +2,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::attached_mesh::AttachedMesh;
-use super::file_mesh::FileMesh;
+use super::attached_mesh::{AttachedMesh, SkinPart};
 use crate::Shared;
 use crate::skeleton::{JointId, JointRemap, Skeleton};
+use crate::skin::SkinnedMesh;
 
 /// A skin whose mesh was imported: it is read from its file, or saved in the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,4 +144,15 @@ impl PartialEq for LoadedMesh {
     fn eq(&self, other: &Self) -> bool {
         self.in_file == other.in_file
     }
+}
+
+/// A skinned mesh as a file has it, with joints of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileMesh {
+    /// The mesh, with an inverse bind transform for each joint of the file.
+    pub mesh: SkinnedMesh,
+    /// Parents of the file's joints, which precede their children.
+    pub parents: Vec<Option<JointId>>,
+    /// The parts of the mesh in the order of its triangles.
+    pub parts: Vec<SkinPart>,
 }

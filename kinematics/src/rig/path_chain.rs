@@ -1,8 +1,8 @@
 use glam::{Mat3A, Vec3, Vec3A};
 
+use super::follow_path::WavyRing;
 use super::head_path;
 use super::target::Target;
-use super::wavy_ring::WavyRing;
 use crate::skeleton::{JointId, Skeleton};
 use crate::spline::Spline;
 use crate::{follow, rotation_between};

@@ -3,10 +3,8 @@ use std::collections::BTreeMap;
 use glam::{Vec3, Vec3A};
 
 use super::follow_path::{FollowPath, PathKind};
-use super::limb_settings::LimbSettings;
-use super::moved_joints::MovedJoints;
 use super::skin::Skin;
-use super::target::{Target, TargetKind};
+use super::target::{LimbSettings, MovedJoints, Target, TargetKind};
 use crate::Shared;
 use crate::chain_ik::{SolverOptions, TipTarget};
 use crate::limb_ik::Limb;

@@ -1,10 +1,11 @@
-use glam::Vec3;
+use core::f32::consts::TAU;
 
-use super::limb_settings::LimbSettings;
-use super::target_motion::{TargetMotion, TargetPath};
-use super::target_space::TargetSpace;
-use crate::limb_ik::ElbowReference;
-use crate::skeleton::{JointId, JointRemap, Skeleton};
+use glam::{Affine3A, EulerRot, Mat3A, Quat, Vec3};
+
+use crate::chain_ik::Root;
+use crate::limb_ik::{ElbowReference, Limb};
+use crate::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
+use crate::soft_reach::SoftReach;
 
 /// A target of a skeleton: a point that the tip of a joint's bone should reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,5 +160,205 @@ impl Target {
             settings.pole_space = settings.pole_space.remapped(remap);
         }
         Some(self)
+    }
+}
+
+/// Motion of a target along a closed curve through its home, in a plane perpendicular to z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetMotion {
+    /// Shape of the curve.
+    pub path: TargetPath,
+    /// Radius of the curve, in units of the world.
+    pub radius: f32,
+    /// Duration of one revolution in seconds.
+    pub period: f32,
+}
+
+/// The shape of a target's path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum TargetPath {
+    /// The target stays at its home.
+    #[default]
+    Still,
+    /// A circle.
+    Circle,
+    /// An eight: the lemniscate of Gerono.
+    FigureEight,
+}
+
+impl TargetMotion {
+    /// Vector in the world from the target's home to its position at a time in seconds; zero at
+    /// time 0.
+    pub fn offset(&self, time: f64) -> Vec3 {
+        let angle = (time / f64::from(self.period)).fract() as f32 * TAU;
+        let (sin, cos) = angle.sin_cos();
+        self.radius
+            * match self.path {
+                TargetPath::Still => Vec3::ZERO,
+                TargetPath::Circle => Vec3::new(sin, cos - 1.0, 0.0),
+                TargetPath::FigureEight => Vec3::new(sin, sin * cos, 0.0),
+            }
+    }
+}
+
+/// Settings of a limb target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LimbSettings {
+    /// Direction of the elbow at twist 0.
+    pub reference: ElbowReference,
+    /// Angle in radians by which the elbow is turned about the axis from the limb's base to the target.
+    pub twist: f32,
+    /// Behaviour near the limits of the reach.
+    pub soft_reach: SoftReach,
+    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x; `None` for
+    /// a hand that follows the lower bone.
+    pub orientation: Option<Vec3>,
+    /// The space of the point of [`ElbowReference::Pole`].
+    pub pole_space: TargetSpace,
+}
+
+impl LimbSettings {
+    /// The space and the position of the pole; `None` for another reference.
+    pub fn pole(&self) -> Option<(TargetSpace, Vec3)> {
+        match self.reference {
+            ElbowReference::Pole(pole) => Some((self.pole_space, pole)),
+            _ => None,
+        }
+    }
+
+    /// Position of the pole in the world, for a pose of the skeleton; `None` for another reference.
+    pub fn pole_in_world(&self, pose: &Skeleton) -> Option<Vec3> {
+        self.pole().map(|(space, pole)| space.to_world(pose).transform_point3(pole))
+    }
+
+    /// The reference with its pole in the world, for a pose of the skeleton.
+    pub(super) fn reference_in_world(&self, pose: &Skeleton) -> ElbowReference {
+        self.pole_in_world(pose).map_or(self.reference, ElbowReference::Pole)
+    }
+
+    /// Rotation of the hand in the world, for a pose of the skeleton and the space of the target;
+    /// `None` for a hand that follows the lower bone.
+    pub fn hand_in_world(&self, pose: &Skeleton, space: TargetSpace) -> Option<Quat> {
+        let turned = |Vec3 { x, y, z }| Quat::from_euler(EulerRot::ZYX, z, y, x);
+        self.orientation.map(|angles| space.rotation(pose) * turned(angles))
+    }
+
+    /// Whether all numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.pole().is_none_or(|(_, pole)| pole.is_finite())
+            && self.twist.is_finite()
+            && self.orientation.is_none_or(Vec3::is_finite)
+    }
+}
+
+/// The space in which a target, or the pole of a limb, is fixed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TargetSpace {
+    /// The world.
+    #[default]
+    World,
+    /// The space of a joint: it moves and turns with the joint's bone, with the origin at the base.
+    Joint(JointId),
+}
+
+impl TargetSpace {
+    /// The joint; `None` for the world.
+    pub fn joint(self) -> Option<JointId> {
+        match self {
+            Self::World => None,
+            Self::Joint(joint) => Some(joint),
+        }
+    }
+
+    /// Transform from this space to the world, for a pose of the skeleton. A joint that the skeleton
+    /// does not have counts as the world.
+    pub fn to_world(self, pose: &Skeleton) -> Affine3A {
+        let joint = self.joint().filter(|joint| pose.joint(*joint).is_some());
+        joint.map_or(Affine3A::IDENTITY, |joint| pose.full_transform(joint))
+    }
+
+    /// Transform from this space to skeleton space, for a pose of the skeleton. That of the world is not
+    /// finite if the skeleton's own transform is singular.
+    pub(super) fn to_skeleton(self, pose: &Skeleton) -> Affine3A {
+        let Some(joint) = self.joint().filter(|joint| pose.joint(*joint).is_some()) else {
+            return pose.transform().inverse();
+        };
+        let below = |above: Affine3A, joint: JointId| pose[joint].local() * above;
+        pose.ancestors(joint).fold(Affine3A::IDENTITY, below)
+    }
+
+    /// Rotation from this space to the world, for a pose of the skeleton.
+    pub fn rotation(self, pose: &Skeleton) -> Quat {
+        let joint = self.joint().filter(|joint| pose.joint(*joint).is_some());
+        joint.map_or(Quat::IDENTITY, |joint| pose.rotation_in_world(joint).as_quat())
+    }
+
+    /// Point in this space that is at `point`, in the world. Where the space is singular (a scale of
+    /// 0) or the result overflows, returns `point`.
+    pub fn point_from_world(self, pose: &Skeleton, point: Vec3) -> Vec3 {
+        if self == Self::World {
+            return point;
+        }
+        let local = self.to_world(pose).inverse().transform_point3(point);
+        if local.is_finite() { local } else { point }
+    }
+
+    /// Euler angles in this space, in radians, of a rotation in the world: of all equivalent angles
+    /// those nearest to `near`.
+    pub fn angles_from_world(self, pose: &Skeleton, rotation: Quat, near: Vec3) -> Vec3 {
+        let local = self.rotation(pose).inverse() * rotation;
+        nearest_angles(Mat3A::from_quat(local.normalize()), near)
+    }
+
+    /// The same space after its joint was renumbered; the world if the joint was removed.
+    #[must_use]
+    pub(super) fn remapped(self, remap: &JointRemap) -> Self {
+        self.joint().and_then(|joint| remap.get(joint)).map_or(Self::World, Self::Joint)
+    }
+}
+
+/// The joints that a target turns.
+pub(super) struct MovedJoints {
+    pub turned: Vec<JointId>,
+    /// The upper joint of a limb.
+    upper: Option<JointId>,
+}
+
+impl MovedJoints {
+    /// The joints that `target` turns if it poses a skeleton whose solver has this mode of roots.
+    pub fn new(skeleton: &Skeleton, root: Root, target: &Target) -> Self {
+        let is_free = root == Root::Free;
+        let can_turn = |joint: &JointId| {
+            let joint = &skeleton[*joint];
+            !joint.locked || (is_free && joint.parent.is_none())
+        };
+        match target.kind {
+            TargetKind::WholeBody => Self {
+                turned: skeleton.ancestors(target.joint).filter(can_turn).collect(),
+                upper: None,
+            },
+            TargetKind::Limb(_) => match Limb::ending_at(skeleton, target.joint) {
+                Ok(limb) => Self { turned: limb.joints().collect(), upper: Some(limb.upper) },
+                Err(_) => Self { turned: Vec::new(), upper: None },
+            },
+        }
+    }
+
+    /// Whether the target moves `joint`: turns it or a joint above it.
+    pub fn moves(&self, skeleton: &Skeleton, joint: JointId) -> bool {
+        skeleton.ancestors(joint).any(|above| self.turned.contains(&above))
+    }
+
+    /// Whether `target`, which moves these joints, must be solved after a target that moves the joints
+    /// of `other`: because it is on one of them, or because its limb is attached to one.
+    pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
+        let base = self.upper.and_then(|upper| skeleton[upper].parent);
+        let spaces = target.spaces().filter_map(TargetSpace::joint);
+        spaces.chain(base).any(|joint| other.moves(skeleton, joint))
     }
 }

@@ -1,12 +1,10 @@
 use glam::{DQuat, Vec3};
 
-use super::limb_settings::LimbSettings;
 use super::skeleton_rig::SkeletonRig;
-use super::target::{Target, TargetKind};
-use crate::Shared;
-use crate::angle;
+use super::target::{LimbSettings, Target, TargetKind};
 use crate::limb_ik::{self, ElbowReference, Limb};
 use crate::skeleton::Skeleton;
+use crate::{Shared, angle};
 
 /// Matches between the FK pose and the pose that a target solves for.
 impl SkeletonRig {

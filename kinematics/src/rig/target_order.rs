@@ -1,9 +1,7 @@
 use thiserror::Error;
 
-use super::moved_joints::MovedJoints;
 use super::skeleton_rig::SkeletonRig;
-use super::target::{Target, TargetKind};
-use super::target_space::TargetSpace;
+use super::target::{MovedJoints, Target, TargetKind, TargetSpace};
 use crate::skeleton::JointId;
 
 /// A target that is fixed in a space from which it cannot be evaluated.

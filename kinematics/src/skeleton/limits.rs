@@ -3,8 +3,6 @@ use core::ops::RangeInclusive;
 
 use glam::Vec3;
 
-use super::{JointId, SkeletonError};
-
 /// The axis of an Euler angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RotationAxis {
@@ -209,15 +207,11 @@ impl JointLimits {
         Vec3::from_array(self.ranges.map(|range| range.map_or(0.0, middle)))
     }
 
-    pub(super) fn check(&self, joint: JointId) -> Result<(), SkeletonError> {
-        for axis in RotationAxis::ALL {
-            if let Some(Limit { min, max }) = self.range(axis)
-                && !(min.is_finite() && max.is_finite() && min <= max)
-            {
-                return Err(SkeletonError::Limit { joint, axis, min, max });
-            }
-        }
-        Ok(())
+    /// The first range that is not finite or whose bounds are swapped.
+    pub(super) fn invalid_range(&self) -> Option<(RotationAxis, Limit)> {
+        let is_valid = |it: &Limit| it.min.is_finite() && it.max.is_finite() && it.min <= it.max;
+        let ranges = RotationAxis::ALL.into_iter().zip(self.ranges);
+        ranges.filter_map(|(axis, range)| Some((axis, range?))).find(|(_, it)| !is_valid(it))
     }
 }
 

@@ -43,12 +43,9 @@
 mod edit;
 mod error;
 pub mod exact_angles;
-mod forward;
 mod joint;
 mod joint_angles;
 mod joint_id;
-mod joint_remap;
-mod joint_rotation;
 mod limits;
 mod pose;
 #[cfg(feature = "serde")]
@@ -59,10 +56,10 @@ pub use error::{JointField, SkeletonError};
 pub use joint::Joint;
 pub use joint_angles::nearest_angles;
 pub use joint_id::JointId;
-pub use joint_remap::JointRemap;
+pub use joint_id::JointRemap;
 pub use limits::{JointLimits, Limit, RotationAxis};
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 
+pub(crate) use joint::AnglesWithin;
 pub(crate) use joint_angles::{JointAngles, angle_triples, equivalent_triples};
-pub(crate) use joint_rotation::AnglesWithin;

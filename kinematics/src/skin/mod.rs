@@ -27,22 +27,17 @@
 //! L. Kavan, S. Collins, J. Žára, C. O'Sullivan, *Geometric skinning with approximate dual quaternion
 //! blending*, ACM TOG 27(4), 2008.
 
-mod dual_quaternion;
-mod error;
 mod from_bones;
-mod mesh_section;
-mod roll;
 mod skin_pose;
 mod skinned_mesh;
-mod skinning;
 mod triangle_mesh;
 mod vertex_weights;
 
-pub use error::SkinError;
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
-pub use mesh_section::MeshSection;
 pub use skin_pose::{JointDeform, SkinPose};
+pub use skin_pose::{Skinning, UnknownSkinning};
+pub use skinned_mesh::SkinError;
 pub use skinned_mesh::SkinnedMesh;
-pub use skinning::{Skinning, UnknownSkinning};
+pub use triangle_mesh::MeshSection;
 pub use triangle_mesh::{MeshHit, TriangleMesh};
 pub use vertex_weights::VertexWeights;

@@ -1,10 +1,62 @@
-use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec4};
+use core::fmt;
+use core::str::FromStr;
 
-use super::dual_quaternion::{DualQuaternion, motion_and_scale};
-use super::roll::roll;
-use super::skinning::Skinning;
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Quat, Vec3, Vec4};
+
 use super::vertex_weights::VertexWeights;
 use crate::skeleton::{Joint, Skeleton, SkeletonPose};
+
+/// How the joints of a vertex are blended. See [the module](super).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Skinning {
+    /// Weighted sum of the joints' matrices.
+    Linear,
+    /// Weighted sum of the joints' unit dual quaternions, after their scales.
+    #[default]
+    DualQuaternion,
+    /// Linear, with each bone's roll spread along the bone.
+    SpreadTwist,
+}
+
+impl Skinning {
+    /// All methods.
+    pub const ALL: [Self; 3] = [Self::Linear, Self::DualQuaternion, Self::SpreadTwist];
+
+    /// Name on screen.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Linear => "Linear",
+            Self::DualQuaternion => "Dual quaternions",
+            Self::SpreadTwist => "Spread twist",
+        }
+    }
+}
+
+impl fmt::Display for Skinning {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Self::Linear => "linear",
+            Self::DualQuaternion => "dual-quaternion",
+            Self::SpreadTwist => "spread-twist",
+        })
+    }
+}
+
+/// A text names no way to blend joints.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("skinning must be linear, dual-quaternion or spread-twist, got {0}")]
+pub struct UnknownSkinning(pub String);
+
+impl FromStr for Skinning {
+    type Err = UnknownSkinning;
+
+    fn from_str(text: &str) -> Result<Self, UnknownSkinning> {
+        let named = Self::ALL.into_iter().find(|skinning| skinning.to_string() == text);
+        named.ok_or_else(|| UnknownSkinning(text.to_owned()))
+    }
+}
 
 /// How each joint of a posed skeleton moves a mesh, for all ways of blending.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -178,4 +230,88 @@ fn cross_matrix(axis: DVec3) -> Mat3A {
     let columns = [DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0)]
         .map(DVec3::as_vec3a);
     Mat3A::from_cols(columns[0], columns[1], columns[2])
+}
+
+/// A rigid motion as a unit dual quaternion: rotation `real`, then translation `2·dual·real*`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DualQuaternion {
+    /// The rotation.
+    pub real: Vec4,
+    /// Half the translation (as a quaternion with w = 0) times the rotation.
+    pub dual: Vec4,
+}
+
+impl DualQuaternion {
+    pub fn new(rotation: DQuat, translation: DVec3) -> Self {
+        let dual = DQuat::from_vec4((translation * 0.5).extend(0.0)) * rotation;
+        Self { real: Vec4::from(rotation.as_quat()), dual: Vec4::from(dual.as_quat()) }
+    }
+
+    /// The zero of [`DualQuaternion::add`]; not a motion.
+    pub const ZERO: Self = Self { real: Vec4::ZERO, dual: Vec4::ZERO };
+
+    /// Adds a weighted motion; with a negative weight if its rotation is in the other hemisphere than
+    /// `near`. q and −q are the same motion.
+    pub fn add(&mut self, weight: f32, other: &Self, near: Vec4) {
+        let weight = if other.real.dot(near) < 0.0 { -weight } else { weight };
+        self.real += weight * other.real;
+        self.dual += weight * other.dual;
+    }
+
+    /// The rigid motion of a sum, scaled to unit length. Rotations in one hemisphere do not cancel out.
+    pub fn motion(&self) -> Affine3A {
+        let length = self.real.length();
+        if length == 0.0 {
+            return Affine3A::IDENTITY;
+        }
+        let (real, dual) = (self.real / length, self.dual / length);
+        let (vector, dual_vector) = (real.truncate(), dual.truncate());
+        let translation =
+            2.0 * (real.w * dual_vector - dual.w * vector + vector.cross(dual_vector));
+        Affine3A::from_rotation_translation(Quat::from_vec4(real), translation)
+    }
+}
+
+/// A transform as a rigid motion after a scale: `motion · scale`. The polar decomposition of the linear
+/// part; a mirroring transform has a mirroring scale. A singular transform has no rotation.
+pub fn motion_and_scale(transform: Affine3A) -> (DualQuaternion, Mat3A) {
+    let DAffine3 { matrix3, translation } = transform.as_daffine3();
+    let rotation = nearest_rotation(matrix3);
+    // Exact for rigid transforms, so that their scale does not blur the mesh.
+    let is_rigid = matrix3.abs_diff_eq(rotation, 1e-6);
+    let scale = if is_rigid { DMat3::IDENTITY } else { rotation.transpose() * matrix3 };
+    let motion = DualQuaternion::new(DQuat::from_mat3(&rotation).normalize(), translation);
+    (motion, Mat3A::from(scale.as_mat3()))
+}
+
+/// The rotation nearest to a matrix, by Newton's iteration R ← (R + R⁻ᵀ)/2 (Higham 1986), which squares
+/// the error in each step.
+fn nearest_rotation(matrix: DMat3) -> DMat3 {
+    let determinant = matrix.determinant();
+    let size = determinant.abs().cbrt();
+    if !(size.is_finite() && size > 1e-30) {
+        return DMat3::IDENTITY;
+    }
+    let mut rotation = matrix * (1.0 / size).copysign(determinant);
+    for _ in 0..50 {
+        let next = (rotation + rotation.inverse().transpose()) * 0.5;
+        if !next.is_finite() {
+            return DMat3::IDENTITY;
+        }
+        let is_settled = next.abs_diff_eq(rotation, 1e-14);
+        rotation = next;
+        if is_settled {
+            break;
+        }
+    }
+    rotation
+}
+
+/// The roll τ of a rotation about a unit axis, in (−π, π]: the rotation is a swing of the axis after a
+/// rotation about the axis by τ. It is 0 where the rotation turns the axis around by 180°, where any roll
+/// would do.
+pub fn roll(rotation: DQuat, axis: DVec3) -> f64 {
+    let (cos, sin) = (rotation.w, rotation.xyz().dot(axis));
+    let sign = if cos < 0.0 { -1.0 } else { 1.0 };
+    if cos.hypot(sin) > 1e-9 { 2.0 * (sign * sin).atan2(sign * cos) } else { 0.0 }
 }

@@ -1,8 +1,6 @@
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
-use super::error::SkinError;
-use super::skin_pose::SkinPose;
-use super::skinning::Skinning;
+use super::skin_pose::{SkinPose, Skinning};
 use super::triangle_mesh::{MeshHit, TriangleMesh};
 use super::vertex_weights::VertexWeights;
 use crate::skeleton::{JointId, Skeleton};
@@ -213,4 +211,65 @@ fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
     let mirror = if x_axis.dot(y_axis.cross(z_axis)) < 0.0 { -1.0 } else { 1.0 };
     let posed = cofactors * Vec3A::from(normal) * mirror;
     posed.try_normalize().map_or(normal, Vec3::from)
+}
+
+/// A skinned mesh whose parts contradict each other.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SkinError {
+    /// The lists of vertices have different lengths.
+    #[error("{list} must have one entry for each of the {vertices} vertices, got {got}")]
+    Count {
+        /// The list with a different length.
+        list: &'static str,
+        /// Number of positions.
+        vertices: usize,
+        /// Length of the list.
+        got: usize,
+    },
+    /// There are too many vertices or triangles.
+    #[error("a skin must have at most {most} {list}, got {got}")]
+    TooMany {
+        /// What there are too many of.
+        list: &'static str,
+        /// The greatest number.
+        most: usize,
+        /// The number.
+        got: usize,
+    },
+    /// A triangle has a vertex that does not exist.
+    #[error("triangle {triangle} must have vertices below {vertices}, got {got}")]
+    Triangle {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Number of vertices.
+        vertices: usize,
+        /// The vertex that does not exist.
+        got: u32,
+    },
+    /// A vertex follows a joint without an inverse bind transform.
+    #[error("vertex {vertex} must follow joints below {joints}, got {}", got.index())]
+    Joint {
+        /// Index of the vertex.
+        vertex: usize,
+        /// Number of inverse bind transforms.
+        joints: usize,
+        /// The joint that does not exist.
+        got: JointId,
+    },
+    /// A position, a normal or a texture coordinate is not finite.
+    #[error(
+        "positions, normals and texture coordinates must be finite, got {got} at vertex {vertex}"
+    )]
+    NotFinite {
+        /// Index of the vertex.
+        vertex: usize,
+        /// The value.
+        got: glam::Vec3,
+    },
+    /// An inverse bind transform is not finite.
+    #[error("the inverse bind transform of joint {} must be finite", joint.index())]
+    Bind {
+        /// The joint.
+        joint: JointId,
+    },
 }

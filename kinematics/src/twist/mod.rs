@@ -34,14 +34,11 @@
 //! manipulators*, arXiv 2307.13122, 2023 (stereographic swivel angle); E. Palmieri, *IK-Rigging in
 //! three.js*, 2014 (up as reference).
 
-mod kind;
-mod limb;
 mod reference;
 mod stereographic;
-mod transported_frame;
 
-pub use kind::{TwistReferenceKind, UnknownTwistReference};
-pub use limb::{angle_from_limb, remeasured};
 pub use reference::TwistReference;
+pub use reference::{TwistReferenceKind, UnknownTwistReference};
+pub use reference::{angle_from_limb, remeasured};
 pub use stereographic::Stereographic;
-pub use transported_frame::TransportedFrame;
+pub use stereographic::TransportedFrame;

@@ -1,12 +1,76 @@
 use core::fmt;
+use core::str::FromStr;
 
 use glam::{DVec3, Vec3};
+use thiserror::Error;
 
-use super::kind::TwistReferenceKind;
-use super::limb::angle_from_limb;
-use super::stereographic::{Stereographic, unit};
-use super::transported_frame::TransportedFrame;
+use super::stereographic::{Stereographic, TransportedFrame, unit};
+use crate::angle::wrapped_to_turn;
 use crate::two_bone::Pointer;
+
+/// Kind of a [`TwistReference`](super::TwistReference), without its pole or map; for choices and
+/// names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum TwistReferenceKind {
+    /// Up: the Limb frame's +y.
+    #[default]
+    #[cfg_attr(feature = "serde", serde(alias = "limb"))]
+    Up,
+    /// Direction towards a point of Root space.
+    Pole,
+    /// Stereographic map of directions.
+    Stereographic,
+    /// The previous direction, parallel-transported.
+    Transport,
+}
+
+/// Error for a text that is not the name of a twist reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("twist reference must be up, pole, stereographic or transport")]
+pub struct UnknownTwistReference;
+
+impl TwistReferenceKind {
+    /// All kinds, in the order in which panels list them.
+    pub const ALL: [Self; 4] = [Self::Up, Self::Pole, Self::Stereographic, Self::Transport];
+
+    /// Name for labels, and the name in files and on the command line.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Up => ("Up", "up"),
+            Self::Pole => ("Pole", "pole"),
+            Self::Stereographic => ("Stereographic", "stereographic"),
+            Self::Transport => ("Transport", "transport"),
+        }
+    }
+
+    /// Name for labels, such as "Up".
+    pub fn name(self) -> &'static str {
+        self.names().0
+    }
+}
+
+impl fmt::Display for TwistReferenceKind {
+    /// The name in lower case, as in files and on the command line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.names().1)
+    }
+}
+
+impl FromStr for TwistReferenceKind {
+    type Err = UnknownTwistReference;
+
+    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display). `limb`, the former name
+    /// of `up`, is read too.
+    fn from_str(text: &str) -> Result<Self, UnknownTwistReference> {
+        let name = if text == "limb" { "up" } else { text };
+        Self::ALL.into_iter().find(|kind| kind.names().1 == name).ok_or(UnknownTwistReference)
+    }
+}
 
 /// Direction from which the twist angle is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -105,4 +169,19 @@ fn towards(pole: Vec3, w: DVec3) -> Option<DVec3> {
     let pole = pole.as_dvec3().try_normalize()?;
     let aside = w.cross(pole).cross(w);
     (aside.length() > ON_LINE).then(|| aside.normalize())
+}
+
+/// Angle about the Pointer from the Limb frame's +y to a direction perpendicular to the Pointer, in
+/// (−π, π].
+#[must_use]
+pub fn angle_from_limb(pointer: Pointer, outward: Vec3) -> f32 {
+    let limb = pointer.limb_frame();
+    outward.dot(limb.z_axis).atan2(outward.dot(limb.y_axis))
+}
+
+/// The twist ψ, in [0, 2π), that keeps the elbow in place when the twist reference changes. `from`
+/// and `to` are the angles of the old and the new reference from the Limb frame's +y.
+#[must_use]
+pub fn remeasured(twist: f32, from: f32, to: f32) -> f32 {
+    wrapped_to_turn(f64::from(twist) + f64::from(from) - f64::from(to))
 }

@@ -7,13 +7,10 @@
 //! scale and overflow is not clamped, so that the code is correct only if all numbers are normal,
 //! which [`ClosedForm::is_normal`] tells. For normal numbers both give the same bits.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::bones::TwoBone;
-use super::cursor::{ScaledCursor, is_normal};
-use super::pointer::Pointer;
-use super::pose::TwoBonePose;
-use super::reach::Reach;
+use super::pose::{Pointer, Reach, TwoBonePose};
 use crate::normalize::power_of_two_near;
 
 /// Distance of the hand, as a fraction of the arm length, below which the bones must be equal and
@@ -170,4 +167,106 @@ fn between(value: f32, least: f32, most: f32) -> f32 {
 fn in_units<const ANY: bool>(v: Vec3, unit: f32) -> Vec3 {
     let v = v * unit;
     if ANY { v.clamp(Vec3::MIN, Vec3::MAX) } else { v }
+}
+
+impl TwoBone {
+    /// Poses the hand at `cursor` (Root space) with the elbow turned by `twist` (ψ, radians,
+    /// right-handed about the Pointer) from the Limb frame's +y.
+    ///
+    /// A cursor at the shoulder or straight above or below it takes its direction or yaw from
+    /// [`Pointer::default`]; see [`Self::solve_from`].
+    ///
+    /// # Panics
+    ///
+    /// In debug builds, if an argument is not finite; in release builds the pose is then
+    /// meaningless. Callers check numbers where they enter the program.
+    #[must_use]
+    pub fn solve(self, cursor: Vec3, twist: f32) -> TwoBonePose {
+        self.solve_from(cursor, twist, Pointer::default())
+    }
+
+    /// As [`Self::solve`], with the previous pose's [`Pointer`] as `last`: a cursor at the shoulder
+    /// takes its direction, and a cursor straight above or below the shoulder takes its yaw.
+    #[must_use]
+    pub fn solve_from(self, cursor: Vec3, twist: f32, last: Pointer) -> TwoBonePose {
+        debug_assert!(cursor.is_finite(), "cursor is {cursor}");
+        debug_assert!(twist.is_finite(), "twist is {twist}");
+        let (sin, cos) = twist.sin_cos();
+        let solved = ClosedForm::new::<true>(self, cursor, cos, sin, last);
+        let pose = solved.pose(twist);
+        TwoBonePose { hand: solved.hand_or(cursor), reach: Some(solved.reach), ..pose }
+    }
+
+    /// Poses the hand in the direction of `pointer` at `distance` from the shoulder, clamped to the
+    /// limits. The pose has no cursor, so its reach is `None`.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::solve`].
+    #[must_use]
+    pub fn solve_at(self, pointer: Pointer, distance: f32, twist: f32) -> TwoBonePose {
+        debug_assert!(distance.is_finite(), "distance is {distance}");
+        debug_assert!(twist.is_finite(), "twist is {twist}");
+        let (sin, cos) = twist.sin_cos();
+        let scaled = ScaledBones::new(self);
+        ClosedForm::at::<true>(scaled, pointer, distance * scaled.scale, cos, sin).pose(twist)
+    }
+}
+
+/// Range of squared lengths of normal vectors, 2⁻⁶⁴ to 2⁶⁴: sums and products of two such squares
+/// neither overflow nor underflow.
+const NORMAL: [f32; 2] = [5.421_011e-20, 1.844_674_4e19];
+
+/// Direction and distance of a cursor from the shoulder.
+#[derive(Clone, Copy)]
+pub(super) struct ScaledCursor {
+    pub pointer: Pointer,
+    /// Distance in units of `unit`.
+    pub distance: f32,
+    /// Length in the caller's unit that is 1 in `distance`, a power of two.
+    pub unit: f32,
+    /// Whether the squared lengths were in the range `NORMAL`.
+    pub is_normal: bool,
+}
+
+impl ScaledCursor {
+    #[inline(always)]
+    pub fn new<const ANY: bool>(cursor: Vec3, last: Pointer) -> Self {
+        let flat = Vec2::new(cursor.x, cursor.z);
+        let is_normal = is_normal(flat.length_squared(), cursor.length_squared());
+        let [(unit, scale), (_, flat_scale)] = if ANY && !is_normal {
+            [cursor.abs().max_element(), flat.abs().max_element()].map(power_of_two_near)
+        } else {
+            [(1.0, 1.0); 2]
+        };
+        let (near, near_flat) = (cursor * scale, flat * flat_scale);
+        let distance = near.length();
+        // A division rounds once, a product with a reciprocal twice. The second rounding would show
+        // in the upper bone's length.
+        let direction = near / distance;
+        let heading = near_flat * (1.0 / near_flat.length());
+        let pointer = if ANY && cursor == Vec3::ZERO {
+            last
+        } else if ANY && flat == Vec2::ZERO {
+            Pointer { direction, heading: last.heading }
+        } else {
+            Pointer { direction, heading }
+        };
+        Self { pointer, distance, unit, is_normal }
+    }
+}
+
+impl Pointer {
+    /// The Pointer towards `cursor`, in Root space. For a cursor at the shoulder it is `last`; for
+    /// a cursor straight above or below the shoulder it has the heading of `last`.
+    #[must_use]
+    pub fn towards(cursor: Vec3, last: Self) -> Self {
+        ScaledCursor::new::<true>(cursor, last).pointer
+    }
+}
+
+/// Whether a set of squares is in the range `NORMAL`, by its smallest and its largest square.
+#[inline(always)]
+pub(super) fn is_normal(least: f32, most: f32) -> bool {
+    (least >= NORMAL[0]) & (most <= NORMAL[1])
 }

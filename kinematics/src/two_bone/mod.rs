@@ -49,15 +49,11 @@
 
 mod bones;
 mod closed_form;
-mod cursor;
-mod pointer;
 mod pose;
-mod reach;
-mod solve;
 
 pub(crate) use bones::opposite_side;
 pub use bones::{Bone, LengthError, TwoBone};
 pub(super) use closed_form::{ClosedForm, ScaledBones};
-pub use pointer::Pointer;
+pub use pose::Pointer;
+pub use pose::Reach;
 pub use pose::TwoBonePose;
-pub use reach::Reach;

@@ -1,13 +1,12 @@
+use glam::Vec3;
+
 use super::chain_reach::OutOfReach;
 use super::pull::{Pulls, opponent};
 use super::solve_inputs::{SolveInputs, Solved};
-use super::starts;
 use crate::chain_ik::{Method, Root, Status};
-use crate::diagnosis::widening::{
-    Angle, is_fixed, limited_angles, remove_limits, widen_to_contain,
-};
-use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy};
-use crate::skeleton::JointId;
+use crate::diagnosis::{Angle, is_fixed, limited_angles, remove_limits, widen_to_contain};
+use crate::diagnosis::{Cause, Diagnosis, Remedy, Start, TriedRemedy};
+use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 /// Residuals that a remedy brings below this fraction are worth a word.
 const WORTH: f32 = 0.9;
@@ -117,8 +116,8 @@ impl<'a> Case<'a> {
         let present = settled.options.method;
         let others = OTHERS.into_iter().filter(|method| *method != present).take(2);
         let others = others.map(Remedy::UseMethod);
-        let bent = Remedy::StartFrom(starts::bent(&settled.skeleton, self.joint));
-        let middle = Remedy::StartFrom(starts::middle(&settled.skeleton, self.joint));
+        let bent = Remedy::StartFrom(bent_start(&settled.skeleton, self.joint));
+        let middle = Remedy::StartFrom(middle_start(&settled.skeleton, self.joint));
         let is_singular = self.pulls.mobility < SINGULAR;
         // A bend is what helps at a singular pose; elsewhere a method is easier to change.
         let [first, last] =
@@ -288,4 +287,39 @@ impl<'a> Case<'a> {
     fn path(&self) -> Vec<JointId> {
         self.examination.inputs.skeleton.ancestors(self.joint).collect()
     }
+}
+
+/// The present angles of all joints above a tip, each changed a little and within its limits. The
+/// signs alternate along the chain, so that a straight chain bends and folds back.
+fn bent_start(skeleton: &Skeleton, joint: JointId) -> Start {
+    /// Change of each angle, in radians.
+    const BEND: f32 = 0.2;
+    let turn = |index: usize, joint: &Joint| {
+        let side = if index.is_multiple_of(2) { BEND } else { -BEND };
+        let mut angles = joint.rotation;
+        for axis in RotationAxis::ALL {
+            let angle = &mut angles[axis.index()];
+            let (to, back) = (*angle + side, *angle - side);
+            let is_free = |angle| joint.limits.allows(axis, angle);
+            *angle = if is_free(to) || !is_free(back) { to } else { back };
+        }
+        joint.limits.project(angles)
+    };
+    Start { is_bend: true, angles: turned(skeleton, joint, turn) }
+}
+
+/// The middle of all limits, and the bind pose of angles without limits.
+fn middle_start(skeleton: &Skeleton, joint: JointId) -> Start {
+    let turn = |_, joint: &Joint| joint.limits.middle();
+    Start { is_bend: false, angles: turned(skeleton, joint, turn) }
+}
+
+/// New angles of all joints above a tip that may turn.
+fn turned(
+    skeleton: &Skeleton,
+    joint: JointId,
+    turn: impl Fn(usize, &Joint) -> Vec3,
+) -> Vec<(JointId, Vec3)> {
+    let free = skeleton.ancestors(joint).filter(|joint| !skeleton[*joint].locked);
+    free.enumerate().map(|(index, joint)| (joint, turn(index, &skeleton[joint]))).collect()
 }

@@ -28,7 +28,6 @@ mod chain_reach;
 mod examination;
 mod pull;
 mod solve_inputs;
-mod starts;
 
 use self::examination::Examination;
 use self::solve_inputs::SolveInputs;

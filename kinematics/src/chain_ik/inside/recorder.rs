@@ -1,7 +1,6 @@
 use glam::{Quat, Vec3A};
 
-use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::configuration::{Configuration, Coordinates};
 
 /// Keeps what a method computes in an iteration, in the problem's units; nothing if it is off.
 pub(in crate::chain_ik) struct Recorder(Option<Vec<Record>>);

@@ -6,8 +6,7 @@ use super::recorder::{Event, LinkSegment, Record};
 use super::{
     AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
 };
-use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::problem::Problem;
 use crate::saturate::{saturate, saturate_vector};
 use crate::skeleton::{RotationAxis, Skeleton};

@@ -24,8 +24,7 @@
 //! safeguard); E. Birgin, J. Martínez, M. Raydan, *Nonmonotone spectral projected gradient methods on
 //! convex sets*, 2000 (P).
 
-use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
 use crate::chain_ik::problem::Problem;

@@ -14,8 +14,7 @@
 use glam::{Mat3A, Vec3, Vec3A};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
 use crate::chain_ik::problem::{Link, Problem};

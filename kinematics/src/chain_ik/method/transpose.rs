@@ -15,8 +15,7 @@
 //!
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2b; Buss 2004, section 4.
 
-use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::coordinates::Coordinates;
+use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
 use crate::chain_ik::problem::Problem;

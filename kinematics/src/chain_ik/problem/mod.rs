@@ -14,9 +14,8 @@
 //! solve like others.
 
 mod build;
-mod check;
 mod data;
 
 pub(super) use build::build;
-pub(super) use check::check_target;
+pub(super) use build::check_target;
 pub(super) use data::{EndEffector, Link, Problem};

@@ -1,7 +1,6 @@
 //! Division of a batch among threads.
 
-use super::error::LenError;
-use super::inputs::JobInputs;
+use super::inputs::{JobInputs, LenError};
 use super::kernel::BLOCK;
 use super::outputs::JobOutputs;
 use super::solve::solve_checked;

@@ -1,8 +1,8 @@
 use core::ops::Range;
 
 use glam::{Affine3A, Vec3};
+use thiserror::Error;
 
-use super::error::LenError;
 use super::kernel::{BLOCK, FastPathJobs};
 use crate::batch::Points;
 use crate::job::TwoBoneJob;
@@ -176,4 +176,17 @@ fn part<'a>(Points { x, y, z }: Points<'a>, limbs: &Range<usize>) -> Points<'a> 
 
 fn at(Points { x, y, z }: Points<'_>, limb: usize) -> Vec3 {
     Vec3::new(x[limb], y[limb], z[limb])
+}
+
+/// Arrays of a batch that differ in length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{array} has {len} numbers; target.x has {limbs}, and there must be as many")]
+pub struct LenError {
+    /// Path of the array in [`JobInputs`](super::JobInputs) or [`JobOutputs`](super::JobOutputs),
+    /// such as `start.x_axis.y`.
+    pub array: &'static str,
+    /// Length of the array.
+    pub len: usize,
+    /// Number of limbs, the length of `target.x`.
+    pub limbs: usize,
 }

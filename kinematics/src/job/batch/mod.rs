@@ -58,7 +58,6 @@
 
 #[cfg(feature = "parallel")]
 mod cores;
-mod error;
 mod inputs;
 mod kernel;
 mod outputs;
@@ -66,7 +65,7 @@ mod solve;
 
 #[cfg(feature = "parallel")]
 pub use cores::solve_on_all_cores;
-pub use error::LenError;
+pub use inputs::LenError;
 pub use inputs::{JobInputs, Joints};
 pub use outputs::JobOutputs;
 pub use solve::solve;

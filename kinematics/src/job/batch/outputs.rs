@@ -1,5 +1,4 @@
-use super::error::LenError;
-use super::inputs::check;
+use super::inputs::{LenError, check};
 use super::kernel::{Results, outcome};
 use crate::batch::QuaternionsMut;
 use crate::job::{JobError, TwoBoneCorrection};

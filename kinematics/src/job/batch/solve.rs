@@ -1,5 +1,4 @@
-use super::error::LenError;
-use super::inputs::JobInputs;
+use super::inputs::{JobInputs, LenError};
 use super::kernel::{self, BLOCK, FastPathJobs, Results, outcome};
 use super::outputs::JobOutputs;
 

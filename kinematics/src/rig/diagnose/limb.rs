@@ -3,13 +3,11 @@
 use glam::Vec3;
 
 use super::rig_case::RigCase;
-use crate::diagnosis::widening::{
-    Angle, is_fixed, limited_angles, remove_limits, widen_to_contain,
-};
+use crate::diagnosis::{Angle, is_fixed, limited_angles, remove_limits, widen_to_contain};
 use crate::diagnosis::{Boundary, Cause, Diagnosis, Remedy, TriedRemedy};
 use crate::limb_ik::{Limb, LimbReach};
 use crate::rig::evaluate::{TargetOutcome, TargetReport};
-use crate::rig::limb_settings::LimbSettings;
+use crate::rig::target::LimbSettings;
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
 
 /// The bones of a limb against the distance of its target, in the world.

@@ -3,9 +3,8 @@
 
 use glam::DVec3;
 
-use super::error::SkinShapeError;
 use super::round_cone::RoundCone;
-use super::shape::{Blob, SkinShape};
+use super::shape::{Blob, SkinShape, SkinShapeError};
 use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// One round cone of a body.

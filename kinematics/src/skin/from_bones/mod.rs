@@ -6,18 +6,16 @@
 //! are closed manifolds, one for each tree; its vertices are then moved onto the surface.
 
 mod body;
-mod error;
 mod field;
 mod grid;
 mod parallel;
-mod patches;
 mod projection;
 mod round_cone;
 mod shape;
 mod surface_nets;
 mod weights;
 
-pub use error::SkinShapeError;
+pub use shape::SkinShapeError;
 pub use shape::{Blob, SkinShape};
 
 use core::ops::Range;
