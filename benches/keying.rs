@@ -6,7 +6,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{Action, EditAction, Preferences, Session};
+use ik_arm::session::{Action, Edit, JointEdit, KeysEdit, Preferences, Session};
 
 const JOINTS: usize = 1000;
 const KEYED: usize = 60;
@@ -33,8 +33,10 @@ fn edits(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edit_1000_joints");
     let keyed = (0..KEYED).map(JointId::new).map(Channel::Rotation).collect();
     let turned =
-        EditAction::SetRotation { joint: JointId::new(500), rotation: Vec3::new(0.1, 0.2, 0.3) };
-    for (name, edit) in [("key_60_channels", EditAction::Key(keyed)), ("turn_one_joint", turned)] {
+        JointEdit::SetRotation { joint: JointId::new(500), rotation: Vec3::new(0.1, 0.2, 0.3) };
+    for (name, edit) in
+        [("key_60_channels", Edit::from(KeysEdit::Key(keyed))), ("turn_one_joint", turned.into())]
+    {
         let edit = Action::from(edit);
         group.bench_function(name, |bencher| {
             let apply = |mut session: Session| {

@@ -75,10 +75,10 @@ pub fn title(session: &Session) -> String {
             None => format!("Tour, {} – {TITLE}", tour.title()),
         };
     }
-    let unsaved = if session.is_unsaved() { "*" } else { "" };
-    match session.document_name() {
+    let unsaved = if session.history().is_unsaved() { "*" } else { "" };
+    match session.files().name() {
         Some(name) => format!("{name}{unsaved} – {TITLE}"),
-        None if session.is_unsaved() => format!("untitled* – {TITLE}"),
+        None if session.history().is_unsaved() => format!("untitled* – {TITLE}"),
         None => TITLE.to_owned(),
     }
 }

@@ -69,7 +69,7 @@ impl AppWindow {
                 session.apply(FileAction::ExportStarted(job));
             }
             Effect::ChoosePath(dialog) => {
-                let path = session.full_path(&dialog, dialog.path());
+                let path = session.files().full_path(&dialog, dialog.path());
                 background::choose_path(dialog, &path, proxy.clone());
             }
             Effect::Open { path, options } => background::open(path, options, proxy.clone()),

@@ -170,8 +170,8 @@ impl App {
     /// has no unsaved changes without a backup.
     fn remove_settled_recovery(&mut self) {
         let own = self.session.own();
-        let is_safe = !own.is_unsaved() || self.recovery.has(own.revision());
-        self.remove_recovered_if(self.session.has_settled_recovery() && is_safe);
+        let is_safe = !own.history().is_unsaved() || self.recovery.has(own.history().revision());
+        self.remove_recovered_if(self.session.files().has_settled_recovery() && is_safe);
     }
 
     fn remove_recovered_if(&mut self, is_settled: bool) {
@@ -268,10 +268,10 @@ impl ApplicationHandler<UserEvent> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         // The event loop also ends when the connection to the display server breaks.
-        if self.has_quit || !self.session.own().is_unsaved() {
+        if self.has_quit || !self.session.own().history().is_unsaved() {
             if !matches!(self.state, AppState::Failed(_)) {
                 // What was recovered is saved now, or the user gave it up.
-                self.remove_recovered_if(self.session.has_settled_recovery());
+                self.remove_recovered_if(self.session.files().has_settled_recovery());
             }
             self.recovery.end();
         }

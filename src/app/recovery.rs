@@ -138,12 +138,12 @@ impl Recovery {
         proxy: &EventLoopProxy<UserEvent>,
     ) -> Option<Instant> {
         let slot = Arc::clone(self.slot.as_ref()?);
-        if !session.is_unsaved() {
+        if !session.history().is_unsaved() {
             self.discard();
             return None;
         }
         self.finish_writing();
-        let revision = session.revision();
+        let revision = session.history().revision();
         // An open transaction changes the document but not its revision.
         let is_editing = session.is_editing();
         if self.newest_revision != Some(revision) {
@@ -180,7 +180,7 @@ impl Recovery {
 
     /// Makes the current document the backup to write at a crash.
     fn set_newest(&mut self, session: &Session) {
-        self.newest_revision = Some(session.revision());
+        self.newest_revision = Some(session.history().revision());
         *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Backup::of(session));
     }
 
@@ -219,7 +219,7 @@ impl Recovery {
     /// Writes unsaved changes to the backup file, which the next start finds, and returns its path;
     /// `None` if there are no unsaved changes.
     pub fn leave(&mut self, session: &Session) -> Result<Option<PathBuf>, BackupError> {
-        if !session.is_unsaved() {
+        if !session.history().is_unsaved() {
             return Ok(None);
         }
         if let Some((_, writing)) = self.writing.take() {
@@ -260,7 +260,7 @@ impl BackupSlot {
 
 impl Backup {
     fn of(session: &Session) -> Self {
-        let file = session.file().map(Path::to_owned);
+        let file = session.files().file().map(Path::to_owned);
         Self { document: session.document().clone(), file }
     }
 

@@ -167,8 +167,8 @@ impl AppWindow {
         let ctx = self.egui.egui_ctx();
         Settings {
             preferences: *session.preferences(),
-            recent: session.recent().to_vec(),
-            export_folder: session.export_folder().map(Path::to_owned),
+            recent: session.files().recent().to_vec(),
+            export_folder: session.files().export_folder().map(Path::to_owned),
             window: Some(WindowSettings::from_window(ctx.zoom_factor(), &self.window, None)),
             layout: ctx.data(Clone::clone),
         }
@@ -298,7 +298,7 @@ impl AppWindow {
         frame: &mut FrameTime,
     ) -> (FullOutput, Rect, Vec<Effect>) {
         let mut events = std::mem::take(&mut self.held_keys);
-        if !session.is_asking() {
+        if !session.shell().is_asking() {
             // These events were typed while the system's dialog had the focus.
             events.clear();
         }
@@ -308,7 +308,7 @@ impl AppWindow {
         let mut viewport = Rect::ZERO;
         let mut effects = Vec::new();
         for events in strokes {
-            let events = if session.is_choosing() {
+            let events = if session.shell().is_choosing() {
                 ui::hold_typed(events, &mut self.held_keys)
             } else {
                 events

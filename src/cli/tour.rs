@@ -51,7 +51,8 @@ fn print_end(out: &mut impl Write, end: &TourEnd) -> io::Result<()> {
 fn demonstrate(session: &mut Session) {
     const MOST_FRAMES: u16 = 1000;
     session.apply(TourAction::Demonstrate);
-    let is_racing = |session: &Session| session.comparison().is_some_and(Comparison::is_running);
+    let is_racing =
+        |session: &Session| session.solvers().comparison().is_some_and(Comparison::is_running);
     for frame in 0..MOST_FRAMES {
         if !is_racing(session) {
             return;

@@ -1,9 +1,9 @@
 use glam::Vec3;
 
+use super::arm::pops::{CursorMove, Pops};
+use super::arm::transport::TransportPath;
 use super::cached::Cached;
-use super::pops::{CursorMove, Pops};
 use super::skin_areas::SkinAreas;
-use super::transport::TransportPath;
 use crate::document::Posed;
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::SkeletonPose;

@@ -2,8 +2,7 @@ use core::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::panel_tab::PanelTab;
-use crate::document::Theme;
+use crate::document::{RigKind, Theme};
 
 /// Settings of the user, kept from one start of the program to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -135,6 +134,52 @@ impl Navigation {
             Self::Blender => ["middle drag", "Shift+middle drag", "wheel, pinch, Ctrl+middle drag"],
             Self::Maya => ["Alt+left drag", "Alt+middle drag", "wheel, pinch, Alt+right drag"],
             Self::Trackpad => ["two-finger scroll", "Shift+scroll", "pinch, Ctrl+scroll"],
+        }
+    }
+}
+
+/// A page of the panel on the right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PanelTab {
+    /// The arm's triangle with its angles and lengths.
+    Triangle,
+    /// The four twist references compared.
+    Twist,
+    /// The distances that the hand can have.
+    Reach,
+    /// The jumps of the elbow, their causes and their fixes.
+    Pops,
+    /// The solver: for a skeleton its settings and iterations, for an arm why there are none.
+    Solver,
+    /// All solvers at once, on the same targets.
+    Race,
+    /// The cross-section of the skin for each way of blending joints.
+    Skin,
+}
+
+impl PanelTab {
+    const ARM: [Self; 5] = [Self::Triangle, Self::Twist, Self::Reach, Self::Pops, Self::Solver];
+    const SKELETON: [Self; 3] = [Self::Solver, Self::Race, Self::Skin];
+
+    /// The tabs for a rig, in the order of the panel.
+    pub fn of(rig: RigKind) -> &'static [Self] {
+        match rig {
+            RigKind::Arm => &Self::ARM,
+            RigKind::Skeleton => &Self::SKELETON,
+        }
+    }
+
+    /// Name on the tab.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Triangle => "Triangle",
+            Self::Twist => "Twist",
+            Self::Reach => "Reach",
+            Self::Pops => "Pops",
+            Self::Solver => "Solver",
+            Self::Race => "Race",
+            Self::Skin => "Skin",
         }
     }
 }

@@ -1,47 +1,69 @@
-use super::editing::Editing;
+use std::path::PathBuf;
+
+use super::arm::pops::Pops;
+use super::arm::transport::TransportPath;
+use super::dialog::Dialog;
+use super::drag::follow_mouse::FollowMouse;
+use super::drag::grip::Drag;
+use super::drag::point::PointDrag;
 use super::evaluated::Evaluated;
-use super::files::Files;
-use super::follow_mouse::FollowMouse;
+use super::files::files::Files;
+use super::history::editing::Editing;
+use super::parts::{ArmFigure, ArmJoint, BodyPart, Clipboard, Key, SelectedKeys};
 use super::playback::Playback;
-use super::pops::{CursorMove, Pops};
 use super::preferences::Preferences;
 use super::selection::Selection;
 use super::shell::Shell;
-use super::solvers::Solvers;
-use super::tour::TourState;
-use super::transport::TransportPath;
-use super::view::View;
-use super::wiggle::Wiggle;
-use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
+use super::solver::run::SolverRun;
+use super::solver::solvers::Solvers;
+use super::solver::wiggle::WiggleView;
+use super::tour::state::TourState;
+use super::view::view::View;
+use crate::document::{Arm, Camera, Channel, Document, Posed, RigKind, SkeletonRig, Track};
 use crate::io;
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{EvaluatedSkeleton, TargetReport};
+use crate::rig::{Crowd, EvaluatedSkeleton, TargetReport};
+
+mod act;
+mod time;
 
 /// Ratio of width to height of the viewport that cameras are framed for; the margin of a framed
 /// view allows for other ratios.
 pub(super) const ASPECT: f32 = 1.0;
 
 /// An open document with its history, and state that is neither saved nor undone. Each part owns
-/// its state; a session passes actions to the parts, and changes of one part to the others.
+/// its state. An action is applied by its part, which returns an outcome; only the session acts on
+/// that, so that the effects of one part on another stand in one list.
+///
+/// Parts cannot be changed past the session:
+///
+/// ```compile_fail
+/// # let mut session = ik_arm::session::Session::default();
+/// session.playback.time = 1.0;
+/// ```
+///
+/// ```compile_fail
+/// # let session = ik_arm::session::Session::default();
+/// session.playback().set_playing(true);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
-    pub(super) editing: Editing,
-    pub(super) evaluated: Evaluated,
-    pub(super) selection: Selection,
-    pub(super) wiggle: Option<Wiggle>,
+    editing: Editing,
+    evaluated: Evaluated,
+    selection: Selection,
     /// Heads that follow the mouse, in a transaction of their own.
-    pub(super) follow_mouse: Option<FollowMouse>,
-    pub(super) playback: Playback,
-    pub(super) solvers: Solvers,
-    pub(super) view: View,
-    pub(super) files: Files,
-    pub(super) shell: Shell,
-    pub(super) preferences: Preferences,
+    follow_mouse: Option<FollowMouse>,
+    playback: Playback,
+    solvers: Solvers,
+    view: View,
+    files: Files,
+    shell: Shell,
+    preferences: Preferences,
     /// Where the user is in the tour; `None` outside of it.
-    pub(super) tour: Option<TourState>,
+    tour: Option<TourState>,
     /// During the tour, the session with the user's own document.
-    pub(super) own: Option<Box<Session>>,
+    own: Option<Box<Session>>,
 }
 
 impl Default for Session {
@@ -64,7 +86,6 @@ impl Session {
             evaluated: Evaluated::new(editing.posed()),
             editing,
             selection: Selection::default(),
-            wiggle: None,
             follow_mouse: None,
             playback: Playback::default(),
             solvers: Solvers::default(),
@@ -76,7 +97,79 @@ impl Session {
             own: None,
         }
     }
+}
 
+/// Parts.
+impl Session {
+    /// The document's revisions and the steps to undo and redo.
+    pub fn history(&self) -> &Editing {
+        &self.editing
+    }
+
+    pub(super) fn evaluated(&self) -> &Evaluated {
+        &self.evaluated
+    }
+
+    /// The playhead and the settings of the transport bar.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    /// The solver run or the comparison of solvers.
+    pub fn solvers(&self) -> &Solvers {
+        &self.solvers
+    }
+
+    /// The moves of the camera, and the crowd.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The document's file, recent files and the running export.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// The open dialog and the message in the status bar.
+    pub fn shell(&self) -> &Shell {
+        &self.shell
+    }
+
+    /// The user's preferences, such as theme, navigation and open panels.
+    pub fn preferences(&self) -> &Preferences {
+        &self.preferences
+    }
+
+    /// Where the user is in the tour; `None` outside of it.
+    pub fn tour(&self) -> Option<&TourState> {
+        self.tour.as_ref()
+    }
+
+    /// The session with the user's own document, which the tour does not change: outside the tour,
+    /// this session.
+    pub fn own(&self) -> &Self {
+        self.own.as_deref().unwrap_or(self)
+    }
+
+    /// Sets the recent files, as saved by an earlier run of the program.
+    pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
+        self.files.set_recent(recent);
+    }
+
+    /// Sets the folder of the last export or picture, as saved by an earlier run of the program.
+    pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
+        self.files.set_export_folder(folder);
+    }
+
+    /// Sets the text for the status bar once the file is open that was read: with unsaved changes,
+    /// that is after a question.
+    pub fn remark_when_opened(&mut self, remark: Option<String>) {
+        self.files.set_remark(remark);
+    }
+}
+
+/// The document and its pose.
+impl Session {
     /// The document as it is saved, without interpolated values and unkeyed edits of keyed
     /// channels.
     pub fn document(&self) -> &Document {
@@ -91,6 +184,22 @@ impl Session {
     /// The document evaluated at the playhead, with unkeyed edits.
     pub fn shown(&self) -> &Document {
         self.editing.shown()
+    }
+
+    /// The motion of the document.
+    pub(super) fn track(&self) -> &Track {
+        self.editing.track()
+    }
+
+    /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
+    /// none is open.
+    pub(super) fn posed_before(&self) -> Posed {
+        self.editing.posed_before()
+    }
+
+    /// The document as shown before the open transaction, or as shown now if none is open.
+    pub(super) fn shown_before(&self) -> &Document {
+        self.editing.shown_before()
     }
 
     /// The rig that is shown.
@@ -143,46 +252,165 @@ impl Session {
         self.evaluated.pops()
     }
 
+    /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
+    pub fn arm_unit(&self) -> f32 {
+        self.shown_before().arm.grid_cell() * 0.01
+    }
+}
+
+/// State of the parts.
+impl Session {
+    /// Time of the playhead, in seconds.
+    pub fn time(&self) -> f64 {
+        self.playback.time()
+    }
+
+    /// Whether the timeline plays.
+    pub fn is_playing(&self) -> bool {
+        self.playback.is_playing()
+    }
+
+    /// Whether the document has keys, or a target or the shown skeleton moves without keys.
+    pub fn has_motion(&self) -> bool {
+        self.document().is_moving()
+    }
+
     /// Whether the next frame differs without further input.
     pub fn is_moving(&self) -> bool {
         self.view.is_gliding()
             || self.playback.is_playing()
             || self.view.is_crowd_moving()
             || self.solvers.is_busy()
-            || self.wiggle.is_some()
+            || self.view.wiggled().is_some()
     }
 
-    /// Evaluates the document at the playhead and updates all that depends on it.
-    pub(super) fn refresh(&mut self) {
-        self.editing.evaluate(self.playback.time());
-        self.follow_document();
+    /// Whether a transaction is open.
+    pub fn is_editing(&self) -> bool {
+        self.editing.is_open()
     }
 
-    /// Updates all that depends on the evaluated document.
-    pub(super) fn follow_document(&mut self) {
-        let cause = match self.editing.revision_before() {
-            Some(revision) => CursorMove::Dragged(revision),
-            None if self.playback.is_playing() => CursorMove::Played,
-            None => CursorMove::Set,
-        };
-        self.evaluated.update(self.editing.posed(), cause);
-        self.selection.retain_joints(self.evaluated.skeleton_pose().len());
-        self.update_solvers();
-        self.selection.retain_keys(self.editing.document());
+    /// Whether the channel has an unkeyed edit.
+    pub fn is_overridden(&self, channel: Channel) -> bool {
+        self.editing.overrides().contains_key(&channel)
     }
 
-    /// Sets the camera; ignores an invalid one.
-    pub(super) fn set_camera(&mut self, camera: Camera) {
-        if camera.is_valid() {
-            self.editing.set_camera(camera);
-        }
+    pub(super) fn overridden_channels(&self) -> impl Iterator<Item = Channel> {
+        self.editing.overrides().keys().copied()
     }
 
-    pub(super) fn reset_transport(&mut self) {
-        self.evaluated.reset_transport(self.editing.posed());
+    /// The drag in the viewport; `None` if nothing is dragged.
+    pub fn drag(&self) -> Option<&Drag> {
+        self.editing.drag()
     }
 
-    pub(super) fn forget_trail(&mut self) {
-        self.evaluated.forget_trail();
+    /// The drag of a point in the viewport; `None` if no point is dragged.
+    pub fn point_drag(&self) -> Option<&PointDrag> {
+        self.drag()?.point()
+    }
+
+    /// Selected joints; the last of them is the active joint.
+    pub fn selection(&self) -> &[JointId] {
+        self.selection.joints()
+    }
+
+    /// The active joint, which is the last of the selected ones; `None` without a selection.
+    pub fn selected(&self) -> Option<JointId> {
+        self.selection.active()
+    }
+
+    /// The joint under the mouse, in the viewport or in the outliner.
+    pub fn hovered(&self) -> Option<JointId> {
+        self.hovered_part()?.joint()
+    }
+
+    /// The part of a body under the mouse, which lights up.
+    pub fn hovered_part(&self) -> Option<BodyPart> {
+        self.selection.hovered()
+    }
+
+    /// The selected joint of the arm, whose handles are shown; `None` without one.
+    pub fn selected_arm_joint(&self) -> Option<ArmJoint> {
+        self.selection.arm_joint()
+    }
+
+    /// The line of the arm's figures under the mouse.
+    pub fn figure(&self) -> Option<ArmFigure> {
+        self.selection.figure()
+    }
+
+    /// Channels that are selected in the timeline.
+    pub fn selected_channels(&self) -> &std::collections::BTreeSet<Channel> {
+        self.selection.channels()
+    }
+
+    /// Keys that are selected in the timeline.
+    pub fn selected_keys(&self) -> &[Key] {
+        self.selection.keys()
+    }
+
+    /// Whether there are copied keys to paste.
+    pub fn can_paste(&self) -> bool {
+        self.selection.can_paste()
+    }
+
+    pub(super) fn clipboard(&self) -> &Clipboard {
+        self.selection.clipboard()
+    }
+
+    pub(super) fn selected_in_timeline(&self) -> SelectedKeys {
+        self.selection.in_timeline()
+    }
+
+    /// The present camera, which changes during a glide.
+    pub fn camera(&self) -> &Camera {
+        &self.document().camera
+    }
+
+    /// The camera at the end of its glide, or the present camera if it does not glide.
+    pub fn settled_camera(&self) -> Camera {
+        self.view.glide_target().unwrap_or(*self.camera())
+    }
+
+    /// The crowd that is shown instead of the rig, with the bones of the document's arm; `None` if
+    /// the crowd is hidden.
+    pub fn crowd(&self) -> Option<Crowd> {
+        self.view.crowd(self.arm().bones)
+    }
+
+    /// The angle that swings, with the paths of the tip.
+    pub fn wiggle_view(&self) -> Option<WiggleView> {
+        let wiggle = self.view.wiggle().filter(|_| self.rig() == RigKind::Skeleton)?;
+        wiggle.view(self.skeleton_rig(), self.evaluated_skeleton())
+    }
+
+    /// Whether targets move heads, which can follow the mouse.
+    pub fn can_follow_mouse(&self) -> bool {
+        let is_shown = self.rig() == RigKind::Skeleton && self.crowd().is_none();
+        is_shown && self.following_heads().is_some()
+    }
+
+    /// Whether heads follow the mouse.
+    pub fn follows_mouse(&self) -> bool {
+        self.follow_mouse.is_some()
+    }
+
+    fn following_heads(&self) -> Option<FollowMouse> {
+        FollowMouse::new(self.skeleton_rig(), &self.evaluated_skeleton().solved, self.time())
+    }
+
+    /// The solver run, running or paused; `None` if none is looked at.
+    pub fn solver_run(&self) -> Option<&SolverRun> {
+        self.solvers.run()
+    }
+
+    /// The open dialog.
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.shell.dialog()
+    }
+
+    /// The message in the status bar; `None` before the first message and after an edit, which
+    /// clears it.
+    pub fn message(&self) -> Option<&str> {
+        self.shell.message()
     }
 }

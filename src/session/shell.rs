@@ -1,60 +1,114 @@
-use super::dialog::Dialog;
-use super::message::Message;
-use super::path_dialog::PathDialog;
+use super::arm::pose_line;
+use super::dialog::{Dialog, Message};
+use super::outcome::{Consequence, Effect, Outcome};
+use super::preferences::{FrameBudget, Navigation, Preferences};
+use crate::document::{Arm, Theme};
+
+/// Changes dialogs, messages or preferences.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShellAction {
+    /// Opens a dialog.
+    OpenDialog(Dialog),
+    /// Closes the dialog.
+    CloseDialog,
+    /// Shows a message.
+    Report(String),
+    /// Shows an error.
+    Fail(String),
+    /// Removes the message, whose moment is over.
+    ClearMessage,
+    /// Copies the arm's pose to the clipboard, as a line for `ik-arm solve`.
+    CopyPose,
+    /// Sets the theme.
+    SetTheme(Theme),
+    /// Sets the mouse buttons that move the camera.
+    SetNavigation(Navigation),
+    /// Sets the time for a frame while something moves.
+    SetFrameBudget(FrameBudget),
+}
 
 /// The open dialog and the message in the status bar.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Shell {
+pub struct Shell {
     dialog: Option<Dialog>,
     /// Whether the system's file dialog is open.
     choosing: bool,
     message: Option<Message>,
 }
 
+impl ShellAction {
+    /// Applies an action; `preferences` are the present ones.
+    pub(super) fn apply(self, arm: Option<&Arm>, preferences: Preferences) -> Outcome {
+        match self {
+            Self::OpenDialog(dialog) => Consequence::OpenDialog(Box::new(dialog)).into(),
+            Self::CloseDialog => Consequence::CloseDialog.into(),
+            Self::Report(message) => Outcome::say(message),
+            Self::Fail(why) => Outcome::fail(why),
+            Self::ClearMessage => Consequence::Message(None).into(),
+            Self::CopyPose => match arm {
+                Some(arm) => Outcome::say("Pose copied as a line for ik-arm solve")
+                    .and(Effect::CopyText(pose_line::of(arm))),
+                None => Outcome::say("Only the pose of the arm can be copied"),
+            },
+            Self::SetTheme(theme) => {
+                Consequence::Prefer(Preferences { theme, ..preferences }).into()
+            }
+            Self::SetNavigation(navigation) => {
+                Consequence::Prefer(Preferences { navigation, ..preferences }).into()
+            }
+            Self::SetFrameBudget(frame_budget) => {
+                Consequence::Prefer(Preferences { frame_budget, ..preferences }).into()
+            }
+        }
+    }
+}
+
 impl Shell {
+    /// The open dialog.
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
     }
 
-    /// The open dialog, if it asks for a path.
-    pub fn path_dialog(&self) -> Option<&PathDialog> {
-        match self.dialog() {
-            Some(Dialog::Path(dialog)) => Some(dialog),
-            _ => None,
-        }
-    }
-
+    /// Whether the system's file dialog is open.
     pub fn is_choosing(&self) -> bool {
         self.choosing
     }
 
-    pub fn message(&self) -> Option<&Message> {
-        self.message.as_ref()
+    /// The message in the status bar; `None` before the first message and after an edit, which
+    /// clears it.
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(Message::text)
     }
 
-    pub fn open_dialog(&mut self, dialog: Dialog) {
+    /// Whether [`Self::message`] is an error.
+    pub fn has_failed(&self) -> bool {
+        self.message.as_ref().is_some_and(Message::is_error)
+    }
+
+    /// Whether a modal dialog of the program or a file dialog of the system is open.
+    pub fn is_asking(&self) -> bool {
+        self.choosing || self.dialog.as_ref().is_some_and(Dialog::is_modal)
+    }
+
+    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
         self.dialog = Some(dialog);
     }
 
     /// Closes the dialog and returns it; `None` if none is open.
-    pub fn take_dialog(&mut self) -> Option<Dialog> {
+    pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
         self.dialog.take()
     }
 
-    pub fn set_choosing(&mut self, choosing: bool) {
+    pub(super) fn set_choosing(&mut self, choosing: bool) {
         self.choosing = choosing;
     }
 
-    pub fn set_message(&mut self, message: Message) {
-        self.message = Some(message);
+    pub(super) fn set_message(&mut self, message: Option<Message>) {
+        self.message = message;
     }
 
     /// Removes a message about the pose at the time that has passed.
-    pub fn leave_moment(&mut self) {
+    pub(super) fn leave_moment(&mut self) {
         self.message.take_if(|message| message.is_of_moment());
-    }
-
-    pub fn clear_message(&mut self) {
-        self.message = None;
     }
 }

@@ -3,8 +3,8 @@
 use crate::document::{AxisView, Camera};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Dialog, EditAction, FileAction, PathDialog, Session, ShellAction, SolverAction,
-    ViewAction,
+    Action, Dialog, Edit, FileAction, JointEdit, PathDialog, Session, ShellAction, SolverAction,
+    TargetEdit, ViewAction,
 };
 
 pub(in crate::ui) fn open() -> FileAction {
@@ -12,11 +12,11 @@ pub(in crate::ui) fn open() -> FileAction {
 }
 
 pub(in crate::ui) fn save_as(session: &Session) -> FileAction {
-    FileAction::AskPath(session.save_as_dialog())
+    FileAction::AskPath(session.files().save_as_dialog())
 }
 
 pub(in crate::ui) fn save_picture(session: &Session) -> FileAction {
-    FileAction::AskPath(session.save_picture_dialog())
+    FileAction::AskPath(session.files().save_picture_dialog())
 }
 
 pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [
@@ -51,7 +51,7 @@ pub(in crate::ui) fn delete(session: &Session) -> Action {
     if leaves_children {
         ShellAction::OpenDialog(Dialog::DeleteJoints { joints }).into()
     } else {
-        EditAction::DeleteJoints(joints).into()
+        JointEdit::DeleteJoints(joints).into()
     }
 }
 
@@ -63,12 +63,12 @@ pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
 
 /// The action that adds or removes the target of the selected joint; `None` if no joint is
 /// selected.
-pub(in crate::ui) fn toggle_target(session: &Session) -> Option<EditAction> {
+pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Edit> {
     let joint = session.selected()?;
     let rig = session.skeleton_rig();
     Some(match rig.target_of_end(joint) {
-        Some(target) => EditAction::RemoveTarget(rig.targets[target].joint),
-        None => EditAction::AddTarget(joint),
+        Some(target) => TargetEdit::RemoveTarget(rig.targets[target].joint).into(),
+        None => TargetEdit::AddTarget(joint).into(),
     })
 }
 

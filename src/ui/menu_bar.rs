@@ -6,8 +6,8 @@ use super::{commands, labels, panels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, Group, OpenOptions};
 use crate::session::{
-    Action, Actions, Dialog, EditAction, FileAction, FrameBudget, Navigation, Session, ShellAction,
-    TourAction, TransactionAction, ViewAction,
+    Action, Actions, Dialog, DisplayEdit, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation,
+    Session, ShellAction, TourAction, TransactionAction, ViewAction,
 };
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -38,8 +38,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Shows the name of the document, with an asterisk while it has unsaved changes.
 fn document_name(ui: &mut Ui, session: &Session) {
     const NO_FILE: &str = "This document has no file yet (Ctrl+S)";
-    let name = session.document_name().unwrap_or_else(|| "untitled".to_owned());
-    let (name, tooltip) = match (session.file(), session.contents()) {
+    let name = session.files().name().unwrap_or_else(|| "untitled".to_owned());
+    let (name, tooltip) = match (session.files().file(), session.files().contents()) {
         _ if session.tour().is_some() => {
             ("Tour".to_owned(), "Your own document is kept".to_owned())
         }
@@ -47,7 +47,7 @@ fn document_name(ui: &mut Ui, session: &Session) {
         (None, Some(from)) => (name, format!("{NO_FILE}; it comes from {}", from.path.display())),
         (None, None) => (name, NO_FILE.to_owned()),
     };
-    let is_unsaved = session.tour().is_none() && session.is_unsaved();
+    let is_unsaved = session.tour().is_none() && session.history().is_unsaved();
     let (mark, told) = if is_unsaved { ("*", "\nIt has unsaved changes") } else { ("", "") };
     let name = Label::new(format!("{name}{mark}")).truncate().selectable(false);
     ui.add(name).on_hover_text(format!("{tooltip}{told}"));
@@ -68,7 +68,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Open…", "Ctrl+O") {
         actions.push(commands::open());
     }
-    ui.add_enabled_ui(!session.recent().is_empty(), |ui| {
+    ui.add_enabled_ui(!session.files().recent().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| recent(ui, session, actions));
     });
     contents(ui, session, actions);
@@ -94,7 +94,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the item that opens another skeleton or animation of the file.
 fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let several = session.contents().filter(|contents| contents.has_choice());
+    let several = session.files().contents().filter(|contents| contents.has_choice());
     let button = Button::new("Skeletons and animations…");
     let item = ui.add_enabled(several.is_some(), button);
     let item = item.on_disabled_hover_text("The file has no other skeleton or animation");
@@ -104,7 +104,7 @@ fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    for path in session.recent() {
+    for path in session.files().recent() {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let button = ui.button(name).on_hover_text(path.display().to_string());
         if button.clicked() {
@@ -114,8 +114,22 @@ fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    step(ui, "Undo", session.undo_label(), "Ctrl+Z", TransactionAction::Undo.into(), actions);
-    step(ui, "Redo", session.redo_label(), "Ctrl+Shift+Z", TransactionAction::Redo.into(), actions);
+    step(
+        ui,
+        "Undo",
+        session.history().undo_label(),
+        "Ctrl+Z",
+        TransactionAction::Undo.into(),
+        actions,
+    );
+    step(
+        ui,
+        "Redo",
+        session.history().redo_label(),
+        "Ctrl+Shift+Z",
+        TransactionAction::Redo.into(),
+        actions,
+    );
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     bake(ui, session, actions);
@@ -124,7 +138,7 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let tooltip = "Turn a skeleton that stands along z by −90° about x";
     let turn = turn.on_hover_text(tooltip);
     if turn.on_disabled_hover_text("Show a skeleton: the arm is not turned").clicked() {
-        actions.push(EditAction::TurnYUp);
+        actions.push(JointEdit::TurnYUp);
     }
     ui.separator();
     let copy = Button::new("Copy pose as JSON line").shortcut_text("Ctrl+C");
@@ -168,15 +182,15 @@ fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Shows the menu of channels to key; the channels of overlays are in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Selected", "K") {
-        actions.push(EditAction::Key(session.channels_to_key()));
+        actions.push(KeysEdit::Key(session.channels_to_key()));
     }
     if item(ui, "All", "Shift+K") {
-        actions.push(EditAction::Key(session.all_channels()));
+        actions.push(KeysEdit::Key(session.all_channels()));
     }
     ui.separator();
     let one = |ui: &mut Ui, channel: Channel, actions: &mut Actions| {
         if ui.button(labels::channel(session, channel)).clicked() {
-            actions.push(EditAction::Key(vec![channel]));
+            actions.push(KeysEdit::Key(vec![channel]));
         }
     };
     match session.rig() {
@@ -229,7 +243,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if item(ui, "Frame all", "Home") {
         actions.push(commands::frame_all(session));
     }
-    let mut follows = session.follows_selection();
+    let mut follows = session.view().follows_selection();
     let tooltip =
         "Move the camera with the selection, or with the whole rig, while the time changes";
     if ui.checkbox(&mut follows, "Follow selection").on_hover_text(tooltip).changed() {
@@ -258,7 +272,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for (overlay, name) in overlays {
         let mut shown = session.shown().display.shows(overlay);
         if ui.checkbox(&mut shown, name).changed() {
-            actions.push(EditAction::ShowOverlay(overlay, shown));
+            actions.push(DisplayEdit::ShowOverlay(overlay, shown));
         }
     }
     let mut crowd = session.crowd().is_some();

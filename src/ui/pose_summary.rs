@@ -56,7 +56,8 @@ fn describe_crowd(crowd: &Crowd) -> String {
 
 fn describe_skeleton(session: &Session) -> String {
     let rig = session.skeleton_rig();
-    if let (Some(found), None) = (session.known_why().first(), session.shown_iteration()) {
+    if let (Some(found), None) = (session.known_why().first(), session.solvers().shown_iteration())
+    {
         return words::cause(rig, found);
     }
     let joints = rig.skeleton.joints();
@@ -85,7 +86,7 @@ fn describe_skeleton(session: &Session) -> String {
 /// The shown iterate of a solver run, the iteration of a race, or whether the evaluated pose
 /// reaches its targets; `None` without an enabled target.
 fn describe_solver(session: &Session) -> Option<String> {
-    let Some(ShownIteration { number, latest, .. }) = session.shown_iteration() else {
+    let Some(ShownIteration { number, latest, .. }) = session.solvers().shown_iteration() else {
         return Some(session.solver_status()?.state.to_string());
     };
     let iteration = format!("iteration {number} of {latest}");

@@ -10,7 +10,7 @@ use super::{labels, mouse_hints, pose_summary};
 use crate::document::RigKind;
 use crate::kinematics::swing::Swing;
 use crate::session::{
-    Actions, Drag, EditAction, ExportJob, FileAction, Grip, PointDrag, Session, ShellAction,
+    Actions, Drag, ExportJob, FileAction, Grip, JointEdit, PointDrag, Session, ShellAction,
     TurnDrag, WiggleTarget, WiggleView,
 };
 
@@ -37,14 +37,14 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             if session.drag().is_none() {
                 mouse_hints::ui(ui, session);
             }
-            if let Some(job) = session.export_job() {
+            if let Some(job) = session.files().job() {
                 show_job(ui, job, actions);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                if session.seems_z_up() && session.drag().is_none() {
+                if session.files().seems_z_up() && session.drag().is_none() {
                     offer_turn(ui, actions);
                 }
-                let is_error = session.drag().is_none() && session.has_failed();
+                let is_error = session.drag().is_none() && session.shell().has_failed();
                 if is_error {
                     widgets::error_label(ui, &line(session));
                 } else {
@@ -67,7 +67,7 @@ fn expire(ui: &Ui, session: &Session, actions: &mut Actions) {
         ui.data_mut(|data| data.insert_temp(id, shown));
         return expire(ui, session, actions);
     }
-    let stays = if session.has_failed() { ERROR_SECONDS } else { MESSAGE_SECONDS };
+    let stays = if session.shell().has_failed() { ERROR_SECONDS } else { MESSAGE_SECONDS };
     let left = shown.since + stays - now;
     if left > 0.0 {
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
@@ -81,7 +81,7 @@ fn offer_turn(ui: &mut Ui, actions: &mut Actions) {
     ui.add(Label::new("z seems to point up:").selectable(false));
     let tooltip = "Turn the skeleton by −90° about x";
     if ui.small_button("Turn to y up").on_hover_text(tooltip).clicked() {
-        actions.push(EditAction::TurnYUp);
+        actions.push(JointEdit::TurnYUp);
     }
     if ui.small_button("Leave").on_hover_text("Keep the axes of the file").clicked() {
         actions.push(FileAction::DeclineTurn);

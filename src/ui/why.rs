@@ -4,7 +4,7 @@ use egui::{Label, RichText, Ui};
 
 use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
 use crate::rig::SkeletonRig;
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, Session, TargetEdit};
 use crate::ui::widgets::{self, format};
 use crate::words;
 
@@ -38,7 +38,7 @@ pub(in crate::ui) fn remedies(
         let tooltip = format!("Apply this; {}", left(session, found, tried));
         if widgets::button(ui, &name, &tooltip, None) {
             let (target, remedy) = (found.target, remedy.clone());
-            actions.push(EditAction::ApplyRemedy { target, remedy });
+            actions.push(TargetEdit::ApplyRemedy { target, remedy });
         }
     }
 }

@@ -10,7 +10,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::{Scene, SceneBuilder};
 use ik_arm::session::{
-    Action, EditAction, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
+    Action, ArmEdit, Overlays, PlaybackAction, Preferences, SelectAction, Session, SolverAction,
 };
 
 /// The window's work between two frames, with the buffers that it reuses.
@@ -75,11 +75,11 @@ fn a_moving_arm_with_all_guides_allocates_nothing() {
         }
         // Within reach, out of it, too close, and turned.
         Bench::new(document).assert_takes_nothing(&[
-            Action::from(EditAction::SetHand(Vec3::new(250.0, 120.0, 60.0))),
-            EditAction::SetHand(Vec3::new(-900.5, 120.25, 60.0)).into(),
-            EditAction::SetHand(Vec3::new(12.0, -40.0, 9.0)).into(),
-            EditAction::SetTwist(1.25).into(),
-            EditAction::SetTwist(-0.5).into(),
+            Action::from(ArmEdit::SetHand(Vec3::new(250.0, 120.0, 60.0))),
+            ArmEdit::SetHand(Vec3::new(-900.5, 120.25, 60.0)).into(),
+            ArmEdit::SetHand(Vec3::new(12.0, -40.0, 9.0)).into(),
+            ArmEdit::SetTwist(1.25).into(),
+            ArmEdit::SetTwist(-0.5).into(),
             PlaybackAction::SetTime(0.5).into(),
             PlaybackAction::SetTime(0.25).into(),
         ]);

@@ -7,7 +7,8 @@ use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::spline::Knot;
 use ik_arm::session::{
-    Action, EditAction, PlaybackAction, Preferences, Session, TransactionAction,
+    Action, DisplayEdit, JointEdit, KeysEdit, PlaybackAction, Preferences, Session,
+    TransactionAction,
 };
 
 const JOINTS: usize = 1000;
@@ -41,11 +42,11 @@ fn session() -> Session {
 }
 
 fn turn(joint: JointId, angle: f32) -> Action {
-    EditAction::SetRotation { joint, rotation: Vec3::splat(angle) }.into()
+    JointEdit::SetRotation { joint, rotation: Vec3::splat(angle) }.into()
 }
 
 fn key() -> Action {
-    EditAction::Key((0..KEYED).map(JointId::new).map(Channel::Rotation).collect()).into()
+    KeysEdit::Key((0..KEYED).map(JointId::new).map(Channel::Rotation).collect()).into()
 }
 
 fn counted(session: &mut Session, action: Action) -> AllocationInfo {
@@ -73,7 +74,7 @@ fn turning_one_joint_copies_one_joint() {
 #[test]
 fn an_edit_of_something_else_copies_no_skeleton() {
     let mut session = session();
-    let taken = counted(&mut session, EditAction::SetMetres(Some(2.0)).into()).bytes_total;
+    let taken = counted(&mut session, DisplayEdit::SetMetres(Some(2.0)).into()).bytes_total;
     assert!(taken < 1024, "{taken} bytes");
 }
 

@@ -17,7 +17,8 @@ use ik_arm::rig::{
     FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinSource, TargetKind, TargetSpace,
 };
 use ik_arm::session::{
-    EditAction, PlaybackAction, PoseMode, SelectAction, Session, SolverAction, TransactionAction,
+    ArmEdit, DisplayEdit, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, PoseMode,
+    SelectAction, Session, SkinEdit, SolverAction, SolverEdit, TargetEdit, TransactionAction,
 };
 
 /// Joints of the Human: one with a target, one without, and a leaf.
@@ -27,126 +28,146 @@ const LEAF: usize = 18;
 /// A channel that no other example changes.
 const KEYED: Channel = Channel::Overlay(Overlay::Shadow);
 
-fn remedy(remedy: Remedy) -> EditAction {
-    EditAction::ApplyRemedy { target: JointId::new(AIMED), remedy }
+fn remedy(remedy: Remedy) -> TargetEdit {
+    TargetEdit::ApplyRemedy { target: JointId::new(AIMED), remedy }
 }
 
 /// The examples of every variant; a variant without examples does not compile.
 macro_rules! examples {
-    ($($name:ident: [$($example:expr),+ $(,)?];)*) => {
-        fn examples() -> Vec<EditAction> {
-            vec![$($($example),+),*]
+    ($($part:ident($edit:ident) { $($name:ident: [$($example:expr),+ $(,)?];)* })*) => {
+        fn examples() -> Vec<Edit> {
+            vec![$($($($example.into()),+),*),*]
         }
 
-        fn name(edit: &EditAction) -> &'static str {
+        fn name(edit: &Edit) -> &'static str {
             match edit {
-                $(EditAction::$name { .. } => stringify!($name)),*
+                $($(Edit::$part($edit::$name { .. }) => stringify!($name)),*),*
             }
         }
 
-        const NAMES: &[&str] = &[$(stringify!($name)),*];
+        const NAMES: &[&str] = &[$($(stringify!($name)),*),*];
     };
 }
 
 examples! {
-    SetHand: [EditAction::SetHand(Vec3::new(100.0, 200.0, -50.0))];
-    SetTwist: [EditAction::SetTwist(-0.5)];
-    SetRoot: [EditAction::SetRoot(Vec3::X * 20.0)];
-    SetPin: [EditAction::SetPin(Vec3::Y * 90.0)];
-    PinHand: [EditAction::PinHand(true)];
-    SetTwistReference: [
-        EditAction::SetTwistReference(TwistReferenceKind::Pole),
-        EditAction::SetTwistReference(TwistReferenceKind::Transport),
-    ];
-    SetPole: [EditAction::SetPole(Vec3::Z * 77.0)];
-    SetSoftReach: [
-        EditAction::SetSoftReach(SoftReach::new(0.3, 1.2, 0.1).expect("a soft reach")),
-    ];
-    SetInfluence: [EditAction::SetInfluence(0.5)];
-    SwitchPoseMode: [EditAction::SwitchPoseMode(PoseMode::Angles)];
-    SetShoulder: [EditAction::SetShoulder(Vec3::new(0.1, 0.2, 0.3))];
-    SetBend: [EditAction::SetBend(1.25)];
-    SetHandOrientation: [EditAction::SetHandOrientation(Vec3::new(0.3, 0.2, 0.1))];
-    SetHandSpace: [EditAction::SetHandSpace(HandSpace::World)];
-    SetUpper: [EditAction::SetUpper(180.0)];
-    SetLower: [EditAction::SetLower(310.0)];
-    ResetPose: [EditAction::ResetPose];
-    ResetAll: [EditAction::ResetAll];
-    ShowOverlay: [
-        EditAction::ShowOverlay(Overlay::SingularityGlobe, true),
-        EditAction::ShowOverlay(Overlay::Labels, false),
-    ];
-    ShowRig: [EditAction::ShowRig(RigKind::Skeleton)];
-    AddChild: [EditAction::AddChild { parent: JointId::new(LEAF), tip: Some(Vec3::ONE) }];
-    AddJoint: [EditAction::AddJoint { tip: None }];
-    AddRoot: [EditAction::AddRoot];
-    DeleteJoints: [
-        EditAction::DeleteJoints(vec![JointId::new(AIMED)]),
-        EditAction::DeleteJoints(vec![JointId::new(INNER), JointId::new(LEAF)]),
-    ];
-    DissolveJoints: [EditAction::DissolveJoints(vec![JointId::new(INNER)])];
-    RenameJoint: [EditAction::RenameJoint { joint: JointId::new(INNER), name: "renamed".to_owned() }];
-    ReparentJoint: [EditAction::ReparentJoint { joint: JointId::new(AIMED), parent: None }];
-    SetRotation: [EditAction::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.2) }];
-    SetAxis: [EditAction::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
-    SetLimit: [EditAction::SetLimit {
-        joint: JointId::new(INNER),
-        axis: RotationAxis::Y,
-        limit: Some(Limit { min: -0.1, max: 0.1 }),
-    }];
-    SetLocked: [
-        EditAction::SetLocked { joint: JointId::new(INNER), locked: true },
-        EditAction::SetLocked { joint: JointId::new(AIMED), locked: true },
-    ];
-    AddSkin: [EditAction::AddSkin];
-    ShowSkin: [EditAction::ShowSkin { skin: false, bones: true }];
-    PackSkin: [EditAction::PackSkin];
-    SetSkin: [EditAction::SetSkin(Some(Skin::from_bones(&Shared::default())))];
-    SetFollowPath: [EditAction::SetFollowPath {
-        root: JointId::new(0),
-        kind: Some(PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 })),
-    }];
-    SetHead: [EditAction::SetHead { root: JointId::new(0), to: Vec3::X }];
-    SetTranslation: [EditAction::SetTranslation(Vec3::X)];
-    TurnYUp: [EditAction::TurnYUp];
-    AddTarget: [EditAction::AddTarget(JointId::new(INNER))];
-    RemoveTarget: [EditAction::RemoveTarget(JointId::new(AIMED))];
-    SetTarget: [EditAction::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
-    MatchTargetToFk: [EditAction::MatchTargetToFk(JointId::new(AIMED))];
-    MatchFkToPose: [EditAction::MatchFkToPose(JointId::new(AIMED))];
-    SetTargetSpace: [EditAction::SetTargetSpace {
-        joint: JointId::new(AIMED),
-        space: TargetSpace::Joint(JointId::new(INNER)),
-    }];
-    SetPoleSpace: [EditAction::SetPoleSpace {
-        joint: JointId::new(AIMED),
-        space: TargetSpace::Joint(JointId::new(INNER)),
-    }];
-    ApplyRemedy: [
-        remedy(Remedy::Unlock(vec![JointId::new(0)])),
-        remedy(Remedy::MoveTarget { joint: JointId::new(AIMED), point: Vec3::ONE }),
-        remedy(Remedy::Lengthen { joint: JointId::new(AIMED), factor: 1.5 }),
-        remedy(Remedy::AllowIterations(77)),
-    ];
-    SetSolver: [EditAction::SetSolver(
-        SolverOptions::new(Method::Fabrik).with_damping(0.3),
-    )];
-    SetIterationsPerFrame: [EditAction::SetIterationsPerFrame(17)];
-    ApplyPose: [EditAction::ApplyPose];
-    Key: [
-        EditAction::Key(vec![Channel::Hand]),
-        EditAction::Key(vec![Channel::Twist]),
-        EditAction::Key(vec![Channel::Upper, Channel::Lower]),
-    ];
-    DeleteKeys: [EditAction::DeleteKeys(vec![(KEYED, 0.0)])];
-    ClearChannels: [EditAction::ClearChannels(vec![KEYED])];
-    MoveKeys: [EditAction::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5, raise: Vec3::ONE }];
-    SetInterpolation: [EditAction::SetInterpolation(vec![(KEYED, 0.0)], Interpolation::Linear)];
-    SetSlopes: [EditAction::SetSlopes(vec![(KEYED, 0.0)], Some(Slopes { arriving: Vec3::X, leaving: Vec3::Y }))];
-    PasteKeys: [EditAction::PasteKeys];
-    Bake: [EditAction::Bake(baked())];
-    SetTimeline: [EditAction::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25.0 })];
-    SetMetres: [EditAction::SetMetres(Some(2.0))];
+    Arm(ArmEdit) {
+        SetHand: [ArmEdit::SetHand(Vec3::new(100.0, 200.0, -50.0))];
+        SetTwist: [ArmEdit::SetTwist(-0.5)];
+        SetRoot: [ArmEdit::SetRoot(Vec3::X * 20.0)];
+        SetPin: [ArmEdit::SetPin(Vec3::Y * 90.0)];
+        PinHand: [ArmEdit::PinHand(true)];
+        SetTwistReference: [
+            ArmEdit::SetTwistReference(TwistReferenceKind::Pole),
+            ArmEdit::SetTwistReference(TwistReferenceKind::Transport),
+        ];
+        SetPole: [ArmEdit::SetPole(Vec3::Z * 77.0)];
+        SetSoftReach: [
+            ArmEdit::SetSoftReach(SoftReach::new(0.3, 1.2, 0.1).expect("a soft reach")),
+        ];
+        SetInfluence: [ArmEdit::SetInfluence(0.5)];
+        SwitchPoseMode: [ArmEdit::SwitchPoseMode(PoseMode::Angles)];
+        SetShoulder: [ArmEdit::SetShoulder(Vec3::new(0.1, 0.2, 0.3))];
+        SetBend: [ArmEdit::SetBend(1.25)];
+        SetHandOrientation: [ArmEdit::SetHandOrientation(Vec3::new(0.3, 0.2, 0.1))];
+        SetHandSpace: [ArmEdit::SetHandSpace(HandSpace::World)];
+        SetUpper: [ArmEdit::SetUpper(180.0)];
+        SetLower: [ArmEdit::SetLower(310.0)];
+    }
+    Display(DisplayEdit) {
+        ResetPose: [DisplayEdit::ResetPose];
+        ResetAll: [DisplayEdit::ResetAll];
+        ShowOverlay: [
+            DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true),
+            DisplayEdit::ShowOverlay(Overlay::Labels, false),
+        ];
+        ShowRig: [DisplayEdit::ShowRig(RigKind::Skeleton)];
+    }
+    Joint(JointEdit) {
+        AddChild: [JointEdit::AddChild { parent: JointId::new(LEAF), tip: Some(Vec3::ONE) }];
+        AddJoint: [JointEdit::AddJoint { tip: None }];
+        AddRoot: [JointEdit::AddRoot];
+        DeleteJoints: [
+            JointEdit::DeleteJoints(vec![JointId::new(AIMED)]),
+            JointEdit::DeleteJoints(vec![JointId::new(INNER), JointId::new(LEAF)]),
+        ];
+        DissolveJoints: [JointEdit::DissolveJoints(vec![JointId::new(INNER)])];
+        RenameJoint: [JointEdit::RenameJoint { joint: JointId::new(INNER), name: "renamed".to_owned() }];
+        ReparentJoint: [JointEdit::ReparentJoint { joint: JointId::new(AIMED), parent: None }];
+        SetRotation: [JointEdit::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.2) }];
+        SetAxis: [JointEdit::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
+        SetLimit: [JointEdit::SetLimit {
+            joint: JointId::new(INNER),
+            axis: RotationAxis::Y,
+            limit: Some(Limit { min: -0.1, max: 0.1 }),
+        }];
+        SetLocked: [
+            JointEdit::SetLocked { joint: JointId::new(INNER), locked: true },
+            JointEdit::SetLocked { joint: JointId::new(AIMED), locked: true },
+        ];
+    }
+    Skin(SkinEdit) {
+        AddSkin: [SkinEdit::AddSkin];
+        ShowSkin: [SkinEdit::ShowSkin { skin: false, bones: true }];
+        PackSkin: [SkinEdit::PackSkin];
+        SetSkin: [SkinEdit::SetSkin(Some(Skin::from_bones(&Shared::default())))];
+    }
+    Path(PathEdit) {
+        SetFollowPath: [PathEdit::SetFollowPath {
+            root: JointId::new(0),
+            kind: Some(PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 })),
+        }];
+        SetHead: [PathEdit::SetHead { root: JointId::new(0), to: Vec3::X }];
+    }
+    Joint(JointEdit) {
+        SetTranslation: [JointEdit::SetTranslation(Vec3::X)];
+        TurnYUp: [JointEdit::TurnYUp];
+    }
+    Target(TargetEdit) {
+        AddTarget: [TargetEdit::AddTarget(JointId::new(INNER))];
+        RemoveTarget: [TargetEdit::RemoveTarget(JointId::new(AIMED))];
+        SetTarget: [TargetEdit::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
+        MatchTargetToFk: [TargetEdit::MatchTargetToFk(JointId::new(AIMED))];
+        MatchFkToPose: [TargetEdit::MatchFkToPose(JointId::new(AIMED))];
+        SetTargetSpace: [TargetEdit::SetTargetSpace {
+            joint: JointId::new(AIMED),
+            space: TargetSpace::Joint(JointId::new(INNER)),
+        }];
+        SetPoleSpace: [TargetEdit::SetPoleSpace {
+            joint: JointId::new(AIMED),
+            space: TargetSpace::Joint(JointId::new(INNER)),
+        }];
+        ApplyRemedy: [
+            remedy(Remedy::Unlock(vec![JointId::new(0)])),
+            remedy(Remedy::MoveTarget { joint: JointId::new(AIMED), point: Vec3::ONE }),
+            remedy(Remedy::Lengthen { joint: JointId::new(AIMED), factor: 1.5 }),
+            remedy(Remedy::AllowIterations(77)),
+        ];
+    }
+    Solver(SolverEdit) {
+        SetSolver: [SolverEdit::SetSolver(
+            SolverOptions::new(Method::Fabrik).with_damping(0.3),
+        )];
+        SetIterationsPerFrame: [SolverEdit::SetIterationsPerFrame(17)];
+        ApplyPose: [SolverEdit::ApplyPose];
+    }
+    Keys(KeysEdit) {
+        Key: [
+            KeysEdit::Key(vec![Channel::Hand]),
+            KeysEdit::Key(vec![Channel::Twist]),
+            KeysEdit::Key(vec![Channel::Upper, Channel::Lower]),
+        ];
+        DeleteKeys: [KeysEdit::DeleteKeys(vec![(KEYED, 0.0)])];
+        ClearChannels: [KeysEdit::ClearChannels(vec![KEYED])];
+        MoveKeys: [KeysEdit::MoveKeys { keys: vec![(KEYED, 0.0)], by: 0.5, raise: Vec3::ONE }];
+        SetInterpolation: [KeysEdit::SetInterpolation(vec![(KEYED, 0.0)], Interpolation::Linear)];
+        SetSlopes: [KeysEdit::SetSlopes(vec![(KEYED, 0.0)], Some(Slopes { arriving: Vec3::X, leaving: Vec3::Y }))];
+        PasteKeys: [KeysEdit::PasteKeys];
+        Bake: [KeysEdit::Bake(baked())];
+        SetTimeline: [KeysEdit::SetTimeline(Timeline { start: 1.0, end: 4.0, frame_rate: 25.0 })];
+    }
+    Display(DisplayEdit) {
+        SetMetres: [DisplayEdit::SetMetres(Some(2.0))];
+    }
 }
 
 /// The mesh of the skin as from a file.
@@ -162,41 +183,42 @@ fn skin_of_a_file(session: &Session) -> Skin {
 
 /// A bake of one key.
 fn baked() -> Box<Baked> {
-    let mut document = session_for(&EditAction::PasteKeys).document().clone();
+    let mut document = session_for(&KeysEdit::PasteKeys.into()).document().clone();
     document.keys.insert(Channel::Rotation(JointId::new(INNER)), 0.5, Vec3::X * 0.1);
     Box::new(Baked { document, keys_at_frames: 1, keys: 1, error: 0.0, shortened: Vec::new() })
 }
 
 /// The arm with the Human behind it, changed so that every edit has something to do.
-fn session_for(edit: &EditAction) -> Session {
+fn session_for(edit: &Edit) -> Session {
     let mut session = Session::default();
     let target = Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0);
     let with_pole =
         LimbSettings { reference: ElbowReference::Pole(Vec3::X), ..LimbSettings::default() };
     for edit in [
         // Both cameras are saved, and not undone.
-        EditAction::ShowRig(RigKind::Skeleton),
-        EditAction::ShowRig(RigKind::Arm),
-        EditAction::SetTwist(1.0),
-        EditAction::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)),
-        EditAction::ShowOverlay(Overlay::Axes, true),
-        EditAction::SetTarget(Target {
+        Edit::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
+        DisplayEdit::ShowRig(RigKind::Arm).into(),
+        ArmEdit::SetTwist(1.0).into(),
+        ArmEdit::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)).into(),
+        DisplayEdit::ShowOverlay(Overlay::Axes, true).into(),
+        TargetEdit::SetTarget(Target {
             kind: TargetKind::Limb(with_pole),
             influence: 1.0,
             ..target
-        }),
-        EditAction::Key(vec![KEYED]),
+        })
+        .into(),
+        KeysEdit::Key(vec![KEYED]).into(),
     ] {
         session.apply(edit);
     }
     session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
     session.apply(SelectAction::CopyKeys);
     session.apply(PlaybackAction::SetTime(1.0));
-    if *edit == EditAction::PackSkin {
-        session.apply(EditAction::SetSkin(Some(skin_of_a_file(&session))));
+    if *edit == Edit::Skin(SkinEdit::PackSkin) {
+        session.apply(SkinEdit::SetSkin(Some(skin_of_a_file(&session))));
     }
-    if *edit == EditAction::ApplyPose {
-        session.apply(EditAction::ShowRig(RigKind::Skeleton));
+    if *edit == Edit::Solver(SolverEdit::ApplyPose) {
+        session.apply(DisplayEdit::ShowRig(RigKind::Skeleton));
         session.apply(SolverAction::Step);
     }
     session
@@ -211,10 +233,10 @@ fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes()
         session.apply(edit.clone());
         let after = bytes(&session);
         assert!(before != after, "{} changes the document: {:?}", name(&edit), session.message());
-        assert_eq!(session.undo_label(), Some(label));
+        assert_eq!(session.history().undo_label(), Some(label));
         session.apply(TransactionAction::Undo);
         assert!(bytes(&session) == before, "undo of {}", name(&edit));
-        assert_eq!(session.redo_label(), Some(label));
+        assert_eq!(session.history().redo_label(), Some(label));
         assert_eq!(session.message(), Some(&*format!("Undid {label}")));
         session.apply(TransactionAction::Redo);
         assert!(bytes(&session) == after, "redo of {}", name(&edit));
@@ -226,13 +248,13 @@ fn every_edit_in_a_transaction_is_cancelled_to_the_same_bytes() {
     let bytes = |session: &Session| to_json(session.document()).expect("saved");
     for edit in examples() {
         let mut session = session_for(&edit);
-        let (before, last) = (bytes(&session), session.undo_label());
+        let (before, last) = (bytes(&session), session.history().undo_label());
         session.apply(TransactionAction::Begin);
         session.apply(edit.clone());
-        assert_eq!(session.undo_label(), Some(edit.label()));
+        assert_eq!(session.history().undo_label(), Some(edit.label()));
         session.apply(TransactionAction::Cancel);
         assert!(bytes(&session) == before, "cancelled {}", name(&edit));
-        assert_eq!(session.undo_label(), last);
+        assert_eq!(session.history().undo_label(), last);
     }
 }
 

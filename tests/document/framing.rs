@@ -84,7 +84,7 @@ mod following {
     use ik_arm::document::{Channel, Document};
     use ik_arm::kinematics::skeleton::JointId;
     use ik_arm::session::{
-        CameraMotion, EditAction, PlaybackAction, SelectAction, Session, ViewAction,
+        CameraMotion, JointEdit, PlaybackAction, SelectAction, Session, ViewAction,
     };
 
     /// The session with its camera at rest and close to the selection, which it follows.
@@ -94,7 +94,7 @@ mod following {
         session.apply(ViewAction::FollowSelection(true));
         session.apply(PlaybackAction::Advance(0.0));
         session.apply(PlaybackAction::Advance(1.0));
-        assert!(!session.is_gliding());
+        assert!(!session.view().is_gliding());
         session
     }
 
@@ -127,7 +127,7 @@ mod following {
         let document = walk(&mut random);
         let mut session = follower(&document, &[]);
         let still = *session.camera();
-        session.apply(EditAction::SetTranslation(glam::Vec3::ONE));
+        session.apply(JointEdit::SetTranslation(glam::Vec3::ONE));
         assert_eq!(*session.camera(), still, "an edit does not move the camera");
 
         let orbit = ViewAction::Grab(CameraMotion::Orbit, glam::Vec2::ZERO);

@@ -13,9 +13,10 @@ use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, Effect, Export, FileAction, FileContents, Grip,
-    PathDialog, PlaybackAction, PointHandle, PoseMode, SelectAction, Session, ShellAction,
-    SolverAction, TransactionAction, ViewAction,
+    Action, ArmEdit, Dialog, DisplayEdit, DragInput, Effect, Export, FileAction, FileContents,
+    Grip, JointEdit, KeysEdit, PathDialog, PathEdit, PlaybackAction, PointHandle, PoseMode,
+    SelectAction, Session, ShellAction, SolverAction, SolverEdit, TargetEdit, TransactionAction,
+    ViewAction,
 };
 use ik_arm::words;
 use proptest::collection::vec;
@@ -83,18 +84,18 @@ fn followed_paths() -> impl Strategy<Value = Option<PathKind>> {
 fn building() -> impl Strategy<Value = Action> {
     prop_oneof![
         3 => (joints(), proptest::option::of(points()))
-            .prop_map(|(parent, tip)| Action::from(EditAction::AddChild { parent, tip })),
-        1 => Just(Action::from(EditAction::AddRoot)),
-        1 => vec(joints(), 1..3).prop_map(EditAction::DeleteJoints).prop_map(Action::from),
-        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::from(EditAction::RenameJoint { joint, name })),
+            .prop_map(|(parent, tip)| Action::from(JointEdit::AddChild { parent, tip })),
+        1 => Just(Action::from(JointEdit::AddRoot)),
+        1 => vec(joints(), 1..3).prop_map(JointEdit::DeleteJoints).prop_map(Action::from),
+        1 => (joints(), "[a-c ]{0,2}").prop_map(|(joint, name)| Action::from(JointEdit::RenameJoint { joint, name })),
         2 => (joints(), proptest::option::of(joints()))
-            .prop_map(|(joint, parent)| Action::from(EditAction::ReparentJoint { joint, parent })),
-        1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(EditAction::SetAxis { joint, axis })),
+            .prop_map(|(joint, parent)| Action::from(JointEdit::ReparentJoint { joint, parent })),
+        1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(JointEdit::SetAxis { joint, axis })),
         1 => (joints(), rotation_axes(), numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
-            Action::from(EditAction::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
+            Action::from(JointEdit::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
         }),
         1 => (joints(), any::<bool>())
-            .prop_map(|(joint, locked)| Action::from(EditAction::SetLocked { joint, locked })),
+            .prop_map(|(joint, locked)| Action::from(JointEdit::SetLocked { joint, locked })),
         1 => vec(joints(), 0..3).prop_map(SelectAction::Joints).prop_map(Action::from),
     ]
 }
@@ -112,31 +113,31 @@ fn posing() -> impl Strategy<Value = Action> {
     });
     prop_oneof![
         2 => (joints(), points())
-            .prop_map(|(joint, rotation)| Action::from(EditAction::SetRotation { joint, rotation })),
-        2 => joints().prop_map(EditAction::AddTarget).prop_map(Action::from),
-        1 => joints().prop_map(EditAction::RemoveTarget).prop_map(Action::from),
+            .prop_map(|(joint, rotation)| Action::from(JointEdit::SetRotation { joint, rotation })),
+        2 => joints().prop_map(TargetEdit::AddTarget).prop_map(Action::from),
+        1 => joints().prop_map(TargetEdit::RemoveTarget).prop_map(Action::from),
         2 => (joints(), points(), numbers(), any::<bool>(), motion).prop_map(
-            |(joint, home, weight, enabled, motion)| Action::from(EditAction::SetTarget(Target {
+            |(joint, home, weight, enabled, motion)| Action::from(TargetEdit::SetTarget(Target {
                 weight, enabled, motion, ..Target::new(joint, home, 1.0)
             }))
         ),
         1 => (0..6_usize, numbers(), 0..3_usize).prop_map(|(method, damping, root)| {
             let root = Root::ALL[root];
-            Action::from(EditAction::SetSolver(
+            Action::from(SolverEdit::SetSolver(
                 SolverOptions::new(Method::ALL[method]).with_damping(damping).with_root(root)
             ))
         }),
-        2 => (joints(), followed_paths()).prop_map(|(root, kind)| EditAction::SetFollowPath { root, kind }).prop_map(Action::from),
-        1 => (joints(), points()).prop_map(|(root, to)| EditAction::SetHead { root, to }).prop_map(Action::from),
+        2 => (joints(), followed_paths()).prop_map(|(root, kind)| PathEdit::SetFollowPath { root, kind }).prop_map(Action::from),
+        1 => (joints(), points()).prop_map(|(root, to)| PathEdit::SetHead { root, to }).prop_map(Action::from),
         1 => any::<bool>().prop_map(SolverAction::Run).prop_map(Action::from),
         2 => Just(Action::from(SolverAction::Step)),
         1 => Just(Action::from(SolverAction::Reset)),
         1 => Just(Action::from(SolverAction::Compare)),
         1 => (0..20_u32).prop_map(SolverAction::Show).prop_map(Action::from),
-        1 => Just(Action::from(EditAction::ApplyPose)),
+        1 => Just(Action::from(SolverEdit::ApplyPose)),
         1 => any::<bool>().prop_map(PlaybackAction::Play).prop_map(Action::from),
         2 => (0.0..60.0).prop_map(PlaybackAction::Advance).prop_map(Action::from),
-        1 => Just(Action::from(EditAction::ResetPose)),
+        1 => Just(Action::from(DisplayEdit::ResetPose)),
     ]
 }
 
@@ -144,24 +145,24 @@ fn arming() -> impl Strategy<Value = Action> {
     let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
     let soft_reach = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
     prop_oneof![
-        3 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
-        2 => points().prop_map(EditAction::SetRoot).prop_map(Action::from),
-        2 => any::<bool>().prop_map(EditAction::PinHand).prop_map(Action::from),
-        1 => points().prop_map(EditAction::SetPin).prop_map(Action::from),
-        3 => (0..4_usize).prop_map(|twist_reference| Action::from(EditAction::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
-        2 => points().prop_map(EditAction::SetPole).prop_map(Action::from),
-        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::from(EditAction::SetSoftReach(
+        3 => points().prop_map(ArmEdit::SetHand).prop_map(Action::from),
+        2 => points().prop_map(ArmEdit::SetRoot).prop_map(Action::from),
+        2 => any::<bool>().prop_map(ArmEdit::PinHand).prop_map(Action::from),
+        1 => points().prop_map(ArmEdit::SetPin).prop_map(Action::from),
+        3 => (0..4_usize).prop_map(|twist_reference| Action::from(ArmEdit::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
+        2 => points().prop_map(ArmEdit::SetPole).prop_map(Action::from),
+        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::from(ArmEdit::SetSoftReach(
             SoftReach::new(softness, stretch, angle).expect("a softening")
         ))),
-        2 => parts().prop_map(EditAction::SetInfluence).prop_map(Action::from),
-        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(EditAction::SwitchPoseMode).prop_map(Action::from),
-        1 => points().prop_map(EditAction::SetShoulder).prop_map(Action::from),
-        1 => numbers().prop_map(EditAction::SetBend).prop_map(Action::from),
-        1 => points().prop_map(EditAction::SetHandOrientation).prop_map(Action::from),
-        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(EditAction::SetHandSpace).prop_map(Action::from),
+        2 => parts().prop_map(ArmEdit::SetInfluence).prop_map(Action::from),
+        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(ArmEdit::SwitchPoseMode).prop_map(Action::from),
+        1 => points().prop_map(ArmEdit::SetShoulder).prop_map(Action::from),
+        1 => numbers().prop_map(ArmEdit::SetBend).prop_map(Action::from),
+        1 => points().prop_map(ArmEdit::SetHandOrientation).prop_map(Action::from),
+        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(ArmEdit::SetHandSpace).prop_map(Action::from),
         1 => Just(Action::from(ViewAction::ResetTransport)),
         1 => any::<bool>().prop_map(|arm| {
-            Action::from(EditAction::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
+            Action::from(DisplayEdit::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
         }),
     ]
 }
@@ -184,25 +185,25 @@ fn keying() -> impl Strategy<Value = Action> {
     let times = prop_oneof![(0..5).prop_map(|step| f64::from(step) * 0.5), -1.0..9.0_f64];
     let key = (channels(), times.clone());
     prop_oneof![
-        4 => vec(channels(), 1..4).prop_map(EditAction::Key).prop_map(Action::from),
+        4 => vec(channels(), 1..4).prop_map(KeysEdit::Key).prop_map(Action::from),
         3 => times.clone().prop_map(PlaybackAction::SetTime).prop_map(Action::from),
-        1 => vec(key.clone(), 1..3).prop_map(EditAction::DeleteKeys).prop_map(Action::from),
-        1 => vec(channels(), 1..3).prop_map(EditAction::ClearChannels).prop_map(Action::from),
+        1 => vec(key.clone(), 1..3).prop_map(KeysEdit::DeleteKeys).prop_map(Action::from),
+        1 => vec(channels(), 1..3).prop_map(KeysEdit::ClearChannels).prop_map(Action::from),
         1 => (vec(key.clone(), 1..3), -2.0..2.0_f64)
-            .prop_map(|(keys, by)| Action::from(EditAction::MoveKeys { keys, by, raise: Vec3::ZERO })),
+            .prop_map(|(keys, by)| Action::from(KeysEdit::MoveKeys { keys, by, raise: Vec3::ZERO })),
         1 => vec(key, 1..3).prop_map(SelectAction::Keys).prop_map(Action::from),
         1 => Just(Action::from(SelectAction::CopyKeys)),
-        1 => Just(Action::from(EditAction::PasteKeys)),
+        1 => Just(Action::from(KeysEdit::PasteKeys)),
         1 => any::<bool>().prop_map(PlaybackAction::SetAutoKey).prop_map(Action::from),
         1 => (times.clone(), times, 0.0..70.0).prop_map(|(start, end, frame_rate)| {
-            Action::from(EditAction::SetTimeline(Timeline { start, end, frame_rate }))
+            Action::from(KeysEdit::SetTimeline(Timeline { start, end, frame_rate }))
         }),
-        1 => points().prop_map(EditAction::SetHand).prop_map(Action::from),
-        1 => numbers().prop_map(EditAction::SetTwist).prop_map(Action::from),
-        1 => numbers().prop_map(EditAction::SetUpper).prop_map(Action::from),
-        1 => any::<bool>().prop_map(|shown| Action::from(EditAction::ShowOverlay(Overlay::Cursor, shown))),
-        1 => points().prop_map(EditAction::SetTranslation).prop_map(Action::from),
-        1 => numbers().prop_map(|metres| Action::from(EditAction::SetMetres(Some(metres)))),
+        1 => points().prop_map(ArmEdit::SetHand).prop_map(Action::from),
+        1 => numbers().prop_map(ArmEdit::SetTwist).prop_map(Action::from),
+        1 => numbers().prop_map(ArmEdit::SetUpper).prop_map(Action::from),
+        1 => any::<bool>().prop_map(|shown| Action::from(DisplayEdit::ShowOverlay(Overlay::Cursor, shown))),
+        1 => points().prop_map(JointEdit::SetTranslation).prop_map(Action::from),
+        1 => numbers().prop_map(|metres| Action::from(DisplayEdit::SetMetres(Some(metres)))),
         1 => Just(Action::from(TransactionAction::Undo)),
         1 => Just(Action::from(TransactionAction::Redo)),
     ]
@@ -348,18 +349,18 @@ proptest! {
         for action in [Action::from(TransactionAction::Commit), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
         }
-        while session.redo_label().is_some() {
+        while session.history().redo_label().is_some() {
             session.apply(TransactionAction::Redo);
         }
         let last = session.document().clone();
-        prop_assert!(session.is_unsaved() || content(&last) == content(&first));
-        while session.undo_label().is_some() {
+        prop_assert!(session.history().is_unsaved() || content(&last) == content(&first));
+        while session.history().undo_label().is_some() {
             session.apply(TransactionAction::Undo);
             check(&session)?;
         }
         prop_assert_eq!(without_views(session.document()), without_views(&first));
-        prop_assert!(!session.is_unsaved());
-        while session.redo_label().is_some() {
+        prop_assert!(!session.history().is_unsaved());
+        while session.history().redo_label().is_some() {
             session.apply(TransactionAction::Redo);
             check(&session)?;
         }
@@ -372,8 +373,8 @@ fn halfway() -> Session {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(EditAction::SetHand(hand));
-        session.apply(EditAction::Key(vec![Channel::Hand]));
+        session.apply(ArmEdit::SetHand(hand));
+        session.apply(KeysEdit::Key(vec![Channel::Hand]));
     }
     session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(0.5));
@@ -386,7 +387,7 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
     let mut session = halfway();
     let document = session.document().clone();
     session.apply(FileAction::Saved("x.json".into()));
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     assert!(session.is_overridden(Channel::Hand));
     assert_eq!(
         session.message(),
@@ -405,12 +406,12 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
 #[test]
 fn an_unkeyed_edit_can_be_undone_and_keyed() {
     let mut session = halfway();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Undo);
     assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
     session.apply(TransactionAction::Redo);
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
-    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(KeysEdit::Key(vec![Channel::Hand]));
     session.apply(PlaybackAction::SetTime(0.0));
     session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
@@ -421,16 +422,16 @@ fn an_unkeyed_edit_leaves_the_document_unchanged() {
     let mut session = halfway();
     session.apply(FileAction::Saved("x.json".into()));
     let document = session.document().clone();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetTime(0.6));
     assert_eq!(session.document(), &document);
-    assert!(!session.is_unsaved());
+    assert!(!session.history().is_unsaved());
 }
 
 #[test]
 fn an_unkeyed_edit_that_a_time_change_discards_comes_back_with_undo() {
     let mut session = halfway();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::Play(true));
     session.apply(PlaybackAction::Advance(0.0));
     session.apply(PlaybackAction::Advance(0.1));
@@ -467,9 +468,9 @@ fn a_cancelled_drag_during_playback_leaves_the_playhead_alone() {
     session.apply(PlaybackAction::Play(true));
     session.apply(PlaybackAction::Advance(0.0));
     session.apply(TransactionAction::Begin);
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::Advance(0.1));
-    session.apply(EditAction::SetHand(Vec3::Z * 51.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 51.0));
     let time = session.time();
     session.apply(TransactionAction::Cancel);
     assert_eq!((session.time(), session.is_playing()), (time, true));
@@ -479,10 +480,10 @@ fn a_cancelled_drag_during_playback_leaves_the_playhead_alone() {
 #[test]
 fn a_move_of_the_playhead_without_unkeyed_edits_is_no_undo_step() {
     let mut session = halfway();
-    let label = session.undo_label();
+    let label = session.history().undo_label();
     session.apply(PlaybackAction::SetTime(0.7));
     session.apply(PlaybackAction::SetTime(0.2));
-    assert_eq!(session.undo_label(), label);
+    assert_eq!(session.history().undo_label(), label);
 }
 
 #[test]
@@ -491,12 +492,12 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         let mut session = Session::default();
         if let Some(name) = name {
             session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
-            session.apply(EditAction::ClearChannels(session.keyed_channels().collect()));
+            session.apply(KeysEdit::ClearChannels(session.keyed_channels().collect()));
         }
-        assert!(!session.is_auto_key() && !session.is_auto_key_news());
+        assert!(!session.playback().is_auto_key() && !session.playback().is_auto_key_news());
         let channels = session.channels_to_key();
-        session.apply(EditAction::Key(channels.clone()));
-        assert!(session.is_auto_key() && session.is_auto_key_news());
+        session.apply(KeysEdit::Key(channels.clone()));
+        assert!(session.playback().is_auto_key() && session.playback().is_auto_key_news());
         assert_eq!(
             session.message(),
             Some("Keyed at 0.00 s. Auto-key is on: every edit sets keys")
@@ -505,23 +506,26 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         session.apply(PlaybackAction::SetTime(2.0));
         let at_2 = |session: &Session| session.document().keys.times().contains(&2.0);
         match name {
-            None => session.apply(EditAction::SetHand(Vec3::X * 300.0)),
+            None => session.apply(ArmEdit::SetHand(Vec3::X * 300.0)),
             Some(_) => session
-                .apply(EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::X * 0.3 }),
+                .apply(JointEdit::SetRotation { joint: JointId::new(1), rotation: Vec3::X * 0.3 }),
         };
         assert!(at_2(&session), "{name:?}: the pose at 2 s is kept");
-        assert!(session.is_auto_key() && !session.is_auto_key_news(), "it is said once");
+        assert!(
+            session.playback().is_auto_key() && !session.playback().is_auto_key_news(),
+            "it is said once"
+        );
 
         for _ in 0..2 {
             session.apply(TransactionAction::Undo);
         }
-        assert!(!session.is_auto_key(), "{name:?}: off without keys");
+        assert!(!session.playback().is_auto_key(), "{name:?}: off without keys");
         session.apply(TransactionAction::Redo);
-        assert!(session.is_auto_key());
+        assert!(session.playback().is_auto_key());
         session.apply(TransactionAction::Undo);
         session.apply(PlaybackAction::SetAutoKey(false));
-        session.apply(EditAction::Key(channels));
-        assert!(!session.is_auto_key(), "{name:?}: the user's choice stays");
+        session.apply(KeysEdit::Key(channels));
+        assert!(!session.playback().is_auto_key(), "{name:?}: the user's choice stays");
         assert_eq!(session.message(), Some("Keyed at 2.00 s"));
     }
 }
@@ -529,17 +533,17 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
 #[test]
 fn a_key_replaces_an_unkeyed_edit() {
     let mut session = halfway();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetAutoKey(true));
-    session.apply(EditAction::SetHand(Vec3::Z * 60.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 60.0));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 60.0);
     assert!(!session.is_overridden(Channel::Hand));
 
     let mut session = halfway();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
-    session.apply(EditAction::ClearChannels(vec![Channel::Hand]));
-    session.apply(EditAction::SetHand(Vec3::Z * 70.0));
-    session.apply(EditAction::SetTwist(1.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.apply(KeysEdit::ClearChannels(vec![Channel::Hand]));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 70.0));
+    session.apply(ArmEdit::SetTwist(1.0));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 70.0);
     assert_eq!(session.document().arm.cursor_in_root(), Vec3::Z * 70.0);
 }
@@ -550,18 +554,18 @@ fn selected_and_copied_keys_follow_their_joints() {
     session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
     let channels: Vec<Channel> =
         (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
-    session.apply(EditAction::Key(channels));
+    session.apply(KeysEdit::Key(channels));
     let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
     let foot = name(&session, JointId::new(15));
     session.apply(SelectAction::Keys(vec![(Channel::Rotation(JointId::new(15)), 0.0)]));
     session.apply(SelectAction::Channels(vec![Channel::Rotation(JointId::new(15))]));
     session.apply(SelectAction::CopyKeys);
-    session.apply(EditAction::DeleteJoints(vec![JointId::new(8)]));
+    session.apply(JointEdit::DeleteJoints(vec![JointId::new(8)]));
     let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
     assert_eq!(name(&session, joint), foot);
     assert!(session.selected_channels().contains(&Channel::Rotation(joint)));
     session.apply(PlaybackAction::SetTime(1.0));
-    session.apply(EditAction::PasteKeys);
+    session.apply(KeysEdit::PasteKeys);
     assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
     // Undo restores the joint indices and clears the selection: no wrong joint is selected.
     session.apply(TransactionAction::Undo);
@@ -573,7 +577,7 @@ fn selected_and_copied_keys_follow_their_joints() {
 fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
     let mut session = Session::default();
     session.apply(FileAction::Open { path: "slow.glb".into(), options: OpenOptions::default() });
-    session.apply(EditAction::SetTwist(1.0));
+    session.apply(ArmEdit::SetTwist(1.0));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     session.apply(opened.clone());
     assert_eq!(session.arm().twist, 1.0);
@@ -591,7 +595,7 @@ fn many_keys_move_at_once() {
     }
     session.apply(FileAction::Opened { document: Box::new(document), file: None, contents: None });
     let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
-    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
+    session.apply(KeysEdit::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
     assert_eq!((track.len(), track[0].time), (50_000, 1.0));
 }
@@ -601,10 +605,10 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
     let mut session = halfway();
     session.apply(PlaybackAction::SetTime(0.0));
     let skins = Channel::Overlay(Overlay::OnionSkins);
-    session.apply(EditAction::Key(vec![skins]));
+    session.apply(KeysEdit::Key(vec![skins]));
     session.apply(PlaybackAction::SetTime(0.5));
-    session.apply(EditAction::ShowOverlay(Overlay::OnionSkins, true));
-    session.apply(EditAction::Key(vec![skins]));
+    session.apply(DisplayEdit::ShowOverlay(Overlay::OnionSkins, true));
+    session.apply(KeysEdit::Key(vec![skins]));
     for (time, shown) in [(0.4, false), (0.6, true)] {
         session.apply(PlaybackAction::SetTime(time));
         assert_eq!(session.overlays().onion_skins.is_empty(), !shown, "at {time} s");
@@ -614,7 +618,7 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
 #[test]
 fn a_cancelled_drag_restores_the_unkeyed_edit_that_the_time_has_discarded() {
     let mut session = halfway();
-    session.apply(EditAction::SetHand(Vec3::Z * 50.0));
+    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Begin);
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(TransactionAction::Cancel);
@@ -627,7 +631,7 @@ fn with_auto_key_every_edit_makes_a_key() {
     session.apply(PlaybackAction::SetAutoKey(true));
     for (time, twist) in [(0.0, 6.0), (1.0, 0.5)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(EditAction::SetTwist(twist));
+        session.apply(ArmEdit::SetTwist(twist));
     }
     let keys = &session.document().keys;
     let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
@@ -636,7 +640,7 @@ fn with_auto_key_every_edit_makes_a_key() {
     let twist = keys.value(Channel::Twist, 1.0).expect("a key").x;
     assert!((twist - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{twist}");
     // A switch gets no key by being switched.
-    session.apply(EditAction::ShowOverlay(Overlay::Cursor, false));
+    session.apply(DisplayEdit::ShowOverlay(Overlay::Cursor, false));
     assert!(!session.document().keys.has(Channel::Overlay(Overlay::Cursor)));
 }
 
@@ -676,7 +680,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
     let targets: Vec<_> = session.skeleton_rig().targets.clone();
     for (target, home) in targets.iter().zip(apart) {
-        session.apply(EditAction::SetTarget(Target { home, ..*target }));
+        session.apply(TargetEdit::SetTarget(Target { home, ..*target }));
     }
     let heavy = targets[0];
     let gap = |session: &mut Session| {
@@ -684,7 +688,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
         session.solver_run().expect("it steps").skeleton().tip(heavy.joint).distance(apart[0])
     };
     let before = gap(&mut session);
-    session.apply(EditAction::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
+    session.apply(TargetEdit::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
     let after = gap(&mut session);
     assert!(after < before * 0.99, "{before} before and {after} after");
 }
@@ -697,12 +701,12 @@ fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles
     let target = session.skeleton_rig().targets[0];
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) > 0.1, "the joints' own angles do not reach the target");
-    session.apply(EditAction::SetTarget(Target { influence: 1.0, ..target }));
+    session.apply(TargetEdit::SetTarget(Target { influence: 1.0, ..target }));
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) < 1e-3, "{tip}");
     assert_eq!(session.skeleton(), before.skeleton());
     assert_eq!(session.ring(target.joint, RotationAxis::X), None, "its angles pose nothing");
-    session.apply(EditAction::SetTarget(Target { influence: 0.5, ..target }));
+    session.apply(TargetEdit::SetTarget(Target { influence: 0.5, ..target }));
     let ring = session.ring(target.joint, RotationAxis::X).expect("a movable angle");
     assert_eq!(ring.centre, session.skeleton_pose().base(target.joint));
     assert_eq!(session.skeleton(), before.skeleton());
@@ -759,7 +763,7 @@ fn reaching_arm(random: &mut Random) -> Arm {
 fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay() {
     let mut session = halfway();
     session.apply(PlaybackAction::SetAutoKey(false));
-    session.apply(EditAction::SetHand(Vec3::X));
+    session.apply(ArmEdit::SetHand(Vec3::X));
     assert!(session.message().is_some_and(|it| it.starts_with("Unkeyed change")));
     session.apply(PlaybackAction::SetTime(0.25));
     let discarded = "The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back";
@@ -772,7 +776,7 @@ fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay()
 #[test]
 fn unsaved_changes_are_asked_about_only_once_the_other_file_was_read() {
     let mut session = Session::default();
-    session.apply(EditAction::SetTwist(1.0));
+    session.apply(ArmEdit::SetTwist(1.0));
     let (path, options) = (PathBuf::from("other.json"), OpenOptions::default());
     let effect = session.apply(FileAction::Open { path: path.clone(), options: options.clone() });
     assert_eq!(effect, Some(Effect::Open { path: path.clone(), options }));
@@ -807,25 +811,31 @@ fn contents(path: &str, animations: usize) -> Box<FileContents> {
 #[test]
 fn an_imported_file_gives_the_document_its_name() {
     let mut session = Session::default();
-    assert_eq!(session.document_name(), None);
+    assert_eq!(session.files().name(), None);
     let contents = Some(contents("/models/Walk cycle.glb", 1));
     session.apply(FileAction::Opened { document: Box::default(), file: None, contents });
-    assert_eq!(session.document_name().as_deref(), Some("Walk cycle"));
-    assert_eq!(session.file(), None, "Save must not overwrite the file of another program");
+    assert_eq!(session.files().name().as_deref(), Some("Walk cycle"));
+    assert_eq!(session.files().file(), None, "Save must not overwrite the file of another program");
     let named = |dialog: PathDialog| dialog.path().to_owned();
-    assert_eq!(named(session.save_as_dialog()), PathBuf::from("Walk cycle.json"));
-    assert_eq!(named(session.save_picture_dialog()), PathBuf::from("Walk cycle.png"));
+    assert_eq!(named(session.files().save_as_dialog()), PathBuf::from("Walk cycle.json"));
+    assert_eq!(named(session.files().save_picture_dialog()), PathBuf::from("Walk cycle.png"));
     assert_eq!(named(session.export_dialog()), PathBuf::from("Walk cycle.glb"));
-    assert_eq!(session.folder_of(&session.save_as_dialog()), PathBuf::from("/models"));
-    assert_eq!(session.apply(FileAction::Save), Some(Effect::ChoosePath(session.save_as_dialog())));
+    assert_eq!(
+        session.files().folder_of(&session.files().save_as_dialog()),
+        PathBuf::from("/models")
+    );
+    assert_eq!(
+        session.apply(FileAction::Save),
+        Some(Effect::ChoosePath(session.files().save_as_dialog()))
+    );
     session.apply(FileAction::Saved("/mine/walk.json".into()));
-    assert_eq!(session.document_name().as_deref(), Some("walk.json"));
+    assert_eq!(session.files().name().as_deref(), Some("walk.json"));
 }
 
 #[test]
 fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about_changes() {
     let mut session = Session::default();
-    session.apply(EditAction::SetTwist(1.0));
+    session.apply(ArmEdit::SetTwist(1.0));
     let contents = Some(contents("/models/Walk.glb", 2));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents };
     session.apply(opened.clone());
@@ -838,17 +848,17 @@ fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about
 fn an_export_into_a_missing_folder_does_not_leave_the_next_one_there() {
     let mut session = Session::default();
     let dialog = session.export_dialog();
-    let before = session.folder_of(&dialog);
+    let before = session.files().folder_of(&dialog);
     let PathDialog::Export(export) = dialog.clone() else { panic!("an export") };
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("missing/arm.glb");
     session.apply(FileAction::Export(Export { path: missing, ..export.clone() }));
     session.apply(FileAction::ExportEnded(Err("there is no folder".to_owned())));
-    assert_eq!(session.folder_of(&session.export_dialog()), before);
+    assert_eq!(session.files().folder_of(&session.export_dialog()), before);
     let there = folder.path().join("arm.glb");
     session.apply(FileAction::Export(Export { path: there, ..export }));
     session.apply(FileAction::ExportEnded(Ok("Exported".to_owned())));
-    assert_eq!(session.folder_of(&session.export_dialog()), folder.path());
+    assert_eq!(session.files().folder_of(&session.export_dialog()), folder.path());
 }
 
 #[test]
@@ -860,7 +870,7 @@ fn what_a_diagnosis_names_is_outlined() {
         ["left_hand", "left_forearm"].map(|it| rig.skeleton.find(it).expect("a joint"));
     let index = rig.target_of_end(hand).expect("a target");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
-    session.apply(EditAction::SetTarget(target));
+    session.apply(TargetEdit::SetTarget(target));
     let found = session.why().first().expect("it is too far away");
     let said = words::cause(session.skeleton_rig(), found);
     assert!(said.starts_with("left_hand cannot reach that far"), "{said}");

@@ -8,9 +8,10 @@ use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, CameraMotion, Constraint, Drag, DragInput, EditAction, FileAction, Grip,
-    PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences, SelectAction, Session,
-    ShellAction, SolverAction, TransactionAction, TurnDrag, ViewAction,
+    Action, ArmEdit, CameraMotion, Constraint, DisplayEdit, Drag, DragInput, FileAction, Grip,
+    JointEdit, KeysEdit, PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences,
+    SelectAction, Session, ShellAction, SolverAction, TargetEdit, TransactionAction, TurnDrag,
+    ViewAction,
 };
 
 fn ray() -> Ray {
@@ -113,12 +114,12 @@ fn a_missing_joint_cannot_be_hovered() {
 #[test]
 fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
     let mut session = session();
-    session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
-    session.apply(EditAction::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
+    session.apply(JointEdit::AddChild { parent: JointId::new(0), tip: None });
+    session.apply(KeysEdit::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
     session.apply(TransactionAction::Begin);
-    session.apply(EditAction::DeleteJoints(vec![JointId::new(1)]));
+    session.apply(JointEdit::DeleteJoints(vec![JointId::new(1)]));
     let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(JointId::new(1)), 0.0)];
-    session.apply(EditAction::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
+    session.apply(KeysEdit::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
     assert_eq!(left, [(Channel::Hand, 1.0)]);
@@ -127,14 +128,14 @@ fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
 #[test]
 fn keys_made_while_others_move_stay() {
     let mut session = session();
-    session.apply(EditAction::Key(vec![Channel::Hand]));
+    session.apply(KeysEdit::Key(vec![Channel::Hand]));
     session.apply(TransactionAction::Begin);
     let keys = vec![(Channel::Hand, 0.0)];
-    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
-    session.apply(EditAction::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
+    session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
+    session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
     assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
-    session.apply(EditAction::Key(vec![Channel::Root]));
-    session.apply(EditAction::MoveKeys {
+    session.apply(KeysEdit::Key(vec![Channel::Root]));
+    session.apply(KeysEdit::MoveKeys {
         keys: vec![(Channel::Hand, 2.0)],
         by: 1.0,
         raise: Vec3::ZERO,
@@ -146,15 +147,15 @@ fn keys_made_while_others_move_stay() {
 
 #[test]
 fn a_dragged_tip_is_released_when_the_joints_change() {
-    let hang = EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) };
+    let hang = JointEdit::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) };
     for change in [
-        EditAction::DeleteJoints(vec![JointId::new(2)]),
-        EditAction::AddRoot,
-        EditAction::ReparentJoint { joint: JointId::new(2), parent: None },
+        JointEdit::DeleteJoints(vec![JointId::new(2)]),
+        JointEdit::AddRoot,
+        JointEdit::ReparentJoint { joint: JointId::new(2), parent: None },
     ] {
         let mut session = session();
         session.apply(hang.clone());
-        session.apply(EditAction::AddChild { parent: JointId::new(1), tip: None });
+        session.apply(JointEdit::AddChild { parent: JointId::new(1), tip: None });
         let grip = Grip::Tip(JointId::new(1), PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         assert!(session.drag().is_some());
@@ -169,13 +170,13 @@ fn a_dragged_tip_is_released_when_the_joints_change() {
 #[test]
 fn a_comparison_is_made_anew_when_the_joints_change() {
     for change in [
-        Action::from(EditAction::DeleteJoints(vec![JointId::new(3)])),
-        EditAction::AddRoot.into(),
+        Action::from(JointEdit::DeleteJoints(vec![JointId::new(3)])),
+        JointEdit::AddRoot.into(),
         TransactionAction::Undo.into(),
     ] {
         let mut session = session();
         session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
-        session.apply(EditAction::AddChild { parent: JointId::new(0), tip: None });
+        session.apply(JointEdit::AddChild { parent: JointId::new(0), tip: None });
         session.apply(SolverAction::Compare);
         session.apply(PlaybackAction::Advance(1.0));
         assert_eq!(session.overlays().ghosts.len(), Method::ALL.len());
@@ -190,7 +191,7 @@ fn a_comparison_is_made_anew_when_the_joints_change() {
 #[test]
 fn a_ring_dragged_by_an_invalid_ray_does_not_turn() {
     let mut session = session();
-    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+    session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
     let before = session.document().clone();
     for grip in RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]) {
         for invalid in [f32::INFINITY, f32::NAN, f32::MAX] {
@@ -221,21 +222,18 @@ fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
     let far = f32::MAX;
     for actions in [
         vec![
-            Action::from(EditAction::ShowRig(RigKind::Skeleton)),
-            EditAction::SetTranslation(Vec3::new(-far, 0.3, 0.2)).into(),
+            Action::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
+            JointEdit::SetTranslation(Vec3::new(-far, 0.3, 0.2)).into(),
         ],
         vec![
             Action::from(FileAction::NewSkeleton),
-            EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::splat(far)) }.into(),
+            JointEdit::AddChild { parent: JointId::new(0), tip: Some(Vec3::splat(far)) }.into(),
         ],
+        vec![ArmEdit::SetRoot(Vec3::splat(far)).into(), ArmEdit::SetHand(Vec3::splat(far)).into()],
         vec![
-            EditAction::SetRoot(Vec3::splat(far)).into(),
-            EditAction::SetHand(Vec3::splat(far)).into(),
-        ],
-        vec![
-            EditAction::SetUpper(far).into(),
-            EditAction::SetLower(far).into(),
-            EditAction::SetHand(Vec3::splat(-far)).into(),
+            ArmEdit::SetUpper(far).into(),
+            ArmEdit::SetLower(far).into(),
+            ArmEdit::SetHand(Vec3::splat(-far)).into(),
         ],
     ] {
         let mut session = session();
@@ -257,16 +255,16 @@ fn a_joint_that_would_overflow_is_not_reparented() {
     let mut session = session();
     let far = Vec3::new(-1e19, 0.7, -f32::MAX);
     for (parent, tip) in [(0, Some(far)), (1, Some(far)), (2, None), (3, None)] {
-        session.apply(EditAction::AddChild { parent: JointId::new(parent), tip });
+        session.apply(JointEdit::AddChild { parent: JointId::new(parent), tip });
     }
-    session.apply(EditAction::AddRoot);
-    session.apply(EditAction::SetRotation {
+    session.apply(JointEdit::AddRoot);
+    session.apply(JointEdit::SetRotation {
         joint: JointId::new(1),
         rotation: Vec3::new(1.0, -3.0, 2.0),
     });
     for (joint, parent) in [(4, None), (4, Some(5)), (3, Some(5)), (2, Some(0)), (5, Some(4))] {
         let parent = parent.map(JointId::new);
-        session.apply(EditAction::ReparentJoint { joint: JointId::new(joint), parent });
+        session.apply(JointEdit::ReparentJoint { joint: JointId::new(joint), parent });
         for joint in session.skeleton().joints() {
             assert!(joint.offset.is_finite() && joint.rotation.is_finite(), "{joint:?}");
         }
@@ -281,12 +279,12 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
     for (hand, x) in [(100.0, -0.0), (110.0, 0.0), (120.0, -0.0)] {
         session.apply(TransactionAction::Begin);
         for x in [1.0, x] {
-            session.apply(EditAction::SetRotation {
+            session.apply(JointEdit::SetRotation {
                 joint: JointId::new(0),
                 rotation: Vec3::new(x, 0.0, 0.0),
             });
         }
-        session.apply(EditAction::SetHand(Vec3::X * hand));
+        session.apply(ArmEdit::SetHand(Vec3::X * hand));
         session.apply(TransactionAction::Commit);
         texts.push(text(&session));
     }
@@ -304,8 +302,8 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 fn drags_and_snaps_that_overflow_are_clamped() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
         let mut session = session();
-        session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
-        session.apply(EditAction::SetPole(Vec3::new(0.0, 0.0, pole)));
+        session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
+        session.apply(ArmEdit::SetPole(Vec3::new(0.0, 0.0, pole)));
         let grip = Grip::Pole(PointHandle::Axis(2));
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         session.apply(TransactionAction::TypeOffset(typed.to_owned()));
@@ -320,13 +318,14 @@ fn drags_and_snaps_that_overflow_are_clamped() {
 #[test]
 fn the_same_revision_is_saved_as_the_same_text() {
     let mut session = session();
-    let (revision, text) = (session.revision(), to_json(session.document()).expect("saved"));
+    let (revision, text) =
+        (session.history().revision(), to_json(session.document()).expect("saved"));
     session.apply(TransactionAction::Begin);
     for x in [1.0, -0.0] {
-        session.apply(EditAction::SetRoot(Vec3::new(x, 0.0, 0.0)));
+        session.apply(ArmEdit::SetRoot(Vec3::new(x, 0.0, 0.0)));
     }
     session.apply(TransactionAction::Commit);
-    assert_eq!(session.revision(), revision);
+    assert_eq!(session.history().revision(), revision);
     assert_eq!(to_json(session.document()).expect("saved"), text);
 }
 
@@ -334,8 +333,7 @@ fn the_same_revision_is_saved_as_the_same_text() {
 fn a_ring_snap_that_overflows_is_clamped() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
-        session
-            .apply(EditAction::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
+        session.apply(JointEdit::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
         let axis = session.ring(JointId::new(0), RotationAxis::X).expect("a ring").axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
         let (one, other) = axis.any_orthonormal_pair();
@@ -360,7 +358,7 @@ fn a_remedy_that_allows_no_iterations_is_refused() {
     let mut session = Session::default();
     let before = session.document().clone();
     let (target, remedy) = (JointId::new(0), Remedy::AllowIterations(0));
-    session.apply(EditAction::ApplyRemedy { target, remedy });
+    session.apply(TargetEdit::ApplyRemedy { target, remedy });
     assert_eq!(session.message(), Some("The solver's iterations must be above 0, got 0"));
     assert_eq!(session.document(), &before);
 }
@@ -368,11 +366,11 @@ fn a_remedy_that_allows_no_iterations_is_refused() {
 #[test]
 fn a_target_at_a_tip_that_overflows_is_refused() {
     let mut session = session();
-    session.apply(EditAction::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) });
-    session.apply(EditAction::SetAxis { joint: JointId::new(1), axis: Vec3::splat(f32::MAX) });
-    session.apply(EditAction::SetTranslation(Vec3::splat(f32::MAX)));
+    session.apply(JointEdit::AddChild { parent: JointId::new(0), tip: Some(Vec3::Y) });
+    session.apply(JointEdit::SetAxis { joint: JointId::new(1), axis: Vec3::splat(f32::MAX) });
+    session.apply(JointEdit::SetTranslation(Vec3::splat(f32::MAX)));
     let before = session.document().clone();
-    session.apply(EditAction::AddTarget(JointId::new(1)));
+    session.apply(TargetEdit::AddTarget(JointId::new(1)));
     let message = session.message().unwrap_or_default();
     assert!(message.starts_with("The position of a target must be finite, got"), "{message}");
     assert_eq!(session.document(), &before);

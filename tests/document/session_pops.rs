@@ -5,16 +5,16 @@ use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
 use ik_arm::kinematics::pop::{InputChange, PopCause};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    EditAction, FileAction, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
+    ArmEdit, FileAction, KeysEdit, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
     TransactionAction,
 };
 
 fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
-    session.apply(EditAction::SetHand(from));
+    session.apply(ArmEdit::SetHand(from));
     session.apply(TransactionAction::Begin);
     for step in 1..=steps {
         let part = f32::from(step) / f32::from(steps);
-        session.apply(EditAction::SetHand(from.lerp(to, part)));
+        session.apply(ArmEdit::SetHand(from.lerp(to, part)));
     }
     session.apply(TransactionAction::Commit);
 }
@@ -75,8 +75,8 @@ fn each_fix_prevents_the_pop_of_the_same_drag() {
 #[test]
 fn pops_of_a_pole_reference_are_fixed_by_stereographic_too() {
     let mut session = Session::default();
-    session.apply(EditAction::SetPole(Vec3::new(0.0, 300.0, 10.0)));
-    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Pole));
+    session.apply(ArmEdit::SetPole(Vec3::new(0.0, 300.0, 10.0)));
+    session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
     assert_eq!(
         fix_pop(&mut session, over_the_top),
         PopFix::ChangeReference(TwistReferenceKind::Stereographic)
@@ -86,7 +86,7 @@ fn pops_of_a_pole_reference_are_fixed_by_stereographic_too() {
 #[test]
 fn behind_the_body_stereographic_pops_and_transport_fixes_it() {
     let mut session = Session::default();
-    session.apply(EditAction::SetTwistReference(TwistReferenceKind::Stereographic));
+    session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Stereographic));
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
@@ -100,7 +100,7 @@ fn behind_the_body_stereographic_pops_and_transport_fixes_it() {
 fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let mut session = Session::default();
     let almost_hard = SoftReach::new(0.01, 1.2, 0.0).expect("soft");
-    session.apply(EditAction::SetSoftReach(almost_hard));
+    session.apply(ArmEdit::SetSoftReach(almost_hard));
     let expected = PopFix::KeepOpen(SoftReach::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
     assert_eq!(fix_pop(&mut session, fold_up), expected);
 
@@ -142,19 +142,19 @@ fn each_drag_and_each_playback_is_a_separate_run() {
     };
     assert_eq!(runs(&session), (2, 28 + 30));
     session.apply(TransactionAction::Undo);
-    session.apply(EditAction::SetHand(Vec3::new(222.0, 0.0, 0.0)));
+    session.apply(ArmEdit::SetHand(Vec3::new(222.0, 0.0, 0.0)));
     assert_eq!(runs(&session), (2, 28 + 30), "what is not dragged is not measured");
 }
 
 /// Keys that move the hand over the top in a second, with a changing twist.
 fn keyed(channels: &[Channel]) -> Session {
     let mut session = Session::default();
-    session.apply(EditAction::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
+    session.apply(KeysEdit::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
     for (time, x, twist) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(EditAction::SetHand(Vec3::new(x, 300.0, 20.0)));
-        session.apply(EditAction::SetTwist(twist));
-        session.apply(EditAction::Key(channels.to_vec()));
+        session.apply(ArmEdit::SetHand(Vec3::new(x, 300.0, 20.0)));
+        session.apply(ArmEdit::SetTwist(twist));
+        session.apply(KeysEdit::Key(channels.to_vec()));
     }
     session
 }
@@ -200,10 +200,10 @@ fn a_played_twist_is_one_input_change_and_no_pop() {
 fn moving_the_root_is_an_input_change_only_with_a_pinned_hand() {
     for (pinned, marked) in [(false, vec![]), (true, vec![InputChange::Root])] {
         let mut session = Session::default();
-        session.apply(EditAction::PinHand(pinned));
+        session.apply(ArmEdit::PinHand(pinned));
         session.apply(TransactionAction::Begin);
         for step in 1..9_u8 {
-            session.apply(EditAction::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
+            session.apply(ArmEdit::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
         }
         session.apply(TransactionAction::Commit);
         assert_eq!(changes(&session), marked);

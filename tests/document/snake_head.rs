@@ -6,8 +6,7 @@ use ik_arm::io::{OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::session::{
-    DragInput, EditAction, Grip, PlaybackAction, PointHandle, Preferences, Session,
-    TransactionAction,
+    DragInput, Grip, PathEdit, PlaybackAction, PointHandle, Preferences, Session, TransactionAction,
 };
 
 use crate::common::Random;
@@ -229,10 +228,10 @@ fn a_dragged_head_draws_its_body_along_the_path_of_the_mouse() {
             let beside = distance(&all, *point);
             assert!(beside < 1e-3, "case {case}: joint {index} is {beside} beside the path");
         }
-        assert_eq!(session.undo_label(), Some("Move head"));
+        assert_eq!(session.history().undo_label(), Some("Move head"));
         session.apply(TransactionAction::Undo);
         assert_eq!(points(session.skeleton()), before);
-        assert_eq!(session.undo_label(), None);
+        assert_eq!(session.history().undo_label(), None);
     }
 }
 
@@ -270,7 +269,7 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
     let before = points(&session.evaluated_skeleton().solved);
     session.apply(PlaybackAction::SetAutoKey(false));
     let to = before[0] + Vec3::new(0.3, 0.4, 0.0);
-    session.apply(EditAction::SetHead { root: HEAD, to });
+    session.apply(PathEdit::SetHead { root: HEAD, to });
     let after = points(&session.evaluated_skeleton().solved);
     assert!(after[0].distance(to) < 1e-5);
     let between: Vec<Vec3> =
@@ -285,10 +284,10 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
 fn the_head_can_be_moved_by_numbers_and_refuses_what_is_not_finite() {
     let mut random = Random(1509);
     let mut session = Session::with_document(Preferences::default(), snake(&mut random));
-    session.apply(EditAction::SetHead { root: HEAD, to: Vec3::new(1.0, 2.0, 3.0) });
+    session.apply(PathEdit::SetHead { root: HEAD, to: Vec3::new(1.0, 2.0, 3.0) });
     assert!(session.skeleton_pose().base(HEAD).distance(Vec3::new(1.0, 2.0, 3.0)) < 1e-5);
     let before = session.document().clone();
-    session.apply(EditAction::SetHead { root: HEAD, to: Vec3::new(f32::NAN, 0.0, 0.0) });
+    session.apply(PathEdit::SetHead { root: HEAD, to: Vec3::new(f32::NAN, 0.0, 0.0) });
     assert_eq!(*session.document(), before);
     let message = session.message().unwrap_or_default();
     assert!(message.starts_with("The position of the head must be finite, got"), "{message}");
@@ -320,7 +319,7 @@ fn a_click_on_the_head_changes_nothing() {
     let head = session.skeleton_pose().base(HEAD);
     drag(&mut session, &[head]);
     assert_eq!(*session.document(), before);
-    assert_eq!(session.undo_label(), None);
+    assert_eq!(session.history().undo_label(), None);
 }
 
 #[test]

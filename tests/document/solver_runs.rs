@@ -11,8 +11,9 @@ use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Sta
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Comparison, EditAction, FileAction, PlaybackAction, Session, ShownIteration,
-    SolverAction, SolverRun, SolverState, TransactionAction,
+    Action, Comparison, DisplayEdit, Edit, FileAction, JointEdit, KeysEdit, PathEdit,
+    PlaybackAction, Session, ShownIteration, SolverAction, SolverEdit, SolverRun, SolverState,
+    TargetEdit, TransactionAction,
 };
 
 use crate::common::{Random, skeletons};
@@ -66,7 +67,7 @@ fn run_to_the_end(session: &mut Session, from: f64) {
     session.apply(SolverAction::Run(true));
     for frame in 0..2000 {
         session.apply(PlaybackAction::Advance(from + f64::from(frame) / 60.0));
-        if !session.is_running() {
+        if !session.solvers().is_running() {
             return;
         }
     }
@@ -120,7 +121,7 @@ fn no_step_run_comparison_or_iteration_changes_a_byte_of_the_document() {
     let mut random = Random(41);
     for _ in 0..30 {
         let mut session = open(document(&mut random));
-        let (before, revision) = (bytes(&session), session.revision());
+        let (before, revision) = (bytes(&session), session.history().revision());
         let evaluated = session.skeleton_pose().clone();
         let mut seconds = 0.0;
         for _ in 0..60 {
@@ -130,8 +131,11 @@ fn no_step_run_comparison_or_iteration_changes_a_byte_of_the_document() {
             assert_eq!(session.skeleton_pose(), &evaluated, "the evaluated pose remains");
         }
         assert!(bytes(&session) == before);
-        assert_eq!((session.revision(), session.undo_label()), (revision, None));
-        assert!(!session.is_unsaved());
+        assert_eq!(
+            (session.history().revision(), session.history().undo_label()),
+            (revision, None)
+        );
+        assert!(!session.history().is_unsaved());
     }
 }
 
@@ -168,7 +172,7 @@ fn a_run_and_a_comparison_always_solve_what_the_session_shows() {
             if let Some(run) = session.solver_run() {
                 assert_is_fresh(&session, run, &options);
             }
-            for solver in session.comparison().into_iter().flat_map(Comparison::solvers) {
+            for solver in session.solvers().comparison().into_iter().flat_map(Comparison::solvers) {
                 let mut options = options.with_method(solver.method);
                 options.iterations = None;
                 if let Ok(run) = &solver.run {
@@ -185,12 +189,12 @@ fn change(random: &mut Random, session: &Session, seconds: &mut f64) -> Action {
     let joint = JointId::new(random.below(rig.skeleton.joints().len()));
     let target = (!rig.targets.is_empty()).then(|| rig.targets[random.below(rig.targets.len())]);
     match random.below(16) {
-        0 => EditAction::SetRotation { joint, rotation: random.vector(0.5) }.into(),
-        1 => EditAction::SetSolver(options(random)).into(),
-        2 => EditAction::AddTarget(joint).into(),
-        3 => EditAction::Key(vec![Channel::Rotation(joint)]).into(),
-        4 => EditAction::ApplyPose.into(),
-        5 => EditAction::AddChild { parent: joint, tip: None }.into(),
+        0 => JointEdit::SetRotation { joint, rotation: random.vector(0.5) }.into(),
+        1 => SolverEdit::SetSolver(options(random)).into(),
+        2 => TargetEdit::AddTarget(joint).into(),
+        3 => KeysEdit::Key(vec![Channel::Rotation(joint)]).into(),
+        4 => SolverEdit::ApplyPose.into(),
+        5 => JointEdit::AddChild { parent: joint, tip: None }.into(),
         6 => TransactionAction::Undo.into(),
         7 => PlaybackAction::SetTime(f64::from(random.within(0.0..4.0))).into(),
         8..11 => {
@@ -200,7 +204,7 @@ fn change(random: &mut Random, session: &Session, seconds: &mut f64) -> Action {
         11 if target.is_some() => {
             let target = target.expect("checked");
             let home = target.home + random.vector(0.3);
-            EditAction::SetTarget(Target { home, influence: 1.0, ..target }).into()
+            TargetEdit::SetTarget(Target { home, influence: 1.0, ..target }).into()
         }
         _ => view(random).into(),
     }
@@ -232,7 +236,7 @@ fn a_run_that_has_ended_solves_a_moved_target_to_its_end() {
     run_to_the_end(&mut session, 0.0);
     let target = session.skeleton_rig().targets[0];
     for home in [target.home + Vec3::Y * 0.2, target.home + Vec3::X * 0.1, target.home] {
-        session.apply(EditAction::SetTarget(Target { home, ..target }));
+        session.apply(TargetEdit::SetTarget(Target { home, ..target }));
         let run = session.solver_run().expect("it is looked at");
         assert!(run.report().converged() && run.report().iterations > 0, "{:?}", run.report());
         let error = run.skeleton().tip(target.joint).distance(home);
@@ -245,10 +249,10 @@ fn a_held_iteration_stays_held_and_the_latest_one_is_followed() {
     let mut session = example("two-targets");
     step(&mut session, 4);
     session.apply(SolverAction::Show(2));
-    let shown = |session: &Session| session.shown_iteration().expect("a run");
+    let shown = |session: &Session| session.solvers().shown_iteration().expect("a run");
     let expected = ShownIteration { number: 2, latest: 4, previous: Some(1), next: Some(3) };
     assert_eq!(shown(&session), expected);
-    let turned = EditAction::SetRotation { joint: JointId::new(1), rotation: Vec3::Z * 0.1 };
+    let turned = JointEdit::SetRotation { joint: JointId::new(1), rotation: Vec3::Z * 0.1 };
     session.apply(turned);
     assert_eq!(shown(&session), expected, "it is made anew with as many iterations");
     session.apply(SolverAction::Show(9));
@@ -270,14 +274,14 @@ fn apply_pose_is_one_step_that_undo_takes_back_bit_for_bit() {
         session.apply(SolverAction::Show(1 + random.below(steps) as u32));
         let posed = bits(session.solver_run().expect("it steps").skeleton());
         let is_still = posed == bits(session.skeleton());
-        session.apply(EditAction::ApplyPose);
+        session.apply(SolverEdit::ApplyPose);
         assert_eq!(bits(session.skeleton()), posed);
         assert_eq!(bits(session.document().skeleton()), posed);
         assert!(session.solver_run().is_none(), "the pose is in the document now");
-        assert_eq!(session.undo_label(), (!is_still).then_some("Apply pose"));
+        assert_eq!(session.history().undo_label(), (!is_still).then_some("Apply pose"));
         session.apply(TransactionAction::Undo);
         assert!(bytes(&session) == before);
-        assert_eq!(session.undo_label(), None);
+        assert_eq!(session.history().undo_label(), None);
     }
 }
 
@@ -285,14 +289,14 @@ fn apply_pose_is_one_step_that_undo_takes_back_bit_for_bit() {
 fn a_run_of_free_roots_applies_their_offsets() {
     let mut session = example("two-targets");
     let solver = session.skeleton_rig().solver.with_root(Root::Free);
-    session.apply(EditAction::SetSolver(solver));
+    session.apply(SolverEdit::SetSolver(solver));
     let targets = session.skeleton_rig().targets.clone();
     for target in &targets {
         let home = target.home + Vec3::X * 9.0;
-        session.apply(EditAction::SetTarget(Target { home, ..*target }));
+        session.apply(TargetEdit::SetTarget(Target { home, ..*target }));
     }
     run_to_the_end(&mut session, 0.0);
-    session.apply(EditAction::ApplyPose);
+    session.apply(SolverEdit::ApplyPose);
     let root = &session.document().skeleton()[JointId::new(0)];
     assert!(root.offset.x > 5.0, "{}", root.offset);
 }
@@ -302,13 +306,13 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
     let joint = JointId::new(1);
     for auto_key in [true, false] {
         let mut session = example("ten-joints");
-        session.apply(EditAction::Key(vec![Channel::Rotation(joint)]));
+        session.apply(KeysEdit::Key(vec![Channel::Rotation(joint)]));
         session.apply(PlaybackAction::SetTime(1.0));
         session.apply(PlaybackAction::SetAutoKey(auto_key));
         step(&mut session, 3);
         let posed = session.solver_run().expect("it steps").skeleton()[joint].rotation;
         assert_ne!(posed, session.skeleton()[joint].rotation);
-        session.apply(EditAction::ApplyPose);
+        session.apply(SolverEdit::ApplyPose);
         assert_eq!(session.skeleton()[joint].rotation, posed);
         let keys = session.document().keys.track(Channel::Rotation(joint)).expect("keyed");
         assert_eq!(keys.get(1.0), auto_key.then_some(posed));
@@ -322,23 +326,23 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
 fn a_run_ends_when_there_is_nothing_to_solve() {
     let path = PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 });
     let joint = example("ten-joints").skeleton_rig().targets[0].joint;
-    let follow = EditAction::SetFollowPath { root: JointId::new(0), kind: Some(path) };
+    let follow = PathEdit::SetFollowPath { root: JointId::new(0), kind: Some(path) };
     for (begin, end) in [
-        (SolverAction::Step, EditAction::RemoveTarget(joint)),
-        (SolverAction::Compare, EditAction::RemoveTarget(joint)),
-        (SolverAction::Run(true), follow),
-        (SolverAction::Compare, EditAction::ShowRig(RigKind::Arm)),
-        (SolverAction::Run(true), EditAction::ShowRig(RigKind::Arm)),
+        (SolverAction::Step, Edit::from(TargetEdit::RemoveTarget(joint))),
+        (SolverAction::Compare, TargetEdit::RemoveTarget(joint).into()),
+        (SolverAction::Run(true), follow.into()),
+        (SolverAction::Compare, DisplayEdit::ShowRig(RigKind::Arm).into()),
+        (SolverAction::Run(true), DisplayEdit::ShowRig(RigKind::Arm).into()),
     ] {
         let mut session = example("ten-joints");
         session.apply(begin.clone());
-        assert_eq!(session.overlays().ghosts.len(), session.solver_runs().count());
-        assert!(session.shown_iteration().is_some());
+        assert_eq!(session.overlays().ghosts.len(), session.solvers().runs().count());
+        assert!(session.solvers().shown_iteration().is_some());
         session.apply(end);
-        assert!(session.solver_run().is_none() && session.comparison().is_none());
+        assert!(session.solver_run().is_none() && session.solvers().comparison().is_none());
         assert!(session.overlays().ghosts.is_empty() && !session.is_moving());
         session.apply(begin);
-        assert!(session.shown_iteration().is_none() && session.message().is_some());
+        assert!(session.solvers().shown_iteration().is_none() && session.message().is_some());
     }
 }
 
@@ -348,8 +352,8 @@ fn a_run_ends_with_the_reason_if_its_solver_refuses_the_targets() {
     step(&mut session, 1);
     let root = session.skeleton_rig().targets[0].joint;
     let two_bone = session.skeleton_rig().solver.with_method(Method::TwoBone);
-    session.apply(EditAction::SetLocked { joint: root, locked: true });
-    session.apply(EditAction::SetSolver(two_bone));
+    session.apply(JointEdit::SetLocked { joint: root, locked: true });
+    session.apply(SolverEdit::SetSolver(two_bone));
     assert!(session.solver_run().is_none());
     assert!(session.message().expect("a reason").contains("locked"), "{:?}", session.message());
 }
@@ -374,7 +378,7 @@ fn the_status_is_that_of_the_shown_iterate_or_of_the_evaluated_pose() {
     session.apply(SolverAction::Reset);
     assert_eq!(status(&session).state, SolverState::NotReached, "nothing was applied");
     let target = session.skeleton_rig().targets[0];
-    session.apply(EditAction::SetTarget(Target { influence: 1.0, ..target }));
+    session.apply(TargetEdit::SetTarget(Target { influence: 1.0, ..target }));
     assert_eq!(status(&session).state, SolverState::Reached, "the evaluated pose is at the target");
 }
 
@@ -385,14 +389,14 @@ fn a_comparison_shows_the_same_iteration_of_all_solvers() {
     for frame in 0..200 {
         session.apply(PlaybackAction::Advance(f64::from(frame) / 60.0));
     }
-    let race = session.comparison().expect("it is shown");
+    let race = session.solvers().comparison().expect("it is shown");
     assert!(!race.is_running(), "it ends");
     let latest = race.runs().map(|run| run.report().iterations).max();
-    assert_eq!(session.shown_iteration().map(|shown| shown.latest), latest);
+    assert_eq!(session.solvers().shown_iteration().map(|shown| shown.latest), latest);
     for number in [0, 1, 5, 30] {
         session.apply(SolverAction::Show(number));
         let ghosts = session.overlays().ghosts;
-        for (ghost, run) in ghosts.iter().zip(session.solver_runs()) {
+        for (ghost, run) in ghosts.iter().zip(session.solvers().runs()) {
             assert_eq!(ghost.iteration, number.min(run.report().iterations));
             assert_eq!(ghost.pose, run.skeleton().pose());
             assert_eq!(ghost.method, run.method());

@@ -5,7 +5,9 @@ use ik_arm::document::{Channel, Document, PathKind, Ray};
 use ik_arm::io::{Example, OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{Target, TargetOutcome};
-use ik_arm::session::{EditAction, FileAction, PlaybackAction, Session, TransactionAction};
+use ik_arm::session::{
+    FileAction, JointEdit, PathEdit, PlaybackAction, Session, TransactionAction,
+};
 
 use crate::common::Random;
 
@@ -97,7 +99,7 @@ fn a_target_that_leads_a_path_is_not_solved_for_and_cannot_be_run() {
     assert!(!session.skeleton_rig().targets.is_empty());
     assert!(session.skeleton_rig().targets_at(0.0).is_empty());
     let head = heads(session.document())[0];
-    session.apply(EditAction::SetFollowPath { root: head, kind: None });
+    session.apply(PathEdit::SetFollowPath { root: head, kind: None });
     assert_eq!(session.skeleton_rig().targets_at(0.0).len(), 1, "without a path it is solved for");
 }
 
@@ -129,7 +131,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     lead(&mut session, &mut clock, 60, |_| s_shape(2.0));
     session.apply(TransactionAction::FollowMouse(false));
     assert!(!session.follows_mouse() && !session.is_editing());
-    assert_eq!(session.undo_label(), Some("Follow the mouse"));
+    assert_eq!(session.history().undo_label(), Some("Follow the mouse"));
 
     let recorded = session.document().clone();
     let heads = heads(&recorded);
@@ -187,7 +189,7 @@ fn each_root_has_a_path_of_its_own() {
             .collect();
         let root = random.one_of(&roots);
         let kind = random.one_of(&[None, Some(PathKind::Head), Some(PathKind::Target)]);
-        session.apply(EditAction::SetFollowPath { root, kind });
+        session.apply(PathEdit::SetFollowPath { root, kind });
         let rig = session.skeleton_rig();
         assert_eq!(rig.path_kind(root), kind);
         let others = heads.iter().filter(|head| **head != root);
@@ -196,7 +198,7 @@ fn each_root_has_a_path_of_its_own() {
     let child = session.skeleton().ids().find(|it| session.skeleton()[*it].parent.is_some());
     let root = child.expect("a tail");
     let before = session.document().clone();
-    session.apply(EditAction::SetFollowPath { root, kind: Some(PathKind::Head) });
+    session.apply(PathEdit::SetFollowPath { root, kind: Some(PathKind::Head) });
     assert_eq!(session.document(), &before);
     assert!(
         session
@@ -213,7 +215,7 @@ fn paths_follow_their_roots_when_joints_are_deleted() {
     let kept = name(&session, heads[2]);
     let rig = session.skeleton_rig();
     let first: Vec<JointId> = rig.path_joints(heads[0]).collect();
-    session.apply(EditAction::DeleteJoints(first));
+    session.apply(JointEdit::DeleteJoints(first));
     let paths = &session.skeleton_rig().follow_paths;
     assert_eq!(paths.len(), 4);
     assert!(paths.iter().any(|path| name(&session, path.root) == kept));

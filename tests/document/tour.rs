@@ -9,8 +9,9 @@ use ik_arm::io::{Example, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, PlaybackAction, PoseMode, Preferences, Session,
-    SolverAction, TourAction, TourEnd, TourState, TourStep, TransactionAction, ViewAction, filled,
+    Action, ArmEdit, Dialog, DisplayEdit, Effect, FileAction, JointEdit, PlaybackAction, PoseMode,
+    Preferences, Session, SolverAction, TourAction, TourEnd, TourState, TourStep,
+    TransactionAction, ViewAction, filled,
 };
 
 fn session() -> Session {
@@ -102,20 +103,20 @@ fn a_number_that_the_scene_does_not_have_takes_its_sentence_along() {
 /// for its task.
 #[test]
 fn a_step_does_not_take_another_move_for_its_task() {
-    let hand = |x: f32, y: f32, z: f32| EditAction::SetHand(Vec3::new(x, y, z));
+    let hand = |x: f32, y: f32, z: f32| ArmEdit::SetHand(Vec3::new(x, y, z));
     let wrong: [(usize, Vec<Action>); 14] = [
         (1, vec![hand(180.0, -320.0, 0.0).into(), hand(-180.0, -320.0, 0.0).into()]),
         (1, vec![hand(350.0, 100.0, 0.0).into()]),
         (2, vec![hand(100.0, 300.0, 0.0).into()]),
-        (2, vec![EditAction::SwitchPoseMode(PoseMode::Angles).into()]),
-        (3, vec![EditAction::SetTwist(1.0).into(), hand(150.0, 60.0, 0.0).into()]),
-        (4, vec![EditAction::SetTwist(0.7).into()]),
+        (2, vec![ArmEdit::SwitchPoseMode(PoseMode::Angles).into()]),
+        (3, vec![ArmEdit::SetTwist(1.0).into(), hand(150.0, 60.0, 0.0).into()]),
+        (4, vec![ArmEdit::SetTwist(0.7).into()]),
         (4, vec![hand(-250.0, -120.0, -60.0).into()]),
-        (5, vec![EditAction::SetLower(250.0).into(), EditAction::SetUpper(350.0).into()]),
-        (6, vec![hand(300.0, 300.0, 100.0).into(), EditAction::SetTwist(3.0).into()]),
-        (7, vec![EditAction::SetSoftReach(SoftReach::new(0.0, 1.5, 0.2).unwrap()).into()]),
-        (8, vec![EditAction::SetTwistReference(TwistReferenceKind::Pole).into()]),
-        (9, vec![EditAction::SetRoot(Vec3::X * 100.0).into()]),
+        (5, vec![ArmEdit::SetLower(250.0).into(), ArmEdit::SetUpper(350.0).into()]),
+        (6, vec![hand(300.0, 300.0, 100.0).into(), ArmEdit::SetTwist(3.0).into()]),
+        (7, vec![ArmEdit::SetSoftReach(SoftReach::new(0.0, 1.5, 0.2).unwrap()).into()]),
+        (8, vec![ArmEdit::SetTwistReference(TwistReferenceKind::Pole).into()]),
+        (9, vec![ArmEdit::SetRoot(Vec3::X * 100.0).into()]),
         (10, vec![PlaybackAction::Play(true).into(), PlaybackAction::Advance(1.0).into()]),
         (11, vec![SolverAction::Run(true).into(), PlaybackAction::Advance(1.0).into()]),
     ];
@@ -127,8 +128,8 @@ fn a_step_does_not_take_another_move_for_its_task() {
     }
     let mut session = in_step(12);
     let (joint, rotation) = (JointId::new(4), Vec3::new(0.0, 0.4, 0.0));
-    act(&mut session, [EditAction::SetRotation { joint, rotation }]);
-    act(&mut session, [EditAction::SetTranslation(Vec3::NEG_Y * 0.05)]);
+    act(&mut session, [JointEdit::SetRotation { joint, rotation }]);
+    act(&mut session, [JointEdit::SetTranslation(Vec3::NEG_Y * 0.05)]);
     assert!(!shows_result(&session), "step 12");
 }
 
@@ -144,8 +145,8 @@ fn changed() -> Session {
     let file = Some(PathBuf::from("/tmp/walk.json"));
     session.apply(FileAction::Opened { document, file, contents: None });
     session.apply(PlaybackAction::SetTime(0.5));
-    session.apply(EditAction::SetTranslation(Vec3::new(0.1, 0.02, 0.0)));
-    session.apply(EditAction::ShowOverlay(Overlay::Labels, false));
+    session.apply(JointEdit::SetTranslation(Vec3::new(0.1, 0.02, 0.0)));
+    session.apply(DisplayEdit::ShowOverlay(Overlay::Labels, false));
     session
 }
 
@@ -169,10 +170,13 @@ fn the_own_document_comes_back_as_it_was_after_every_step() {
         assert!(session.tour().is_none());
         assert_eq!(bytes(&session), bytes(&before), "step {number}");
         assert_eq!(session.shown(), before.shown());
-        assert_eq!(session.undo_label(), before.undo_label());
-        assert_eq!((session.time(), session.file()), (before.time(), before.file()));
-        assert_eq!(session.is_unsaved(), before.is_unsaved());
-        assert_eq!(session.revision(), before.revision());
+        assert_eq!(session.history().undo_label(), before.history().undo_label());
+        assert_eq!(
+            (session.time(), session.files().file()),
+            (before.time(), before.files().file())
+        );
+        assert_eq!(session.history().is_unsaved(), before.history().is_unsaved());
+        assert_eq!(session.history().revision(), before.history().revision());
         let preferences = Preferences { offers_tour: false, ..*before.preferences() };
         assert_eq!(*session.preferences(), preferences);
         session.apply(TransactionAction::Undo);
@@ -184,16 +188,16 @@ fn the_own_document_comes_back_as_it_was_after_every_step() {
 fn a_drag_that_was_under_way_is_kept_as_an_undo_step() {
     let mut session = session();
     session.apply(TransactionAction::Begin);
-    session.apply(EditAction::SetTwist(0.5));
+    session.apply(ArmEdit::SetTwist(0.5));
     session.apply(TourAction::Enter(3));
     session.apply(TourAction::Leave);
     assert_eq!(session.arm().twist, 0.5);
-    assert!(!session.is_editing() && session.undo_label().is_some());
+    assert!(!session.is_editing() && session.history().undo_label().is_some());
 }
 
 #[test]
 fn scenes_of_the_tour_are_not_saved_over_the_own_document() {
-    let save_as = session().save_as_dialog();
+    let save_as = session().files().save_as_dialog();
     for action in [
         FileAction::Save,
         FileAction::SaveAs(PathBuf::from("/tmp/other.json")),
@@ -202,7 +206,7 @@ fn scenes_of_the_tour_are_not_saved_over_the_own_document() {
         let mut session = changed();
         session.apply(TourAction::Enter(0));
         assert_eq!(session.apply(action), None);
-        assert!(session.has_failed(), "says why");
+        assert!(session.shell().has_failed(), "says why");
         assert!(session.tour().is_some());
     }
 }
@@ -226,7 +230,7 @@ fn opening_another_document_ends_the_tour_and_asks_for_unsaved_changes_of_the_ow
 #[test]
 fn steps_can_be_entered_in_any_order_and_remember_what_was_done() {
     let mut session = in_step(4);
-    session.apply(EditAction::SetTwist(2.0));
+    session.apply(ArmEdit::SetTwist(2.0));
     assert!(shows_result(&session) && session.tour().unwrap().is_done(3));
     session.apply(TourAction::Enter(11));
     session.apply(TourAction::Enter(0));
@@ -246,7 +250,7 @@ fn after_the_last_step_a_card_tells_what_the_user_can_say_now() {
         assert_eq!((tour.number(), tour.step()), (steps, None));
         assert_eq!(tour.title(), "What you can say now");
         act(&mut session, [TourAction::Guess(0), TourAction::Demonstrate]);
-        act(&mut session, [EditAction::SetTranslation(Vec3::Y * 0.5)]);
+        act(&mut session, [JointEdit::SetTranslation(Vec3::Y * 0.5)]);
         let tour = session.tour().unwrap();
         assert!(!tour.shows_result() && (0..=steps).all(|step| !tour.is_done(step)));
         session.apply(TourAction::Enter(steps - 1));
@@ -270,10 +274,10 @@ fn the_nearly_straight_arm_races_as_far_as_its_step_says_wherever_the_cursor_was
     assert!(moved > 5.0, "the right answer says so: {moved}");
     let cursor = session.arm().cursor_in_root();
     for hand in [cursor, cursor * 1.3, cursor * 0.5] {
-        act(&mut session, [EditAction::SetHand(hand)]);
+        act(&mut session, [ArmEdit::SetHand(hand)]);
         assert_eq!(filled("{hard_race}", &session), format!("{moved:.1}"));
     }
-    act(&mut session, [EditAction::SetSoftReach(SoftReach::new(0.1, 1.0, 0.0).unwrap())]);
+    act(&mut session, [ArmEdit::SetSoftReach(SoftReach::new(0.1, 1.0, 0.0).unwrap())]);
     assert!(shows_result(&session));
     let number = |name: &str| filled(name, &session).parse::<f64>().expect("a number");
     assert!(number("{race}") < 2.0 && number("{hard_race}") > 5.0);

@@ -11,7 +11,7 @@ use glam::Vec3;
 use ik_arm::document::{Document, RigKind};
 use ik_arm::io;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{EditAction, FileAction, Session};
+use ik_arm::session::{ArmEdit, FileAction, Session};
 
 use crate::common::{Random, cases};
 
@@ -105,14 +105,14 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
 /// A session with changes, and what it says when it is told to save to `path`.
 fn not_saved(path: &Path) -> (Session, String) {
     let mut session = Session::default();
-    session.apply(EditAction::SetHand(Vec3::new(1.0, 2.0, 3.0)));
+    session.apply(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0)));
     let document = session.document().clone();
     let error = io::save(session.document(), path).expect_err("it cannot be saved");
     let why = error.to_string();
     session.apply(FileAction::NotSaved { path: path.to_owned(), why });
-    assert!(session.is_unsaved());
+    assert!(session.history().is_unsaved());
     assert_eq!(session.document(), &document);
-    assert_eq!(session.file(), None);
+    assert_eq!(session.files().file(), None);
     let message = session.message().expect("it is said").to_owned();
     (session, message)
 }

@@ -229,7 +229,7 @@ fn a_session_shows_and_moves_a_crowd_without_changing_the_document() {
     assert_eq!(session.crowd(), None);
     let after = Document { camera: before.camera, ..session.document().clone() };
     assert_eq!(after, before);
-    assert_eq!(session.undo_label(), None);
+    assert_eq!(session.history().undo_label(), None);
 }
 
 fn picture(gpu: &Gpu) -> PictureRenderer<'_> {

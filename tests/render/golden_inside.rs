@@ -8,8 +8,8 @@ use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    ArmFigure, EditAction, FileAction, PlaybackAction, Preferences, SelectAction, Session,
-    SolverAction, ViewAction,
+    ArmEdit, ArmFigure, DisplayEdit, FileAction, PlaybackAction, Preferences, SelectAction,
+    Session, SkinEdit, SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
 use crate::pictures;
@@ -60,9 +60,9 @@ fn the_triangle_and_the_circle_of_two_bones() {
     session.apply(SolverAction::Reset);
     let target = session.skeleton_rig().targets[0];
     let home = session.skeleton().base(JointId::new(2)) + Vec3::new(0.45, 0.2, 0.25);
-    session.apply(EditAction::SetTarget(Target { home, ..target }));
+    session.apply(TargetEdit::SetTarget(Target { home, ..target }));
     let options = session.skeleton_rig().solver.with_method(Method::TwoBone);
-    session.apply(EditAction::SetSolver(options));
+    session.apply(SolverEdit::SetSolver(options));
     session.apply(SolverAction::Step);
     let parts = session.solver_run().expect("a run").parts().len();
     session.apply(SolverAction::ShowPart { iteration: 1, part: Some(parts - 1) });
@@ -91,8 +91,8 @@ fn the_joints_that_keep_a_tip_from_its_target() {
 #[test]
 fn the_circles_of_the_elbows_and_knees_of_a_figure() {
     let mut session = example("human");
-    session.apply(EditAction::ShowOverlay(Overlay::ElbowCircle, true));
-    session.apply(EditAction::ShowSkin { skin: false, bones: true });
+    session.apply(DisplayEdit::ShowOverlay(Overlay::ElbowCircle, true));
+    session.apply(SkinEdit::ShowSkin { skin: false, bones: true });
     let camera = Camera { distance: 2.6, ..*session.camera() };
     session.apply(ViewAction::SetCamera(camera));
     check("limb_circles", &session);
@@ -101,8 +101,8 @@ fn the_circles_of_the_elbows_and_knees_of_a_figure() {
 /// The arm with a line of its figures lit up.
 fn lit(figure: ArmFigure) -> Session {
     let mut session = Session::new(Preferences::default());
-    session.apply(EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0)));
-    session.apply(EditAction::SetTwist(0.5));
+    session.apply(ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0)));
+    session.apply(ArmEdit::SetTwist(0.5));
     session.apply(SelectAction::Figure(Some(figure)));
     let camera = Camera { distance: 640.0, ..*session.camera() };
     session.apply(ViewAction::SetCamera(camera));
@@ -113,7 +113,7 @@ fn lit(figure: ArmFigure) -> Session {
 fn the_axes_of_root_limb_and_socket() {
     let mut session = lit(ArmFigure::Distance);
     session.apply(SelectAction::Figure(None));
-    session.apply(EditAction::ShowOverlay(Overlay::Frames, true));
+    session.apply(DisplayEdit::ShowOverlay(Overlay::Frames, true));
     check("frames", &session);
 }
 

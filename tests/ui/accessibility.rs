@@ -5,7 +5,7 @@ use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::EditAction;
+use ik_arm::session::ArmEdit;
 
 use crate::bench::{Bench, SMALL, bits};
 use crate::panel::{CHECKBOXES, SLIDERS};
@@ -155,7 +155,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 
 #[test]
 fn the_viewport_is_an_image_that_says_how_far_the_arm_reaches() {
-    let bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
+    let bench = Bench::after([ArmEdit::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
     let name = "Viewport. The hand cannot reach that far: the target is 600 from the shoulder, the bones are 500 long.";
     let rect = bench.rect(Role::Image, name);
     // The mouse grabs the panels beside the view at its edges.

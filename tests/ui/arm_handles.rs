@@ -6,7 +6,7 @@ use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::HandSpace;
 use ik_arm::kinematics::skeleton::RotationAxis;
-use ik_arm::session::{ArmJoint, Drag, EditAction, Grip, PoseMode, TransactionAction};
+use ik_arm::session::{ArmEdit, ArmJoint, Drag, Grip, PoseMode, TransactionAction};
 
 use crate::bench::{Bench, bits};
 
@@ -55,10 +55,10 @@ fn the_root_can_be_dragged_before_it_is_selected() {
     bench.release(LEFT);
     assert!(bench.on_screen(root(&bench)).distance(to) < 0.5);
     assert_eq!(bits(bench.hand()), bits(hand), "the hand comes along");
-    assert_eq!(bench.session().undo_label(), Some("Move shoulder"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move shoulder"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bits(root(&bench)), bits(before));
-    assert_eq!(bench.session().undo_label(), None, "it is one step");
+    assert_eq!(bench.session().history().undo_label(), None, "it is one step");
 }
 
 fn is_root(grip: Grip) -> bool {
@@ -76,7 +76,7 @@ fn the_arrows_of_the_root_are_there_while_it_is_selected() {
     let at = bench.on_screen(root(&bench));
     bench.click_at(at);
     assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Root));
-    assert_eq!(bench.session().undo_label(), None, "a click changes nothing");
+    assert_eq!(bench.session().history().undo_label(), None, "a click changes nothing");
     bench.drag_and_drop(LEFT, arrow, arrow + vec2(40.0, 10.0));
     let moved = root(&bench);
     assert!(moved.x > 5.0 && (moved.y, moved.z) == (0.0, 0.0), "{moved}");
@@ -89,7 +89,7 @@ fn the_arrows_of_the_root_are_there_while_it_is_selected() {
 
 #[test]
 fn a_pinned_hand_stays_when_the_root_is_dragged() {
-    let mut bench = Bench::after([EditAction::PinHand(true)]);
+    let mut bench = Bench::after([ArmEdit::PinHand(true)]);
     let cursor = bench.session().arm().cursor_in_world();
     let at = bench.on_screen(root(&bench));
     bench.move_to(at);
@@ -117,9 +117,9 @@ fn the_elbow_turns_about_the_pointer_under_the_mouse() {
         assert!(turned.min(core::f32::consts::TAU - turned) < 1e-2, "{turned} apart");
         assert_eq!(bits(hand_in_world(&bench)), bits(hand));
         assert_eq!(bench.session().pose().pointer.direction, pointer);
-        assert_eq!(bench.session().undo_label(), Some("Set Socket twist"));
+        assert_eq!(bench.session().history().undo_label(), Some("Set Socket twist"));
         bench.apply([TransactionAction::Undo]);
-        assert_eq!((twist(&bench), bench.session().undo_label()), (0.0, None));
+        assert_eq!((twist(&bench), bench.session().history().undo_label()), (0.0, None));
     }
 }
 
@@ -166,14 +166,14 @@ fn ctrl_snaps_the_twist_shift_is_precise_and_escape_cancels() {
     assert_ne!(twist(&bench), 0.0);
     bench.key(Key::Escape);
     bench.release(LEFT);
-    assert_eq!((twist(&bench), bench.session().undo_label()), (0.0, None));
+    assert_eq!((twist(&bench), bench.session().history().undo_label()), (0.0, None));
 }
 
 #[test]
 fn there_is_no_ring_in_fk_nor_around_a_straight_arm() {
     for actions in [
-        vec![EditAction::SwitchPoseMode(PoseMode::Angles)],
-        vec![EditAction::SetHand(Vec3::new(499.9, 0.0, 0.0))],
+        vec![ArmEdit::SwitchPoseMode(PoseMode::Angles)],
+        vec![ArmEdit::SetHand(Vec3::new(499.9, 0.0, 0.0))],
     ] {
         let mut bench = Bench::after(actions);
         let before = *bench.session().arm();
@@ -210,8 +210,8 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
     for space in [HandSpace::LowerLimb, HandSpace::World] {
         for axis in RotationAxis::ALL {
             let mut bench = Bench::after([
-                EditAction::SetHandOrientation(Vec3::new(0.3, 0.2, -0.25)),
-                EditAction::SetHandSpace(space),
+                ArmEdit::SetHandOrientation(Vec3::new(0.3, 0.2, -0.25)),
+                ArmEdit::SetHandSpace(space),
             ]);
             let (grip, before) = (Grip::HandRing(axis), *bench.session().arm());
             let ring = bench.session().arm_ring(grip).expect("a ring");
@@ -243,7 +243,7 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
             let apart = (turn * was - turned(&bench)).to_cols_array();
             assert!(apart.iter().all(|apart| apart.abs() < 5e-3), "{space:?} {axis}");
             bench.release(LEFT);
-            assert_eq!(bench.session().undo_label(), Some("Turn hand"));
+            assert_eq!(bench.session().history().undo_label(), Some("Turn hand"));
             bench.apply([TransactionAction::Undo]);
             assert_eq!(bench.session().arm().hand_orientation.angles, old);
             assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Hand));

@@ -5,7 +5,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Channel;
-use ik_arm::session::{EditAction, PlaybackAction, TransactionAction};
+use ik_arm::session::{KeysEdit, PlaybackAction, TransactionAction};
 
 use crate::bench::{Bench, LARGE};
 use crate::looks::has_tooltip;
@@ -56,12 +56,12 @@ fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
 fn a_hand_planted_by_the_check_box_and_k_stays_until_it_is_lifted() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.click(Role::Button, DIAMOND);
-    bench.apply([EditAction::Key(vec![Channel::Root])]);
+    bench.apply([KeysEdit::Key(vec![Channel::Root])]);
     go_to(&mut bench, 1.0);
     let place = hand(&bench);
     bench.click(Role::CheckBox, PIN);
     bench.key(Key::K);
-    bench.apply([EditAction::Key(vec![Channel::Root])]);
+    bench.apply([KeysEdit::Key(vec![Channel::Root])]);
     go_to(&mut bench, 3.0);
     bench.enter("Root x", "120");
     bench.key(Key::K);

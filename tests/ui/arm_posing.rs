@@ -8,7 +8,7 @@ use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, EditAction, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
+    Action, ArmEdit, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, bits, snapshot_options};
@@ -40,7 +40,7 @@ fn pole_place(bench: &Bench) -> Pos2 {
 
 #[test]
 fn switching_between_fk_and_ik_keeps_the_pose() {
-    let mut bench = posing([EditAction::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
+    let mut bench = posing([ArmEdit::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
     let pose = *bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
     bench.click(Role::Button, "FK");
@@ -60,13 +60,13 @@ fn switching_between_fk_and_ik_keeps_the_pose() {
     let pose = *bench.session().pose();
     bench.click(Role::Button, "IK");
     assert!(apart(&pose, bench.session().pose()) < 5e-3);
-    assert_eq!(bench.session().undo_label(), Some("Switch to IK"));
+    assert_eq!(bench.session().history().undo_label(), Some("Switch to IK"));
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
 }
 
 #[test]
 fn ik_settings_are_disabled_in_fk() {
-    let mut bench = posing([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+    let mut bench = posing([ArmEdit::SwitchPoseMode(PoseMode::Angles)]);
     let before = bench.hand();
     let rail = bench.rect(Role::Slider, "Hand x");
     bench.drag_and_drop(LEFT, rail.center(), rail.right_center());
@@ -78,8 +78,7 @@ fn ik_settings_are_disabled_in_fk() {
 
 #[test]
 fn between_fk_and_ik_the_arm_is_between_its_poses() {
-    let mut bench =
-        posing([EditAction::SwitchPoseMode(PoseMode::Angles), EditAction::SetBend(0.5)]);
+    let mut bench = posing([ArmEdit::SwitchPoseMode(PoseMode::Angles), ArmEdit::SetBend(0.5)]);
     let angles = bench.session().pose().elbow_angle();
     bench.enter("IK influence", "1");
     let hand = bench.session().pose().elbow_angle();
@@ -94,11 +93,9 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
 
 #[test]
 fn rings_turn_the_shoulder_and_bend_the_elbow() {
-    let mut bench = Bench::after([
-        EditAction::SwitchPoseMode(PoseMode::Angles),
-        EditAction::SetShoulder(Vec3::ZERO),
-    ]);
-    bench.apply([EditAction::SetBend(0.8)]);
+    let mut bench =
+        Bench::after([ArmEdit::SwitchPoseMode(PoseMode::Angles), ArmEdit::SetShoulder(Vec3::ZERO)]);
+    bench.apply([ArmEdit::SetBend(0.8)]);
     for grip in [Grip::Shoulder(RotationAxis::Y), Grip::Shoulder(RotationAxis::Z), Grip::Bend] {
         let ring = bench.session().arm_ring(grip).expect("a ring");
         let centre = bench.on_screen(ring.centre);
@@ -160,7 +157,7 @@ fn a_pinned_hand_stays_when_the_root_moves() {
     bench.click(Role::CheckBox, "Pinned to world");
     assert!(apart(&pose, bench.session().pose()) < 1e-3);
     let cursor = bench.cursor_on_screen();
-    bench.apply([EditAction::PinHand(true)]);
+    bench.apply([ArmEdit::PinHand(true)]);
     bench.drag_and_drop(LEFT, cursor, cursor + vec2(-30.0, 20.0));
     assert!(
         bench.cursor_on_screen().distance(cursor + vec2(-30.0, 20.0)) < 0.5,
@@ -170,7 +167,7 @@ fn a_pinned_hand_stays_when_the_root_moves() {
 
 #[test]
 fn changing_the_twist_reference_keeps_the_elbow() {
-    let mut bench = Bench::after([EditAction::SetTwist(0.4)]);
+    let mut bench = Bench::after([ArmEdit::SetTwist(0.4)]);
     let pose = *bench.session().pose();
     for (name, twist_reference) in [
         ("Pole", TwistReferenceKind::Pole),
@@ -185,13 +182,13 @@ fn changing_the_twist_reference_keeps_the_elbow() {
             bench.shows(Role::Slider, "Pole x"),
             twist_reference == TwistReferenceKind::Pole
         );
-        assert_eq!(bench.session().undo_label(), Some("Change twist reference"));
+        assert_eq!(bench.session().history().undo_label(), Some("Change twist reference"));
     }
 }
 
 #[test]
 fn the_pole_is_dragged_in_the_view_and_cancelled() {
-    let mut bench = Bench::after([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
+    let mut bench = Bench::after([ArmEdit::SetTwistReference(TwistReferenceKind::Pole)]);
     let (before, elbow) = (bench.session().arm().pole, bench.session().pose().elbow);
     let at = pole_place(&bench);
     bench.drag(LEFT, at, at + vec2(60.0, 90.0));
@@ -202,7 +199,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.release(LEFT);
     bench.drag_and_drop(LEFT, at, at + vec2(-40.0, 20.0));
-    assert_eq!(bench.session().undo_label(), Some("Move pole"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move pole"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bits(bench.session().arm().pole), bits(before));
     bench.enter("Pole y", "123.5");
@@ -211,7 +208,7 @@ fn the_pole_is_dragged_in_the_view_and_cancelled() {
 
 #[test]
 fn the_four_twist_references_are_compared() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(0.0, 300.0, 1.0))]);
     bench.show_tab(PanelTab::Twist);
     for name in ["Stereographic", "Transport", "Holonomy"] {
         assert!(bench.says(name), "{name}");
@@ -225,11 +222,11 @@ fn the_four_twist_references_are_compared() {
         assert!(bench.session().shown().display.shows(layer));
     }
     bench.apply([
-        Action::from(EditAction::SetHand(Vec3::X * 300.0)),
+        Action::from(ArmEdit::SetHand(Vec3::X * 300.0)),
         ViewAction::ResetTransport.into(),
     ]);
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
-        bench.apply([EditAction::SetHand(hand * 300.0)]);
+        bench.apply([ArmEdit::SetHand(hand * 300.0)]);
     }
     assert!(bench.says("+90.0°"), "an octant's solid angle");
     bench.reveal(Role::Button, "Reset");
@@ -262,7 +259,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
 
 #[test]
 fn every_control_of_the_posing_has_a_tooltip() {
-    let mut bench = posing([EditAction::SetTwistReference(TwistReferenceKind::Pole)]);
+    let mut bench = posing([ArmEdit::SetTwistReference(TwistReferenceKind::Pole)]);
     for (role, name) in [
         (Role::Button, "IK"),
         (Role::Button, "FK"),
@@ -278,7 +275,7 @@ fn every_control_of_the_posing_has_a_tooltip() {
 #[test]
 fn k_keys_the_channels_of_the_pose_mode() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([EditAction::PinHand(true)]);
+    bench.apply([ArmEdit::PinHand(true)]);
     bench.key(egui::Key::K);
     let keyed = |bench: &Bench| -> Vec<Channel> {
         bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
@@ -286,7 +283,7 @@ fn k_keys_the_channels_of_the_pose_mode() {
     assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin, Channel::Pinned]);
     bench.apply([
         Action::from(TransactionAction::Undo),
-        EditAction::SwitchPoseMode(PoseMode::Angles).into(),
+        ArmEdit::SwitchPoseMode(PoseMode::Angles).into(),
     ]);
     bench.key(egui::Key::K);
     assert_eq!(keyed(&bench), [Channel::Influence, Channel::Shoulder, Channel::Bend]);
@@ -298,11 +295,11 @@ fn the_panels_in_pole_and_fk_mode_look_as_they_did() {
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut bench = posing([
             Action::from(ShellAction::SetTheme(theme)),
-            EditAction::SetTwistReference(TwistReferenceKind::Pole).into(),
+            ArmEdit::SetTwistReference(TwistReferenceKind::Pole).into(),
         ]);
         let options = snapshot_options(600);
         results.add(bench.harness.try_snapshot_options(format!("pole_{name}"), &options));
-        bench.apply([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+        bench.apply([ArmEdit::SwitchPoseMode(PoseMode::Angles)]);
         results.add(bench.harness.try_snapshot_options(format!("fk_{name}"), &options));
     }
 }

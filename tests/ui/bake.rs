@@ -104,7 +104,7 @@ fn a_running_bake_shows_its_progress_and_its_keys_are_one_undo_step() {
     let after = bench.session().document();
     assert_eq!(after.skeleton_rig.follow_paths, []);
     assert!(after.skeleton().ids().all(|joint| after.keys.has(Channel::Rotation(joint))));
-    assert_eq!(bench.session().undo_label(), Some("Bake to keys"));
+    assert_eq!(bench.session().history().undo_label(), Some("Bake to keys"));
     bench.choose(&["Edit", "Undo Bake to keys"]);
     assert_eq!(bench.session().document(), &before);
 }

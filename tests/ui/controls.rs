@@ -10,7 +10,7 @@ use egui_kittest::kittest::NodeT as _;
 use ik_arm::document::{Channel, RigKind};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, EditAction, FileAction, PanelTab, PlaybackAction, SelectAction, ViewAction,
+    Action, ArmEdit, FileAction, KeysEdit, PanelTab, PlaybackAction, SelectAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -91,8 +91,8 @@ fn arms() -> Vec<Bench> {
         let mut bench = tall();
         bench.toggle(&["FK and IK", "Soft limits", "Hand orientation", "Display"]);
         bench.apply([
-            Action::from(EditAction::SetInfluence(0.5)),
-            EditAction::Key(vec![Channel::Hand]).into(),
+            Action::from(ArmEdit::SetInfluence(0.5)),
+            KeysEdit::Key(vec![Channel::Hand]).into(),
             // Hides the note about auto-key, which is over the view.
             PlaybackAction::SetAutoKey(true).into(),
         ]);

@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::TwistReferenceKind;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::session::{Action, Dialog, EditAction, Effect, PathDialog};
+use ik_arm::session::{Action, ArmEdit, Dialog, Effect, PathDialog};
 use serde_json::json;
 
 use crate::bench::Bench;
@@ -124,10 +124,10 @@ fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
 fn a_copied_pose_is_a_json_line_that_holds_the_pose() {
     for by_key in [true, false] {
         let mut bench = Bench::after([
-            EditAction::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
-            EditAction::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
-            EditAction::SetUpper(123.5),
-            EditAction::SetTwist(1.0),
+            ArmEdit::SetHand(Vec3::new(0.1, -200.25, 1e-7)),
+            ArmEdit::SetRoot(Vec3::new(1.0, 2.0, 3.0)),
+            ArmEdit::SetUpper(123.5),
+            ArmEdit::SetTwist(1.0),
         ]);
         if by_key {
             bench.frame([Event::Copy]);
@@ -165,23 +165,22 @@ fn copied(actions: impl IntoIterator<Item = impl Into<Action>>) -> serde_json::V
 fn a_copied_pose_has_its_twist_reference_and_softness() {
     let soft_reach = SoftReach::new(0.25, 1.5, 0.5).expect("a softening");
     let line = copied([
-        EditAction::SetTwistReference(TwistReferenceKind::Pole),
-        EditAction::SetPole(Vec3::new(1.0, 2.0, 3.0)),
-        EditAction::SetSoftReach(soft_reach),
+        ArmEdit::SetTwistReference(TwistReferenceKind::Pole),
+        ArmEdit::SetPole(Vec3::new(1.0, 2.0, 3.0)),
+        ArmEdit::SetSoftReach(soft_reach),
     ]);
     assert_eq!(line["reference"], json!({ "pole": [1.0, 2.0, 3.0] }));
     assert_eq!(line["softness"], json!(0.25_f32));
     assert_eq!(line["max_stretch"], json!(1.5_f32));
     assert_eq!(line["min_elbow_angle_deg"], json!(0.5_f32.to_degrees()));
-    let transported = copied([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
+    let transported = copied([ArmEdit::SetTwistReference(TwistReferenceKind::Transport)]);
     assert_eq!(transported["reference"], json!("stereographic"), "a line has no past");
 }
 
 #[test]
 fn a_copied_pose_keeps_an_elbow_that_depends_on_earlier_poses() {
     // Straight up the arm keeps the heading that it had: +z. A line begins with +x.
-    let upwards =
-        [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(EditAction::SetHand);
+    let upwards = [Vec3::new(0.0, 100.0, 300.0), Vec3::new(0.0, 300.0, 0.0)].map(ArmEdit::SetHand);
     let twist = copied(upwards)["twist_deg"].as_f64().expect("a number");
     let elbow = TwoBone::new(200.0, 300.0).expect("lengths");
     let elbow = elbow.solve(Vec3::Y * 300.0, twist.to_radians() as f32).elbow;

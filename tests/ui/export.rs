@@ -8,7 +8,9 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Channel;
 use ik_arm::io::{self, Cancelled, Example, Progress};
-use ik_arm::session::{Action, EditAction, Effect, Export, ExportJob, FileAction, PlaybackAction};
+use ik_arm::session::{
+    Action, ArmEdit, Effect, Export, ExportJob, FileAction, KeysEdit, PlaybackAction,
+};
 
 use crate::bench::Bench;
 
@@ -91,11 +93,11 @@ fn a_document_with_keys_survives_saving_and_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("saved.json");
     let mut bench = Bench::after([
-        Action::from(EditAction::SetHand(Vec3::new(100.0, 200.0, 50.0))),
-        EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
+        Action::from(ArmEdit::SetHand(Vec3::new(100.0, 200.0, 50.0))),
+        KeysEdit::Key(vec![Channel::Hand, Channel::Twist]).into(),
         PlaybackAction::SetTime(1.5).into(),
-        EditAction::SetHand(Vec3::new(-100.0, 200.0, 50.0)).into(),
-        EditAction::Key(vec![Channel::Hand]).into(),
+        ArmEdit::SetHand(Vec3::new(-100.0, 200.0, 50.0)).into(),
+        KeysEdit::Key(vec![Channel::Hand]).into(),
     ]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     bench.settle();
@@ -107,7 +109,7 @@ fn a_document_with_keys_survives_saving_and_opening() {
     io::save(bench.session().document(), to).expect("saved");
     bench.tell(FileAction::Saved(to.clone()));
     let saved = bench.session().document().clone();
-    assert!(!bench.session().is_unsaved());
+    assert!(!bench.session().history().is_unsaved());
 
     let opened = io::open(&path, &io::OpenOptions::default()).expect("it opens");
     let mut again = Bench::after([FileAction::Opened {

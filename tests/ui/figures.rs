@@ -5,7 +5,7 @@ use egui::{Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::Overlay;
-use ik_arm::session::{ArmFigure, EditAction, PanelTab};
+use ik_arm::session::{ArmEdit, ArmFigure, PanelTab};
 
 use crate::bench::{Bench, SMALL};
 use crate::common::all_cases;
@@ -83,7 +83,7 @@ fn the_value_at_the_end_of_a_row_lights_up_the_same_thing() {
 
 #[test]
 fn the_sides_of_the_triangle_light_up_the_limbs() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(360.0, 0.0, 0.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(360.0, 0.0, 0.0))]);
     let panel = triangle(&bench);
     let mut seen = Vec::new();
     let (columns, rows) = if all_cases() { (40, 60) } else { (20, 30) };
@@ -121,7 +121,7 @@ fn triangle(bench: &Bench) -> Rect {
 
 #[test]
 fn both_right_triangles_light_up_level_yaw_and_pitch() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(250.0, 150.0, 200.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0))]);
     let name =
         "Cursor from above: x 250.0, z 200.0, level 320.2; from the side: level 320.2, y 150.0";
     bench.reveal(Role::Image, name);
@@ -175,7 +175,7 @@ fn the_hierarchy_shows_the_axes_of_its_frames_in_the_view() {
 #[test]
 fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
     // A triangle of the sides 200, 300 and 400.
-    let bench = Bench::after([EditAction::SetHand(Vec3::new(240.0, 0.0, 320.0))]);
+    let bench = Bench::after([ArmEdit::SetHand(Vec3::new(240.0, 0.0, 320.0))]);
     let cosine =
         (200.0_f64.powi(2) + 400.0_f64.powi(2) - 300.0_f64.powi(2)) / (2.0 * 200.0 * 400.0);
     let angle = cosine.acos().to_degrees();
@@ -191,7 +191,7 @@ fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
 #[test]
 fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not() {
     for distance in [499.99_f32, 499.999, 100.001] {
-        let bench = Bench::after([EditAction::SetHand(Vec3::new(distance, 0.0, 0.0))]);
+        let bench = Bench::after([ArmEdit::SetHand(Vec3::new(distance, 0.0, 0.0))]);
         let pose = *bench.session().pose();
         let exact = {
             // Heron's formula in f64.
@@ -214,7 +214,7 @@ fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not(
 #[test]
 fn positions_are_those_of_the_pose_in_root_and_socket_space() {
     let hand = Vec3::new(240.0, 0.0, 320.0);
-    let bench = Bench::after([EditAction::SetHand(hand)]);
+    let bench = Bench::after([ArmEdit::SetHand(hand)]);
     let pose = bench.session().pose();
     let text = |point: Vec3| format!("({:.1}, {:.1}, {:.1})", point.x, point.y, point.z);
     for point in [hand, Vec3::new(pose.along, pose.out, 0.0), pose.elbow] {

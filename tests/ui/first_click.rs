@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use glam::Vec3;
-use ik_arm::session::{EditAction, SelectAction, TransactionAction, ViewAction};
+use ik_arm::session::{JointEdit, SelectAction, TransactionAction, ViewAction};
 
 use crate::bench::Bench;
 use ik_arm::kinematics::skeleton::JointId;
@@ -108,7 +108,7 @@ fn an_empty_skeleton_says_what_to_do_and_clicks_build_it() {
 fn a_skeleton_without_any_joint_gets_a_root_and_a_joint_by_one_click() {
     for by_key in [false, true] {
         let mut bench = new_skeleton();
-        bench.apply([EditAction::DeleteJoints(vec![JointId::new(0)])]);
+        bench.apply([JointEdit::DeleteJoints(vec![JointId::new(0)])]);
         assert!(names(&bench).is_empty());
         assert!(bench.says("Click to place the first joint"));
         if by_key {
@@ -160,7 +160,7 @@ fn a_view_that_shows_the_new_bone_stays() {
 fn bones_of_one_skeleton_are_about_as_thick_however_long_they_are() {
     let mut bench = new_skeleton();
     let tips = [Vec3::Y, Vec3::Y * 1.1, Vec3::new(3.0, 1.1, 0.0), Vec3::new(3.0, 1.3, 0.0)];
-    bench.apply(tips.map(|tip| EditAction::AddJoint { tip: Some(tip) }));
+    bench.apply(tips.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
     let joints = &bench.session().skeleton().joints()[1..];
     for joint in joints {
         assert!((0.02..=0.15).contains(&joint.radius), "{} of {}", joint.radius, joint.axis);

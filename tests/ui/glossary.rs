@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 use ik_arm::document::{RigKind, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::session::{EditAction, FileAction, PanelTab, Preferences, SelectAction};
+use ik_arm::session::{DisplayEdit, FileAction, PanelTab, Preferences, SelectAction, SolverEdit};
 
 use crate::bench::{Bench, LARGE, SMALL};
 
@@ -48,12 +48,12 @@ fn a_term_of_the_solver_explains_itself_and_shows_its_step() {
         let mut bench = Bench::first(LARGE, Preferences::default());
         bench.apply([FileAction::OpenExample(Example::find("ten-joints").unwrap())]);
         let solver = SolverOptions::new(Method::DampedLeastSquares);
-        bench.apply([EditAction::SetSolver(solver)]);
+        bench.apply([SolverEdit::SetSolver(solver)]);
         bench.show_tab(PanelTab::Solver);
         show_me(&mut bench, label, meaning, 11);
     }
     let mut bench = Bench::first(LARGE, Preferences::default());
-    bench.apply([EditAction::ShowRig(RigKind::Skeleton)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
     let hand = bench.session().skeleton().find("left_hand").expect("a hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.reveal(Role::Slider, "Target influence");

@@ -6,7 +6,8 @@ use ik_arm::document::{Overlay, RigKind, Target};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    Drag, EditAction, FileAction, Grip, PoseMode, SelectAction, TransactionAction,
+    ArmEdit, DisplayEdit, Drag, FileAction, Grip, PoseMode, SelectAction, SkinEdit, TargetEdit,
+    TransactionAction,
 };
 
 use crate::bench::{Bench, bits};
@@ -24,7 +25,7 @@ fn human() -> Bench {
 }
 
 fn show(bench: &mut Bench, skin: bool, bones: bool) {
-    bench.apply([EditAction::ShowSkin { skin, bones }]);
+    bench.apply([SkinEdit::ShowSkin { skin, bones }]);
 }
 
 fn joint(bench: &Bench, name: &str) -> JointId {
@@ -79,7 +80,7 @@ fn press_everywhere(bench: &mut Bench, step: f32) -> usize {
         let drag = bench.session().drag().map(Drag::grip);
         assert_eq!(is_offered, drag.is_some(), "{at}: {drag:?}");
         assert!(!is_lit || drag.is_some(), "{at} is lit and orbits");
-        assert_ne!(drag.is_some(), bench.session().view_drag().is_some(), "{at}: {drag:?}");
+        assert_ne!(drag.is_some(), bench.session().view().drag().is_some(), "{at}: {drag:?}");
         count += usize::from(drag.is_some());
         bench.key(Key::Escape);
         bench.release(LEFT);
@@ -171,7 +172,7 @@ fn hands_and_feet_drag_their_targets_by_the_skin() {
         bench.drag_and_drop(LEFT, at, at + by);
         let seen = bench.on_screen(home(&bench, lower));
         assert!(seen.distance(start + by) < 0.5, "the target of {end} is at {seen}");
-        assert_eq!(bench.session().undo_label(), Some("Move target"));
+        assert_eq!(bench.session().history().undo_label(), Some("Move target"));
     }
 }
 
@@ -209,7 +210,7 @@ fn a_segment_without_a_target_poses_the_joints_above_it() {
 fn bones_that_a_target_poses_alone_drag_the_target() {
     let mut bench = example("two-targets");
     let target = bench.session().skeleton_rig().targets[0];
-    bench.apply([EditAction::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
+    bench.apply([TargetEdit::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
     let rig = bench.session().skeleton_rig();
     let bone = rig.skeleton[target.joint].parent.expect("a bone above it");
     let (target, bone) = (target.joint, name(&bench, bone));
@@ -254,7 +255,7 @@ fn hidden_points_of_joints_take_no_press_from_the_skin() {
 fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
     for rig in [RigKind::Arm, RigKind::Skeleton] {
         let mut bench = human();
-        bench.apply([EditAction::ShowRig(rig)]);
+        bench.apply([DisplayEdit::ShowRig(rig)]);
         let at = match rig {
             RigKind::Arm => limb_place(&bench, Limb::Lower, 0.5),
             RigKind::Skeleton => middle(&bench, "chest"),
@@ -268,7 +269,7 @@ fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
             bench.move_to(at);
             bench.hold(modifiers);
             bench.press(button);
-            assert!(bench.session().view_drag().is_some(), "{rig:?} {button:?}");
+            assert!(bench.session().view().drag().is_some(), "{rig:?} {button:?}");
             assert!(bench.session().drag().is_none());
             bench.release(button);
             bench.hold(Modifiers::NONE);
@@ -308,7 +309,7 @@ fn fingers(bench: &Bench) -> Pos2 {
 #[test]
 fn what_is_offered_on_the_arm_can_be_dragged_in_ik_and_in_fk() {
     for mode in [PoseMode::Hand, PoseMode::Angles] {
-        let mut bench = Bench::after([EditAction::SwitchPoseMode(mode)]);
+        let mut bench = Bench::after([ArmEdit::SwitchPoseMode(mode)]);
         let count = press_everywhere(&mut bench, 31.0);
         assert!(count > 15, "{mode:?}: {count}");
     }
@@ -333,9 +334,12 @@ fn a_limb_of_the_arm_turns_the_elbow_about_the_pointer_under_the_mouse() {
             let seen = limb_place(&bench, limb, part);
             assert!(seen.distance(to) < 0.5, "{limb:?} {part}: {seen} is not at {to}");
             assert!(bench.session().pose().hand.distance(hand) < 1e-3);
-            assert_eq!(bench.session().undo_label(), Some("Set Socket twist"));
+            assert_eq!(bench.session().history().undo_label(), Some("Set Socket twist"));
             bench.apply([TransactionAction::Undo]);
-            assert_eq!((bench.session().arm().twist, bench.session().undo_label()), (0.0, None));
+            assert_eq!(
+                (bench.session().arm().twist, bench.session().history().undo_label()),
+                (0.0, None)
+            );
         }
     }
 }
@@ -349,12 +353,12 @@ fn the_fingers_drag_the_cursor() {
     let by = vec2(22.0, -31.0);
     bench.drag_and_drop(LEFT, at, at + by);
     assert!(bench.cursor_on_screen().distance(cursor + by) < 0.5);
-    assert_eq!(bench.session().undo_label(), Some("Move hand"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move hand"));
 }
 
 #[test]
 fn a_straight_arm_is_dragged_by_its_cursor() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(499.9, 0.0, 0.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(499.9, 0.0, 0.0))]);
     let (at, twist) = (limb_place(&bench, Limb::Lower, 0.5), bench.session().arm().twist);
     let cursor = bench.hand();
     bench.drag_and_drop(LEFT, at, at + vec2(0.0, -60.0));
@@ -364,7 +368,7 @@ fn a_straight_arm_is_dragged_by_its_cursor() {
 
 #[test]
 fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() {
-    let mut bench = Bench::after([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+    let mut bench = Bench::after([ArmEdit::SwitchPoseMode(PoseMode::Angles)]);
     let before = *bench.session().arm();
     let at = limb_place(&bench, Limb::Upper, 0.7);
     let to = at + vec2(40.0, 15.0);
@@ -378,7 +382,7 @@ fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() 
         .normalized();
     let asked = (bench.on_screen(bench.session().arm().root) - to).normalized();
     assert!(seen.dot(asked) > 0.999, "the limb points at the mouse: {seen} and {asked}");
-    assert_eq!(bench.session().undo_label(), Some("Turn shoulder"));
+    assert_eq!(bench.session().history().undo_label(), Some("Turn shoulder"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().arm(), &before);
 
@@ -387,7 +391,7 @@ fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() 
     let (fk, was) = (bench.session().arm().fk, before.fk);
     assert!((fk.bend - was.bend).abs() > 0.05);
     assert_eq!(fk.shoulder, was.shoulder);
-    assert_eq!(bench.session().undo_label(), Some("Bend elbow"));
+    assert_eq!(bench.session().history().undo_label(), Some("Bend elbow"));
 }
 
 #[test]
@@ -403,7 +407,7 @@ fn the_light_goes_out_when_the_mouse_leaves_the_view() {
 
 #[test]
 fn without_its_hand_the_arm_is_still_dragged_by_its_wrist() {
-    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::Hand, false)]);
+    let mut bench = Bench::after([DisplayEdit::ShowOverlay(Overlay::Hand, false)]);
     let at = fingers(&bench);
     bench.move_to(at);
     bench.press(LEFT);

@@ -7,7 +7,8 @@ use ik_arm::document::{Channel, RigKind};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::spline::{Interpolation, Knot};
 use ik_arm::session::{
-    Action, EditAction, PlaybackAction, SelectAction, TransactionAction, ViewAction,
+    Action, ArmEdit, DisplayEdit, KeysEdit, PlaybackAction, SelectAction, TransactionAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, LARGE};
@@ -24,8 +25,8 @@ fn graph() -> Bench {
     for (time, degrees) in KEYS {
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::SetTwist(degrees.to_radians()).into(),
-            EditAction::Key(vec![Channel::Twist]).into(),
+            ArmEdit::SetTwist(degrees.to_radians()).into(),
+            KeysEdit::Key(vec![Channel::Twist]).into(),
         ]);
     }
     bench.apply([ViewAction::ShowGraphEditor(true)]);
@@ -48,7 +49,7 @@ fn place(bench: &Bench, time: f64, degrees: f32) -> Pos2 {
 fn scale(bench: &Bench, time: f64) -> Option<f32> {
     let mut sheet = Bench::with_timeline(LARGE);
     for (time, _) in KEYS {
-        let key = EditAction::Key(vec![Channel::Hand]);
+        let key = KeysEdit::Key(vec![Channel::Hand]);
         sheet.apply([Action::from(PlaybackAction::SetTime(time)), key.into()]);
     }
     let x = |time: f64| sheet.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center().x;
@@ -74,7 +75,7 @@ fn a_key_is_dragged_in_time_and_value_in_one_undo_step() {
     assert!((moved.time - 4.0).abs() < 1e-9, "on a frame: {}", moved.time);
     assert!((moved.value.x.to_degrees() - 30.0).abs() < 1.5, "{}", moved.value.x.to_degrees());
     assert_eq!([keys(&bench)[0], keys(&bench)[2]], [before[0], before[2]]);
-    assert_eq!(bench.session().undo_label(), Some("Move keys"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move keys"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(keys(&bench), before);
 }
@@ -118,7 +119,7 @@ fn a_drag_of_a_handle_turns_the_tangent_and_alt_turns_one_side_of_it() {
     bench.settle();
     let slopes = keys(&bench)[1].slopes.expect("its own slopes");
     assert!(slopes.leaving.x < -0.01 && slopes.arriving == slopes.leaving, "{slopes:?}");
-    assert_eq!(bench.session().undo_label(), Some("Set tangents"));
+    assert_eq!(bench.session().history().undo_label(), Some("Set tangents"));
     assert_eq!(keys(&bench)[1].value, keys(&graph())[1].value, "the key stays");
 
     let mut bench = graph();
@@ -173,13 +174,13 @@ fn slerp_is_offered_for_joints_alone() {
     let key = (Channel::Rotation(JointId::new(0)), 1.0);
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([
-        Action::from(EditAction::ShowRig(RigKind::Skeleton)),
+        Action::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
         PlaybackAction::SetTime(1.0).into(),
-        EditAction::Key(vec![key.0]).into(),
+        KeysEdit::Key(vec![key.0]).into(),
         SelectAction::Keys(vec![key]).into(),
         ViewAction::ShowGraphEditor(true).into(),
     ]);
-    bench.apply([EditAction::SetInterpolation(vec![key], Interpolation::Slerp)]);
+    bench.apply([KeysEdit::SetInterpolation(vec![key], Interpolation::Slerp)]);
     let set = bench.session().document().keys.key(key.0, key.1).expect("a key");
     assert_eq!(set.interpolation, Interpolation::Slerp);
 }
@@ -188,10 +189,10 @@ fn slerp_is_offered_for_joints_alone() {
 fn copied_and_moved_keys_keep_their_shape() {
     let mut bench = graph();
     let key = (Channel::Twist, 3.0);
-    bench.apply([EditAction::SetInterpolation(vec![key], Interpolation::Step)]);
+    bench.apply([KeysEdit::SetInterpolation(vec![key], Interpolation::Step)]);
     bench.apply([Action::from(SelectAction::Keys(vec![key])), SelectAction::CopyKeys.into()]);
-    bench.apply([Action::from(PlaybackAction::SetTime(7.0)), EditAction::PasteKeys.into()]);
-    bench.apply([EditAction::MoveKeys { keys: vec![key], by: 0.5, raise: Vec3::ZERO }]);
+    bench.apply([Action::from(PlaybackAction::SetTime(7.0)), KeysEdit::PasteKeys.into()]);
+    bench.apply([KeysEdit::MoveKeys { keys: vec![key], by: 0.5, raise: Vec3::ZERO }]);
     let shapes: Vec<_> = keys(&bench).iter().map(|key| (key.time, key.interpolation)).collect();
     let (auto, step) = (Interpolation::Auto, Interpolation::Step);
     assert_eq!(shapes, [(1.0, auto), (3.5, step), (5.0, auto), (7.0, step)]);
@@ -203,8 +204,8 @@ fn a_hold_between_two_equal_keys_holds_and_catmull_rom_is_one_choice_away() {
     for (time, degrees) in [(1.0, 90.0_f32), (3.0, 177.0), (5.0, 177.0), (7.0, 90.0)] {
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::SetTwist(degrees.to_radians()).into(),
-            EditAction::Key(vec![Channel::Twist]).into(),
+            ArmEdit::SetTwist(degrees.to_radians()).into(),
+            KeysEdit::Key(vec![Channel::Twist]).into(),
         ]);
     }
     let between = |bench: &mut Bench| {
@@ -231,7 +232,7 @@ fn switches_have_no_curve_to_choose() {
     let key = (Channel::Pinned, 1.0);
     bench.apply([
         Action::from(PlaybackAction::SetTime(1.0)),
-        EditAction::Key(vec![key.0]).into(),
+        KeysEdit::Key(vec![key.0]).into(),
         SelectAction::Keys(vec![key]).into(),
     ]);
     let set = bench.session().document().keys.key(key.0, key.1).expect("a key");
@@ -248,12 +249,12 @@ fn switches_have_no_curve_to_choose() {
 /// names of the two joints.
 fn figure() -> (Bench, [String; 2]) {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::from(EditAction::ShowRig(RigKind::Skeleton))]);
+    bench.apply([Action::from(DisplayEdit::ShowRig(RigKind::Skeleton))]);
     let [one, other] = [0, 1].map(JointId::new);
     for time in [1.0, 3.0] {
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::Key(vec![
+            KeysEdit::Key(vec![
                 Channel::Rotation(one),
                 Channel::Rotation(other),
                 Channel::Offset(other),
@@ -325,7 +326,7 @@ fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
     assert!(bench.shows(Role::Label, "Axis in degrees (°)"));
     assert!(!bench.shows(Role::Label, "Axis in metres (m)"));
     let mut arm = graph();
-    arm.apply([Action::from(EditAction::Key(vec![Channel::Hand]))]);
+    arm.apply([Action::from(KeysEdit::Key(vec![Channel::Hand]))]);
     assert!(
         arm.shows(Role::Label, "Axis in millimetres (mm)"),
         "a unit of the arm is a millimetre"

@@ -10,7 +10,8 @@ use ik_arm::document::{Arm, RigKind};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    Dialog, EditAction, FileAction, Preferences, SelectAction, ShellAction, TransactionAction,
+    ArmEdit, Dialog, DisplayEdit, FileAction, JointEdit, Preferences, SelectAction, ShellAction,
+    TransactionAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -23,7 +24,7 @@ fn first(size: Vec2) -> Bench {
 
 fn human(size: Vec2) -> Bench {
     let mut bench = first(size);
-    bench.apply([EditAction::ShowRig(RigKind::Skeleton)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
     bench
 }
 
@@ -103,14 +104,14 @@ fn a_value_that_is_not_understood_is_refused_with_a_reason() {
         let mut bench = first(LARGE);
         bench.enter("Hand x", typed);
         assert_eq!(bench.session().arm(), &Arm::default(), "{typed}");
-        assert!(bench.session().has_failed(), "{typed}");
+        assert!(bench.session().shell().has_failed(), "{typed}");
         assert!(bench.says("The value must be a number or an expression such as 2*50"), "{typed}");
     }
     let mut bench = first(LARGE);
     type_into(&mut bench, "Hand x value", "2*");
     bench.key(Key::Escape);
     bench.settle();
-    assert!(!bench.session().has_failed(), "Esc gives up without an error");
+    assert!(!bench.session().shell().has_failed(), "Esc gives up without an error");
 }
 
 #[test]
@@ -153,13 +154,13 @@ fn a_coloured_line_shows_the_axis_to_which_a_drag_is_locked() {
 #[test]
 fn new_opens_the_arm_and_asks_before_changes_are_lost() {
     let mut bench = first(LARGE);
-    bench.apply([EditAction::SetTwist(1.0)]);
+    bench.apply([ArmEdit::SetTwist(1.0)]);
     bench.key_with(Modifiers::COMMAND, Key::N);
     bench.settle();
     assert!(matches!(bench.session().dialog(), Some(Dialog::Unsaved { .. })));
     bench.click(Role::Button, "Don't save");
     assert_eq!(bench.session().arm(), &Arm::default());
-    assert!(!bench.session().is_unsaved());
+    assert!(!bench.session().history().is_unsaved());
 
     bench.apply([FileAction::OpenExample(Example::find("snake").unwrap())]);
     bench.choose(&["File", "New"]);
@@ -175,12 +176,12 @@ fn the_window_names_the_document_and_marks_unsaved_changes() {
     for size in [LARGE, SMALL] {
         let mut bench = first(size);
         assert!(bench.shows(Role::Label, "untitled"));
-        bench.apply([EditAction::SetTwist(1.0)]);
+        bench.apply([ArmEdit::SetTwist(1.0)]);
         assert!(bench.shows(Role::Label, "untitled*"));
         bench.tell(FileAction::Saved(PathBuf::from("/tmp/a drawer.json")));
         bench.settle();
         assert!(bench.shows(Role::Label, "a drawer.json"));
-        bench.apply([EditAction::SetTwist(2.0)]);
+        bench.apply([ArmEdit::SetTwist(2.0)]);
         assert!(bench.shows(Role::Label, "a drawer.json*"));
         bench.apply([TransactionAction::Undo]);
         assert!(bench.shows(Role::Label, "a drawer.json"));
@@ -248,12 +249,12 @@ fn undoing_an_added_joint_selects_its_parent_again() {
     let mut bench = human(LARGE);
     let chest = bench.session().skeleton().find("chest").unwrap();
     bench.apply([SelectAction::Joints(vec![chest])]);
-    bench.apply([EditAction::AddJoint { tip: None }]);
+    bench.apply([JointEdit::AddJoint { tip: None }]);
     assert_ne!(bench.session().selection(), [chest]);
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().selection(), [chest]);
 
-    bench.apply([EditAction::AddJoint { tip: None }]);
+    bench.apply([JointEdit::AddJoint { tip: None }]);
     let head = bench.session().skeleton().find("head").unwrap();
     bench.apply([SelectAction::Joints(vec![head])]);
     bench.apply([TransactionAction::Undo]);
@@ -264,7 +265,7 @@ fn undoing_an_added_joint_selects_its_parent_again() {
 fn undoing_a_deletion_in_the_middle_forgets_a_selection_whose_indices_have_changed() {
     let mut bench = human(LARGE);
     let (spine, head) = (JointId::new(1), JointId::new(4));
-    bench.apply([EditAction::DissolveJoints(vec![spine])]);
+    bench.apply([JointEdit::DissolveJoints(vec![spine])]);
     bench.apply([SelectAction::Joints(vec![JointId::new(3)])]);
     bench.apply([TransactionAction::Undo]);
     assert!(!bench.session().selection().contains(&head));

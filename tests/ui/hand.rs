@@ -4,7 +4,7 @@ use egui::{CursorIcon, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, EditAction, PointDrag, PointHandle, ViewAction};
+use ik_arm::session::{Action, ArmEdit, PointDrag, PointHandle, ViewAction};
 
 use crate::bench::{Bench, SMALL, bits};
 
@@ -13,8 +13,8 @@ const LEFT: PointerButton = PointerButton::Primary;
 /// A pose of awkward numbers, so that a changed bit shows.
 pub fn awkward() -> Bench {
     Bench::after([
-        EditAction::SetRoot(Vec3::new(12.345_679, -7.654_321, 33.333_332)),
-        EditAction::SetHand(Vec3::new(223.456_79, 98.765_43, 71.234_57)),
+        ArmEdit::SetRoot(Vec3::new(12.345_679, -7.654_321, 33.333_332)),
+        ArmEdit::SetHand(Vec3::new(223.456_79, 98.765_43, 71.234_57)),
     ])
 }
 
@@ -115,7 +115,7 @@ fn a_press_and_its_release_in_one_frame_grab_nothing() {
     bench.frame(events);
     bench.move_to(cursor);
     assert_eq!(bench.session().camera(), &Camera::default());
-    assert!(bench.session().view_drag().is_none());
+    assert!(bench.session().view().drag().is_none());
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn out_of_reach_both_the_hand_and_the_cursor_can_be_dragged() {
     let far = Vec3::new(500.0, 220.0, 300.0);
     for take_cursor in [true, false] {
         let mut bench = Bench::after([
-            Action::from(EditAction::SetHand(far)),
+            Action::from(ArmEdit::SetHand(far)),
             ViewAction::GlideTo(Camera { distance: 1800.0, ..Camera::default() }).into(),
         ]);
         let hand = bench.on_screen(bench.session().pose().hand);

@@ -8,8 +8,8 @@ use ik_arm::document::{Cursor, Document};
 use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, SelectAction,
-    ShellAction, SolverAction, TransactionAction, ViewAction,
+    Action, ArmEdit, Dialog, Edit, Effect, FileAction, JointEdit, PathDialog, PlaybackAction,
+    SelectAction, ShellAction, SolverAction, SolverEdit, TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -19,7 +19,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 
 fn moved() -> Bench {
-    Bench::after([EditAction::SetHand(Vec3::X * 300.0), EditAction::SetTwist(1.0)])
+    Bench::after([ArmEdit::SetHand(Vec3::X * 300.0), ArmEdit::SetTwist(1.0)])
 }
 
 fn menu(bench: &mut Bench, menu: &str) {
@@ -95,15 +95,15 @@ fn a_solver_run_is_no_step_and_applying_its_pose_is_one() {
     let first = bench.session().document().clone();
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(2.0);
-    assert!(!bench.session().is_running());
+    assert!(!bench.session().solvers().is_running());
     assert_eq!(bench.session().document(), &first);
-    assert_eq!(bench.session().undo_label(), None);
-    bench.apply([EditAction::ApplyPose]);
+    assert_eq!(bench.session().history().undo_label(), None);
+    bench.apply([SolverEdit::ApplyPose]);
     assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_label(), Some("Apply pose"));
+    assert_eq!(bench.session().history().undo_label(), Some("Apply pose"));
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
-    assert_eq!(bench.session().undo_label(), None);
+    assert_eq!(bench.session().history().undo_label(), None);
 }
 
 #[test]
@@ -113,15 +113,15 @@ fn undo_leaves_a_running_solver_running() {
     let joint = JointId::new(2);
     let before = bench.session().skeleton()[joint].rotation;
     bench.apply([
-        EditAction::SetSolver(SolverOptions::new(Method::TransposeFixed)),
-        EditAction::SetRotation { joint, rotation: before + Vec3::Z * 0.2 },
+        Edit::from(SolverEdit::SetSolver(SolverOptions::new(Method::TransposeFixed))),
+        JointEdit::SetRotation { joint, rotation: before + Vec3::Z * 0.2 }.into(),
     ]);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(0.05);
-    assert!(bench.session().is_running());
+    assert!(bench.session().solvers().is_running());
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().skeleton()[joint].rotation, before);
-    assert!(bench.session().is_running(), "it runs from the restored pose");
+    assert!(bench.session().solvers().is_running(), "it runs from the restored pose");
     bench.apply([SolverAction::Reset]);
 }
 
@@ -134,10 +134,10 @@ fn the_view_and_the_selection_are_no_steps() {
         ViewAction::SetCamera(camera.orbited(1.0, 0.1)).into(),
     ]);
     bench.apply([PlaybackAction::SetTime(2.0)]);
-    assert_eq!(bench.session().undo_label(), None);
-    assert!(!bench.session().is_unsaved());
+    assert_eq!(bench.session().history().undo_label(), None);
+    assert!(!bench.session().history().is_unsaved());
     bench.apply([
-        Action::from(EditAction::SetLocked { joint: JointId::new(3), locked: true }),
+        Action::from(JointEdit::SetLocked { joint: JointId::new(3), locked: true }),
         TransactionAction::Undo.into(),
     ]);
     assert_eq!(bench.session().selection(), [3].map(JointId::new));
@@ -148,7 +148,7 @@ fn the_view_and_the_selection_are_no_steps() {
 #[test]
 fn hundreds_of_steps_can_be_undone() {
     let mut bench = Bench::new();
-    let steps = (0..900).map(|step| EditAction::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
+    let steps = (0..900).map(|step| ArmEdit::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
     bench.apply(steps);
     bench.apply((0..900).map(|_| TransactionAction::Undo));
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
@@ -206,10 +206,10 @@ fn after_a_failed_save_the_document_stays_open_and_unsaved() {
     bench.tell(FileAction::NotSaved { path: "ik-arm.json".into(), why });
     bench.settle();
     assert!(bench.says("Not saved: the disk is full"));
-    assert!(bench.session().is_unsaved());
+    assert!(bench.session().history().is_unsaved());
     // A later save does not end the program any more.
     assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
-    assert!(!bench.session().is_unsaved());
+    assert!(!bench.session().history().is_unsaved());
 }
 
 #[test]
@@ -227,15 +227,15 @@ fn a_cancelled_save_does_not_end_the_program_later() {
 #[test]
 fn a_document_is_saved_until_it_changes_and_again_when_the_change_is_undone() {
     let mut bench = moved();
-    assert!(bench.session().is_unsaved());
+    assert!(bench.session().history().is_unsaved());
     bench.tell(FileAction::Saved("x.json".into()));
-    assert!(!bench.session().is_unsaved());
-    bench.apply([EditAction::SetHand(Vec3::Y * 200.0)]);
-    assert!(bench.session().is_unsaved());
+    assert!(!bench.session().history().is_unsaved());
+    bench.apply([ArmEdit::SetHand(Vec3::Y * 200.0)]);
+    assert!(bench.session().history().is_unsaved());
     bench.apply([TransactionAction::Undo]);
-    assert!(!bench.session().is_unsaved());
+    assert!(!bench.session().history().is_unsaved());
     bench.apply([TransactionAction::Undo]);
-    assert!(bench.session().is_unsaved());
+    assert!(bench.session().history().is_unsaved());
 }
 
 #[test]
@@ -249,7 +249,8 @@ fn recent_files_are_offered_again() {
     bench.click(Role::Button, "two.json");
     let open = Effect::Open { path: "/a/two.json".into(), options: OpenOptions::default() };
     assert_eq!(bench.effects(), [open]);
-    let recent: Vec<_> = bench.session().recent().iter().map(|path| path.display()).collect();
+    let recent: Vec<_> =
+        bench.session().files().recent().iter().map(|path| path.display()).collect();
     assert_eq!(
         recent.iter().map(ToString::to_string).collect::<Vec<_>>(),
         ["/a/one.json", "/a/two.json"]
@@ -267,12 +268,14 @@ fn changes_kept_by_an_earlier_run_are_offered_as_unsaved() {
     bench.click(Role::Button, "Recover");
     bench.settle();
     assert_eq!(bench.session().document(), &document);
-    assert!(bench.session().is_unsaved() && bench.session().has_settled_recovery());
+    assert!(
+        bench.session().history().is_unsaved() && bench.session().files().has_settled_recovery()
+    );
     bench.key_with(CTRL, Key::S);
     assert_eq!(bench.effects(), [Effect::Save("/a/lost.json".into())]);
 
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
     bench.click(Role::Button, "Discard");
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
-    assert!(bench.session().has_settled_recovery());
+    assert!(bench.session().files().has_settled_recovery());
 }

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SubStepKind};
-use ik_arm::session::{EditAction, FileAction, InsideLayer, SelectAction, SolverAction, SolverRun};
+use ik_arm::session::{FileAction, InsideLayer, SelectAction, SolverAction, SolverEdit, SolverRun};
 
 use crate::bench::Bench;
 
@@ -12,7 +12,7 @@ use crate::bench::Bench;
 fn after_a_step(method: Method) -> Bench {
     let mut bench = example("ten-joints");
     let options = bench.session().skeleton_rig().solver;
-    bench.apply([EditAction::SetSolver(options.with_method(method))]);
+    bench.apply([SolverEdit::SetSolver(options.with_method(method))]);
     bench.apply([SolverAction::Step]);
     bench.settle();
     bench
@@ -194,7 +194,7 @@ fn damping_changes_the_shown_iteration_at_once() {
     };
     let before = kept(&bench);
     let options = bench.session().skeleton_rig().solver;
-    bench.apply([EditAction::SetSolver(options.with_damping(2.0 * options.damping))]);
+    bench.apply([SolverEdit::SetSolver(options.with_damping(2.0 * options.damping))]);
     bench.settle();
     assert_eq!(shown(&bench), (1, Some(0)));
     assert!(kept(&bench) < before, "{} {before}", kept(&bench));

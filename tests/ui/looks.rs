@@ -7,7 +7,8 @@ use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, EditAction, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
+    Action, ArmEdit, DisplayEdit, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
+    TargetEdit,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -87,10 +88,10 @@ fn every_menu_and_dialog_can_be_read_in_both_themes() {
 fn every_sentence_of_the_status_line_can_be_read() {
     let mut bench = Bench::new();
     for hand in [Vec3::ZERO, Vec3::splat(900.0), Vec3::new(-1e30, 1e-30, 0.0)] {
-        bench.apply([EditAction::SetHand(hand)]);
+        bench.apply([ArmEdit::SetHand(hand)]);
     }
-    bench.apply([EditAction::SetUpper(-1.0)]);
-    bench.apply([EditAction::ResetPose]);
+    bench.apply([ArmEdit::SetUpper(-1.0)]);
+    bench.apply([DisplayEdit::ResetPose]);
     for key in [Key::X, Key::Y, Key::Z] {
         let at = bench.cursor_on_screen();
         bench.drag(PointerButton::Primary, at, at + vec2(20.0, 5.0));
@@ -110,7 +111,7 @@ fn nothing_moves_when_a_number_changes_its_width() {
     };
     let before = places(&bench);
     for hand in [Vec3::ZERO, Vec3::splat(-123_456.8), Vec3::new(1.0, 480.0, 3.0)] {
-        bench.apply([EditAction::SetHand(hand), EditAction::SetRoot(hand)]);
+        bench.apply([ArmEdit::SetHand(hand), ArmEdit::SetRoot(hand)]);
         assert_eq!(places(&bench), before, "{hand}");
         bench.click(Role::SpinButton, "Hand x value");
         bench.type_text("12345678901234567890");
@@ -145,14 +146,14 @@ fn the_panels_look_as_they_did() {
     let skeleton = [
         Action::from(FileAction::OpenExample(human)),
         SelectAction::Joints(vec![JointId::new(8)]).into(),
-        EditAction::SetTarget(target).into(),
+        TargetEdit::SetTarget(target).into(),
         SolverAction::Step.into(),
         SolverAction::Step.into(),
         SolverAction::Show(1).into(),
     ];
     for theme in THEMES {
         let rigs = [
-            ("panels", vec![EditAction::ShowOverlay(Overlay::InnerLimit, true).into()]),
+            ("panels", vec![DisplayEdit::ShowOverlay(Overlay::InnerLimit, true).into()]),
             ("skeleton", skeleton.to_vec()),
         ];
         for (name, actions) in rigs {

@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::{EditAction, PanelTab};
+use ik_arm::session::{ArmEdit, PanelTab};
 
 use crate::bench::{Bench, bits};
 use crate::panel::SLIDERS;
@@ -45,7 +45,7 @@ fn large_numbers_are_shown_rounded_and_kept_exactly() {
         (-1.25e30, "-1.2e30"),
         (1e-20, "0.0"),
     ] {
-        let mut bench = Bench::after([EditAction::SetHand(Vec3::new(number, 0.0, 0.0))]);
+        let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(number, 0.0, 0.0))]);
         bench.click(Role::SpinButton, "Hand x value");
         bench.key(Key::Enter);
         bench.settle();
@@ -138,8 +138,8 @@ fn no_number_on_screen_is_infinite_or_the_largest_one() {
     let huge = [Vec3::splat(f32::MAX), Vec3::splat(1e38), Vec3::new(-3e38, 3e38, 1.0)];
     for hand in huge {
         let mut bench = Bench::new();
-        bench.apply([EditAction::SetHand(hand), EditAction::SetRoot(-hand)]);
-        bench.apply([EditAction::SetUpper(3e38), EditAction::SetLower(3e38)]);
+        bench.apply([ArmEdit::SetHand(hand), ArmEdit::SetRoot(-hand)]);
+        bench.apply([ArmEdit::SetUpper(3e38), ArmEdit::SetLower(3e38)]);
         for tab in [PanelTab::Triangle, PanelTab::Twist, PanelTab::Reach, PanelTab::Pops] {
             bench.show_tab(tab);
             for node in bench.harness.root().children_recursive() {

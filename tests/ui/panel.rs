@@ -6,7 +6,8 @@ use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Display, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FrameBudget, Navigation, PanelTab, ShellAction, ViewAction,
+    Action, ArmEdit, Dialog, DisplayEdit, Effect, FrameBudget, Navigation, PanelTab, ShellAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -138,11 +139,11 @@ fn a_checkbox_answers_to_the_keyboard() {
 fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
     let camera = Camera { yaw: 1.0, ..Camera::default() };
     let actions = [
-        Action::from(EditAction::SetHand(Vec3::new(1.0, 2.0, 3.0))),
-        EditAction::SetRoot(Vec3::splat(9.0)).into(),
-        EditAction::SetTwist(2.0).into(),
-        EditAction::SetUpper(77.0).into(),
-        EditAction::ShowOverlay(Overlay::OuterLimit, true).into(),
+        Action::from(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0))),
+        ArmEdit::SetRoot(Vec3::splat(9.0)).into(),
+        ArmEdit::SetTwist(2.0).into(),
+        ArmEdit::SetUpper(77.0).into(),
+        DisplayEdit::ShowOverlay(Overlay::OuterLimit, true).into(),
         ViewAction::SetCamera(camera).into(),
     ];
     let mut bench = Bench::after(actions);
@@ -155,8 +156,8 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
 #[test]
 fn reset_all_resets_everything_but_the_preferences() {
     let actions = [
-        Action::from(EditAction::SetLower(77.0)),
-        EditAction::ShowOverlay(Overlay::Axes, false).into(),
+        Action::from(ArmEdit::SetLower(77.0)),
+        DisplayEdit::ShowOverlay(Overlay::Axes, false).into(),
         ViewAction::SetCamera(Camera { yaw: 1.0, ..Camera::default() }).into(),
         ShellAction::SetTheme(Theme::Light).into(),
     ];
@@ -226,7 +227,7 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
             "The hand cannot come that near: the target is 60 from the shoulder, the bones fold to 100.",
         ),
     ] {
-        let bench = Bench::after([EditAction::SetHand(hand)]);
+        let bench = Bench::after([ArmEdit::SetHand(hand)]);
         assert_eq!(bench.session().pose().reach, Some(reach));
         assert!(bench.shows(Role::Label, sentence), "{sentence}");
         assert!(bench.shows(Role::Image, &format!("Viewport. {sentence}")), "{sentence}");
@@ -235,7 +236,7 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
 
 #[test]
 fn the_explain_panel_names_the_quantities_and_shows_their_values() {
-    let mut bench = Bench::after([EditAction::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
+    let mut bench = Bench::after([ArmEdit::SetHand(Vec3::new(300.0, 0.0, 400.0))]);
     for name in [
         "Yaw theta z",
         "Level h c",
@@ -275,7 +276,7 @@ fn nothing_covers_the_title_of_the_socket_twist_with_any_reference() {
     for size in [LARGE, SMALL] {
         for kind in TwistReferenceKind::ALL {
             let mut bench = Bench::of_size(size);
-            bench.apply([EditAction::SetTwistReference(kind)]);
+            bench.apply([ArmEdit::SetTwistReference(kind)]);
             let title = bench.rect(Role::DisclosureTriangle, "Socket twist");
             // The title's row is sensitive over its whole width; its text is this wide.
             let title = title.with_max_x(title.left() + 100.0);

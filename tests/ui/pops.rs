@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    Action, EditAction, FileAction, PanelTab, Preferences, TransactionAction, ViewAction,
+    Action, ArmEdit, FileAction, PanelTab, Preferences, TransactionAction, ViewAction,
 };
 use image::{RgbaImage, imageops};
 
@@ -29,7 +29,7 @@ fn from_the_front() -> Bench {
 }
 
 fn drag(bench: &mut Bench, from: Vec3, to: Vec3, steps: u16) {
-    bench.apply([EditAction::SetHand(from)]);
+    bench.apply([ArmEdit::SetHand(from)]);
     let (start, end) = (bench.on_screen(from), bench.on_screen(to));
     bench.move_to(start);
     bench.press(LEFT);
@@ -88,7 +88,7 @@ fn a_hand_dragged_over_the_top_pops_at_the_pole_until_stereographic_is_used() {
 #[test]
 fn behind_the_body_stereographic_pops_until_transport_is_used() {
     let mut bench = from_the_front();
-    bench.apply([EditAction::SetTwistReference(TwistReferenceKind::Stereographic)]);
+    bench.apply([ArmEdit::SetTwistReference(TwistReferenceKind::Stereographic)]);
     let behind = |bench: &mut Bench| {
         drag(bench, Vec3::new(-300.0, 90.0, 12.0), Vec3::new(-300.0, -90.0, 12.0), 40);
     };
@@ -142,7 +142,7 @@ fn the_same_fix_is_offered_once() {
 fn other_input_changes_are_distinguished_from_pops() {
     let mut bench = from_the_front();
     slide(&mut bench, Vec3::new(250.0, 100.0, 20.0), Vec3::new(260.0, 120.0, 20.0));
-    bench.apply([EditAction::SetTwist(2.0), EditAction::SetLower(240.0)]);
+    bench.apply([ArmEdit::SetTwist(2.0), ArmEdit::SetLower(240.0)]);
     assert!(bench.says("Dotted lines, not pops: lengths, Socket twist changed"));
     assert!(bench.shows(Role::Image, "Pops: none"));
 }
@@ -162,8 +162,8 @@ fn opening_another_document_clears_the_pops() {
 
 /// Drags as a slider would.
 fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
-    let way = (1..=40).map(|step| EditAction::SetHand(from.lerp(to, step as f32 / 40.0)).into());
-    let way = [Action::from(EditAction::SetHand(from)), TransactionAction::Begin.into()]
+    let way = (1..=40).map(|step| ArmEdit::SetHand(from.lerp(to, step as f32 / 40.0)).into());
+    let way = [Action::from(ArmEdit::SetHand(from)), TransactionAction::Begin.into()]
         .into_iter()
         .chain(way);
     bench.apply(way.chain([TransactionAction::Commit.into()]));
@@ -187,12 +187,12 @@ fn pops_and_the_reach_curve_look_as_they_did() {
         let mut bench = Bench::liking(HIGH, preferences);
         slide(&mut bench, Vec3::new(120.0, 300.0, 20.0), Vec3::new(-120.0, 300.0, 20.0));
         bench.apply([
-            EditAction::SetTwistReference(TwistReferenceKind::Stereographic),
-            EditAction::SetTwist(0.4),
+            ArmEdit::SetTwistReference(TwistReferenceKind::Stereographic),
+            ArmEdit::SetTwist(0.4),
         ]);
         slide(&mut bench, Vec3::new(400.0, 60.0, 0.0), Vec3::new(550.0, 80.0, 0.0));
         slide(&mut bench, Vec3::new(95.0, 8.0, 4.0), Vec3::new(-95.0, 8.0, 4.0));
-        bench.apply([EditAction::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
+        bench.apply([ArmEdit::SetHand(Vec3::new(480.0, 20.0, 60.0))]);
         let options = snapshot_options(600);
         for (tab, name) in [(PanelTab::Pops, "pops"), (PanelTab::Reach, "reach_curve")] {
             let name = themed(name, theme);

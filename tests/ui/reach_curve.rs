@@ -5,7 +5,7 @@ use egui::{Rect, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{EditAction, PanelTab, PoseMode, Preferences};
+use ik_arm::session::{ArmEdit, PanelTab, PoseMode, Preferences};
 
 use crate::bench::Bench;
 
@@ -14,7 +14,7 @@ fn bench(softness: f32, stretch: f32, asked: f32) -> Bench {
     let mut bench = Bench::liking(vec2(1280.0, 1500.0), preferences);
     bench.show_tab(PanelTab::Reach);
     let soft_reach = SoftReach::new(softness, stretch, 0.0).expect("a softening");
-    bench.apply([EditAction::SetSoftReach(soft_reach), EditAction::SetHand(Vec3::X * asked)]);
+    bench.apply([ArmEdit::SetSoftReach(soft_reach), ArmEdit::SetHand(Vec3::X * asked)]);
     bench
 }
 
@@ -78,9 +78,9 @@ fn status_bar_and_reach_meter_state_the_limits_of_the_hand() {
     ] {
         let soft_reach = SoftReach::new(0.0, stretch, degrees.to_radians()).expect("soft limits");
         let mut bench = Bench::after([
-            EditAction::SetHand(Vec3::X * 400.0),
-            EditAction::SetSoftReach(soft_reach),
-            EditAction::SwitchPoseMode(mode),
+            ArmEdit::SetHand(Vec3::X * 400.0),
+            ArmEdit::SetSoftReach(soft_reach),
+            ArmEdit::SwitchPoseMode(mode),
         ]);
         bench.show_tab(PanelTab::Reach);
         assert!(bench.says(rounded), "{rounded}");
@@ -93,7 +93,7 @@ fn status_bar_and_reach_meter_state_the_limits_of_the_hand() {
 fn a_hand_at_the_minimum_elbow_angle_says_so() {
     let soft_reach = SoftReach::new(0.0, 1.0, core::f32::consts::FRAC_PI_2).expect("soft limits");
     let bench =
-        Bench::after([EditAction::SetHand(Vec3::X * 300.0), EditAction::SetSoftReach(soft_reach)]);
+        Bench::after([ArmEdit::SetHand(Vec3::X * 300.0), ArmEdit::SetSoftReach(soft_reach)]);
     let said =
         "The smallest elbow angle keeps the hand away from its target, 300 from the shoulder.";
     assert!(bench.says(said));
@@ -134,7 +134,7 @@ fn lines_are_labelled_and_examples_are_marked_as_such() {
 fn a_note_appears_when_fk_has_influence() {
     let mut bench = bench(0.0, 1.0, 300.0);
     assert!(!bench.says("Shown for IK alone"));
-    bench.apply([EditAction::SetInfluence(0.5)]);
+    bench.apply([ArmEdit::SetInfluence(0.5)]);
     assert!(bench.says("Shown for IK alone"));
 }
 
@@ -169,11 +169,11 @@ fn hovering_reads_the_curve_at_the_mouse() {
 fn extreme_hands_and_lengths_are_plotted() {
     let mut bench = bench(0.2, 1.5, 300.0);
     for hand in [Vec3::ZERO, Vec3::X * 1e30, Vec3::MAX, Vec3::splat(1e-30)] {
-        bench.apply([EditAction::SetHand(hand)]);
+        bench.apply([ArmEdit::SetHand(hand)]);
         plot(&bench);
     }
     for length in [1e-20, 1e30] {
-        bench.apply([EditAction::SetUpper(length), EditAction::SetLower(length)]);
+        bench.apply([ArmEdit::SetUpper(length), ArmEdit::SetLower(length)]);
         plot(&bench);
     }
 }
@@ -190,7 +190,7 @@ fn a_cursor_within_reach_is_softened_and_one_beyond_it_too_far() {
     ] {
         let soft_reach = SoftReach::new(softness, 1.0, 0.0).expect("soft limits");
         let bench =
-            Bench::after([EditAction::SetHand(Vec3::X * x), EditAction::SetSoftReach(soft_reach)]);
+            Bench::after([ArmEdit::SetHand(Vec3::X * x), ArmEdit::SetSoftReach(soft_reach)]);
         assert!(bench.says(said), "{x}, {softness}: not {said}");
         let is_soft = bench.says("The soft limits slow the hand down");
         assert_eq!(is_soft, said.starts_with("Softened"), "{x}, {softness}");

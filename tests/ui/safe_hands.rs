@@ -8,8 +8,9 @@ use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, RigKind, Target, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, Dialog, DragInput, EditAction, Effect, ExportJob, FileAction, Grip, PathDialog,
-    SelectAction, ShellAction, SolverAction, SolverState, TransactionAction, ViewAction,
+    Action, ArmEdit, Dialog, DisplayEdit, DragInput, Edit, Effect, ExportJob, FileAction, Grip,
+    JointEdit, PathDialog, SelectAction, ShellAction, SolverAction, SolverState, TargetEdit,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -73,7 +74,7 @@ fn a_joint_is_named_after_a_click_on_it() {
     bench.settle();
     assert_eq!(bench.session().skeleton().joints()[joint.index()].name, "Start 5");
     assert_eq!(bench.session().skeleton_pose().len(), joints, "no letter adds a joint");
-    assert!(!bench.session().is_running(), "no letter runs the solver");
+    assert!(!bench.session().solvers().is_running(), "no letter runs the solver");
 }
 
 #[test]
@@ -101,7 +102,7 @@ fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_int
 #[test]
 fn nothing_behind_an_open_dialog_reacts() {
     let mut bench = human();
-    bench.apply([EditAction::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
+    bench.apply([JointEdit::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
     bench.click_at(bench.empty_point());
     bench.key_with(CTRL, Key::Q);
     bench.settle();
@@ -186,16 +187,16 @@ fn a_click_has_the_modifiers_that_were_held_when_the_button_was_pressed() {
 fn view_changes_are_not_unsaved_changes() {
     for look in [
         Action::from(ShellAction::SetTheme(Theme::Light)),
-        EditAction::ShowOverlay(Overlay::SingularityGlobe, true).into(),
-        EditAction::ShowOverlay(Overlay::Labels, false).into(),
+        DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true).into(),
+        DisplayEdit::ShowOverlay(Overlay::Labels, false).into(),
         ViewAction::ShowCrowd(true).into(),
-        EditAction::ShowRig(RigKind::Skeleton).into(),
+        DisplayEdit::ShowRig(RigKind::Skeleton).into(),
         ViewAction::ShowExplain(false).into(),
         ViewAction::SetCamera(Camera::default().orbited(1.0, 0.2)).into(),
     ] {
         let mut bench = Bench::new();
         bench.apply_moving([look.clone()]);
-        assert!(!bench.session().is_unsaved(), "{look:?}");
+        assert!(!bench.session().history().is_unsaved(), "{look:?}");
         bench.apply_moving([FileAction::Quit]);
         assert_eq!(bench.session().dialog(), None, "{look:?}");
     }
@@ -203,21 +204,21 @@ fn view_changes_are_not_unsaved_changes() {
 
 #[test]
 fn an_edit_is_unsaved_whatever_view_changes_come_before_and_after() {
-    let mut bench = Bench::after([EditAction::ShowOverlay(Overlay::SingularityGlobe, true)]);
+    let mut bench = Bench::after([DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true)]);
     bench.apply([
-        EditAction::SetTwist(0.5),
-        EditAction::ShowOverlay(Overlay::SingularityGlobe, false),
+        Edit::from(ArmEdit::SetTwist(0.5)),
+        DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, false).into(),
     ]);
-    assert!(bench.session().is_unsaved());
+    assert!(bench.session().history().is_unsaved());
     bench.apply([TransactionAction::Undo]);
-    assert!(bench.session().is_unsaved(), "only the globe is back");
+    assert!(bench.session().history().is_unsaved(), "only the globe is back");
     bench.apply([TransactionAction::Undo]);
-    assert!(!bench.session().is_unsaved(), "the twist is restored");
+    assert!(!bench.session().history().is_unsaved(), "the twist is restored");
     bench.apply([TransactionAction::Redo, TransactionAction::Redo]);
-    assert!(bench.session().is_unsaved());
+    assert!(bench.session().history().is_unsaved());
     assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
-    bench.apply([EditAction::ShowOverlay(Overlay::SingularityGlobe, true)]);
-    assert!(!bench.session().is_unsaved());
+    bench.apply([DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true)]);
+    assert!(!bench.session().history().is_unsaved());
     assert_eq!(bench.tell(FileAction::Quit), Some(Effect::Quit));
 }
 
@@ -226,7 +227,7 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
     let mut bench = human();
     let joint = joint_named(&bench, "left_shin");
     bench.apply([
-        Action::from(EditAction::RemoveTarget(joint)),
+        Action::from(TargetEdit::RemoveTarget(joint)),
         SelectAction::Joints(vec![joint]).into(),
     ]);
     let limits = bench.session().skeleton().joints()[joint.index()].limits;
@@ -274,10 +275,10 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(3.0);
     assert_eq!(status(&bench).state, SolverState::Ended(Status::Converged));
-    let latest = bench.session().shown_iteration().expect("a run").latest;
+    let latest = bench.session().solvers().shown_iteration().expect("a run").latest;
     assert!(bench.says(&format!("iteration {latest} of {latest}, converged")));
 
-    bench.apply([EditAction::SetRotation { joint: JointId::new(2), rotation: Vec3::splat(0.7) }]);
+    bench.apply([JointEdit::SetRotation { joint: JointId::new(2), rotation: Vec3::splat(0.7) }]);
     assert_eq!(
         status(&bench).state,
         SolverState::Ended(Status::Converged),
@@ -292,7 +293,7 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
     assert_eq!(status(&bench).state, SolverState::NotReached, "nothing was applied");
     assert!((status(&bench).error - tip_to_target(&bench)).abs() < 1e-5);
     let target = bench.session().skeleton_rig().targets[0];
-    bench.apply([EditAction::SetTarget(Target { influence: 1.0, ..target })]);
+    bench.apply([TargetEdit::SetTarget(Target { influence: 1.0, ..target })]);
     assert_eq!(status(&bench).state, SolverState::Reached, "the evaluated pose is at the target");
     assert!(bench.shows(Role::Label, "reached"));
 }
@@ -381,7 +382,7 @@ fn an_export_over_a_file_asks_and_the_folder_is_remembered() {
     let effects = bench.effects();
     let other = folder.path().join("other.glb");
     assert!(matches!(&effects[..], [Effect::Export(export)] if export.path == other));
-    assert_eq!(bench.session().export_folder(), Some(folder.path()));
+    assert_eq!(bench.session().files().export_folder(), Some(folder.path()));
 }
 
 #[test]
@@ -409,7 +410,7 @@ fn opened_and_changed(there: &std::path::Path) -> Bench {
         file: Some(there.to_owned()),
         contents: None,
     }]);
-    bench.apply([EditAction::SetHand(Vec3::new(100.0, 50.0, 0.0))]);
+    bench.apply([ArmEdit::SetHand(Vec3::new(100.0, 50.0, 0.0))]);
     bench
 }
 
@@ -524,14 +525,14 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     bench.key(Key::Escape);
     bench.settle();
     assert!(bench.shows(Role::Alert, &format!("Not opened: {why}")), "in the status line");
-    bench.apply([EditAction::SetTwist(0.3)]);
+    bench.apply([ArmEdit::SetTwist(0.3)]);
     assert!(!bench.says("Not opened"), "until the next change");
 }
 
 #[test]
 fn enter_in_the_frame_of_the_key_that_opens_a_question_answers_it() {
     let mut bench = human();
-    bench.apply([EditAction::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
+    bench.apply([JointEdit::SetRotation { joint: JointId::new(3), rotation: Vec3::splat(0.1) }]);
     bench.click_at(bench.empty_point());
     let key = |key, modifiers| Event::Key {
         key,

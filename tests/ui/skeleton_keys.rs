@@ -10,7 +10,8 @@ use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::session::{
-    Action, EditAction, Effect, FileAction, PanelTab, PlaybackAction, SelectAction, SolverAction,
+    Action, Edit, Effect, FileAction, JointEdit, PanelTab, PlaybackAction, SelectAction,
+    SolverAction, SolverEdit, TargetEdit,
 };
 
 use crate::bench::{Bench, SMALL};
@@ -54,12 +55,12 @@ fn escape_in_a_number_leaves_it_and_the_selection_alone() {
 fn escape_in_a_number_lets_a_running_solver_run() {
     let mut bench = tree();
     let solver = bench.session().skeleton_rig().solver;
-    bench.apply([EditAction::SetSolver(solver.with_method(Method::TransposeFixed))]);
+    bench.apply([SolverEdit::SetSolver(solver.with_method(Method::TransposeFixed))]);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
     bench.frame([]);
     bench.frame([]);
-    assert!(bench.session().is_running());
+    assert!(bench.session().solvers().is_running());
     bench.key(Key::Escape);
     assert!(bench.session().solver_run().is_some(), "the key was the number's");
 }
@@ -98,19 +99,25 @@ fn focusing_a_number_field_changes_no_bit_of_its_value() {
     let target = bench.session().skeleton_rig().targets[0];
     let solver = bench.session().skeleton_rig().solver;
     bench.apply([
-        EditAction::SetAxis { joint, axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3) },
-        EditAction::SetLimit {
+        Edit::from(JointEdit::SetAxis {
+            joint,
+            axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3),
+        }),
+        Edit::from(JointEdit::SetLimit {
             joint,
             axis: RotationAxis::X,
             limit: Some(Limit { min: -1.234_567, max: 0.7654 }),
-        },
-        EditAction::SetTarget(ik_arm::document::Target { weight: 0.123_456_7, ..target }),
-        EditAction::SetSolver(
+        }),
+        Edit::from(TargetEdit::SetTarget(ik_arm::document::Target {
+            weight: 0.123_456_7,
+            ..target
+        })),
+        Edit::from(SolverEdit::SetSolver(
             solver
                 .with_method(Method::DampedLeastSquares)
                 .with_tolerance(1.234e-8)
                 .with_damping(0.012_345_678),
-        ),
+        )),
     ]);
     let before = bench.session().document().clone();
     for field in [
@@ -185,7 +192,7 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
 fn keys_do_nothing_without_joints() {
     let mut bench = Bench::new();
     bench.choose(&["File", "New skeleton"]);
-    bench.apply([EditAction::DeleteJoints(vec![JointId::new(0)])]);
+    bench.apply([JointEdit::DeleteJoints(vec![JointId::new(0)])]);
     for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F] {
         bench.key(key);
         bench.settle();
@@ -283,9 +290,9 @@ fn a_long_name_does_not_widen_the_panel() {
     bench.click(Role::Button, "Add target");
     let before = bench.viewport();
     let name = "a name of many letters ".repeat(3);
-    bench.apply([EditAction::RenameJoint { joint: JointId::new(1), name: name.clone() }]);
+    bench.apply([JointEdit::RenameJoint { joint: JointId::new(1), name: name.clone() }]);
     bench.apply([
-        Action::from(EditAction::AddChild { parent: JointId::new(1), tip: None }),
+        Action::from(JointEdit::AddChild { parent: JointId::new(1), tip: None }),
         SelectAction::Joints(vec![JointId::new(1)]).into(),
     ]);
     assert_eq!(bench.viewport(), before);

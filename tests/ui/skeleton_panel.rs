@@ -11,8 +11,8 @@ use ik_arm::document::{RigKind, Target, TargetPath};
 use ik_arm::io::{Example, FileAnimation, Group, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
-    Action, Dialog, EditAction, Effect, FileAction, FileContents, Iterate, PanelTab, PathDialog,
-    PlaybackAction, SelectAction, ShellAction, SolverAction, ViewAction,
+    Action, Dialog, Effect, FileAction, FileContents, Iterate, JointEdit, PanelTab, PathDialog,
+    PlaybackAction, SelectAction, ShellAction, SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -98,7 +98,7 @@ fn a_joint_can_be_renamed_but_not_to_a_name_in_use() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(names(&bench), ["root", "joint", "joint_1", "hand"]);
-    bench.apply([EditAction::RenameJoint { joint: JointId::new(1), name: "hand".to_owned() }]);
+    bench.apply([JointEdit::RenameJoint { joint: JointId::new(1), name: "hand".to_owned() }]);
     assert_eq!(names(&bench)[1], "joint");
     assert!(bench.says("Names of joints must be unique, got \"hand\" twice"));
 }
@@ -223,7 +223,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         choose_item(&mut bench, "Method", name);
         assert_eq!(bench.session().skeleton_rig().solver.method, method);
         bench.click_at(bench.rect(Role::Button, "Run").center());
-        assert!(bench.session().is_running());
+        assert!(bench.session().solvers().is_running());
         bench.wait(4.0);
         let solver_run = bench.session().solver_run().expect("it ran");
         assert!(!solver_run.is_running(), "it stops by itself");
@@ -285,7 +285,8 @@ fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
 #[test]
 fn comma_and_full_stop_go_through_the_iterations() {
     let mut bench = example("two-targets");
-    let shown = |bench: &Bench| bench.session().shown_iteration().map(|shown| shown.number);
+    let shown =
+        |bench: &Bench| bench.session().solvers().shown_iteration().map(|shown| shown.number);
     bench.key(Key::Comma);
     assert_eq!(shown(&bench), None);
     (0..3).for_each(|_| bench.key(Key::S));
@@ -326,7 +327,7 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
     let posed = bench.session().solver_run().expect("a run").skeleton().clone();
     bench.click(Role::Button, "Apply pose");
     assert_eq!(bench.session().skeleton(), &posed);
-    assert_eq!(bench.session().undo_label(), Some("Apply pose"));
+    assert_eq!(bench.session().history().undo_label(), Some("Apply pose"));
     assert!(bench.session().solver_run().is_none());
     bench.key_with(Modifiers::COMMAND, Key::Z);
     assert_eq!(bench.session().document(), &before);
@@ -337,20 +338,20 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
 #[test]
 fn escape_ends_a_solver_run_and_a_race() {
     let mut bench = example("ten-joints");
-    bench.apply([EditAction::SetSolver({
+    bench.apply([SolverEdit::SetSolver({
         let solver = bench.session().skeleton_rig().solver;
         solver.with_method(Method::TransposeFixed)
     })]);
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(0.2);
-    assert!(bench.session().is_running());
+    assert!(bench.session().solvers().is_running());
     bench.key(Key::Escape);
     bench.settle();
     assert!(bench.session().solver_run().is_none());
     bench.apply_moving([SolverAction::Compare]);
     bench.key(Key::Escape);
     bench.settle();
-    assert!(bench.session().comparison().is_none());
+    assert!(bench.session().solvers().comparison().is_none());
 }
 
 #[test]
@@ -370,7 +371,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     bench.show_tab(PanelTab::Race);
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(4.0);
-    let comparison = bench.session().comparison().expect("it goes on");
+    let comparison = bench.session().solvers().comparison().expect("it goes on");
     assert!(!comparison.is_running(), "it ends");
     assert_eq!(comparison.solvers().len(), Method::ALL.len());
     for solver in comparison.solvers() {
@@ -384,7 +385,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     assert_eq!(bench.session().skeleton_rig(), &before);
     assert!(bench.says("CCD") && bench.says("FABRIK"));
     bench.click(Role::Button, "End race");
-    assert!(bench.session().comparison().is_none());
+    assert!(bench.session().solvers().comparison().is_none());
 }
 
 #[test]
@@ -395,7 +396,7 @@ fn a_solver_that_cannot_run_says_so_in_the_race() {
     bench.show_tab(PanelTab::Race);
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(1.0);
-    let comparison = bench.session().comparison().expect("it goes on");
+    let comparison = bench.session().solvers().comparison().expect("it goes on");
     let two_bone = comparison.solvers().iter().find(|solver| solver.method == Method::TwoBone);
     let error = two_bone.expect("it is there").run.as_ref().expect_err("its parent is locked");
     assert!(error.to_string().contains("locked"), "{error}");
@@ -644,7 +645,7 @@ fn a_figure_that_stands_along_z_can_be_turned_or_left() {
         let is_turned = answer == "Turn to y up";
         let transform = bench.session().skeleton().transform();
         assert_eq!(transform == human.skeleton().transform(), is_turned);
-        let up = bench.session().contents().expect("it has contents").options.up;
+        let up = bench.session().files().contents().expect("it has contents").options.up;
         assert_eq!(up, is_turned.then_some(Upwards::Z), "other animations are turned, too");
         if is_turned {
             bench.key_with(Modifiers::COMMAND, Key::Z);
@@ -672,14 +673,14 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
     let mut bench = Bench::of_size(SMALL);
     bench.choose(&["File", "New skeleton"]);
     let name = "a name of many letters ".repeat(4);
-    bench.apply([EditAction::RenameJoint { joint: JointId::new(0), name }]);
+    bench.apply([JointEdit::RenameJoint { joint: JointId::new(0), name }]);
     bench.apply(
-        (0..200).map(|parent| EditAction::AddChild { parent: JointId::new(parent), tip: None }),
+        (0..200).map(|parent| JointEdit::AddChild { parent: JointId::new(parent), tip: None }),
     );
     assert_eq!(names(&bench).len(), 201);
     assert_eq!(bench.session().selected(), Some(JointId::new(200)));
     bench.apply([
-        Action::from(EditAction::AddTarget(JointId::new(200))),
+        Action::from(TargetEdit::AddTarget(JointId::new(200))),
         SelectAction::Joints((0..201).map(JointId::new).collect()).into(),
     ]);
     bench.settle();
@@ -702,12 +703,12 @@ fn a_race_of_many_iterations_stays_inside_the_window() {
         bench.apply([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
         let far = |target: &Target| Target { home: Vec3::new(3.0, 3.0, 3.0), ..*target };
         let targets: Vec<_> = bench.session().skeleton_rig().targets.iter().map(far).collect();
-        bench.apply(targets.into_iter().map(EditAction::SetTarget));
-        bench.apply([EditAction::SetIterationsPerFrame(1000)]);
+        bench.apply(targets.into_iter().map(TargetEdit::SetTarget));
+        bench.apply([SolverEdit::SetIterationsPerFrame(1000)]);
         bench.show_tab(PanelTab::Race);
         bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
         bench.settle();
-        let latest = bench.session().shown_iteration().expect("a race").latest;
+        let latest = bench.session().solvers().shown_iteration().expect("a race").latest;
         assert!(latest >= 1000, "too few iterations for the test: {latest}");
         // The margin of the panel.
         let edge = size.x - 8.0 + 0.5;

@@ -7,8 +7,8 @@ use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm::session::{
-    Action, Drag, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
-    ViewAction,
+    Action, Drag, FileAction, Grip, JointEdit, PlaybackAction, SelectAction, TargetEdit,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, bits};
@@ -261,7 +261,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     let at = on_ring + outwards * aside;
     let tip = bench.ray(at).meets_plane(centre, projection.forward);
     let parent = joint(&bench, "root");
-    bench.apply([EditAction::AddChild { parent, tip }]);
+    bench.apply([JointEdit::AddChild { parent, tip }]);
     let added = bench.session().selected().expect("the new joint");
     bench.apply([Action::from(SelectAction::Joints(vec![b]))]);
     (bench, added, [at, on_ring])
@@ -310,7 +310,7 @@ fn digits_type_the_degrees_that_a_ring_turns() {
 fn a_target_is_dragged_and_the_skeleton_follows() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([EditAction::AddTarget(c)]);
+    bench.apply([TargetEdit::AddTarget(c)]);
     let start = tip_place(&bench, "c");
     for step in 1..=15 {
         let pointer = start + vec2(-5.0, 4.0) * step as f32;
@@ -334,7 +334,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
 fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([Action::from(EditAction::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
+    bench.apply([Action::from(TargetEdit::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
     let home = bench.session().skeleton_rig().targets[0].home;
     let start = bench.on_screen(home);
     let camera = bench.session().camera();
@@ -350,10 +350,10 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
 fn dragging_a_moving_target_moves_its_path() {
     let mut bench = bench();
     let c = joint(&bench, "c");
-    bench.apply([EditAction::AddTarget(c)]);
+    bench.apply([TargetEdit::AddTarget(c)]);
     let mut target = bench.session().skeleton_rig().targets[0];
     target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
-    bench.apply([Action::from(EditAction::SetTarget(target)), PlaybackAction::SetTime(1.0).into()]);
+    bench.apply([Action::from(TargetEdit::SetTarget(target)), PlaybackAction::SetTime(1.0).into()]);
     let start = bench.on_screen(target.at(1.0));
     bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));
     let dragged = bench.session().skeleton_rig().targets[0];

@@ -8,7 +8,7 @@ use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
 use ik_arm::session::{
-    Dialog, EditAction, Effect, FileAction, PathDialog, PlaybackAction, SelectAction,
+    Dialog, DisplayEdit, Effect, FileAction, JointEdit, PathDialog, PlaybackAction, SelectAction,
     TransactionAction,
 };
 
@@ -88,7 +88,7 @@ fn a_changed_detail_or_bone_makes_the_skin_again() {
     let longest =
         |bench: &Bench| skin(bench).expect("a skin").mesh().expect("a mesh").mesh.mesh().size();
     let size = longest(&bench);
-    bench.apply([EditAction::SetAxis { joint: JointId::new(9), axis: Vec3::Y * 3.0 }]);
+    bench.apply([JointEdit::SetAxis { joint: JointId::new(9), axis: Vec3::Y * 3.0 }]);
     assert!(longest(&bench) > size, "{size}");
 }
 
@@ -124,7 +124,7 @@ fn a_click_on_the_skin_selects_the_joint_with_the_greatest_weight_there() {
 #[test]
 fn weights_need_a_selected_joint_and_have_a_legend() {
     let mut bench = with_skin();
-    bench.apply([EditAction::ShowOverlay(Overlay::SkinWeights, true)]);
+    bench.apply([DisplayEdit::ShowOverlay(Overlay::SkinWeights, true)]);
     bench.apply([SelectAction::Joints(vec![])]);
     bench.settle();
     assert!(bench.says("Select a joint to see its weights."));
@@ -225,7 +225,7 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
     locate(&mut bench, &new);
     assert!(bench.session().dialog().is_none());
     assert!(skin(&bench).expect("a skin").mesh().is_ok());
-    assert_eq!(bench.session().undo_label(), Some("Change skin"));
+    assert_eq!(bench.session().history().undo_label(), Some("Change skin"));
     bench.apply([TransactionAction::Undo]);
     assert!(skin(&bench).expect("a skin").mesh().is_err());
 }

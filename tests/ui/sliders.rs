@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2};
 use glam::Vec3;
 use ik_arm::document::Arm;
-use ik_arm::session::EditAction;
+use ik_arm::session::ArmEdit;
 
 use crate::bench::Bench;
 use crate::panel::SLIDERS;
@@ -40,13 +40,13 @@ pub fn is_same_but(slider: &str, a: &Arm, b: &Arm) -> bool {
 }
 
 /// A pose of awkward numbers, some beyond every thumb's range.
-pub fn awkward() -> [EditAction; 5] {
+pub fn awkward() -> [ArmEdit; 5] {
     [
-        EditAction::SetHand(Vec3::new(123.456_79, -987.654_3, 0.1)),
-        EditAction::SetRoot(Vec3::new(-1_234.567_9, 0.333_333_34, 1e-7)),
-        EditAction::SetTwist(1.234_567_9),
-        EditAction::SetUpper(1_234.567_9),
-        EditAction::SetLower(3.333_333_3),
+        ArmEdit::SetHand(Vec3::new(123.456_79, -987.654_3, 0.1)),
+        ArmEdit::SetRoot(Vec3::new(-1_234.567_9, 0.333_333_34, 1e-7)),
+        ArmEdit::SetTwist(1.234_567_9),
+        ArmEdit::SetUpper(1_234.567_9),
+        ArmEdit::SetLower(3.333_333_3),
     ]
 }
 
@@ -76,9 +76,9 @@ fn dragging_a_rail_moves_the_hand_in_the_same_frame() {
 fn each_slider_changes_its_own_number_and_no_other_bit() {
     for slider in SLIDERS {
         let mut bench = Bench::after([
-            EditAction::SetHand(Vec3::new(123.456_79, -87.654_32, 0.1)),
-            EditAction::SetRoot(Vec3::new(-12.345_679, 0.333_333_34, 1e-7)),
-            EditAction::SetTwist(1.234_567_9),
+            ArmEdit::SetHand(Vec3::new(123.456_79, -87.654_32, 0.1)),
+            ArmEdit::SetRoot(Vec3::new(-12.345_679, 0.333_333_34, 1e-7)),
+            ArmEdit::SetTwist(1.234_567_9),
         ]);
         let before = *bench.session().arm();
         let (from, to) = (on_rail(&bench, slider, 0.5), on_rail(&bench, slider, 0.8));
@@ -183,7 +183,7 @@ fn a_double_click_on_rail_or_label_resets() {
 #[test]
 fn arrows_step_by_one_with_shift_by_a_tenth_and_page_keys_by_ten() {
     for slider in SLIDERS {
-        let mut bench = Bench::after([EditAction::SetTwist(TAU / 4.0)]);
+        let mut bench = Bench::after([ArmEdit::SetTwist(TAU / 4.0)]);
         bench.focus(Role::Slider, slider);
         for (modifiers, key, step) in [
             (Modifiers::NONE, Key::ArrowRight, 1.0),

@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, PathKind};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
-use ik_arm::session::{EditAction, FileAction, Grip, PlaybackAction, SelectAction};
+use ik_arm::session::{FileAction, Grip, KeysEdit, PlaybackAction, SelectAction};
 
 use crate::bench::Bench;
 
@@ -67,7 +67,7 @@ fn a_head_is_keyed_at_two_times_and_the_body_is_on_its_path() {
     for (time, x) in [(0.0, "1.4"), (2.0, "3")] {
         bench.apply([PlaybackAction::SetTime(time)]);
         bench.enter("Head x", x);
-        bench.apply([EditAction::Key(vec![Channel::Offset(HEAD)])]);
+        bench.apply([KeysEdit::Key(vec![Channel::Offset(HEAD)])]);
         bench.settle();
     }
     let keys = &bench.session().document().keys;

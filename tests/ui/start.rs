@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::vec2;
 use ik_arm::document::RigKind;
 use ik_arm::io::Example;
-use ik_arm::session::{EditAction, FileAction, PanelTab, Preferences, SelectAction};
+use ik_arm::session::{DisplayEdit, FileAction, PanelTab, Preferences, SelectAction};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::looks::has_tooltip;
@@ -115,12 +115,12 @@ fn each_tab_shows_its_page_and_the_choice_is_kept_for_each_rig() {
         assert_eq!(bench.session().tab(), tab);
         assert!(has_tooltip(&mut bench, Role::Tab, tab.name()), "{tab:?}");
     }
-    bench.apply([EditAction::ShowRig(RigKind::Skeleton)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
     assert_eq!(bench.session().tab(), PanelTab::Solver);
     bench.click(Role::Tab, "Race");
     assert!(bench.shows(Role::Button, "Race all solvers"));
     assert!(!bench.shows(Role::Tab, "Triangle") && !bench.shows(Role::Tab, "Skin"));
-    bench.apply([EditAction::ShowRig(RigKind::Arm)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Arm)]);
     assert_eq!(bench.session().tab(), PanelTab::Pops);
 }
 
@@ -142,7 +142,7 @@ fn an_empty_plot_is_not_shown_but_a_sentence_that_tells_how_to_fill_it() {
     let mut bench = first_start();
     bench.show_tab(PanelTab::Pops);
     assert!(!bench.says("Elbow speed / Cursor speed"));
-    bench.apply([EditAction::ShowRig(RigKind::Skeleton)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
     assert!(bench.says("Press Run to see how the error falls"));
     assert!(!bench.shows(Role::Slider, "Iteration"));
     bench.show_tab(PanelTab::Race);
@@ -160,7 +160,7 @@ fn the_status_bar_tells_what_the_mouse_does_here() {
     bench.move_to(bench.cursor_on_screen());
     bench.settle();
     assert!(bench.shows(Role::Label, "left drag: drag the hand"));
-    bench.apply([EditAction::ShowRig(RigKind::Skeleton)]);
+    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
     bench.apply([SelectAction::Joints(Vec::new())]);
     assert!(bench.shows(Role::Label, "wheel: zoom"));
     assert!(!bench.says("Test adapter"), "the adapter is in the statistics");

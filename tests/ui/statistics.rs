@@ -8,7 +8,7 @@ use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::Theme;
 use ik_arm::render::Counts;
-use ik_arm::session::{Action, Dialog, EditAction, PlaybackAction, ShellAction};
+use ik_arm::session::{Action, ArmEdit, Dialog, KeysEdit, PlaybackAction, ShellAction};
 use ik_arm::ui::{FrameTime, FrameTimes, Machine};
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -140,10 +140,10 @@ fn the_statistics_request_no_frame_and_do_not_block_the_window() {
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
     assert_ne!(bench.hand(), before, "the hand is dragged");
     bench.apply([
-        Action::from(EditAction::Key(bench.session().all_channels())),
+        Action::from(KeysEdit::Key(bench.session().all_channels())),
         PlaybackAction::SetTime(1.0).into(),
-        EditAction::SetHand(Vec3::new(100.0, 200.0, 0.0)).into(),
-        EditAction::Key(bench.session().all_channels()).into(),
+        ArmEdit::SetHand(Vec3::new(100.0, 200.0, 0.0)).into(),
+        KeysEdit::Key(bench.session().all_channels()).into(),
     ]);
     bench.key(Key::Space);
     assert!(bench.session().is_playing(), "Space plays");

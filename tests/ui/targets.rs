@@ -11,7 +11,8 @@ use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
-    Action, EditAction, FileAction, Grip, PlaybackAction, SelectAction, TransactionAction,
+    Action, FileAction, Grip, JointEdit, PlaybackAction, SelectAction, TargetEdit,
+    TransactionAction,
 };
 
 use crate::bench::Bench;
@@ -21,7 +22,7 @@ fn figure() -> Bench {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
     let targets = bench.session().skeleton_rig().targets.clone();
-    bench.apply(targets.into_iter().map(|target| EditAction::RemoveTarget(target.joint)));
+    bench.apply(targets.into_iter().map(|target| TargetEdit::RemoveTarget(target.joint)));
     bench
 }
 
@@ -196,7 +197,7 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
     };
     let place = on_chest(&bench);
     let spine = joint(&bench, "spine");
-    bench.apply([EditAction::SetRotation { joint: spine, rotation: Vec3::new(0.3, 0.2, 0.0) }]);
+    bench.apply([JointEdit::SetRotation { joint: spine, rotation: Vec3::new(0.3, 0.2, 0.0) }]);
     let moved = tip(&bench, "left_forearm").distance(before[7]);
     assert!(moved > 0.02, "it moves with the chest by {moved}");
     assert!(on_chest(&bench).distance(place) <= 1e-5);
@@ -282,11 +283,11 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     let before = turned(&bench);
     let place = tip(&bench, "left_forearm") + Vec3::new(0.02, 0.06, 0.05);
     let moved = Target { home: place, ..*target(&bench, "left_forearm") };
-    bench.apply([Action::from(EditAction::SetTarget(moved))]);
+    bench.apply([Action::from(TargetEdit::SetTarget(moved))]);
     assert!(tip(&bench, "left_forearm").distance(place) <= 1e-5);
     assert!(turned(&bench).angle_between(before) <= 1e-4);
     let kind = TargetKind::Limb(LimbSettings::default());
-    bench.apply([Action::from(EditAction::SetTarget(Target { kind, ..moved }))]);
+    bench.apply([Action::from(TargetEdit::SetTarget(Target { kind, ..moved }))]);
     assert!(turned(&bench).angle_between(before) > 0.05, "without, it follows the forearm");
 }
 
@@ -300,7 +301,7 @@ fn a_target_that_is_reached_has_a_tick_and_one_that_is_not_its_distance() {
         |bench: &Bench| bench.harness.query_all_by_role_and_label(Role::Label, "Reached").count();
     assert_eq!(ticks(&bench), all);
     let moved = *target(&bench, "left_forearm");
-    bench.apply([EditAction::SetTarget(Target { home: moved.home + Vec3::X * 3.0, ..moved })]);
+    bench.apply([TargetEdit::SetTarget(Target { home: moved.home + Vec3::X * 3.0, ..moved })]);
     assert_eq!(ticks(&bench), all - 1);
 }
 
@@ -313,7 +314,7 @@ fn a_target_matched_to_fk_says_that_the_figure_follows_if_the_target_poses() {
         select(&mut bench, "left_hand");
         let posing = *target(&bench, "left_forearm");
         let home = posing.home + Vec3::Y * 0.1;
-        bench.apply([EditAction::SetTarget(Target { influence, home, ..posing })]);
+        bench.apply([TargetEdit::SetTarget(Target { influence, home, ..posing })]);
         bench.reveal(Role::Button, "Target to FK");
         assert!(crate::looks::has_tooltip(&mut bench, Role::Button, "Target to FK"));
         assert!(bench.says(said), "{influence}: {said}");
@@ -384,11 +385,11 @@ fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
         let to = bench.take_ring(grip, ring, RING, 0.1);
         bench.move_to(to);
         bench.release(LEFT);
-        assert_eq!(bench.session().undo_label(), Some("Turn target"));
+        assert_eq!(bench.session().history().undo_label(), Some("Turn target"));
         assert_eq!(target(&bench, "left_shin").home, home);
         bench.apply([TransactionAction::Undo]);
         assert_eq!(held(&bench, "left_shin"), Some(before));
-        assert_eq!(bench.session().undo_label(), None, "it was one step");
+        assert_eq!(bench.session().history().undo_label(), None, "it was one step");
     }
 }
 

@@ -11,8 +11,8 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{
-    Action, EditAction, FileAction, PlaybackAction, SelectAction, ShellAction, TransactionAction,
-    ViewAction,
+    Action, ArmEdit, FileAction, KeysEdit, PlaybackAction, SelectAction, ShellAction,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
@@ -28,17 +28,17 @@ pub fn keyed() -> Bench {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([PlaybackAction::SetAutoKey(false)]);
     for (time, hand) in HAND {
-        let key = EditAction::Key(vec![Channel::Hand]).into();
+        let key = KeysEdit::Key(vec![Channel::Hand]).into();
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::SetHand(hand).into(),
+            ArmEdit::SetHand(hand).into(),
             key,
         ]);
     }
     for time in [1.0, 4.0] {
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::Key(vec![Channel::Twist]).into(),
+            KeysEdit::Key(vec![Channel::Twist]).into(),
         ]);
     }
     bench.apply([PlaybackAction::SetTime(0.0)]);
@@ -96,7 +96,7 @@ fn the_playhead_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     bench.move_to(ruler_position(&bench, 3.0));
     assert_eq!(bench.session().time(), 0.0, "it is let go");
     assert_eq!(bench.session().document(), &document);
-    assert_eq!(bench.session().undo_label(), Some("Key Socket twist"), "it is no step");
+    assert_eq!(bench.session().history().undo_label(), Some("Key Socket twist"), "it is no step");
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     bench.release(PointerButton::Primary);
     bench.settle();
     assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
-    assert_eq!(bench.session().undo_label(), Some("Move keys"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move keys"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
     bench.apply([TransactionAction::Redo]);
@@ -256,7 +256,7 @@ fn at_half_speed_playback_goes_half_as_far() {
     bench.type_text("0.5");
     bench.key(Key::Enter);
     bench.settle();
-    assert_eq!(bench.session().speed(), 0.5);
+    assert_eq!(bench.session().playback().speed(), 0.5);
     bench.apply_moving([PlaybackAction::Play(true)]);
     let begun = bench.session().time();
     bench.wait(1.0);
@@ -271,7 +271,7 @@ fn at_its_end_playback_loops_or_stops() {
     assert!(bench.session().is_playing() && bench.session().time() < 1.0);
     bench.apply([PlaybackAction::Play(false)]);
     bench.click(Role::Button, "Loop");
-    assert!(!bench.session().is_looping());
+    assert!(!bench.session().playback().is_looping());
     bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
     assert_eq!((bench.session().is_playing(), bench.session().time()), (false, 8.0));
@@ -312,7 +312,7 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
     assert!(!bench.says("changed here"));
 
     bench.click(Role::Button, "Auto-key");
-    assert!(bench.session().is_auto_key());
+    assert!(bench.session().playback().is_auto_key());
     bench.enter("Hand x", "77");
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
     bench.apply([PlaybackAction::SetTime(0.0), PlaybackAction::SetTime(3.0)]);
@@ -333,7 +333,7 @@ fn the_frame_rate_can_be_chosen_and_an_unlisted_one_of_a_file_is_shown() {
     let frames = bench.session().time() * 24.0;
     assert!((frames - frames.round()).abs() < 1e-9);
     let timeline = Timeline { frame_rate: 33.33, ..Timeline::default() };
-    bench.apply([EditAction::SetTimeline(timeline)]);
+    bench.apply([KeysEdit::SetTimeline(timeline)]);
     bench.click(Role::ComboBox, "Frame rate");
     assert!(bench.shows(Role::Button, "33.33 fps"));
     bench.click(Role::Button, "29.97 fps");
@@ -369,13 +369,13 @@ fn start_and_end_can_be_typed_and_invalid_values_are_refused() {
 #[test]
 fn the_time_is_dragged_in_its_number_from_frame_to_frame() {
     let mut bench = keyed();
-    let undo = bench.session().undo_label();
+    let undo = bench.session().history().undo_label();
     let at = bench.rect(Role::SpinButton, "Time").center();
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(40.0, 0.0));
     bench.settle();
     let time = bench.session().time();
     assert!(time > 0.1 && time == Timeline::default().snapped(time), "{time}");
-    assert!(!bench.session().is_editing() && bench.session().undo_label() == undo);
+    assert!(!bench.session().is_editing() && bench.session().history().undo_label() == undo);
 }
 
 #[test]
@@ -497,7 +497,7 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     bench.apply([FileAction::OpenExample(Example::find("human").expect("an example"))]);
     let names = |joint: JointId| bench.session().skeleton()[joint].name.clone();
     let (turned, reached) = (names(JointId::new(1)), names(JointId::new(8)));
-    bench.apply([EditAction::Key(vec![
+    bench.apply([KeysEdit::Key(vec![
         Channel::Rotation(JointId::new(1)),
         // For the tip of the forearm, which the hand is at.
         Channel::Target(JointId::new(7)),

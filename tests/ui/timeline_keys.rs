@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton};
 use ik_arm::document::Channel;
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, EditAction, Effect, FileAction, PlaybackAction, SelectAction, TransactionAction,
+    Action, Effect, FileAction, KeysEdit, PlaybackAction, SelectAction, TransactionAction,
 };
 
 use crate::bench::{Bench, LARGE};
@@ -147,7 +147,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.choose(&["File", "New skeleton"]);
     bench.click(Role::Button, "Add child");
     bench.click(Role::Button, "Add child");
-    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1))])]);
+    bench.apply([KeysEdit::Key(vec![Channel::Rotation(JointId::new(1))])]);
     let joints = |bench: &Bench| bench.session().skeleton_pose().len();
     let key = |bench: &Bench| bench.rect(Role::Button, "Keys at 0.00 s").center();
     bench.click_at(key(&bench));
@@ -158,7 +158,7 @@ fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     bench.key(Key::Delete);
     bench.settle();
     assert_eq!(joints(&bench), 3, "in the timeline it never means joints");
-    bench.apply([EditAction::Key(vec![Channel::Rotation(JointId::new(1))])]);
+    bench.apply([KeysEdit::Key(vec![Channel::Rotation(JointId::new(1))])]);
     bench.click_at(key(&bench));
     bench.click(Role::Button, "Joint joint_1");
     bench.key(Key::Delete);
@@ -233,7 +233,7 @@ fn after_the_first_key_a_pose_at_another_time_is_kept_and_a_note_says_why() {
     bench.key(Key::K);
     bench.settle();
     bench.click(Role::Button, "Turn off");
-    assert!(!bench.session().is_auto_key() && !bench.says(NOTE));
+    assert!(!bench.session().playback().is_auto_key() && !bench.says(NOTE));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Theme};
 use ik_arm::session::{
-    Action, Actions, EditAction, PlaybackAction, SelectAction, ShellAction, ViewAction,
+    Action, Actions, ArmEdit, KeysEdit, PlaybackAction, SelectAction, ShellAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -18,9 +18,9 @@ pub fn animated() -> Vec<Action> {
     let keyed = |time, hand, twist: f32| {
         [
             Action::from(PlaybackAction::SetTime(time)),
-            EditAction::SetHand(hand).into(),
-            EditAction::SetTwist(twist.to_radians()).into(),
-            EditAction::Key(vec![Channel::Hand, Channel::Twist]).into(),
+            ArmEdit::SetHand(hand).into(),
+            ArmEdit::SetTwist(twist.to_radians()).into(),
+            KeysEdit::Key(vec![Channel::Hand, Channel::Twist]).into(),
         ]
     };
     let mut actions = vec![Action::from(PlaybackAction::SetAutoKey(false))];
@@ -29,15 +29,15 @@ pub fn animated() -> Vec<Action> {
     actions.extend(keyed(6.0, Vec3::new(200.0, -50.0, -60.0), 30.0));
     actions.extend([
         Action::from(PlaybackAction::SetTime(2.0)),
-        EditAction::SetUpper(220.0).into(),
-        EditAction::Key(vec![Channel::Upper]).into(),
+        ArmEdit::SetUpper(220.0).into(),
+        KeysEdit::Key(vec![Channel::Upper]).into(),
         PlaybackAction::SetTime(5.0).into(),
-        EditAction::SetUpper(180.0).into(),
-        EditAction::Key(vec![Channel::Upper]).into(),
+        ArmEdit::SetUpper(180.0).into(),
+        KeysEdit::Key(vec![Channel::Upper]).into(),
         SelectAction::Keys(vec![(Channel::Hand, 3.5), (Channel::Twist, 3.5)]).into(),
         SelectAction::Channels(vec![Channel::Hand]).into(),
         PlaybackAction::SetTime(4.5).into(),
-        EditAction::SetHand(Vec3::new(100.0, 100.0, 100.0)).into(),
+        ArmEdit::SetHand(Vec3::new(100.0, 100.0, 100.0)).into(),
     ]);
     actions
 }
@@ -142,7 +142,7 @@ fn a_timeline_without_keys_says_how_to_set_the_first_one() {
     assert!(bench.says("No curves"));
     bench.apply([
         Action::from(ViewAction::ShowGraphEditor(false)),
-        EditAction::Key(vec![Channel::Hand]).into(),
+        KeysEdit::Key(vec![Channel::Hand]).into(),
     ]);
     assert!(!bench.says("press K to add keys"));
 }

@@ -27,7 +27,7 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
     let at = bench.empty_point();
     bench.hold(modifiers);
     bench.drag(button, at, at + vec2(60.0, 45.0));
-    let motion = bench.session().view_drag().map(|drag| drag.motion);
+    let motion = bench.session().view().drag().map(|drag| drag.motion);
     let after = *bench.session().camera();
     match motion {
         Some(CameraMotion::Orbit) => {
@@ -46,7 +46,7 @@ fn motion(bench: &mut Bench, modifiers: Modifiers, button: PointerButton) -> Opt
     }
     bench.release(button);
     bench.hold(NONE);
-    assert!(bench.session().view_drag().is_none());
+    assert!(bench.session().view().drag().is_none());
     assert_eq!(bench.session().arm(), &arm);
     bench.apply([ViewAction::SetCamera(Camera::default())]);
     motion
@@ -224,12 +224,12 @@ fn the_camera_follows_the_selection_while_it_is_ticked_in_the_menu() {
     let walk = Example::find("walk").expect("there").open().expect("opens").document;
     bench.apply([FileAction::Opened { document: Box::new(walk), file: None, contents: None }]);
     bench.choose(&["View", "Follow selection"]);
-    assert!(bench.session().follows_selection());
+    assert!(bench.session().view().follows_selection());
     bench.settle();
     let before = bench.session().camera().target;
     let end = bench.session().document().timeline.end;
     bench.apply([PlaybackAction::SetTime(0.6 * end)]);
     assert!(bench.session().camera().target.distance(before) > 1e-3);
     bench.choose(&["View", "Follow selection"]);
-    assert!(!bench.session().follows_selection());
+    assert!(!bench.session().view().follows_selection());
 }

@@ -61,7 +61,7 @@ fn view_keys_do_nothing_while_a_field_has_the_keyboard() {
         bench.focus(role, name);
         bench.type_text(typed);
         bench.key(Key::F);
-        assert!(!bench.session().is_gliding());
+        assert!(!bench.session().view().is_gliding());
         assert_eq!(bench.session().camera(), &Camera::default(), "{name}");
     }
     let mut bench = Bench::new();
@@ -69,7 +69,7 @@ fn view_keys_do_nothing_while_a_field_has_the_keyboard() {
     bench.type_text("f137");
     bench.key(Key::Home);
     assert_eq!(bench.session().camera(), &Camera::default());
-    assert!(!bench.session().is_gliding());
+    assert!(!bench.session().view().is_gliding());
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_glide_takes_two_tenths_of_a_second_and_then_the_window_sleeps() {
     bench.key(Key::Num3);
     let mut frames = 0;
     let mut last = bench.session().camera().yaw;
-    while bench.session().is_gliding() {
+    while bench.session().view().is_gliding() {
         assert!(bench.asks_for_a_frame());
         bench.frame([]);
         let yaw = bench.session().camera().yaw;
@@ -114,17 +114,17 @@ fn any_input_ends_a_glide() {
         bench.move_to(bench.empty_point());
         bench.key(Key::Num7);
         bench.wait(0.05);
-        assert!(bench.session().is_gliding());
+        assert!(bench.session().view().is_gliding());
         bench
     };
     let mut bench = gliding();
     bench.key(Key::K);
-    assert!(!bench.session().is_gliding());
+    assert!(!bench.session().view().is_gliding());
     assert_eq!(bench.session().camera(), &end, "a key brings it to its end");
 
     let mut bench = gliding();
     bench.wheel(1.0);
-    assert!(!bench.session().is_gliding());
+    assert!(!bench.session().view().is_gliding());
     assert!(bench.session().camera().distance < end.distance);
     assert_eq!(bench.session().camera().pitch, end.pitch);
 
@@ -135,7 +135,7 @@ fn any_input_ends_a_glide() {
     let mut bench = gliding();
     let here = *bench.session().camera();
     bench.press(PointerButton::Primary);
-    assert!(!bench.session().is_gliding());
+    assert!(!bench.session().view().is_gliding());
     let taken = *bench.session().camera();
     assert!(taken.pitch < end.pitch && taken.pitch >= here.pitch, "a press stops it");
     bench.frame([]);

@@ -8,7 +8,7 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    EditAction, FileAction, PlaybackAction, SelectAction, SolverAction, TransactionAction,
+    FileAction, PlaybackAction, SelectAction, SolverAction, TargetEdit, TransactionAction,
 };
 use ik_arm::words;
 
@@ -23,7 +23,7 @@ fn bench() -> Bench {
     let mut bench =
         Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..target(&bench) };
-    bench.apply([EditAction::SetTarget(target)]);
+    bench.apply([TargetEdit::SetTarget(target)]);
     bench.settle();
     bench
 }
@@ -94,7 +94,7 @@ fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
             bench.settle();
         } else {
             let target = target(&bench).joint;
-            bench.apply([EditAction::ApplyRemedy { target, remedy: tried.remedy.clone() }]);
+            bench.apply([TargetEdit::ApplyRemedy { target, remedy: tried.remedy.clone() }]);
         }
         assert!((error(&bench) - tried.residual).abs() < 1e-4, "{name}");
         bench.apply([TransactionAction::Undo]);
@@ -190,7 +190,7 @@ fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
     assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
     let target = joint(&bench, "left_shin");
-    bench.apply([EditAction::ApplyRemedy { target, remedy: tried.remedy }]);
+    bench.apply([TargetEdit::ApplyRemedy { target, remedy: tried.remedy }]);
     bench.settle();
     assert!(missing_degrees(&bench) < 0.05);
     assert!(bench.session().why().is_empty());

@@ -34,7 +34,7 @@ fn hover(bench: &mut Bench, joint: JointId, axis: RotationAxis) -> Pos2 {
     for at in places {
         bench.frame([Event::PointerMoved(at)]);
         bench.frame([]);
-        if bench.session().wiggled() == Some((joint, axis)) {
+        if bench.session().view().wiggled() == Some((joint, axis)) {
             return at;
         }
     }
@@ -87,15 +87,15 @@ fn it_stops_when_alt_is_released_or_the_mouse_leaves_the_ring() {
     bench.hold(Modifiers::NONE);
     bench.frame([]);
     bench.frame([]);
-    assert_eq!(bench.session().wiggled(), None);
+    assert_eq!(bench.session().view().wiggled(), None);
     bench.hold(Modifiers::ALT);
     bench.frame([Event::PointerMoved(at)]);
     bench.frame([]);
-    assert!(bench.session().wiggled().is_some());
+    assert!(bench.session().view().wiggled().is_some());
     let beside = bench.empty_point();
     bench.frame([Event::PointerMoved(beside)]);
     bench.frame([]);
-    assert_eq!(bench.session().wiggled(), None);
+    assert_eq!(bench.session().view().wiggled(), None);
     assert_eq!(bench.session().overlays().wiggle, None);
 }
 

@@ -1,7 +1,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use ik_arm::document::RigKind;
-use ik_arm::session::{Actions, EditAction, Session};
+use ik_arm::session::{Actions, DisplayEdit, Session};
 use ik_arm::ui::{self, Machine};
 
 use crate::screen::SIZE;
@@ -62,7 +62,7 @@ impl Places {
         };
         let place = |point| place_in(&session, point);
         let mut human = Session::default();
-        human.apply(EditAction::ShowRig(RigKind::Skeleton));
+        human.apply(DisplayEdit::ShowRig(RigKind::Skeleton));
         let pose = human.skeleton_pose();
         let joint = |name: &str| human.skeleton().find(name).expect("the Human has this joint");
         let head = joint("head");

@@ -1,56 +1,37 @@
 use super::state::{TourAction, TourState};
 use super::steps::TourStep;
 use crate::session::action::Action;
-use crate::session::file_action::FileAction;
-use crate::session::playback_action::PlaybackAction;
+use crate::session::files::action::FileAction;
+use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::Preferences;
 use crate::session::session::Session;
 
 /// The tour.
 impl Session {
-    /// Where the user is in the tour; `None` outside of it.
-    pub fn tour(&self) -> Option<&TourState> {
-        self.tour.as_ref()
-    }
-
-    /// The session with the user's own document, which the tour does not change: outside the tour,
-    /// this session.
-    pub fn own(&self) -> &Self {
-        self.own.as_deref().unwrap_or(self)
-    }
-
     pub(in crate::session) fn apply_tour(&mut self, action: TourAction) {
         match action {
             TourAction::Enter(number) => self.enter_tour(number),
             TourAction::Guess(answer) => self.change_tour(|tour| tour.choose(answer)),
             TourAction::Demonstrate => self.demonstrate(),
             TourAction::Leave => self.leave_tour(),
-            TourAction::Decline => self.preferences.offers_tour = false,
+            TourAction::Decline => {
+                let declined = Preferences { offers_tour: false, ..*self.preferences() };
+                self.act(Consequence::Prefer(declined));
+            }
         }
     }
 
     fn demonstrate(&mut self) {
-        if let Some(tour) = &mut self.tour
-            && let Some(step) = tour.step()
-        {
-            tour.show_result();
-            let (edits, others): (Vec<_>, Vec<_>) = step
-                .goal
-                .demonstration(self)
-                .into_iter()
-                .partition(|action| matches!(action, Action::Edit(_)));
-            // One undo step, and for the page Pops one drag.
-            self.begin_edit(None);
-            edits.into_iter().for_each(|edit| drop(self.apply(edit)));
-            self.commit_edit();
-            others.into_iter().for_each(|action| drop(self.apply(action)));
-        }
-    }
-
-    fn change_tour(&mut self, change: impl FnOnce(&mut TourState)) {
-        if let Some(tour) = &mut self.tour {
-            change(tour);
-        }
+        let Some(step) = self.tour().and_then(TourState::step) else { return };
+        self.change_tour(TourState::show_result);
+        let actions = step.goal.demonstration(self);
+        let (edits, others): (Vec<_>, Vec<_>) =
+            actions.into_iter().partition(|action| matches!(action, Action::Edit(_)));
+        // One undo step, and for the page Pops one drag.
+        self.act(Consequence::Begin(None));
+        edits.into_iter().for_each(|edit| drop(self.apply(edit)));
+        self.act(Consequence::Commit);
+        others.into_iter().for_each(|action| drop(self.apply(action)));
     }
 
     fn enter_tour(&mut self, number: usize) {
@@ -59,57 +40,27 @@ impl Session {
         let step = &steps[number.min(steps.len() - 1)];
         let document = match step.document() {
             Ok(document) => document,
-            Err(error) => return self.fail(error.to_string()),
+            Err(error) => return drop(self.act(Outcome::fail(error.to_string()))),
         };
-        let done = self.tour.take().map(TourState::done).unwrap_or_default();
-        self.cancel_bake();
-        let own = self.own.take().unwrap_or_else(|| Box::new(self.paused()));
-        let preferences = Preferences { offers_tour: false, ..self.preferences };
-        let playback = self.playback.restarted(&document.timeline);
-        let files = std::mem::take(&mut self.files);
-        *self = Self { files, playback, ..Self::with_document(preferences, document) };
-        self.refresh();
-        self.reset_transport();
-        self.preferences.explain = step.tab.is_some();
-        self.preferences.timeline_open = Some(false);
-        step.tab.into_iter().for_each(|tab| self.show_tab(tab));
+        self.enter_scene(document, |start, done| TourState::new(number, start, done));
+        let preferences = Preferences {
+            explain: step.tab.is_some(),
+            timeline_open: Some(false),
+            ..*self.preferences()
+        };
         let joints = self.skeleton().iter();
         let selected = joints.filter(|(_, joint)| Some(joint.name.as_str()) == step.select);
-        self.select(selected.map(|(id, _)| id).collect());
-        self.tour = Some(TourState::new(number, self.shown().clone(), done));
-        self.own = Some(own);
-    }
-
-    /// Ends all changes that are under way, and returns the session as it is then.
-    fn paused(&mut self) -> Self {
-        self.commit_edit();
-        self.end_glide();
-        self.apply_playback(PlaybackAction::Play(false));
-        self.clone()
-    }
-
-    /// Puts the user's document back. Files and those preferences that the tour does not set are
-    /// kept as they are now.
-    pub(in crate::session) fn leave_tour(&mut self) {
-        let Some(own) = self.own.take() else { return };
-        self.cancel_bake();
-        let Preferences { explain, arm_tab, skeleton_tab, timeline_open, curves, .. } =
-            own.preferences;
-        let preferences = Preferences {
-            explain,
-            arm_tab,
-            skeleton_tab,
-            timeline_open,
-            curves,
-            ..self.preferences
-        };
-        let files = std::mem::take(&mut self.files);
-        *self = Self { files, preferences, ..*own };
+        let selected = Consequence::Select(selected.map(|(id, _)| id).collect());
+        self.act(
+            Outcome::from(Consequence::Prefer(preferences))
+                .and(step.tab.map(Consequence::ShowTab))
+                .and(selected),
+        );
     }
 
     /// Shows the result of the step once its task is done.
     pub(in crate::session) fn watch_tour(&mut self) {
-        let is_met = self.tour.as_ref().is_some_and(|tour| {
+        let is_met = self.tour().is_some_and(|tour| {
             !tour.shows_result()
                 && tour.step().is_some_and(|step| step.goal.is_met(self, tour.start()))
         });
@@ -121,11 +72,11 @@ impl Session {
     /// Prepares the tour for an action on files, and returns whether the action can be applied. An
     /// action on the user's document ends the tour; the scenes of the tour cannot be saved.
     pub(in crate::session) fn prepare_tour(&mut self, action: &FileAction) -> bool {
-        if self.tour.is_none() {
+        if self.tour().is_none() {
             return true;
         }
         if action.saves_document() {
-            self.fail("leave the tour first: its scenes are not saved");
+            self.act(Outcome::fail("leave the tour first: its scenes are not saved"));
             return false;
         }
         if action.concerns_document() {

@@ -4,9 +4,9 @@ use crate::document::{Arm, Track};
 use crate::kinematics::chain_ik::{Method, Status};
 use crate::kinematics::pop::ElbowStep;
 use crate::kinematics::soft_reach::SoftReach;
-use crate::session::pops::{PopSampleKind, Spike};
+use crate::session::arm::pops::{PopSampleKind, Spike};
 use crate::session::session::Session;
-use crate::session::solver_run::SolverRun;
+use crate::session::solver::run::SolverRun;
 
 /// A number of the scene, as text; `None` while the scene does not have it.
 type Figure = fn(&Session) -> Option<String>;
@@ -174,7 +174,7 @@ fn bow(session: &Session, influence: f32) -> Option<String> {
 
 /// The solvers of the race that have reached the target, each with its iterations.
 fn racers(session: &Session) -> Option<impl Iterator<Item = (Method, u32)> + '_> {
-    let race = session.comparison().filter(|race| !race.is_running())?;
+    let race = session.solvers().comparison().filter(|race| !race.is_running())?;
     let reports = race.runs().map(SolverRun::report);
     let reached = reports.filter(|report| report.status == Status::Converged);
     Some(reached.map(|report| (report.method, report.iterations)))
@@ -190,7 +190,7 @@ fn most_iterations(session: &Session) -> Option<(Method, u32)> {
 
 /// Distance of the solver two-bone from the target at the end of the race.
 fn two_bone_miss(session: &Session) -> Option<String> {
-    let race = session.comparison().filter(|race| !race.is_running())?;
+    let race = session.solvers().comparison().filter(|race| !race.is_running())?;
     let report = race.runs().map(SolverRun::report).find(|it| it.method == Method::TwoBone)?;
     Some(distance(session, report.error))
 }

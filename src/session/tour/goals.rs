@@ -9,11 +9,12 @@ use crate::document::{Document, TwistReferenceKind};
 use crate::kinematics::chain_ik::Status;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::session::action::Action;
-use crate::session::edit_action::EditAction;
-use crate::session::playback_action::PlaybackAction;
-use crate::session::pose_mode::PoseMode;
+use crate::session::arm::edits::ArmEdit;
+use crate::session::parts::PoseMode;
+use crate::session::playback::PlaybackAction;
 use crate::session::session::Session;
-use crate::session::solver_action::SolverAction;
+use crate::session::skeleton::joints::JointEdit;
+use crate::session::solver::solvers::SolverAction;
 
 /// Smallest distance that counts as a move, as a fraction of the length of the straight arm.
 const MOVE: f32 = 0.05;
@@ -90,10 +91,7 @@ fn moved_the_hand_by_fk(session: &Session, start: &Document) -> bool {
 }
 
 fn move_the_hand_by_fk(_: &Session) -> Vec<Action> {
-    vec![
-        EditAction::SwitchPoseMode(PoseMode::Angles).into(),
-        EditAction::SetBend(0.5 * FRAC_PI_2).into(),
-    ]
+    vec![ArmEdit::SwitchPoseMode(PoseMode::Angles).into(), ArmEdit::SetBend(0.5 * FRAC_PI_2).into()]
 }
 
 fn bent_the_elbow_at_a_right_angle(session: &Session, _: &Document) -> bool {
@@ -105,7 +103,7 @@ fn bend_the_elbow_at_a_right_angle(session: &Session) -> Vec<Action> {
     let cursor = session.arm().cursor_in_root();
     let bones = session.arm().bones;
     let distance = bones.upper().hypot(bones.lower());
-    vec![EditAction::SetHand(cursor.normalize_or_zero() * distance).into()]
+    vec![ArmEdit::SetHand(cursor.normalize_or_zero() * distance).into()]
 }
 
 fn turned_the_elbow_along_its_circle(session: &Session, start: &Document) -> bool {
@@ -115,7 +113,7 @@ fn turned_the_elbow_along_its_circle(session: &Session, start: &Document) -> boo
 }
 
 fn turn_the_elbow_along_its_circle(session: &Session) -> Vec<Action> {
-    vec![EditAction::SetTwist(session.arm().twist + 1.1 * FRAC_PI_2).into()]
+    vec![ArmEdit::SetTwist(session.arm().twist + 1.1 * FRAC_PI_2).into()]
 }
 
 fn closed_the_hole(session: &Session, _: &Document) -> bool {
@@ -124,7 +122,7 @@ fn closed_the_hole(session: &Session, _: &Document) -> bool {
 
 fn close_the_hole(session: &Session) -> Vec<Action> {
     let bones = session.arm().bones;
-    vec![EditAction::SetLower(bones.upper()).into()]
+    vec![ArmEdit::SetLower(bones.upper()).into()]
 }
 
 fn moved_the_cursor_out_of_reach(session: &Session, _: &Document) -> bool {
@@ -137,7 +135,7 @@ fn move_the_cursor_out_of_reach(session: &Session) -> Vec<Action> {
     let cursor = session.arm().cursor_in_root();
     let bones = session.arm().bones;
     let distance = 1.3 * bones.outer_limit();
-    vec![EditAction::SetHand(cursor.normalize_or_zero() * distance).into()]
+    vec![ArmEdit::SetHand(cursor.normalize_or_zero() * distance).into()]
 }
 
 fn softened_the_limits(session: &Session, _: &Document) -> bool {
@@ -146,7 +144,7 @@ fn softened_the_limits(session: &Session, _: &Document) -> bool {
 
 fn soften_the_limits(_: &Session) -> Vec<Action> {
     let soft = SoftReach::new(0.1, 1.0, 0.0);
-    soft.into_iter().map(|soft| EditAction::SetSoftReach(soft).into()).collect()
+    soft.into_iter().map(|soft| ArmEdit::SetSoftReach(soft).into()).collect()
 }
 
 fn chose_transport(session: &Session, _: &Document) -> bool {
@@ -155,7 +153,7 @@ fn chose_transport(session: &Session, _: &Document) -> bool {
 
 fn choose_transport(session: &Session) -> Vec<Action> {
     let cursor = session.arm().cursor_in_root();
-    let transport = EditAction::SetTwistReference(TwistReferenceKind::Transport);
+    let transport = ArmEdit::SetTwistReference(TwistReferenceKind::Transport);
     core::iter::once(transport.into()).chain(moves(round_trip(cursor))).collect()
 }
 
@@ -170,8 +168,8 @@ fn moved_the_shoulder_and_kept_the_hand(session: &Session, start: &Document) -> 
 fn move_the_shoulder_and_keep_the_hand(session: &Session) -> Vec<Action> {
     let bones = session.arm().bones;
     vec![
-        EditAction::PinHand(true).into(),
-        EditAction::SetRoot(session.arm().root + Vec3::Y * (0.2 * bones.outer_limit())).into(),
+        ArmEdit::PinHand(true).into(),
+        ArmEdit::SetRoot(session.arm().root + Vec3::Y * (0.2 * bones.outer_limit())).into(),
     ]
 }
 
@@ -180,11 +178,11 @@ fn plays_by_ik(session: &Session, _: &Document) -> bool {
 }
 
 fn play_by_ik(_: &Session) -> Vec<Action> {
-    vec![EditAction::SwitchPoseMode(PoseMode::Hand).into(), PlaybackAction::Play(true).into()]
+    vec![ArmEdit::SwitchPoseMode(PoseMode::Hand).into(), PlaybackAction::Play(true).into()]
 }
 
 fn raced_all_solvers(session: &Session, _: &Document) -> bool {
-    session.comparison().is_some_and(|race| {
+    session.solvers().comparison().is_some_and(|race| {
         !race.is_running() && race.runs().any(|run| run.report().status == Status::Converged)
     })
 }
@@ -200,12 +198,12 @@ fn left_a_target_out_of_reach(session: &Session, _: &Document) -> bool {
 
 fn leave_a_target_out_of_reach(session: &Session) -> Vec<Action> {
     let at: Vec3 = session.skeleton().transform().translation.into();
-    vec![EditAction::SetTranslation(at + Vec3::Y * 0.3).into()]
+    vec![JointEdit::SetTranslation(at + Vec3::Y * 0.3).into()]
 }
 
 /// Moves of the hand through points in Root space.
 fn moves(points: impl Iterator<Item = Vec3>) -> Vec<Action> {
-    points.map(|point| EditAction::SetHand(point).into()).collect()
+    points.map(|point| ArmEdit::SetHand(point).into()).collect()
 }
 
 /// A cone of directions around the middle of `from` and +y, once around and back.

@@ -1,11 +1,11 @@
 //! The tour: steps that each show a scene, ask a question, and notice when the user has done a
 //! task.
 
-mod apply;
+pub mod apply;
 mod figures;
 mod goals;
-mod state;
-mod steps;
+pub mod state;
+pub mod steps;
 
 pub use figures::filled;
 pub use state::{TourAction, TourState};

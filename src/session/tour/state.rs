@@ -74,7 +74,7 @@ impl TourState {
     }
 
     /// For each step, whether the user has done its task.
-    pub(super) fn done(self) -> Vec<bool> {
+    pub(in crate::session) fn done(self) -> Vec<bool> {
         self.done
     }
 

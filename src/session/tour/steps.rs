@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::io::{OpenError, OpenOptions, parse};
-use crate::session::panel_tab::PanelTab;
+use crate::session::preferences::PanelTab;
 
 /// A step of the tour.
 ///

@@ -7,7 +7,7 @@ use egui::{DragValue, Grid, Id, Ui};
 use super::path::{browse, folder, prompt, unless_there};
 use crate::export::{ExportFormat, ExportOptions};
 use crate::io::{ExportFrames, ExportKind, ExportOption};
-use crate::session::{Actions, EditAction, Export, FileAction, PathDialog, Session, ShellAction};
+use crate::session::{Actions, DisplayEdit, Export, FileAction, PathDialog, Session, ShellAction};
 use crate::ui::widgets::{self, NumberField};
 
 /// The formats in the order of their buttons: motions before single pictures.
@@ -82,7 +82,7 @@ pub(in crate::ui) fn ui(
                 digits: 4,
                 tooltip,
             }
-            .show(ui, session, actions, |metres| EditAction::SetMetres(Some(metres)));
+            .show(ui, session, actions, |metres| DisplayEdit::SetMetres(Some(metres)));
             ui.end_row();
         }
         if changed != *export {
@@ -143,7 +143,7 @@ fn length(ui: &mut Ui, session: &Session, frame_rate: f64, is_picture: bool) {
 }
 
 fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actions: &mut Actions) {
-    let why_not = if session.export_job().is_some() {
+    let why_not = if session.files().job().is_some() {
         Some("Another export is running")
     } else if ExportFormat::of(&export.path).is_err() {
         Some("The file extension must name a format")
@@ -154,7 +154,7 @@ fn buttons(ui: &mut Ui, session: &Session, export: &Export, entered: bool, actio
         let accept = widgets::primary_button(ui, "Export", why_not);
         if (accept.clicked() || entered) && why_not.is_none() {
             let back = PathDialog::Export(export.clone());
-            let path = session.full_path(&back, &export.path);
+            let path = session.files().full_path(&back, &export.path);
             let action = FileAction::Export(Export { path: path.clone(), ..export.clone() });
             actions.push(unless_there(session, path, action, back));
         }

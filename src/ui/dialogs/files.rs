@@ -53,7 +53,7 @@ pub(super) fn file_changed(ui: &mut Ui, path: &Path, actions: &mut Actions) {
 
 pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.set_width(380.0);
-    let path = session.export_job().map(|job| job.path.as_path());
+    let path = session.files().job().map(|job| job.path.as_path());
     let name = path.and_then(Path::file_name).unwrap_or_default().to_string_lossy();
     ui.label(format!("{name} is being exported. Quitting now discards it."));
     ui.add_space(4.0);
@@ -69,7 +69,7 @@ pub(super) fn quit_during_export(ui: &mut Ui, session: &Session, actions: &mut A
 
 pub(super) fn unsaved(ui: &mut Ui, session: &Session, then: &FileAction, actions: &mut Actions) {
     ui.set_width(380.0);
-    let name = session.document_name().unwrap_or_else(|| "The document".to_owned());
+    let name = session.files().name().unwrap_or_else(|| "The document".to_owned());
     ui.label(format!("{name} has unsaved changes."));
     ui.add_space(4.0);
     ui.horizontal(|ui| {

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::path::{first_button, prompt};
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, Dialog, EditAction, Session, ShellAction};
+use crate::session::{Actions, Dialog, JointEdit, Session, ShellAction};
 use crate::ui::widgets;
 
 pub(super) fn rename(
@@ -33,7 +33,7 @@ pub(super) fn rename(
     ui.horizontal(|ui| {
         let accept = widgets::primary_button(ui, "Rename", why_not);
         if (accept.clicked() || entered) && why_not.is_none() {
-            actions.push(EditAction::RenameJoint { joint, name: typed.trim().to_owned() });
+            actions.push(JointEdit::RenameJoint { joint, name: typed.trim().to_owned() });
         }
         if ui.button("Cancel").clicked() {
             actions.push(ShellAction::CloseDialog);
@@ -58,10 +58,10 @@ pub(super) fn delete_joints(
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         if first_button(ui, "Keep children") {
-            actions.push(EditAction::DissolveJoints(joints.to_vec()));
+            actions.push(JointEdit::DissolveJoints(joints.to_vec()));
         }
         if ui.button("Delete children too").clicked() {
-            actions.push(EditAction::DeleteJoints(joints.to_vec()));
+            actions.push(JointEdit::DeleteJoints(joints.to_vec()));
         }
         if ui.button("Cancel").clicked() {
             actions.push(ShellAction::CloseDialog);

@@ -77,7 +77,7 @@ pub(super) fn ask_path(
         let why_not = typed.is_empty().then_some("Enter a path first");
         let accepted = widgets::primary_button(ui, question.accept, why_not).clicked();
         if (accepted || entered) && !typed.is_empty() {
-            let path = session.full_path(&dialog, Path::new(typed));
+            let path = session.files().full_path(&dialog, Path::new(typed));
             let action = (question.action)(path.clone());
             actions.push(match dialog {
                 PathDialog::Open { .. } | PathDialog::LocateSkin { .. } => action.into(),
@@ -100,7 +100,7 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
 
 /// Shows the folder in which the dialog's path lies, also if the path is typed without a folder.
 pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog) {
-    let folder = session.folder_of(dialog);
+    let folder = session.files().folder_of(dialog);
     ui.add(Label::new(RichText::new(format!("In {}", folder.display())).weak()).truncate());
 }
 
@@ -113,7 +113,7 @@ pub(in crate::ui) fn unless_there(
     action: FileAction,
     back: PathDialog,
 ) -> Action {
-    let is_own = session.file() == Some(path.as_path()) && !session.has_changed_file();
+    let is_own = session.files().file() == Some(path.as_path()) && !session.files().has_changed();
     match existing(&path).filter(|_| !is_own) {
         Some(path) => {
             let then = Box::new(action);

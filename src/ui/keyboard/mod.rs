@@ -14,7 +14,7 @@ use crate::session::{
 
 /// Handles shortcuts of the whole window. In a modal dialog only Esc acts.
 pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
-    if session.is_asking() {
+    if session.shell().is_asking() {
         let escapes = ui.input(|input| input.key_pressed(Key::Escape));
         if escapes && !egui::Popup::is_any_open(ui.ctx()) {
             actions.push(ShellAction::CloseDialog);
@@ -68,13 +68,13 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
             // The timeline cancels its own drag.
         } else if session.is_editing() {
             actions.push(TransactionAction::Cancel);
-        } else if session.view_drag().is_some() {
+        } else if session.view().drag().is_some() {
             actions.push(ViewAction::Cancel);
         } else if session.dialog().is_some() {
             actions.push(ShellAction::CloseDialog);
         } else if focus::was_typing(ui) || egui::Popup::is_any_open(ui.ctx()) {
             // egui leaves the text field or closes the popup.
-        } else if session.shown_iteration().is_some() {
+        } else if session.solvers().shown_iteration().is_some() {
             actions.push(SolverAction::Reset);
         } else if !session.selection().is_empty() {
             actions.push(SelectAction::Joints(Vec::new()));

@@ -5,7 +5,7 @@ use glam::Vec2;
 
 use crate::document::{AxisView, RigKind};
 use crate::session::{
-    Actions, Constraint, EditAction, PointDrag, SelectAction, Session, SolverAction,
+    Actions, Constraint, JointEdit, PointDrag, SelectAction, Session, SolverAction,
     TransactionAction, ViewAction,
 };
 use crate::ui::commands;
@@ -13,7 +13,7 @@ use crate::ui::commands;
 /// Handles shortcuts of single keys, for use while the viewport, the outliner, the timeline or no
 /// widget has the keyboard focus.
 pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions) {
-    if session.is_asking() {
+    if session.shell().is_asking() {
         return;
     }
     if session.drag().is_some() {
@@ -33,7 +33,7 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(SelectAction::Joints(session.skeleton_pose().ids().collect()));
     }
     if pressed(Key::A) {
-        actions.push(EditAction::AddJoint { tip: None });
+        actions.push(JointEdit::AddJoint { tip: None });
     }
     if pressed(Key::T) {
         actions.extend(commands::toggle_target(session));
@@ -45,12 +45,12 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(commands::delete(session));
     }
     if pressed(Key::R) {
-        actions.push(SolverAction::Run(!session.is_running()));
+        actions.push(SolverAction::Run(!session.solvers().is_running()));
     }
     if pressed(Key::S) {
         actions.push(SolverAction::Step);
     }
-    if let Some(shown) = session.shown_iteration() {
+    if let Some(shown) = session.solvers().shown_iteration() {
         let previous = shown.previous.filter(|_| pressed(Key::Comma));
         let next = shown.next.filter(|_| pressed(Key::Period));
         actions.extend(previous.or(next).map(SolverAction::Show));

@@ -7,7 +7,7 @@ use egui::{Color32, ComboBox, RichText, TextStyle, Ui, vec2};
 use glam::Vec3;
 
 use crate::document::{Arm, Channel, HandSpace, TwistReferenceKind};
-use crate::session::{Actions, EditAction, PoseMode, Session, TransactionAction};
+use crate::session::{Actions, ArmEdit, PoseMode, Session, TransactionAction};
 use crate::ui::widgets::{
     self, AXES, KeyButton, PointSliders, Slider, angle_slider, euler_sliders, soft_reach_sliders,
 };
@@ -57,7 +57,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         channel: None,
     };
     if !arm.is_pinned() {
-        return hand.show(ui, session, actions, EditAction::SetHand);
+        return hand.show(ui, session, actions, ArmEdit::SetHand);
     }
     let pinned = PointSliders {
         value: arm.cursor_in_world(),
@@ -66,7 +66,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         tooltip: "Move the Cursor, the hand's target, in world space",
         ..hand
     };
-    pinned.show(ui, session, actions, EditAction::SetPin);
+    pinned.show(ui, session, actions, ArmEdit::SetPin);
 }
 
 /// Shows the switch of the pin and its diamond, which also keys the point that the Cursor has.
@@ -77,7 +77,7 @@ fn pin(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             .checkbox(&mut pinned, PINNED)
             .on_hover_text("Keep the hand in place when the Root moves");
         if check.changed() {
-            actions.push(EditAction::PinHand(pinned));
+            actions.push(ArmEdit::PinHand(pinned));
         }
         let others = vec![Channel::of_cursor(session.arm())];
         KeyButton { channel: Channel::Pinned, others }.show(ui, session, PINNED, actions);
@@ -96,7 +96,7 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         disabled: None,
         channel: None,
     };
-    root.show(ui, session, actions, EditAction::SetRoot);
+    root.show(ui, session, actions, ArmEdit::SetRoot);
 }
 
 fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -114,7 +114,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: unit,
         ..Slider::default()
     };
-    upper.show(ui, session, actions, EditAction::SetUpper);
+    upper.show(ui, session, actions, ArmEdit::SetUpper);
     let lower = Slider {
         name: "Lower length",
         label: "Lower d_2",
@@ -126,7 +126,7 @@ fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: unit,
         ..Slider::default()
     };
-    lower.show(ui, session, actions, EditAction::SetLower);
+    lower.show(ui, session, actions, ArmEdit::SetLower);
 }
 
 /// Reason shown on controls that act only in IK.
@@ -160,14 +160,14 @@ fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step: 0.1,
         ..Slider::default()
     };
-    blend.show_after(ui, session, actions, EditAction::SetInfluence, |ui, actions| {
+    blend.show_after(ui, session, actions, ArmEdit::SetInfluence, |ui, actions| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (mode, name, whole, tooltip) in modes {
             let chosen = influence == whole;
             let button = egui::Button::selectable(chosen, name).frame_when_inactive(true);
             let button = button.min_size(vec2(WIDTH, 0.0));
             if ui.add(button).on_hover_text(tooltip).clicked() && !chosen {
-                actions.push(EditAction::SwitchPoseMode(mode));
+                actions.push(ArmEdit::SwitchPoseMode(mode));
             }
         }
         ui.spacing_mut().item_spacing.x = 8.0;
@@ -182,12 +182,10 @@ fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         (2, "Shoulder pitch", "Raise the Upper limb, second"),
         (0, "Shoulder roll", "Turn the Upper limb about itself, third"),
     ];
-    let slide = |ui: &mut Ui,
-                 slider: Slider<'_>,
-                 actions: &mut Actions,
-                 set: &dyn Fn(f32) -> EditAction| {
-        slider.show(ui, session, actions, |degrees| set(degrees.to_radians()));
-    };
+    let slide =
+        |ui: &mut Ui, slider: Slider<'_>, actions: &mut Actions, set: &dyn Fn(f32) -> ArmEdit| {
+            slider.show(ui, session, actions, |degrees| set(degrees.to_radians()));
+        };
     for (axis, name, tooltip) in shoulder {
         let slider = angle_slider(name, tooltip, fk.shoulder[axis]);
         let colour = style::colour(style::palette(ui).axes[axis]);
@@ -196,18 +194,18 @@ fn angles(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let set = |radians| {
             let mut angles = fk.shoulder;
             angles[axis] = radians;
-            EditAction::SetShoulder(angles)
+            ArmEdit::SetShoulder(angles)
         };
         slide(ui, slider, actions, &set);
     }
     let bend = angle_slider("Elbow bend", "Bend the elbow: 0° straight, 180° folded", fk.bend);
     let bend = Slider { label: "Bend β", range: (0.0, 180.0), ..bend };
-    slide(ui, bend, actions, &EditAction::SetBend);
+    slide(ui, bend, actions, &ArmEdit::SetBend);
     ui.add_space(2.0);
     if widgets::button(ui, "Straighten", "Set all four angles to 0", None) {
         actions.push(TransactionAction::Begin);
-        actions.push(EditAction::SetShoulder(Vec3::ZERO));
-        actions.push(EditAction::SetBend(0.0));
+        actions.push(ArmEdit::SetShoulder(Vec3::ZERO));
+        actions.push(ArmEdit::SetBend(0.0));
         actions.push(TransactionAction::Commit);
     }
 }
@@ -230,8 +228,7 @@ pub(in crate::ui) fn socket_twist(ui: &mut Ui, session: &Session, actions: &mut 
         disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
         ..Slider::default()
     };
-    slider
-        .show(ui, session, actions, |degrees| EditAction::SetTwist((degrees % 360.0).to_radians()));
+    slider.show(ui, session, actions, |degrees| ArmEdit::SetTwist((degrees % 360.0).to_radians()));
     if arm.twist_reference == TwistReferenceKind::Pole {
         pole(ui, session, actions);
     }
@@ -270,7 +267,7 @@ fn choice(ui: &mut Ui, chosen: TwistReferenceKind, actions: &mut Actions) {
             let item = ui.selectable_label(twist_reference == chosen, twist_reference.name());
             let item = item.on_hover_text(labels::twist_reference(twist_reference));
             if item.clicked() && twist_reference != chosen {
-                actions.push(EditAction::SetTwistReference(twist_reference));
+                actions.push(ArmEdit::SetTwistReference(twist_reference));
             }
         }
     });
@@ -292,12 +289,12 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
         channel: None,
     };
-    pole.show(ui, session, actions, EditAction::SetPole);
+    pole.show(ui, session, actions, ArmEdit::SetPole);
 }
 
 pub(in crate::ui) fn soft_limits(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let soft_reach = session.arm().soft_reach;
-    soft_reach_sliders(ui, session, "", soft_reach, actions, EditAction::SetSoftReach);
+    soft_reach_sliders(ui, session, "", soft_reach, actions, ArmEdit::SetSoftReach);
 }
 
 pub(in crate::ui) fn hand_orientation(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -310,7 +307,7 @@ pub(in crate::ui) fn hand_orientation(ui: &mut Ui, session: &Session, actions: &
         for (space, name, tooltip) in spaces {
             if ui.radio(arm.hand_orientation.space == space, name).on_hover_text(tooltip).clicked()
             {
-                actions.push(EditAction::SetHandSpace(space));
+                actions.push(ArmEdit::SetHandSpace(space));
             }
         }
     });
@@ -325,7 +322,7 @@ pub(in crate::ui) fn hand_orientation(ui: &mut Ui, session: &Session, actions: &
         tooltip,
         arm.hand_orientation.angles,
         actions,
-        EditAction::SetHandOrientation,
+        ArmEdit::SetHandOrientation,
     );
     widgets::pair(ui, "Forearm roll τ", |ui| {
         let roll = format!("{:.1}°", arm.roll(session.pose()).to_degrees());

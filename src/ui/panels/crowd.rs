@@ -96,7 +96,7 @@ fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
 }
 
 fn moving(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let mut moving = session.is_crowd_moving();
+    let mut moving = session.view().is_crowd_animated();
     if ui.checkbox(&mut moving, "Moving targets").changed() {
         actions.push(ViewAction::AnimateCrowd(moving));
     }

@@ -12,7 +12,7 @@ use egui::{ScrollArea, Ui};
 
 use super::widgets::{self, Segment, Tab};
 use crate::document::{Overlay, RigKind};
-use crate::session::{Actions, ArmFigure, EditAction, PanelTab, Session, ViewAction};
+use crate::session::{Actions, ArmFigure, DisplayEdit, PanelTab, Session, ViewAction};
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
@@ -60,7 +60,7 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         },
     ];
     let chosen = widgets::segments(ui, session.rig(), &rigs);
-    actions.extend(chosen.map(EditAction::ShowRig));
+    actions.extend(chosen.map(DisplayEdit::ShowRig));
 }
 
 fn guides(session: &Session) -> &'static [Overlay] {
@@ -80,13 +80,13 @@ fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     ui.horizontal(|ui| {
         if ui.button(name).on_hover_text(tooltip).clicked() {
-            actions.push(EditAction::ResetPose);
+            actions.push(DisplayEdit::ResetPose);
         }
         let all = ui
             .button("Reset all")
             .on_hover_text("Reset pose, guides, display and view; hide the crowd");
         if all.clicked() {
-            actions.push(EditAction::ResetAll);
+            actions.push(DisplayEdit::ResetAll);
         }
     });
 }

@@ -7,7 +7,7 @@ use super::dope_sheet::row::DopeSheetRow;
 use super::drag;
 use crate::document::Channel;
 use crate::kinematics::spline::Interpolation;
-use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
+use crate::session::{Actions, KeysEdit, PlaybackAction, SelectAction, Session};
 use crate::ui::{labels, widgets};
 
 /// Row, and time in seconds, of the right click; the row is `None` below the last row.
@@ -40,14 +40,14 @@ pub(in crate::ui) fn of_rows(
             && widgets::button(ui, "Add key here", "Add keys at this time", None)
         {
             actions.push(PlaybackAction::SetTime(time));
-            actions.push(EditAction::Key(row.channels(session)));
+            actions.push(KeysEdit::Key(row.channels(session)));
             ui.close();
         }
         of_keys(ui, session, actions);
         let nothing = (!session.can_paste()).then_some("Copy keys first");
         if widgets::button(ui, "Paste here", "Paste the copied keys from this time on", nothing) {
             actions.push(PlaybackAction::SetTime(time));
-            actions.push(EditAction::PasteKeys);
+            actions.push(KeysEdit::PasteKeys);
             ui.close();
         }
         if let Some(DopeSheetRow::Channel(channel)) = row {
@@ -65,7 +65,7 @@ pub(in crate::ui) fn of_channel(
 ) {
     response.context_menu(|ui| {
         if widgets::button(ui, "Add key", "Add a key at the playhead", None) {
-            actions.push(EditAction::Key(vec![channel]));
+            actions.push(KeysEdit::Key(vec![channel]));
             ui.close();
         }
         clear(ui, session, channel, actions);
@@ -101,13 +101,13 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let why_not = none.or(no_angles.filter(|_| interpolation == Interpolation::Slerp));
         let button = ui.add_enabled(why_not.is_none(), button).on_hover_text(tooltip);
         if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
-            actions.push(EditAction::SetInterpolation(keys.to_vec(), interpolation));
+            actions.push(KeysEdit::SetInterpolation(keys.to_vec(), interpolation));
             ui.close();
         }
     }
     let tooltip = "Let the neighbouring keys set the slopes again";
     if widgets::button(ui, "Automatic tangents", tooltip, none) {
-        actions.push(EditAction::SetSlopes(keys.to_vec(), None));
+        actions.push(KeysEdit::SetSlopes(keys.to_vec(), None));
         ui.close();
     }
     ui.separator();
@@ -122,7 +122,7 @@ fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.close();
     }
     if widgets::button(ui, "Delete keys", "Delete the selected keys (Delete)", none) {
-        actions.push(EditAction::DeleteKeys(keys.to_vec()));
+        actions.push(KeysEdit::DeleteKeys(keys.to_vec()));
         ui.close();
     }
 }
@@ -131,7 +131,7 @@ fn clear(ui: &mut Ui, session: &Session, channel: Channel, actions: &mut Actions
     let name = labels::channel(session, channel);
     let tooltip = format!("Delete all keys of {name}");
     if widgets::button(ui, "Delete all keys of channel", &tooltip, None) {
-        actions.push(EditAction::ClearChannels(vec![channel]));
+        actions.push(KeysEdit::ClearChannels(vec![channel]));
         ui.close();
     }
 }

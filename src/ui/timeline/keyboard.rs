@@ -3,7 +3,7 @@
 use egui::{Event, EventFilter, Key, Modifiers, Ui};
 
 use super::{drag, ruler, time_scale};
-use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session, ShellAction};
+use crate::session::{Actions, KeysEdit, PlaybackAction, SelectAction, Session, ShellAction};
 use crate::ui::keyboard::{focus, viewport};
 
 /// Handles shortcuts of keys and playback in the whole window, except during a drag in the viewport
@@ -11,7 +11,7 @@ use crate::ui::keyboard::{focus, viewport};
 pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Actions) {
     let is_busy = ui.text_edit_focused()
         || session.drag().is_some()
-        || session.is_asking()
+        || session.shell().is_asking()
         || egui::Popup::is_any_open(ui.ctx());
     if is_busy {
         return;
@@ -20,9 +20,9 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     let pressed = |key| ui.input(|input| input.key_pressed(key));
     let modifiers = ui.input(|input| input.modifiers);
     if pressed(Key::K) && modifiers.shift_only() {
-        actions.push(EditAction::Key(session.all_channels()));
+        actions.push(KeysEdit::Key(session.all_channels()));
     } else if pressed(Key::K) && modifiers.is_none() {
-        actions.push(EditAction::Key(session.channels_to_key()));
+        actions.push(KeysEdit::Key(session.channels_to_key()));
     }
     if focus::leaves_letters(ui) && pressed(Key::Space) && modifiers.is_none() {
         if session.is_playing() || session.has_motion() {
@@ -38,12 +38,12 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
         input.events.iter().any(is_paste)
     });
     if session.can_paste() && (pasted || consumed(Modifiers::COMMAND, Key::V)) {
-        actions.push(EditAction::PasteKeys);
+        actions.push(KeysEdit::PasteKeys);
     }
     if has_the_word(ui, session) {
         let delete = consumed(Modifiers::NONE, Key::Delete);
         if delete || consumed(Modifiers::NONE, Key::Backspace) {
-            actions.push(EditAction::DeleteKeys(session.selected_keys().to_vec()));
+            actions.push(KeysEdit::DeleteKeys(session.selected_keys().to_vec()));
         }
     }
 }

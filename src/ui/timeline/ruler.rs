@@ -160,7 +160,7 @@ pub(in crate::ui) fn auto_key_note(
 ) {
     /// Distance from the ruler, in points.
     const GAP: f32 = 6.0;
-    if !session.is_auto_key_news() {
+    if !session.playback().is_auto_key_news() {
         return;
     }
     let x = scale.x(session.time()).clamp(ruler.left(), ruler.right());

@@ -48,7 +48,7 @@ struct RangeOwner {
 impl RangeOwner {
     fn of(session: &Session) -> Self {
         let Timeline { start, end, .. } = session.document().timeline;
-        Self { document: session.first_revision(), timeline: (start, end) }
+        Self { document: session.history().first_revision(), timeline: (start, end) }
     }
 }
 

@@ -6,7 +6,7 @@ use egui::{ComboBox, Rect, RichText, Ui, vec2};
 use super::time_scale::TimeScale;
 use super::{areas, keyboard, ruler};
 use crate::document::Timeline;
-use crate::session::{Action, Actions, EditAction, PlaybackAction, Session, ViewAction};
+use crate::session::{Action, Actions, KeysEdit, PlaybackAction, Session, ViewAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
 
@@ -121,7 +121,7 @@ fn to_end(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let looping = session.is_looping();
+    let looping = session.playback().is_looping();
     let tooltip = "Repeat from the start when playback reaches the end";
     let on = Some(looping);
     if (IconButton { icon: Icon::Loop, name: "Loop", tooltip, on, disabled: None }).show(ui) {
@@ -229,13 +229,13 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let why = channels.is_empty().then_some(nothing);
     let tooltip = "Key the selection, else hand and Socket twist (K)";
     if widgets::button(ui, "Key", tooltip, why) {
-        actions.push(EditAction::Key(channels));
+        actions.push(KeysEdit::Key(channels));
     }
     let tooltip = "Key every channel of the pose (Shift+K)";
     if widgets::button(ui, "Key all", tooltip, None) {
-        actions.push(EditAction::Key(session.all_channels()));
+        actions.push(KeysEdit::Key(session.all_channels()));
     }
-    let on = session.is_auto_key();
+    let on = session.playback().is_auto_key();
     let accent = style::accent(ui);
     let text = RichText::new("Auto-key");
     let button = if on {
@@ -258,7 +258,7 @@ fn pace(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let speed = TimeField {
         name: "Speed",
         label: "Speed",
-        value: session.speed(),
+        value: session.playback().speed(),
         unit: "×",
         speed: 0.01,
         width: 52.0,
@@ -284,7 +284,7 @@ fn frame_rate(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         for frame_rate in rates {
             let chosen = frame_rate == timeline.frame_rate;
             if ui.selectable_label(chosen, name(frame_rate)).clicked() && !chosen {
-                actions.push(EditAction::SetTimeline(Timeline { frame_rate, ..timeline }));
+                actions.push(KeysEdit::SetTimeline(Timeline { frame_rate, ..timeline }));
             }
         }
     });
@@ -308,11 +308,11 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let is_editing = session.is_editing();
     let start = field("Start", timeline.start, "Set the start of the timeline");
     start.show(ui, roomy, is_editing, actions, |start| {
-        EditAction::SetTimeline(Timeline { start, ..timeline })
+        KeysEdit::SetTimeline(Timeline { start, ..timeline })
     });
     let end = field("End", timeline.end, "Set the end of the timeline");
     end.show(ui, roomy, is_editing, actions, |end| {
-        EditAction::SetTimeline(Timeline { end, ..timeline })
+        KeysEdit::SetTimeline(Timeline { end, ..timeline })
     });
 }
 

@@ -15,7 +15,7 @@ use super::{commands, mouse_hints, pose_summary, why};
 use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, EditAction, Grip,
+    Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, Grip, JointEdit,
     PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
 };
 use navigation::{motion, show_cursor, wheel};
@@ -44,13 +44,13 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
 
     let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
     let over = response.contains_pointer() && !on_view_axes;
-    let is_held = (held_grip.is_some() || session.view_drag().is_some())
+    let is_held = (held_grip.is_some() || session.view().drag().is_some())
         && !ui.input(|input| input.pointer.any_released());
     let pointed = mouse.filter(|_| over && !is_held);
     let pointed = pointed.map(|at| pointed_at(session, &screen, &gizmo, at));
     let Pointed { grip: pointed, lit } = pointed.unwrap_or_default();
     mouse_hints::set_pointed(ui, pointed);
-    if held_grip.is_none() && session.view_drag().is_none() {
+    if held_grip.is_none() && session.view().drag().is_none() {
         light_up(ui, session, lit, actions);
     }
     notes::drag_the_hand(ui, session, &screen);
@@ -193,7 +193,7 @@ fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actio
         Some(Grip::Ring(joint, axis)) => Some((joint, axis)),
         _ => None,
     };
-    if wiggled != session.wiggled() {
+    if wiggled != session.view().wiggled() {
         actions.push(SelectAction::Wiggle(wiggled));
     }
 }
@@ -232,7 +232,7 @@ fn select(
     if modifiers.command || is_first && modifiers.is_none() {
         let base = session.next_base();
         let at = screen.ray(mouse).meets_plane(base, screen.projection.forward);
-        actions.extend(at.map(|tip| EditAction::AddJoint { tip: Some(tip) }));
+        actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
         return;
     }
     let mut selection = if modifiers.shift { session.selection().to_vec() } else { Vec::new() };
@@ -269,7 +269,7 @@ fn advance(ui: &Ui, response: &Response, session: &Session, actions: &mut Action
         Event::MouseWheel { .. } | Event::Zoom(_) => true,
         _ => false,
     };
-    if session.is_gliding() && ui.input(|input| input.events.iter().any(is_input)) {
+    if session.view().is_gliding() && ui.input(|input| input.events.iter().any(is_input)) {
         actions.push(ViewAction::SetCamera(session.settled_camera()));
     }
     actions.push(PlaybackAction::Advance(ui.input(|input| input.time)));
@@ -294,7 +294,7 @@ fn press(
     gizmo: &Gizmo,
     actions: &mut Actions,
 ) -> ViewportDrag {
-    let mut drag = match (session.drag(), session.view_drag()) {
+    let mut drag = match (session.drag(), session.view().drag()) {
         (Some(_), _) => ViewportDrag::Grip,
         (None, Some(_)) => ViewportDrag::View,
         (None, None) => ViewportDrag::Nothing,
@@ -372,7 +372,7 @@ fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) 
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
     if free || session.drag().is_some() {
         keyboard::viewport::viewport(ui, session, actions);
-    } else if focus::leaves_letters(ui) && !session.is_asking() {
+    } else if focus::leaves_letters(ui) && !session.shell().is_asking() {
         keyboard::viewport::axis_views(ui, session, actions);
     }
     if response.has_focus() {

@@ -28,7 +28,7 @@ pub(in crate::ui) fn why_not_reached(
 ) {
     let is_shown = session.rig() == RigKind::Skeleton
         && session.crowd().is_none()
-        && session.solver_runs().next().is_none();
+        && session.solvers().runs().next().is_none();
     let Some(found) = why::found(ui, session).first().filter(|_| is_shown) else { return };
     let Some(report) = session.target_report(found.target) else { return };
     let Some(target) = screen.place(report.position) else { return };

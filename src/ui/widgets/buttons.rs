@@ -7,7 +7,7 @@ use egui::{
 };
 
 use crate::document::Channel;
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, KeysEdit, Session};
 use crate::ui::style;
 
 /// Shows a button and returns whether it was pressed. `disabled` is the reason why the button is
@@ -161,9 +161,9 @@ impl KeyButton {
         let response = self.button(ui, session, name, is_at_key, track.is_some());
         if response.clicked() {
             actions.push(if is_at_key {
-                EditAction::DeleteKeys(vec![(channel, time)])
+                KeysEdit::DeleteKeys(vec![(channel, time)])
             } else {
-                EditAction::Key([vec![channel], self.others].concat())
+                KeysEdit::Key([vec![channel], self.others].concat())
             });
         }
         response.on_hover_text(if is_at_key {

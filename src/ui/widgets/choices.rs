@@ -7,7 +7,7 @@ use egui::{
 };
 
 use crate::document::Overlay;
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, DisplayEdit, Session};
 use crate::ui::{labels, style, widgets};
 
 /// A tab that can be chosen.
@@ -149,7 +149,7 @@ pub(in crate::ui) fn check_boxes(
             let check_box = columns[index % count].add_enabled(disabled.is_none(), check_box);
             let check_box = check_box.on_hover_text(tooltip);
             if check_box.on_disabled_hover_text(disabled.unwrap_or_default()).changed() {
-                actions.push(EditAction::ShowOverlay(*overlay, shown));
+                actions.push(DisplayEdit::ShowOverlay(*overlay, shown));
             }
         }
     });

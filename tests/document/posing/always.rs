@@ -3,7 +3,7 @@
 use glam::{DQuat, Vec3};
 use ik_arm::document::{Channel, HandSpace, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBonePose;
-use ik_arm::session::{EditAction, PlaybackAction, PoseMode, Session, TransactionAction};
+use ik_arm::session::{ArmEdit, KeysEdit, PlaybackAction, PoseMode, Session, TransactionAction};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -18,13 +18,13 @@ proptest! {
         hand in points(300.0), roots in vec(points(400.0), 1..8), twist_reference in references()
     ) {
         let mut session = session([
-            EditAction::SetTwistReference(twist_reference), EditAction::SetHand(hand), EditAction::SetRoot(roots[0]),
+            ArmEdit::SetTwistReference(twist_reference), ArmEdit::SetHand(hand), ArmEdit::SetRoot(roots[0]),
         ]);
         let before = session.arm().cursor_in_world();
-        session.apply(EditAction::PinHand(true));
+        session.apply(ArmEdit::PinHand(true));
         prop_assert_eq!(bits(session.arm().cursor_in_world()), bits(before));
         for root in roots {
-            session.apply(EditAction::SetRoot(root));
+            session.apply(ArmEdit::SetRoot(root));
             let (arm, pose) = (session.arm(), session.pose());
             prop_assert_eq!(bits(arm.cursor_in_world()), bits(before));
             let cursor = before.as_dvec3() - root.as_dvec3();
@@ -35,7 +35,7 @@ proptest! {
             }
         }
         let (world, pose) = (session.arm().cursor_in_world(), *session.pose());
-        session.apply(EditAction::PinHand(false));
+        session.apply(ArmEdit::PinHand(false));
         prop_assert!(world.distance(session.arm().cursor_in_world()) < 1e-3);
         prop_assert!(apart(&pose, session.pose()) < 1e-3);
     }
@@ -45,10 +45,10 @@ proptest! {
         hand in points(300.0), twist in 0.0..6.0_f32, references in vec(references(), 1..6), pole in points(300.0)
     ) {
         let mut session =
-            session([EditAction::SetHand(hand), EditAction::SetTwist(twist), EditAction::SetPole(pole)]);
+            session([ArmEdit::SetHand(hand), ArmEdit::SetTwist(twist), ArmEdit::SetPole(pole)]);
         let pose = *session.pose();
         for twist_reference in references {
-            session.apply(EditAction::SetTwistReference(twist_reference));
+            session.apply(ArmEdit::SetTwistReference(twist_reference));
             prop_assert_eq!(session.arm().twist_reference, twist_reference);
             prop_assert!(apart(&pose, session.pose()) < 1e-5, "{:?}", apart(&pose, session.pose()));
         }
@@ -61,14 +61,14 @@ proptest! {
         let mut session = Session::default();
         for (index, hand) in hands.iter().enumerate() {
             session.apply(PlaybackAction::SetTime(index as f64));
-            session.apply(EditAction::SetHand(*hand));
-            session.apply(EditAction::SetTwist(twists[index]));
-            session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
+            session.apply(ArmEdit::SetHand(*hand));
+            session.apply(ArmEdit::SetTwist(twists[index]));
+            session.apply(KeysEdit::Key(vec![Channel::Hand, Channel::Twist]));
         }
         let poses: Vec<_> =
             (0..hands.len()).map(|time| session.document().at(time as f64).arm_pose().to_owned()).collect();
         for twist_reference in to {
-            session.apply(EditAction::SetTwistReference(twist_reference));
+            session.apply(ArmEdit::SetTwistReference(twist_reference));
             for (time, pose) in poses.iter().enumerate() {
                 let now = session.document().at(time as f64).arm_pose().to_owned();
                 prop_assert!(apart(pose, &now) < 2e-5, "{} at {} with {:?}", apart(pose, &now), time, twist_reference);
@@ -80,13 +80,13 @@ proptest! {
     fn a_transported_elbow_does_not_pop_and_is_restored_when_the_drag_is_cancelled(
         hands in vec(points(300.0), 2..40)
     ) {
-        let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport), EditAction::SetHand(hands[0])]);
+        let mut session = session([ArmEdit::SetTwistReference(TwistReferenceKind::Transport), ArmEdit::SetHand(hands[0])]);
         let before = session.document().clone();
         session.apply(TransactionAction::Begin);
         for ends in hands.windows(2) {
             for step in 1..=20 {
                 let was = *session.pose();
-                session.apply(EditAction::SetHand(ends[0].lerp(ends[1], step as f32 / 20.0)));
+                session.apply(ArmEdit::SetHand(ends[0].lerp(ends[1], step as f32 / 20.0)));
                 let now = *session.pose();
                 let [from, to] = [was, now].map(|pose| pose.outward().as_dvec3());
                 let [w0, w1] = [was, now].map(|pose| pose.pointer.direction.as_dvec3());
@@ -101,11 +101,11 @@ proptest! {
 
     #[test]
     fn playing_never_transports(hands in vec(points(300.0), 2..5), times in vec(0.0..4.0_f64, 1..12)) {
-        let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport), EditAction::SetTwist(0.7)]);
+        let mut session = session([ArmEdit::SetTwistReference(TwistReferenceKind::Transport), ArmEdit::SetTwist(0.7)]);
         for (time, hand) in hands.iter().enumerate() {
             session.apply(PlaybackAction::SetTime(time as f64));
-            session.apply(EditAction::SetHand(*hand));
-            session.apply(EditAction::Key(vec![Channel::Hand]));
+            session.apply(ArmEdit::SetHand(*hand));
+            session.apply(KeysEdit::Key(vec![Channel::Hand]));
         }
         let last = *times.last().expect("one");
         let alone = session.document().at(last).arm_pose().to_owned();
@@ -119,17 +119,17 @@ proptest! {
 
     #[test]
     fn a_hand_dragged_against_its_keys_does_not_pop(to in points(300.0)) {
-        let mut session = session([EditAction::SetTwistReference(TwistReferenceKind::Transport)]);
+        let mut session = session([ArmEdit::SetTwistReference(TwistReferenceKind::Transport)]);
         for (time, hand) in [(0.0, Vec3::new(200.0, 50.0, 10.0)), (2.0, Vec3::new(-20.0, 250.0, 90.0))] {
             session.apply(PlaybackAction::SetTime(time));
-            session.apply(EditAction::SetHand(hand));
-            session.apply(EditAction::Key(vec![Channel::Hand, Channel::Twist]));
+            session.apply(ArmEdit::SetHand(hand));
+            session.apply(KeysEdit::Key(vec![Channel::Hand, Channel::Twist]));
         }
         session.apply(PlaybackAction::SetTime(1.0));
         let from = session.arm().cursor_in_root();
         for step in 0..=200 {
             let was = *session.pose();
-            session.apply(EditAction::SetHand(from.lerp(to, step as f32 / 200.0)));
+            session.apply(ArmEdit::SetHand(from.lerp(to, step as f32 / 200.0)));
             let now = *session.pose();
             let turned = angle(was.pointer.direction, now.pointer.direction);
             let swung = angle(was.outward(), now.outward());
@@ -143,23 +143,23 @@ proptest! {
         shoulder in points(3.0), bend in -3.0..3.0_f32
     ) {
         let mut session = session([
-            EditAction::SetHand(hand), EditAction::SetTwist(twist), EditAction::SetTwistReference(twist_reference), EditAction::PinHand(pinned),
+            ArmEdit::SetHand(hand), ArmEdit::SetTwist(twist), ArmEdit::SetTwistReference(twist_reference), ArmEdit::PinHand(pinned),
         ]);
         let before = (session.document().clone(), *session.pose());
         let bound = |pose: &TwoBonePose| {
             let angle = pose.elbow_angle().to_degrees();
             if (1.0..=179.0).contains(&angle) { 1e-5 } else { 5e-4 }
         };
-        session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+        session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
         prop_assert_eq!(session.arm().influence, 0.0);
         prop_assert!(apart(&before.1, session.pose()) <= bound(&before.1));
         session.apply(TransactionAction::Undo);
         prop_assert_eq!(session.document(), &before.0);
         session.apply(TransactionAction::Redo);
-        session.apply(EditAction::SetShoulder(shoulder));
-        session.apply(EditAction::SetBend(bend));
+        session.apply(ArmEdit::SetShoulder(shoulder));
+        session.apply(ArmEdit::SetBend(bend));
         let posed = *session.pose();
-        session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
+        session.apply(ArmEdit::SwitchPoseMode(PoseMode::Hand));
         prop_assert_eq!((session.arm().influence, session.arm().is_pinned()), (1.0, pinned));
         prop_assert!(apart(&posed, session.pose()) <= bound(&posed), "{}", apart(&posed, session.pose()));
     }
@@ -168,13 +168,13 @@ proptest! {
     fn a_keyed_switch_blends_without_changing_lengths(
         hand in points(400.0), shoulder in points(3.0), bend in -3.0..3.0_f32
     ) {
-        let mut session = session([EditAction::SetHand(hand)]);
-        session.apply(EditAction::Key(vec![Channel::Influence]));
+        let mut session = session([ArmEdit::SetHand(hand)]);
+        session.apply(KeysEdit::Key(vec![Channel::Influence]));
         session.apply(PlaybackAction::SetTime(2.0));
-        session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
-        session.apply(EditAction::SetShoulder(shoulder));
-        session.apply(EditAction::SetBend(bend));
-        session.apply(EditAction::Key(vec![Channel::Influence]));
+        session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
+        session.apply(ArmEdit::SetShoulder(shoulder));
+        session.apply(ArmEdit::SetBend(bend));
+        session.apply(KeysEdit::Key(vec![Channel::Influence]));
         let bones = session.arm().bones;
         for frame in 0..=60 {
             let posed = session.document().at(f64::from(frame) / 30.0).into_document().arm;
@@ -192,17 +192,17 @@ proptest! {
     fn a_hand_in_world_orientation_keeps_it_at_every_position(
         angles in points(3.0), hands in vec(points(400.0), 1..8)
     ) {
-        let mut session = session([EditAction::SetHandOrientation(angles)]);
+        let mut session = session([ArmEdit::SetHandOrientation(angles)]);
         let before = session.arm().hand_rotation(session.pose());
-        session.apply(EditAction::SetHandSpace(HandSpace::World));
+        session.apply(ArmEdit::SetHandSpace(HandSpace::World));
         let same = |a: glam::DMat3, b: glam::DMat3| (a.x_axis.distance(b.x_axis)).max(a.y_axis.distance(b.y_axis)) < 1e-5;
         prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         for hand in hands {
-            session.apply(EditAction::SetHand(hand));
+            session.apply(ArmEdit::SetHand(hand));
             prop_assert!(same(session.arm().hand_rotation(session.pose()), before));
         }
         let turned = session.arm().hand_rotation(session.pose());
-        session.apply(EditAction::SetHandSpace(HandSpace::LowerLimb));
+        session.apply(ArmEdit::SetHandSpace(HandSpace::LowerLimb));
         prop_assert!(same(session.arm().hand_rotation(session.pose()), turned));
     }
 }

@@ -8,7 +8,7 @@ use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::session::{
-    DragInput, EditAction, Grip, PointHandle, PoseMode, Session, TransactionAction, ViewAction,
+    ArmEdit, DragInput, Grip, PointHandle, PoseMode, Session, TransactionAction, ViewAction,
 };
 
 use crate::posing::*;
@@ -17,8 +17,8 @@ use crate::posing::*;
 fn the_root_of_a_leaning_body_keeps_a_pinned_hand_on_the_table() {
     // A hand on the edge of a table, and a body that leans.
     let mut session =
-        session([EditAction::SetHand(Vec3::new(300.0, 0.0, 100.0)), EditAction::PinHand(true)]);
-    session.apply(EditAction::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
+        session([ArmEdit::SetHand(Vec3::new(300.0, 0.0, 100.0)), ArmEdit::PinHand(true)]);
+    session.apply(ArmEdit::SetRoot(Vec3::new(50.0, 120.0, -30.0)));
     let (arm, pose) = (session.arm(), session.pose());
     assert_eq!(arm.cursor, Cursor::pinned(Vec3::new(300.0, 0.0, 100.0)));
     assert!((arm.root + pose.hand).distance(Vec3::new(300.0, 0.0, 100.0)) < 2e-4);
@@ -28,8 +28,8 @@ fn the_root_of_a_leaning_body_keeps_a_pinned_hand_on_the_table() {
 fn a_transported_elbow_comes_back_turned_by_the_solid_angle_of_its_path() {
     // An octant of the sphere: a quarter turn.
     let mut session = session([
-        Action::from(EditAction::SetTwistReference(TwistReferenceKind::Transport)),
-        EditAction::SetHand(Vec3::X * 300.0).into(),
+        Action::from(ArmEdit::SetTwistReference(TwistReferenceKind::Transport)),
+        ArmEdit::SetHand(Vec3::X * 300.0).into(),
         ViewAction::ResetTransport.into(),
     ]);
     let before = session.pose().outward();
@@ -38,7 +38,7 @@ fn a_transported_elbow_comes_back_turned_by_the_solid_angle_of_its_path() {
         for step in 1..=90 {
             let angle = (step as f32).to_radians();
             let hand = ends[0] * angle.cos() + ends[1] * angle.sin();
-            session.apply(EditAction::SetHand(hand * 300.0));
+            session.apply(ArmEdit::SetHand(hand * 300.0));
         }
     }
     let holonomy = f64::from(session.transport_path().holonomy());
@@ -53,7 +53,7 @@ fn a_forearm_rolls_beyond_half_a_turn() {
     let mut session = Session::default();
     for step in 1..=30 {
         let roll = step as f32 * 0.3;
-        session.apply(EditAction::SetHandOrientation(Vec3::X * roll));
+        session.apply(ArmEdit::SetHandOrientation(Vec3::X * roll));
         let found = session.arm().roll(session.pose());
         assert!((found - roll).abs() < 1e-4, "{found} is not {roll}");
     }
@@ -70,11 +70,11 @@ fn a_forearm_rolls_beyond_half_a_turn() {
 fn a_soft_arm_keeps_its_pose_when_switched_to_fk() {
     let soft = SoftReach::new(0.3, 1.0, 0.0).expect("a softening");
     for hand in [Vec3::new(470.0, 100.0, 40.0), Vec3::new(90.0, 60.0, 10.0)] {
-        let mut session = session([EditAction::SetSoftReach(soft), EditAction::SetHand(hand)]);
+        let mut session = session([ArmEdit::SetSoftReach(soft), ArmEdit::SetHand(hand)]);
         let before = *session.pose();
         assert!(before.hand.distance(hand) > 1.0, "it is softened");
-        session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
-        session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
+        session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
+        session.apply(ArmEdit::SwitchPoseMode(PoseMode::Hand));
         assert!(apart(&before, session.pose()) < 1e-4);
         assert!(session.message().is_none());
     }
@@ -83,22 +83,19 @@ fn a_soft_arm_keeps_its_pose_when_switched_to_fk() {
 #[test]
 fn a_stretched_arm_keeps_its_length_in_fk() {
     let stretch = SoftReach::new(0.0, 2.0, 0.0).expect("a softening");
-    let mut session =
-        session([EditAction::SetSoftReach(stretch), EditAction::SetHand(Vec3::X * 750.0)]);
+    let mut session = session([ArmEdit::SetSoftReach(stretch), ArmEdit::SetHand(Vec3::X * 750.0)]);
     assert_eq!(session.pose().stretch, 1.5);
     let before = *session.pose();
-    session.apply(EditAction::SwitchPoseMode(PoseMode::Angles));
+    session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
     assert!(apart(&before, session.pose()) < 1e-5);
-    session.apply(EditAction::SetInfluence(0.5));
+    session.apply(ArmEdit::SetInfluence(0.5));
     assert!((session.pose().hand.length() - 750.0).abs() < 1e-2);
 }
 
 #[test]
 fn a_pole_is_dragged_and_the_elbow_follows() {
-    let mut session = session([
-        EditAction::SetTwistReference(TwistReferenceKind::Pole),
-        EditAction::SetTwist(0.0),
-    ]);
+    let mut session =
+        session([ArmEdit::SetTwistReference(TwistReferenceKind::Pole), ArmEdit::SetTwist(0.0)]);
     let projection = session.camera().projection(1.0);
     let ray = projection.ray(projection.project(session.arm().pole).expect("seen"));
     let forward = projection.forward;
@@ -106,7 +103,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
     let to = projection.ray(glam::Vec2::new(0.2, -0.3));
     session.apply(TransactionAction::Drag(DragInput { ray: to, precise: false, snap: false }));
     session.apply(TransactionAction::Commit);
-    assert_eq!(session.undo_label(), Some("Move pole"));
+    assert_eq!(session.history().undo_label(), Some("Move pole"));
     let (arm, pose) = (session.arm(), session.pose());
     let aside =
         (arm.pole - pose.pointer.direction * arm.pole.dot(pose.pointer.direction)).normalize();
@@ -115,7 +112,7 @@ fn a_pole_is_dragged_and_the_elbow_follows() {
 
 #[test]
 fn a_ring_turns_its_own_angle_in_fk() {
-    let mut session = session([EditAction::SwitchPoseMode(PoseMode::Angles)]);
+    let mut session = session([ArmEdit::SwitchPoseMode(PoseMode::Angles)]);
     for grip in RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]) {
         let ring = session.arm_ring(grip).expect("a ring");
         let fk = session.arm().fk;
@@ -126,10 +123,10 @@ fn a_ring_turns_its_own_angle_in_fk() {
             Grip::Shoulder(axis) => {
                 let mut angles = fk.shoulder;
                 angles[axis.index()] += 0.2;
-                session.apply(EditAction::SetShoulder(angles));
+                session.apply(ArmEdit::SetShoulder(angles));
             }
             _ => {
-                session.apply(EditAction::SetBend(fk.bend + 0.2));
+                session.apply(ArmEdit::SetBend(fk.bend + 0.2));
             }
         }
         // The angle is a right-handed rotation about the ring's axis.
@@ -138,15 +135,14 @@ fn a_ring_turns_its_own_angle_in_fk() {
         let upper = if grip == Grip::Bend { before } else { turn * before };
         assert!(upper.distance(limb(&session)) < 1e-3, "{grip:?}");
     }
-    session.apply(EditAction::SwitchPoseMode(PoseMode::Hand));
+    session.apply(ArmEdit::SwitchPoseMode(PoseMode::Hand));
     assert!(session.arm_ring(Grip::Bend).is_none());
 }
 
 #[test]
 fn a_hand_pinned_where_numbers_overflow_stays_finite() {
     let far = Vec3::X * 3e38;
-    let session =
-        session([EditAction::SetRoot(far), EditAction::SetHand(far), EditAction::PinHand(true)]);
+    let session = session([ArmEdit::SetRoot(far), ArmEdit::SetHand(far), ArmEdit::PinHand(true)]);
     assert!(session.arm().cursor_in_world().is_finite());
     assert!(ik_arm::io::to_json(session.document()).is_ok());
 }
@@ -155,11 +151,9 @@ fn a_hand_pinned_where_numbers_overflow_stays_finite() {
 fn a_click_on_the_hand_leaves_the_document_unchanged() {
     for twist_reference in TwistReferenceKind::ALL {
         for hand in [Vec3::new(250.0, 120.0, 60.0), Vec3::new(-90.0, 210.0, 33.3)] {
-            let mut session = session([
-                EditAction::SetTwistReference(twist_reference),
-                EditAction::SetHand(hand),
-            ]);
-            let (before, undo) = (session.document().clone(), session.undo_label());
+            let mut session =
+                session([ArmEdit::SetTwistReference(twist_reference), ArmEdit::SetHand(hand)]);
+            let (before, undo) = (session.document().clone(), session.history().undo_label());
             let projection = session.camera().projection(1.0);
             let ray = projection.ray(projection.project(hand).expect("seen"));
             let forward = projection.forward;
@@ -171,7 +165,7 @@ fn a_click_on_the_hand_leaves_the_document_unchanged() {
             session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap: false }));
             session.apply(TransactionAction::Commit);
             assert_eq!(session.document(), &before);
-            assert_eq!(session.undo_label(), undo);
+            assert_eq!(session.history().undo_label(), undo);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document};
-use ik_arm::session::{EditAction, PlaybackAction, Session, TransactionAction};
+use ik_arm::session::{Action, ArmEdit, KeysEdit, PlaybackAction, Session, TransactionAction};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -38,15 +38,15 @@ impl Animator {
     }
 
     /// Applies edits. Without auto-key, K and the keys of `others` follow.
-    fn edit(&mut self, edits: &[EditAction], others: &[Channel]) {
+    fn edit(&mut self, edits: &[ArmEdit], others: &[Channel]) {
         edits.iter().for_each(|edit| self.apply(edit.clone()));
         if self.keying == Keying::K {
             let channels = [self.session.channels_to_key(), others.to_vec()].concat();
-            self.apply(EditAction::Key(channels));
+            self.apply(KeysEdit::Key(channels));
         }
     }
 
-    fn apply(&mut self, edit: EditAction) {
+    fn apply(&mut self, edit: impl Into<Action>) {
         self.session.apply(edit);
         self.documents.push(self.session.document().clone());
     }
@@ -88,15 +88,12 @@ impl Plant {
     /// The shoulder, the hand and the pin at the start, the shoulder at the end, and the lift.
     fn animate(self, index: usize, animator: &mut Animator) {
         animator.go_to(Self::start(index));
-        let start = [
-            EditAction::SetRoot(self.root),
-            EditAction::SetHand(self.hand),
-            EditAction::PinHand(true),
-        ];
+        let start =
+            [ArmEdit::SetRoot(self.root), ArmEdit::SetHand(self.hand), ArmEdit::PinHand(true)];
         animator.edit(&start, &[Channel::Root]);
         animator.go_to(Self::start(index) + 1.0);
-        animator.edit(&[EditAction::SetRoot(self.root + self.lean)], &[Channel::Root]);
-        animator.edit(&[EditAction::PinHand(false)], &[]);
+        animator.edit(&[ArmEdit::SetRoot(self.root + self.lean)], &[Channel::Root]);
+        animator.edit(&[ArmEdit::PinHand(false)], &[]);
     }
 }
 
@@ -175,7 +172,7 @@ proptest! {
         for keying in KEYINGS {
             let mut animator = animated(&plants[..2], keying);
             let mut undone = vec![animator.session.document().clone()];
-            while animator.session.undo_label().is_some() {
+            while animator.session.history().undo_label().is_some() {
                 animator.session.apply(TransactionAction::Undo);
                 undone.push(animator.session.document().clone());
             }
@@ -194,17 +191,17 @@ proptest! {
             let mut animator = Animator::new(keying);
             for (index, hand) in hands.iter().enumerate() {
                 animator.go_to(index as f64);
-                animator.edit(&[EditAction::SetHand(*hand)], &[]);
+                animator.edit(&[ArmEdit::SetHand(*hand)], &[]);
             }
             let keys = animator.track(Channel::Hand);
             animator.go_to(time);
             let before = animator.session.arm().cursor_in_world();
-            animator.edit(&[EditAction::PinHand(true)], &[]);
+            animator.edit(&[ArmEdit::PinHand(true)], &[]);
             prop_assert_eq!(animator.session.arm().cursor_in_world(), before);
             prop_assert_eq!(animator.track(Channel::Hand), keys.clone());
             // Without K or auto-key, neither does unpinning.
             animator.session.apply(PlaybackAction::SetAutoKey(false));
-            animator.session.apply(EditAction::PinHand(false));
+            animator.session.apply(ArmEdit::PinHand(false));
             prop_assert!(animator.session.arm().cursor_in_world().distance(before) < 1e-3);
             prop_assert_eq!(animator.track(Channel::Hand), keys);
         }
@@ -219,21 +216,21 @@ proptest! {
             let mut animator = Animator::new(keying);
             for (time, hand) in [(0.0, hands[0]), (4.0, hands[1])] {
                 animator.go_to(time);
-                animator.edit(&[EditAction::SetHand(Vec3::Y * 250.0 + hand)], &[]);
+                animator.edit(&[ArmEdit::SetHand(Vec3::Y * 250.0 + hand)], &[]);
             }
             for time in [0.0, 1.0] {
                 animator.go_to(time);
-                animator.edit(&[EditAction::SetRoot(Vec3::ZERO)], &[Channel::Root, Channel::Pinned]);
-                animator.session.apply(EditAction::Key(vec![Channel::Root]));
+                animator.edit(&[ArmEdit::SetRoot(Vec3::ZERO)], &[Channel::Root, Channel::Pinned]);
+                animator.session.apply(KeysEdit::Key(vec![Channel::Root]));
             }
             animator.go_to(1.0);
             let arrived = hand(animator.arm(1.0));
-            animator.edit(&[EditAction::PinHand(true)], &[]);
+            animator.edit(&[ArmEdit::PinHand(true)], &[]);
             animator.go_to(2.0);
-            animator.edit(&[EditAction::SetRoot(root)], &[Channel::Root]);
-            animator.edit(&[EditAction::PinHand(false)], &[]);
+            animator.edit(&[ArmEdit::SetRoot(root)], &[Channel::Root]);
+            animator.edit(&[ArmEdit::PinHand(false)], &[]);
             animator.go_to(3.0);
-            animator.edit(&[EditAction::SetHand(Vec3::Y * 250.0 + hands[2])], &[]);
+            animator.edit(&[ArmEdit::SetHand(Vec3::Y * 250.0 + hands[2])], &[]);
             for time in [1.0, 1.5, 1.99] {
                 let slid = hand(animator.arm(time)).distance(arrived);
                 prop_assert!(slid < 5e-3, "{keying:?}: slid by {slid} at {time}");
@@ -250,10 +247,10 @@ fn auto_key_keys_a_first_pin_only_from_the_playhead_on() {
     let mut animator = Animator::new(Keying::Auto);
     let still = hand(animator.arm(0.0));
     animator.go_to(1.0);
-    animator.edit(&[EditAction::PinHand(true)], &[]);
+    animator.edit(&[ArmEdit::PinHand(true)], &[]);
     animator.go_to(2.0);
-    animator.edit(&[EditAction::SetRoot(Vec3::X * 50.0), EditAction::PinHand(false)], &[]);
-    animator.edit(&[EditAction::SetHand(Vec3::X * 200.0)], &[]);
+    animator.edit(&[ArmEdit::SetRoot(Vec3::X * 50.0), ArmEdit::PinHand(false)], &[]);
+    animator.edit(&[ArmEdit::SetHand(Vec3::X * 200.0)], &[]);
     let switched = [(0.0, Vec3::ZERO), (1.0, Vec3::X), (2.0, Vec3::ZERO)];
     assert_eq!(animator.track(Channel::Pinned), switched);
     for time in [0.0, 0.7, 0.99] {
@@ -274,7 +271,7 @@ fn pinning_without_auto_key_is_undone_when_the_time_changes() {
     );
     let document = animator.session.document().clone();
     animator.go_to(1.5);
-    animator.session.apply(EditAction::PinHand(true));
+    animator.session.apply(ArmEdit::PinHand(true));
     assert!(animator.session.is_overridden(Channel::Pinned) && animator.session.arm().is_pinned());
     assert_eq!(animator.session.document(), &document);
     animator.go_to(1.6);
@@ -284,12 +281,12 @@ fn pinning_without_auto_key_is_undone_when_the_time_changes() {
 #[test]
 fn a_planted_hand_can_be_moved_by_keys_within_its_plant() {
     let mut animator = Animator::new(Keying::Auto);
-    animator.edit(&[EditAction::PinHand(true)], &[]);
+    animator.edit(&[ArmEdit::PinHand(true)], &[]);
     for (time, place) in [(0.0, Vec3::X), (1.0, Vec3::Y), (3.0, Vec3::Z)] {
         animator.go_to(time);
-        animator.edit(&[EditAction::SetPin(place * 300.0)], &[]);
+        animator.edit(&[ArmEdit::SetPin(place * 300.0)], &[]);
         if time == 1.0 {
-            animator.edit(&[EditAction::PinHand(false)], &[]);
+            animator.edit(&[ArmEdit::PinHand(false)], &[]);
         }
     }
     // A straight line, as two keys alone give.

@@ -2,7 +2,7 @@
 //! size.
 
 use ik_arm::document::Channel;
-use ik_arm::session::{Action, EditAction, FileAction, Session};
+use ik_arm::session::{Action, FileAction, JointEdit, KeysEdit, Session};
 
 use ik_arm::kinematics::skeleton::JointId;
 
@@ -73,14 +73,14 @@ impl Actions {
         }
         if joints > Self::MOST_JOINTS && joints <= Self::HUGE && self.random.chance(0.2) {
             return Some(
-                EditAction::DeleteJoints(vec![JointId::new(1 + self.random.below(joints - 1))])
+                JointEdit::DeleteJoints(vec![JointId::new(1 + self.random.below(joints - 1))])
                     .into(),
             );
         }
         if keys.count() > Self::MOST_KEYS && self.random.chance(0.2) {
             let place = self.random.below(keys.tracks().count());
             let channel: Option<Channel> = keys.tracks().nth(place).map(|(channel, _)| channel);
-            return Some(EditAction::ClearChannels(channel.into_iter().collect()).into());
+            return Some(KeysEdit::ClearChannels(channel.into_iter().collect()).into());
         }
         None
     }

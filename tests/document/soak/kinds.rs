@@ -5,9 +5,10 @@ use ik_arm::io::OpenOptions;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmFigure, ArmJoint, BakeAction, EditAction, FileAction, FrameBudget, InsideLayer,
-    Navigation, PanelTab, PlaybackAction, PoseMode, SelectAction, ShellAction, SolverAction,
-    TourAction, TransactionAction, ViewAction,
+    Action, ArmEdit, ArmFigure, ArmJoint, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget,
+    InsideLayer, JointEdit, KeysEdit, Navigation, PanelTab, PathEdit, PlaybackAction, PoseMode,
+    SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit, TargetEdit, TourAction,
+    TransactionAction, ViewAction,
 };
 
 use crate::soak::values::Values;
@@ -49,9 +50,19 @@ pub struct Kind {
     pub make: fn(&mut Values<'_>) -> Action,
 }
 
+/// The pattern of an action, or of an edit of a part.
+macro_rules! action_pattern {
+    ($group:ident () $payload:ident $name:ident) => {
+        Action::$group($payload::$name { .. })
+    };
+    ($group:ident ($part:ident) $payload:ident $name:ident) => {
+        Action::$group(Edit::$part($payload::$name { .. }))
+    };
+}
+
 /// One line for each kind: sort, relative frequency, constructor.
 macro_rules! kinds {
-    ($($group:ident($payload:ident) {
+    ($($group:ident $part:tt ($payload:ident) {
         $($name:ident: $sort:ident $weight:literal, $make:expr;)*
     })*) => {
         pub const KINDS: &[Kind] = &[$($(Kind {
@@ -67,7 +78,7 @@ macro_rules! kinds {
         /// Index of an action's kind.
         pub fn kind(action: &Action) -> usize {
             let name = match action {
-                $($(Action::$group($payload::$name { .. }) => {
+                $($(action_pattern!($group $part $payload $name) => {
                     concat!(stringify!($group), "::", stringify!($name))
                 })*)*
             };
@@ -77,77 +88,95 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Edit(EditAction) {
-        SetHand: Arm 10, |v| EditAction::SetHand(v.cursor());
-        SetTwist: Arm 4, |v| EditAction::SetTwist(v.angle());
-        SetRoot: Arm 4, |v| { let size = v.size(); EditAction::SetRoot(v.point(size)) };
-        SetPin: Arm 3, |v| EditAction::SetPin(v.cursor());
-        PinHand: Arm 3, |v| EditAction::PinHand(v.coin());
-        SetTwistReference: Arm 5, |v| EditAction::SetTwistReference(v.one_of(&TwistReferenceKind::ALL));
-        SetPole: Arm 3, |v| { let size = v.size(); EditAction::SetPole(v.point(size)) };
-        SetSoftReach: Arm 3, |v| EditAction::SetSoftReach(v.soft_reach());
-        SetInfluence: Arm 4, |v| EditAction::SetInfluence(v.part());
-        SwitchPoseMode: Arm 4, |v| EditAction::SwitchPoseMode(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
-        SetShoulder: Arm 3, |v| EditAction::SetShoulder(v.angles());
-        SetBend: Arm 3, |v| EditAction::SetBend(v.angle());
-        SetHandOrientation: Arm 3, |v| EditAction::SetHandOrientation(v.angles());
-        SetHandSpace: Arm 3, |v| EditAction::SetHandSpace(v.one_of(&[HandSpace::LowerLimb, HandSpace::World]));
-        SetUpper: Arm 2, |v| EditAction::SetUpper(v.length());
-        SetLower: Arm 2, |v| EditAction::SetLower(v.length());
-        ResetPose: Arm 1, |_| EditAction::ResetPose;
-        ResetAll: Arm 1, |_| EditAction::ResetAll;
-        ShowOverlay: Edit 3, |v| EditAction::ShowOverlay(v.layer(), v.coin());
-        ShowRig: Edit 3, |v| EditAction::ShowRig(v.one_of(&[RigKind::Arm, RigKind::Skeleton]));
-        AddChild: Build 8, |v| EditAction::AddChild {
+    Edit (Arm) (ArmEdit) {
+        SetHand: Arm 10, |v| ArmEdit::SetHand(v.cursor());
+        SetTwist: Arm 4, |v| ArmEdit::SetTwist(v.angle());
+        SetRoot: Arm 4, |v| { let size = v.size(); ArmEdit::SetRoot(v.point(size)) };
+        SetPin: Arm 3, |v| ArmEdit::SetPin(v.cursor());
+        PinHand: Arm 3, |v| ArmEdit::PinHand(v.coin());
+        SetTwistReference: Arm 5, |v| ArmEdit::SetTwistReference(v.one_of(&TwistReferenceKind::ALL));
+        SetPole: Arm 3, |v| { let size = v.size(); ArmEdit::SetPole(v.point(size)) };
+        SetSoftReach: Arm 3, |v| ArmEdit::SetSoftReach(v.soft_reach());
+        SetInfluence: Arm 4, |v| ArmEdit::SetInfluence(v.part());
+        SwitchPoseMode: Arm 4, |v| ArmEdit::SwitchPoseMode(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
+        SetShoulder: Arm 3, |v| ArmEdit::SetShoulder(v.angles());
+        SetBend: Arm 3, |v| ArmEdit::SetBend(v.angle());
+        SetHandOrientation: Arm 3, |v| ArmEdit::SetHandOrientation(v.angles());
+        SetHandSpace: Arm 3, |v| ArmEdit::SetHandSpace(v.one_of(&[HandSpace::LowerLimb, HandSpace::World]));
+        SetUpper: Arm 2, |v| ArmEdit::SetUpper(v.length());
+        SetLower: Arm 2, |v| ArmEdit::SetLower(v.length());
+    }
+    Edit (Display) (DisplayEdit) {
+        ResetPose: Arm 1, |_| DisplayEdit::ResetPose;
+        ResetAll: Arm 1, |_| DisplayEdit::ResetAll;
+        ShowOverlay: Edit 3, |v| DisplayEdit::ShowOverlay(v.layer(), v.coin());
+        ShowRig: Edit 3, |v| DisplayEdit::ShowRig(v.one_of(&[RigKind::Arm, RigKind::Skeleton]));
+    }
+    Edit (Joint) (JointEdit) {
+        AddChild: Build 8, |v| JointEdit::AddChild {
             parent: v.joint(),
             tip: if v.coin() { None } else { Some(v.small_point()) },
         };
-        AddJoint: Build 4, |v| EditAction::AddJoint {
+        AddJoint: Build 4, |v| JointEdit::AddJoint {
             tip: if v.coin() { None } else { Some(v.small_point()) },
         };
-        AddRoot: Build 1, |_| EditAction::AddRoot;
-        DeleteJoints: Build 2, |v| EditAction::DeleteJoints(v.some_joints());
-        DissolveJoints: Build 2, |v| EditAction::DissolveJoints(v.some_joints());
-        RenameJoint: Build 2, |v| EditAction::RenameJoint { joint: v.joint(), name: v.name() };
-        ReparentJoint: Build 3, |v| EditAction::ReparentJoint {
+        AddRoot: Build 1, |_| JointEdit::AddRoot;
+        DeleteJoints: Build 2, |v| JointEdit::DeleteJoints(v.some_joints());
+        DissolveJoints: Build 2, |v| JointEdit::DissolveJoints(v.some_joints());
+        RenameJoint: Build 2, |v| JointEdit::RenameJoint { joint: v.joint(), name: v.name() };
+        ReparentJoint: Build 3, |v| JointEdit::ReparentJoint {
             joint: v.joint(),
             parent: if v.chance(0.2) { None } else { Some(v.joint()) },
         };
-        SetRotation: Build 6, |v| EditAction::SetRotation { joint: v.joint(), rotation: v.angles() };
-        SetAxis: Build 3, |v| EditAction::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
-        SetLimit: Build 3, |v| EditAction::SetLimit { joint: v.joint(), axis: v.rotation_axis(), limit: v.limit() };
-        SetLocked: Build 2, |v| EditAction::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
-        AddSkin: Build 1, |_| EditAction::AddSkin;
-        ShowSkin: Build 1, |v| EditAction::ShowSkin { skin: v.coin(), bones: v.coin() };
-        PackSkin: Build 1, |_| EditAction::PackSkin;
-        SetSkin: Build 2, |v| EditAction::SetSkin(v.skin());
-        SetFollowPath: Solve 1, |v| EditAction::SetFollowPath { root: v.joint(), kind: v.path_kind() };
-        SetHead: Solve 2, |v| EditAction::SetHead { root: v.joint(), to: v.small_point() };
-        SetTranslation: Build 2, |v| EditAction::SetTranslation(v.small_point());
-        TurnYUp: Build 1, |_| EditAction::TurnYUp;
-        AddTarget: Solve 5, |v| EditAction::AddTarget(v.joint());
-        RemoveTarget: Solve 2, |v| EditAction::RemoveTarget(v.aimed());
-        SetTarget: Solve 6, |v| EditAction::SetTarget(v.target());
-        MatchTargetToFk: Solve 2, |v| EditAction::MatchTargetToFk(v.aimed());
-        MatchFkToPose: Solve 2, |v| EditAction::MatchFkToPose(v.aimed());
-        SetTargetSpace: Solve 2, |v| EditAction::SetTargetSpace { joint: v.aimed(), space: v.space() };
-        SetPoleSpace: Solve 1, |v| EditAction::SetPoleSpace { joint: v.aimed(), space: v.space() };
-        ApplyRemedy: Solve 3, |v| EditAction::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
-        SetSolver: Solve 3, |v| EditAction::SetSolver(v.options());
-        SetIterationsPerFrame: Solve 1, |v| EditAction::SetIterationsPerFrame(v.iterations_per_frame());
-        ApplyPose: Solve 3, |_| EditAction::ApplyPose;
-        Key: Keys 6, |v| EditAction::Key(v.channels());
-        DeleteKeys: Keys 2, |v| EditAction::DeleteKeys(v.keys());
-        ClearChannels: Keys 1, |v| EditAction::ClearChannels(v.channels());
-        MoveKeys: Keys 4, |v| EditAction::MoveKeys { keys: v.keys(), by: v.shift(), raise: if v.coin() { glam::Vec3::ZERO } else { v.small_point() } };
-        SetInterpolation: Keys 2, |v| EditAction::SetInterpolation(v.keys(), v.one_of(&Interpolation::ALL));
-        SetSlopes: Keys 2, |v| EditAction::SetSlopes(v.keys(), v.coin().then(|| Slopes { arriving: v.small_point(), leaving: v.small_point() }));
-        PasteKeys: Keys 2, |_| EditAction::PasteKeys;
-        Bake: Keys 1, |v| EditAction::Bake(v.baked());
-        SetTimeline: Keys 2, |v| EditAction::SetTimeline(v.timeline());
-        SetMetres: Edit 1, |v| EditAction::SetMetres(if v.coin() { None } else { Some(v.above_0(2.0)) });
+        SetRotation: Build 6, |v| JointEdit::SetRotation { joint: v.joint(), rotation: v.angles() };
+        SetAxis: Build 3, |v| JointEdit::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
+        SetLimit: Build 3, |v| JointEdit::SetLimit { joint: v.joint(), axis: v.rotation_axis(), limit: v.limit() };
+        SetLocked: Build 2, |v| JointEdit::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
     }
-    Transaction(TransactionAction) {
+    Edit (Skin) (SkinEdit) {
+        AddSkin: Build 1, |_| SkinEdit::AddSkin;
+        ShowSkin: Build 1, |v| SkinEdit::ShowSkin { skin: v.coin(), bones: v.coin() };
+        PackSkin: Build 1, |_| SkinEdit::PackSkin;
+        SetSkin: Build 2, |v| SkinEdit::SetSkin(v.skin());
+    }
+    Edit (Path) (PathEdit) {
+        SetFollowPath: Solve 1, |v| PathEdit::SetFollowPath { root: v.joint(), kind: v.path_kind() };
+        SetHead: Solve 2, |v| PathEdit::SetHead { root: v.joint(), to: v.small_point() };
+    }
+    Edit (Joint) (JointEdit) {
+        SetTranslation: Build 2, |v| JointEdit::SetTranslation(v.small_point());
+        TurnYUp: Build 1, |_| JointEdit::TurnYUp;
+    }
+    Edit (Target) (TargetEdit) {
+        AddTarget: Solve 5, |v| TargetEdit::AddTarget(v.joint());
+        RemoveTarget: Solve 2, |v| TargetEdit::RemoveTarget(v.aimed());
+        SetTarget: Solve 6, |v| TargetEdit::SetTarget(v.target());
+        MatchTargetToFk: Solve 2, |v| TargetEdit::MatchTargetToFk(v.aimed());
+        MatchFkToPose: Solve 2, |v| TargetEdit::MatchFkToPose(v.aimed());
+        SetTargetSpace: Solve 2, |v| TargetEdit::SetTargetSpace { joint: v.aimed(), space: v.space() };
+        SetPoleSpace: Solve 1, |v| TargetEdit::SetPoleSpace { joint: v.aimed(), space: v.space() };
+        ApplyRemedy: Solve 3, |v| TargetEdit::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
+    }
+    Edit (Solver) (SolverEdit) {
+        SetSolver: Solve 3, |v| SolverEdit::SetSolver(v.options());
+        SetIterationsPerFrame: Solve 1, |v| SolverEdit::SetIterationsPerFrame(v.iterations_per_frame());
+        ApplyPose: Solve 3, |_| SolverEdit::ApplyPose;
+    }
+    Edit (Keys) (KeysEdit) {
+        Key: Keys 6, |v| KeysEdit::Key(v.channels());
+        DeleteKeys: Keys 2, |v| KeysEdit::DeleteKeys(v.keys());
+        ClearChannels: Keys 1, |v| KeysEdit::ClearChannels(v.channels());
+        MoveKeys: Keys 4, |v| KeysEdit::MoveKeys { keys: v.keys(), by: v.shift(), raise: if v.coin() { glam::Vec3::ZERO } else { v.small_point() } };
+        SetInterpolation: Keys 2, |v| KeysEdit::SetInterpolation(v.keys(), v.one_of(&Interpolation::ALL));
+        SetSlopes: Keys 2, |v| KeysEdit::SetSlopes(v.keys(), v.coin().then(|| Slopes { arriving: v.small_point(), leaving: v.small_point() }));
+        PasteKeys: Keys 2, |_| KeysEdit::PasteKeys;
+        Bake: Keys 1, |v| KeysEdit::Bake(v.baked());
+        SetTimeline: Keys 2, |v| KeysEdit::SetTimeline(v.timeline());
+    }
+    Edit (Display) (DisplayEdit) {
+        SetMetres: Edit 1, |v| DisplayEdit::SetMetres(if v.coin() { None } else { Some(v.above_0(2.0)) });
+    }
+    Transaction () (TransactionAction) {
         Begin: Edit 4, |_| TransactionAction::Begin;
         Commit: Edit 3, |_| TransactionAction::Commit;
         Cancel: Edit 2, |_| TransactionAction::Cancel;
@@ -160,7 +189,7 @@ kinds! {
         FollowMouse: Drag 1, |v| TransactionAction::FollowMouse(v.chance(0.7));
         Lead: Drag 1, |v| TransactionAction::Lead(v.ray());
     }
-    Select(SelectAction) {
+    Select () (SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
         Hover: Look 2, |v| SelectAction::Hover(v.body_part());
         Wiggle: Look 1, |v| {
@@ -179,7 +208,7 @@ kinds! {
         Channels: Look 1, |v| SelectAction::Channels(v.channels());
         CopyKeys: Look 2, |_| SelectAction::CopyKeys;
     }
-    View(ViewAction) {
+    View () (ViewAction) {
         ResetTransport: Look 1, |_| ViewAction::ResetTransport;
         SetCamera: Look 1, |v| ViewAction::SetCamera(v.camera());
         GlideTo: Look 1, |v| ViewAction::GlideTo(v.camera());
@@ -201,7 +230,7 @@ kinds! {
         AnimateCrowd: Look 1, |v| ViewAction::AnimateCrowd(v.coin());
         ShowGraphEditor: Look 1, |v| ViewAction::ShowGraphEditor(v.coin());
     }
-    Playback(PlaybackAction) {
+    Playback () (PlaybackAction) {
         Play: Time 4, |v| PlaybackAction::Play(v.chance(0.7));
         SetTime: Time 8, |v| PlaybackAction::SetTime(v.time());
         SetLooping: Time 1, |v| PlaybackAction::SetLooping(v.coin());
@@ -209,7 +238,7 @@ kinds! {
         SetAutoKey: Look 2, |v| PlaybackAction::SetAutoKey(v.chance(0.3));
         Advance: Time 14, |v| PlaybackAction::Advance(v.seconds());
     }
-    Solver(SolverAction) {
+    Solver () (SolverAction) {
         Run: Solve 5, |v| SolverAction::Run(v.chance(0.8));
         Step: Solve 4, |_| SolverAction::Step;
         Compare: Solve 1, |_| SolverAction::Compare;
@@ -221,12 +250,12 @@ kinds! {
         Walk: Solve 1, |v| SolverAction::Walk(v.coin());
         Show: Solve 4, |v| SolverAction::Show(v.random.below(30) as u32);
     }
-    Bake(BakeAction) {
+    Bake () (BakeAction) {
         Start: Look 1, |v| BakeAction::Start(v.bake());
         Started: Look 1, |v| BakeAction::Started(v.bake_job());
         Ended: Keys 1, |v| BakeAction::Ended(v.bake_job(), Ok(v.baked()));
     }
-    File(FileAction) {
+    File () (FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());
         Export: Look 1, |v| FileAction::Export(v.export());
         ExportStarted: Look 1, |v| FileAction::ExportStarted(v.job());
@@ -256,7 +285,7 @@ kinds! {
         NewSkeleton: Files 1, |_| FileAction::NewSkeleton;
         Quit: Look 2, |_| FileAction::Quit;
     }
-    Shell(ShellAction) {
+    Shell () (ShellAction) {
         SetTheme: Look 1, |v| ShellAction::SetTheme(v.one_of(&[Theme::Dark, Theme::Light]));
         SetNavigation: Look 1, |v| ShellAction::SetNavigation(v.one_of(&Navigation::ALL));
         SetFrameBudget: Look 1, |v| ShellAction::SetFrameBudget(v.one_of(&FrameBudget::ALL));
@@ -267,7 +296,7 @@ kinds! {
         ClearMessage: Look 1, |_| ShellAction::ClearMessage;
         CopyPose: Look 1, |_| ShellAction::CopyPose;
     }
-    Tour(TourAction) {
+    Tour () (TourAction) {
         Enter: Files 1, |v| TourAction::Enter(if v.random.below(40) == 0 { 10 + v.random.below(4) } else { v.random.below(10) });
         Guess: Look 1, |v| TourAction::Guess(v.random.below(5));
         Demonstrate: Edit 1, |_| TourAction::Demonstrate;

@@ -90,7 +90,7 @@ pub fn walk(session: &Session, began: Option<&Document>) -> Result<usize, Broken
         &TransactionAction::Undo.into(),
         &TransactionAction::Redo.into(),
     )?;
-    while first.undo_label().is_some() {
+    while first.history().undo_label().is_some() {
         first.apply(TransactionAction::Undo);
     }
     if let Some(began) = began {

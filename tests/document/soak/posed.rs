@@ -5,7 +5,7 @@ use ik_arm::document::Arm;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
 use ik_arm::rig::SkeletonRig;
-use ik_arm::session::{Drag, PointDrag, Session, SolverRun, TurnDrag};
+use ik_arm::session::{Drag, Playback, PointDrag, Session, SolverRun, TurnDrag};
 
 use crate::soak::{Broken, hold};
 
@@ -125,12 +125,16 @@ fn places(session: &Session) -> Result<(), Broken> {
         hold!(channel.value(document).is_some(), "the selected channel {channel:?} is there");
     }
     hold!(session.time().is_finite(), "the time is finite: {}", session.time());
-    let (slowest, fastest) = Session::SPEEDS;
-    hold!((slowest..=fastest).contains(&session.speed()), "the speed is one: {}", session.speed());
+    let (slowest, fastest) = Playback::SPEEDS;
+    hold!(
+        (slowest..=fastest).contains(&session.playback().speed()),
+        "the speed is one: {}",
+        session.playback().speed()
+    );
     let held = session.point_drag().map_or(Vec3::ZERO, PointDrag::moved);
     let turned = session.drag().and_then(Drag::turn).map_or(0.0, TurnDrag::turned);
     hold!(held.is_finite() && turned.is_finite(), "what is held is somewhere: {held} {turned}");
-    session.solver_runs().try_for_each(solver_run)
+    session.solvers().runs().try_for_each(solver_run)
 }
 
 fn solver_run(run: &SolverRun) -> Result<(), Broken> {

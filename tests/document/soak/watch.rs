@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ik_arm::document::Document;
 use ik_arm::session::{
-    Action, Dialog, EditAction, FileAction, Session, TourAction, TransactionAction,
+    Action, Dialog, FileAction, Session, SolverEdit, TourAction, TransactionAction,
 };
 
 use crate::soak::kinds::{KINDS, Sort, kind};
@@ -159,17 +159,19 @@ impl Watch {
                 | Action::File(FileAction::Discard(_))
                 | Action::File(FileAction::Saved(_))
         );
-        let is_fresh = session.undo_label().is_none() && session.redo_label().is_none();
+        let is_fresh =
+            session.history().undo_label().is_none() && session.history().redo_label().is_none();
         let is_replaced = can_replace
             && is_fresh
-            && session.revision() != before.revision
+            && session.history().revision() != before.revision
             && !session.is_editing();
         if let Action::File(FileAction::Saved(_)) = action {
             self.expected.saved = Some(before.document.clone());
         }
         if is_replaced {
             self.expected.began = session.document().clone();
-            self.expected.saved = (!session.is_unsaved()).then(|| self.expected.began.clone());
+            self.expected.saved =
+                (!session.history().is_unsaved()).then(|| self.expected.began.clone());
             self.expected.age = 0;
             self.expected.revisions.clear();
         }
@@ -189,7 +191,7 @@ impl Watch {
         let is_view = matches!(action, Action::Solver(_))
             || matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time);
         hold!(!is_view || is_left || before.follows_mouse, "it leaves the document alone");
-        if *action == Action::Edit(EditAction::ApplyPose) {
+        if *action == Action::Edit(SolverEdit::ApplyPose.into()) {
             posed::locked(&before.document.skeleton_rig, document.skeleton())?;
         }
         let takes_back = matches!(
@@ -212,7 +214,7 @@ impl Watch {
 
     fn check_saved(&self, action: &Action, is_replaced: bool) -> Result<(), Broken> {
         let session = &self.session;
-        if !session.is_unsaved() {
+        if !session.history().is_unsaved() {
             let is_saved = self
                 .expected
                 .saved
@@ -221,7 +223,7 @@ impl Watch {
             hold!(is_saved, "a document that counts as saved equals the saved one");
         }
         let is_written = matches!(action, Action::File(FileAction::Saved(_))) && !is_replaced;
-        hold!(!is_written || !session.is_unsaved(), "what has just been saved is saved");
+        hold!(!is_written || !session.history().is_unsaved(), "what has just been saved is saved");
         Ok(())
     }
 
@@ -232,7 +234,7 @@ impl Watch {
         }
         let mut hasher = DefaultHasher::new();
         past::saved(self.session.document())?.hash(&mut hasher);
-        let (revision, hash) = (self.session.revision(), hasher.finish());
+        let (revision, hash) = (self.session.history().revision(), hasher.finish());
         let known = *self.expected.revisions.entry(revision).or_insert(hash);
         hold!(known == hash, "revision {revision} is one document");
         Ok(())
@@ -312,7 +314,7 @@ impl Before {
             document: session.document().clone(),
             session: whole.then(|| Box::new(session.clone())),
             dialog: session.dialog().cloned(),
-            revision: session.revision(),
+            revision: session.history().revision(),
             time: session.time(),
             follows_mouse: session.follows_mouse(),
         }

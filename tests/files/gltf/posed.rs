@@ -127,7 +127,7 @@ fn two_sessions_show_the_same_bits_at_50_times_in_any_order() {
             assert_eq!(at(&mut other, times[index]), first[index], "{case}: {} s", times[index]);
         }
         assert_eq!(one.document(), &document, "evaluating writes nothing");
-        assert!(!other.is_unsaved());
+        assert!(!other.history().is_unsaved());
     }
 }
 

@@ -5,7 +5,7 @@ use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 use super::drawing::Lit;
 use super::formulas::{degrees, length, point};
 use crate::document::Overlay;
-use crate::session::{Actions, ArmFigure, EditAction, Session};
+use crate::session::{Actions, ArmFigure, DisplayEdit, Session};
 use crate::ui::style;
 
 const ROW: f32 = 20.0;
@@ -30,7 +30,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit, actions: &mut Ac
     let mut shown = session.shown().display.shows(Overlay::Frames);
     let tooltip = "Show the axes of Root, Limb and Socket";
     if ui.checkbox(&mut shown, "Axes in the view").on_hover_text(tooltip).changed() {
-        actions.push(EditAction::ShowOverlay(Overlay::Frames, shown));
+        actions.push(DisplayEdit::ShowOverlay(Overlay::Frames, shown));
     }
 }
 

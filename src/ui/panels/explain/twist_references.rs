@@ -4,7 +4,7 @@ use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
-use crate::session::{Actions, EditAction, Session, ViewAction};
+use crate::session::{Actions, DisplayEdit, Session, ViewAction};
 use crate::ui::widgets;
 use crate::ui::{glossary, labels, style};
 
@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         for (overlay, name, tooltip) in shown {
             let mut on = display.shows(overlay);
             if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                actions.push(EditAction::ShowOverlay(overlay, on));
+                actions.push(DisplayEdit::ShowOverlay(overlay, on));
             }
         }
     });

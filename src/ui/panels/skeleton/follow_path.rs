@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::document::{Channel, PathKind, WavyRing};
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, PathEdit, Session};
 use crate::ui::widgets::Choice;
 use crate::ui::widgets::{AXES, PointSliders, Slider};
 
@@ -52,7 +52,7 @@ fn choice(ui: &mut Ui, session: &Session, root: JointId, actions: &mut Actions) 
     Choice { label: "Follow", name: "Follow path", tooltip, shown }.show(ui, |list| {
         for (is_now, name, tooltip, kind) in choices {
             if list.item(is_now, name, tooltip, None) {
-                actions.push(EditAction::SetFollowPath { root, kind });
+                actions.push(PathEdit::SetFollowPath { root, kind });
             }
         }
     });
@@ -76,7 +76,7 @@ fn head(ui: &mut Ui, session: &Session, head: JointId, actions: &mut Actions) {
         disabled: None,
         channel: Some(Channel::Offset(head)),
     };
-    place.show(ui, session, actions, |to| EditAction::SetHead { root: head, to });
+    place.show(ui, session, actions, |to| PathEdit::SetHead { root: head, to });
     if !rig.head_tracks.contains_key(&head) {
         ui.weak("Drag the circle at the head, or key the head: the body follows.");
     }
@@ -86,7 +86,7 @@ fn sliders(ui: &mut Ui, session: &Session, root: JointId, ring: WavyRing, action
     let reach = session.skeleton_rig().reach();
     let default = default_ring(reach);
     let step = session.shown().grid_cell() * 0.1;
-    let set = |ring| EditAction::SetFollowPath { root, kind: Some(PathKind::Ring(ring)) };
+    let set = |ring| PathEdit::SetFollowPath { root, kind: Some(PathKind::Ring(ring)) };
     let slider = |name, tooltip, value, range, default| Slider {
         name,
         label: name,

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::targets;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, Edit, JointEdit, Session};
 use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
 use crate::ui::{labels, style};
@@ -28,7 +28,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
     let mut locked = joint.locked;
     let tooltip = "Keep solvers from rotating this joint";
     if ui.checkbox(&mut locked, "Locked").on_hover_text(tooltip).changed() {
-        actions.push(EditAction::SetLocked { joint: index, locked });
+        actions.push(JointEdit::SetLocked { joint: index, locked });
     }
 }
 
@@ -68,7 +68,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         slider.show(ui, session, actions, |degrees| {
             let mut rotation = joint.rotation;
             rotation[axis.index()] = degrees.to_radians();
-            EditAction::SetRotation { joint: index, rotation }
+            JointEdit::SetRotation { joint: index, rotation }
         });
     }
 }
@@ -77,7 +77,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
 fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     for axis in RotationAxis::ALL {
         let (label, limit) = (axis.name(), joint.limits.range(axis));
-        let set = |limit| EditAction::SetLimit { joint: index, axis, limit };
+        let set = |limit| JointEdit::SetLimit { joint: index, axis, limit };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let mut limited = limit.is_some();
@@ -90,11 +90,11 @@ fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
             let Some(limit) = limit else { return };
             widgets::at_right(ui, |ui| {
                 angle(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
-                    set(Some(Limit { min, max: limit.max.max(min) }))
+                    set(Some(Limit { min, max: limit.max.max(min) })).into()
                 });
                 ui.weak("to");
                 angle(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
-                    set(Some(Limit { min: limit.min.min(max), max }))
+                    set(Some(Limit { min: limit.min.min(max), max })).into()
                 });
             });
         });
@@ -109,7 +109,7 @@ fn angle(
     actions: &mut Actions,
     name: &str,
     value: f32,
-    set: &dyn Fn(f32) -> EditAction,
+    set: &dyn Fn(f32) -> Edit,
 ) {
     let tooltip = "Set the end of the range";
     NumberField { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
@@ -139,7 +139,7 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
                 .show(ui, session, actions, |value| {
                     let mut bone = joint.axis;
                     bone[axis] = value;
-                    EditAction::SetAxis { joint: index, axis: bone }
+                    JointEdit::SetAxis { joint: index, axis: bone }
                 });
             }
         });
@@ -157,7 +157,7 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
         }
         .show(ui, session, actions, |length| {
             let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
-            EditAction::SetAxis { joint: index, axis: direction * length.max(0.0) }
+            JointEdit::SetAxis { joint: index, axis: direction * length.max(0.0) }
         });
     });
 }
@@ -178,7 +178,7 @@ fn parent(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
         let others = skeleton.ids().filter(|j| !skeleton.is_in_subtree(*j, index));
         for parent in std::iter::once(None).chain(others.map(Some)) {
             if list.item(joint.parent == parent, &name(parent), "", None) {
-                actions.push(EditAction::ReparentJoint { joint: index, parent });
+                actions.push(JointEdit::ReparentJoint { joint: index, parent });
             }
         }
     });

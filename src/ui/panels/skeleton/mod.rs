@@ -12,7 +12,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use crate::document::{Channel, RigKind, Target};
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, JointEdit, Session};
 use crate::ui::widgets::{self, AXES, PointSliders};
 
 /// The target of the selected joint, of which the panel has a note; `None` without one.
@@ -64,5 +64,5 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         disabled: None,
         channel: Some(Channel::Translation),
     };
-    place.show(ui, session, actions, EditAction::SetTranslation);
+    place.show(ui, session, actions, JointEdit::SetTranslation);
 }

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, BodyPart, EditAction, SelectAction, Session};
+use crate::session::{Actions, BodyPart, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::widgets;
 use crate::ui::{commands, style};
@@ -263,10 +263,10 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
         let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
         if widgets::button(ui, "Add child", tooltip, None) {
-            actions.push(EditAction::AddJoint { tip: None });
+            actions.push(JointEdit::AddJoint { tip: None });
         }
         if widgets::button(ui, "Add root", "Add a root joint, the start of another tree", None) {
-            actions.push(EditAction::AddRoot);
+            actions.push(JointEdit::AddRoot);
         }
         let tooltip = "Delete the selected joints (Delete)";
         if widgets::button(ui, "Delete", tooltip, none) {

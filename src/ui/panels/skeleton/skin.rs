@@ -7,7 +7,7 @@ use egui::Ui;
 use crate::document::{Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, MeshSkin, SkinMeshError, SkinSource};
-use crate::session::{Actions, EditAction, FileAction, PathDialog, Session, TransactionAction};
+use crate::session::{Actions, FileAction, PathDialog, Session, SkinEdit, TransactionAction};
 use crate::ui::style;
 use crate::ui::widgets::{self, Choice, Segment, Slider};
 
@@ -16,7 +16,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let why_not = (!session.skeleton_rig().has_bones()).then_some("Add a bone first");
         let tooltip = "Give the skeleton a smooth skin around its bones";
         if widgets::button(ui, "Add skin", tooltip, why_not) {
-            actions.push(EditAction::AddSkin);
+            actions.push(SkinEdit::AddSkin);
         }
         return;
     };
@@ -30,7 +30,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     colour(ui, session, skin, actions);
     summary(ui, session, skin);
     if widgets::button(ui, "Remove skin", "Show the bones alone again", None) {
-        actions.push(EditAction::SetSkin(None));
+        actions.push(SkinEdit::SetSkin(None));
     }
 }
 
@@ -44,7 +44,7 @@ fn shown(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         Segment { name: "Both", tooltip: "Show the bones through the skin", value: (true, true) },
     ];
     let chosen = widgets::segments(ui, now, &choices);
-    actions.extend(chosen.map(|(skin, bones)| EditAction::ShowSkin { skin, bones }));
+    actions.extend(chosen.map(|(skin, bones)| SkinEdit::ShowSkin { skin, bones }));
 }
 
 /// Shows what else is drawn of the skin.
@@ -83,7 +83,7 @@ fn skinning(ui: &mut Ui, skin: &Skin, actions: &mut Actions) {
         for (skinning, tooltip) in choices {
             let is_now = skinning == skin.skinning;
             if list.item(is_now, skinning.title(), tooltip, None) {
-                actions.push(EditAction::SetSkin(Some(Skin { skinning, ..skin.clone() })));
+                actions.push(SkinEdit::SetSkin(Some(Skin { skinning, ..skin.clone() })));
             }
         }
     });
@@ -93,7 +93,7 @@ fn shape(ui: &mut Ui, session: &Session, skin: &Skin, bones: &BoneSkin, actions:
     let shape = bones.shape();
     let with = |shape: SkinShape| {
         let source = SkinSource::Bones(bones.with_shape(shape));
-        EditAction::SetSkin(Some(Skin { source, ..skin.clone() }))
+        SkinEdit::SetSkin(Some(Skin { source, ..skin.clone() }))
     };
     let default = SkinShape::default();
     let detail = Slider {
@@ -150,7 +150,7 @@ fn file(ui: &mut Ui, mesh: &MeshSkin, actions: &mut Actions) {
         let why_not = problem.map(|_| "Locate the mesh first");
         let tooltip = "Keep the mesh in the document, so that it needs no other file";
         if widgets::button(ui, "Pack skin into file", tooltip, why_not) {
-            actions.push(EditAction::PackSkin);
+            actions.push(SkinEdit::PackSkin);
         }
     });
 }
@@ -166,7 +166,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
                 actions.push(TransactionAction::Begin);
             }
             let colour = colour.map(|channel| f32::from(channel) / 255.0);
-            actions.push(EditAction::SetSkin(Some(Skin { colour, ..skin.clone() })));
+            actions.push(SkinEdit::SetSkin(Some(Skin { colour, ..skin.clone() })));
         } else if is_change_open(session) && !ui.input(|input| input.pointer.any_down()) {
             actions.push(TransactionAction::Commit);
         }
@@ -176,8 +176,8 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
 
 /// True if the open transaction, if any, changes the skin.
 fn is_change_open(session: &Session) -> bool {
-    let label = EditAction::SetSkin(session.skeleton_rig().skin.clone()).label();
-    session.is_editing() && session.undo_label() == Some(label)
+    let label = SkinEdit::SetSkin(session.skeleton_rig().skin.clone()).label();
+    session.is_editing() && session.history().undo_label() == Some(label)
 }
 
 fn summary(ui: &mut Ui, session: &Session, skin: &Skin) {

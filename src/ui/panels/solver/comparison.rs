@@ -13,7 +13,7 @@ use crate::ui::widgets::{self, format};
 use crate::ui::{labels, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let Some(comparison) = session.comparison() else {
+    let Some(comparison) = session.solvers().comparison() else {
         let tooltip = "Run every solver from the FK pose, each as a coloured ghost";
         if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
             actions.push(SolverAction::Compare);

@@ -8,7 +8,7 @@ use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints, Points
 
 use crate::kinematics::chain_ik::Method;
 use crate::session::{
-    Actions, EditAction, Iterate, Session, ShownIteration, SolverAction, SolverRun,
+    Actions, Iterate, Session, ShownIteration, SolverAction, SolverEdit, SolverRun,
 };
 use crate::ui::keyboard::focus;
 use crate::ui::style;
@@ -21,13 +21,13 @@ const LEAST: f32 = 1e-8;
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let least = f64::from(LEAST * session.skeleton_rig().reach());
     let tolerance = f64::from(session.solver_tolerance());
-    let curves: Vec<Curve> = session.solver_runs().map(|run| Curve::new(run, least)).collect();
+    let curves: Vec<Curve> = session.solvers().runs().map(|run| Curve::new(run, least)).collect();
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let last = all().map(|point| point[0]).fold(10.0, f64::max);
     let low = all().map(|point| point[1]).fold(tolerance.log10(), f64::min);
     let high = all().map(|point| point[1]).fold(tolerance.log10() + 1.0, f64::max);
     let bounds = PlotBounds::from_min_max([0.0, low - 0.3], [1.04 * last, high + 0.3]);
-    let shown = session.shown_iteration();
+    let shown = session.solvers().shown_iteration();
 
     let palette = style::palette(ui);
     let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
@@ -72,7 +72,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
 }
 
 fn describe(session: &Session) -> String {
-    let Some(ShownIteration { number, latest, .. }) = session.shown_iteration() else {
+    let Some(ShownIteration { number, latest, .. }) = session.solvers().shown_iteration() else {
         return "Convergence: no solver run yet".to_owned();
     };
     match session.solver_run() {
@@ -164,7 +164,7 @@ fn number_width(ui: &Ui, most: u32) -> f32 {
 
 fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Actions) {
     let nothing = match shown.number {
-        _ if session.comparison().is_some() => {
+        _ if session.solvers().comparison().is_some() => {
             Some("End the race and run one solver to apply its pose")
         }
         0 => Some("Iteration 0 is the FK pose already"),
@@ -173,6 +173,6 @@ fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Ac
     let tooltip = "Write the shown pose to the joints' own angles (FK)";
     let layout = Layout::top_down_justified(Align::Center);
     if ui.with_layout(layout, |ui| widgets::button(ui, "Apply pose", tooltip, nothing)).inner {
-        actions.push(EditAction::ApplyPose);
+        actions.push(SolverEdit::ApplyPose);
     }
 }

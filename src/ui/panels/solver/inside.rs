@@ -8,7 +8,7 @@ use crate::kinematics::chain_ik::{
 };
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Actions, EditAction, InsideLayer, Session, SolverAction, SolverRun, ViewAction,
+    Actions, InsideLayer, Session, SolverAction, SolverEdit, SolverRun, ViewAction,
 };
 use crate::ui::keyboard::focus;
 use crate::ui::widgets::{self, format};
@@ -109,7 +109,7 @@ fn damping(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ..widgets::Slider::default()
     };
     slider.show(ui, session, actions, |damping| {
-        EditAction::SetSolver(SolverOptions { damping, ..options })
+        SolverEdit::SetSolver(SolverOptions { damping, ..options })
     });
 }
 
@@ -125,7 +125,7 @@ fn legend(ui: &mut Ui, session: &Session, kind: &SubStepKind, actions: &mut Acti
     for entry in entries(ui, kind) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            let mut shown = session.inside_layers().shows(entry.layer);
+            let mut shown = session.view().inside_layers().shows(entry.layer);
             let check = ui.checkbox(&mut shown, entry.name);
             for colour in &entry.colours {
                 let (rect, _) = ui.allocate_exact_size(vec2(12.0, 3.0), Sense::hover());

@@ -8,7 +8,7 @@ mod skin_areas;
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
-use crate::session::{Actions, EditAction, Session, ShownIteration, SolverAction};
+use crate::session::{Actions, Session, ShownIteration, SolverAction, SolverEdit};
 use crate::ui::widgets::{self, NumberField, format};
 use comparison::why_not;
 
@@ -18,7 +18,7 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
     settings(ui, session, actions);
     buttons(ui, session, actions);
     // The comparison shows its own table.
-    if session.comparison().is_none() {
+    if session.solvers().comparison().is_none() {
         report(ui, session, actions);
     }
     if session.solver_run().is_some() {
@@ -51,7 +51,7 @@ pub(in crate::ui) fn skin(ui: &mut Ui, session: &Session) {
 /// Shows the errors of the shown runs and the slider through their iterations; without a run,
 /// `empty`.
 fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions) {
-    let Some(shown) = session.shown_iteration() else {
+    let Some(shown) = session.solvers().shown_iteration() else {
         match why_not(session) {
             Some(reason) => ui.label(format!("{reason}.")),
             None => ui.label(empty),
@@ -73,7 +73,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         for method in Method::ALL {
             let item = ui.selectable_label(method == options.method, method.title());
             if item.on_hover_text(method.summary()).clicked() {
-                actions.push(EditAction::SetSolver(SolverOptions { method, ..options }));
+                actions.push(SolverEdit::SetSolver(SolverOptions { method, ..options }));
             }
         }
     });
@@ -85,7 +85,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     let options = rig.solver;
-    let set = |options| EditAction::SetSolver(options);
+    let set = |options| SolverEdit::SetSolver(options);
     widgets::pair(ui, "Iterations per frame", |ui| {
         let value = rig.iterations_per_frame as f32;
         let tooltip = "Set the iterations of a running solver per frame";
@@ -98,7 +98,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             tooltip,
         }
         .show(ui, session, actions, |value| {
-            EditAction::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
+            SolverEdit::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
         });
     });
     widgets::pair(ui, "Maximum iterations", |ui| {
@@ -152,7 +152,7 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
             }
         });
     });
-    let set = |root| EditAction::SetSolver(SolverOptions { root, ..options });
+    let set = |root| SolverEdit::SetSolver(SolverOptions { root, ..options });
     actions.extend(chosen.map(set));
 }
 
@@ -165,7 +165,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             let tooltip = "Use 1/10,000 of the chain length";
             if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
                 let tolerance = (!is_auto).then_some(auto);
-                actions.push(EditAction::SetSolver(SolverOptions { tolerance, ..options }));
+                actions.push(SolverEdit::SetSolver(SolverOptions { tolerance, ..options }));
             }
             if let Some(tolerance) = options.tolerance {
                 let tooltip = "Set the distance at which a tip has converged";
@@ -180,7 +180,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                     tooltip,
                 }
                 .show_as(ui, session, actions, &short, |tolerance| {
-                    EditAction::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
+                    SolverEdit::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
                 });
             }
         });
@@ -195,7 +195,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             column.set_min_height(24.0);
         }
         let [run, step, reset] = columns else { return };
-        let running = session.is_running();
+        let running = session.solvers().is_running();
         let name = if running { "Pause solver" } else { "Run" };
         if wide(run, name, "Iterate until converged (R)", disabled) {
             actions.push(SolverAction::Run(!running));
@@ -222,7 +222,7 @@ fn report(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
     widgets::pair(ui, "Shown", |ui| {
-        let shown = match session.shown_iteration() {
+        let shown = match session.solvers().shown_iteration() {
             Some(ShownIteration { number, latest, .. }) => {
                 format!("iteration {number} of {latest}")
             }

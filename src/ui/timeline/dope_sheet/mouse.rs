@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::row::{DopeSheetRow, SelectedKeys};
 use crate::document::Channel;
 use crate::session::{
-    Actions, EditAction, Key, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
+    Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
 };
 use crate::ui::timeline::areas::{ROW, take_keyboard};
 use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
@@ -121,7 +121,7 @@ pub(in crate::ui) fn press(
             sheet.scale,
             at,
         )));
-        actions.push(EditAction::Key(row.channels(sheet.session)));
+        actions.push(KeysEdit::Key(row.channels(sheet.session)));
     }
 }
 
@@ -210,7 +210,7 @@ fn move_keys(
         } else {
             format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel")
         };
-        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
+        actions.push(KeysEdit::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
         actions.push(ShellAction::Report(said));
     }
     if drag::is_released(ui) {

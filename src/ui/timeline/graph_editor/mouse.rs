@@ -6,7 +6,7 @@ use glam::Vec3;
 use crate::document::{Channel, Quantity};
 use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::session::{
-    Actions, EditAction, Key, SelectAction, Session, ShellAction, TransactionAction,
+    Actions, Edit, Key, KeysEdit, SelectAction, Session, ShellAction, TransactionAction,
 };
 use crate::ui::timeline::drag::{self, PointsDrag, TangentDrag, TimelineDrag};
 use crate::ui::timeline::time_scale::TimeScale;
@@ -274,7 +274,7 @@ fn move_keys(
                 "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
             )
         };
-        actions.push(EditAction::MoveKeys { keys: drag.keys.clone(), by, raise });
+        actions.push(KeysEdit::MoveKeys { keys: drag.keys.clone(), by, raise });
         actions.push(ShellAction::Report(said));
     }
     if drag::is_released(ui) {
@@ -318,7 +318,7 @@ fn turn_tangent(
 
 /// The action that turns the tangent so that its handle points to the mouse; with Alt, only on the
 /// side of the handle.
-fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Option<EditAction> {
+fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Option<Edit> {
     /// Least distance of the mouse from the key in time, in points, so that slopes stay finite.
     const LEAST: f32 = 2.0;
     let (channel, time) = drag.key;
@@ -338,5 +338,5 @@ fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Opt
     if !drag.is_leaving || !is_alone {
         arriving[drag.axis] = slope;
     }
-    Some(EditAction::SetSlopes(vec![drag.key], Some(Slopes { arriving, leaving })))
+    Some(KeysEdit::SetSlopes(vec![drag.key], Some(Slopes { arriving, leaving })).into())
 }

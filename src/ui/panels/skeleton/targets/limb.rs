@@ -10,7 +10,7 @@ use crate::document::{Channel, Target};
 use crate::kinematics::limb_ik::{ElbowReference, Limb};
 use crate::kinematics::twist::Stereographic;
 use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
-use crate::session::{Actions, EditAction, Session};
+use crate::session::{Actions, Session, TargetEdit};
 use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders};
 
@@ -28,12 +28,12 @@ pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut
         let tooltip = "Solve from the root, together with the other whole-body targets";
         if list.item(!is_limb, "Whole body", tooltip, None) {
             let kind = TargetKind::WholeBody;
-            actions.push(EditAction::SetTarget(Target { kind, ..target }));
+            actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
         }
         let tooltip = "Solve the two bones above the tip in closed form";
         if list.item(is_limb, "Limb", tooltip, no_limb.as_deref()) {
             let kind = TargetKind::Limb(LimbSettings::default());
-            actions.push(EditAction::SetTarget(Target { kind, ..target }));
+            actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
         }
     });
 }
@@ -48,7 +48,7 @@ pub(super) fn settings(
     actions: &mut Actions,
 ) {
     let set =
-        |settings| EditAction::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
+        |settings| TargetEdit::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
     reference(ui, session, &target, settings, actions, &set);
     let twist = Slider {
         label: "Twist",
@@ -77,7 +77,7 @@ fn reference(
     target: &Target,
     settings: LimbSettings,
     actions: &mut Actions,
-    set: &impl Fn(LimbSettings) -> EditAction,
+    set: &impl Fn(LimbSettings) -> TargetEdit,
 ) {
     let pole = ElbowReference::Pole(new_pole(session, target, settings));
     let map = ElbowReference::Stereographic(Stereographic::default());
@@ -122,7 +122,7 @@ fn pole(
     target: &Target,
     settings: LimbSettings,
     actions: &mut Actions,
-    set: &impl Fn(LimbSettings) -> EditAction,
+    set: &impl Fn(LimbSettings) -> TargetEdit,
 ) {
     let Some((now, pole)) = settings.pole() else { return };
     let sliders = PointSliders {
@@ -149,7 +149,7 @@ fn hand(
     target: &Target,
     settings: LimbSettings,
     actions: &mut Actions,
-    set: &impl Fn(LimbSettings) -> EditAction,
+    set: &impl Fn(LimbSettings) -> TargetEdit,
 ) {
     let pose = &session.evaluated_skeleton().solved;
     let hand = Limb::ending_at(pose, target.joint).ok().and_then(|limb| limb.hand);
@@ -202,7 +202,7 @@ pub(super) fn of_target(ui: &mut Ui, session: &Session, target: &Target, actions
     };
     let put = |target: &mut Target, space| target.space = space;
     spaces(ui, session, target, target.space, &choice, put, |space| {
-        actions.push(EditAction::SetTargetSpace { joint: target.joint, space });
+        actions.push(TargetEdit::SetTargetSpace { joint: target.joint, space });
     });
 }
 
@@ -226,7 +226,7 @@ pub(super) fn of_pole(
         }
     };
     spaces(ui, session, target, now, &choice, put, |space| {
-        actions.push(EditAction::SetPoleSpace { joint: target.joint, space });
+        actions.push(TargetEdit::SetPoleSpace { joint: target.joint, space });
     });
 }
 

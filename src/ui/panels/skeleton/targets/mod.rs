@@ -10,7 +10,7 @@ use egui::{RichText, Role, Ui, WidgetInfo};
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetKind, TargetReport};
-use crate::session::{Actions, EditAction, PlaybackAction, SelectAction, Session};
+use crate::session::{Actions, PlaybackAction, SelectAction, Session, TargetEdit};
 use crate::ui::labels;
 use crate::ui::widgets::Choice;
 use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
@@ -44,7 +44,7 @@ fn row(
             let check = ui.checkbox(&mut enabled, "").on_hover_text("Enable this target");
             ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
             if check.changed() {
-                actions.push(EditAction::SetTarget(Target { enabled, ..*target }));
+                actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
             }
             let selected = session.selected();
             let is_selected = selected == Some(end) || selected == Some(target.joint);
@@ -116,7 +116,7 @@ fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actio
         ..Slider::default()
     };
     slider.show(ui, session, actions, |influence| {
-        EditAction::SetTarget(Target { influence, ..target })
+        TargetEdit::SetTarget(Target { influence, ..target })
     });
 }
 
@@ -137,7 +137,7 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         disabled: None,
         channel: Some(Channel::Target(target.joint)),
     };
-    place.show(ui, session, actions, |home| EditAction::SetTarget(Target { home, ..target }));
+    place.show(ui, session, actions, |home| TargetEdit::SetTarget(Target { home, ..target }));
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
@@ -152,7 +152,7 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
             tooltip,
         };
         field.show(ui, session, actions, |weight| {
-            EditAction::SetTarget(Target { weight, ..target })
+            TargetEdit::SetTarget(Target { weight, ..target })
         });
     });
 }
@@ -167,13 +167,13 @@ fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Action
             "Move the target to the tip; nothing else moves"
         };
         if widgets::button(ui, "Target to FK", tooltip, None) {
-            actions.push(EditAction::MatchTargetToFk(target.joint));
+            actions.push(TargetEdit::MatchTargetToFk(target.joint));
         }
         let tooltip = "Write the shown pose to the joint angles; nothing moves";
         let disabled = labels::why_on_path(session, target.joint)
             .or((!target.is_posing()).then_some(NO_INFLUENCE));
         if widgets::button(ui, "FK to pose", tooltip, disabled) {
-            actions.push(EditAction::MatchFkToPose(target.joint));
+            actions.push(TargetEdit::MatchFkToPose(target.joint));
         }
     });
 }
@@ -197,7 +197,7 @@ fn path(ui: &mut Ui, target: Target, actions: &mut Actions) {
         for (path, name, tooltip) in PATHS {
             if list.item(path == target.motion.path, name, tooltip, None) {
                 let motion = TargetMotion { path, ..target.motion };
-                actions.push(EditAction::SetTarget(Target { motion, ..target }));
+                actions.push(TargetEdit::SetTarget(Target { motion, ..target }));
                 actions.push(PlaybackAction::Play(path != TargetPath::Still));
             }
         }
@@ -206,7 +206,7 @@ fn path(ui: &mut Ui, target: Target, actions: &mut Actions) {
 
 /// Shows the size and the period of the path.
 fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
-    let set = |motion| EditAction::SetTarget(Target { motion, ..target });
+    let set = |motion| TargetEdit::SetTarget(Target { motion, ..target });
     widgets::pair(ui, "Radius", |ui| {
         let radius = NumberField {
             name: "Radius",

@@ -1,0 +1,7 @@
+//! The arm's own edits, drags and measurements.
+
+pub mod drag;
+pub mod edits;
+pub mod pops;
+pub mod pose_line;
+pub mod transport;

@@ -1,0 +1,244 @@
+use glam::Vec3;
+
+use super::point::{Constraint, DragInput, PointDrag, PointHandle};
+use super::turn::TurnDrag;
+use crate::kinematics::skeleton::{JointId, RotationAxis};
+use crate::session::parts::ArmJoint;
+
+/// A part of a gizmo that can be dragged in the viewport.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// The hand of the arm; dragging it moves the Cursor.
+    Hand(PointHandle),
+    /// The pole, towards which the elbow points.
+    Pole(PointHandle),
+    /// The Root, which is the shoulder.
+    Root(PointHandle),
+    /// The ring of the Socket twist, about the Pointer.
+    Twist,
+    /// A limb of the arm; dragging it turns the elbow about the Pointer.
+    Limb,
+    /// The Upper limb in FK; dragging it turns the shoulder.
+    UpperLimb,
+    /// The ring of the shoulder's angle about x, y or z.
+    Shoulder(RotationAxis),
+    /// The elbow's bend: its ring, or the Lower limb in FK.
+    Bend,
+    /// The ring of the hand's angle about x, y or z.
+    HandRing(RotationAxis),
+    /// The target of a joint.
+    Target(JointId, PointHandle),
+    /// The pole of a limb's target, by the target's joint.
+    LimbPole(JointId, PointHandle),
+    /// The head of a skeleton that follows a path; dragging it pulls the chain.
+    Head(JointId, PointHandle),
+    /// The tip of a joint's bone.
+    Tip(JointId, PointHandle),
+    /// The ring of a joint's angle about x, y or z.
+    Ring(JointId, RotationAxis),
+    /// The ring of the angle about x, y or z of the orientation that the target of a
+    /// joint holds.
+    Orientation(JointId, RotationAxis),
+}
+
+impl Grip {
+    /// Whether the axis of the grip's handle, if it has one, is 0, 1 or 2.
+    pub(in crate::session) fn has_valid_axis(self) -> bool {
+        match self {
+            Self::Hand(handle)
+            | Self::Pole(handle)
+            | Self::Root(handle)
+            | Self::Target(_, handle)
+            | Self::LimbPole(_, handle)
+            | Self::Head(_, handle)
+            | Self::Tip(_, handle) => handle.has_valid_axis(),
+            Self::Shoulder(_)
+            | Self::HandRing(_)
+            | Self::Ring(..)
+            | Self::Orientation(..)
+            | Self::Bend
+            | Self::Twist
+            | Self::Limb
+            | Self::UpperLimb => true,
+        }
+    }
+
+    /// Label of the undo step of a drag of this part.
+    pub(in crate::session) fn label(self) -> &'static str {
+        match self {
+            Self::Hand(_) => "Move hand",
+            Self::Pole(_) => "Move pole",
+            Self::Root(_) => "Move shoulder",
+            Self::Twist | Self::Limb => "Set Socket twist",
+            Self::Shoulder(_) | Self::UpperLimb => "Turn shoulder",
+            Self::Bend => "Bend elbow",
+            Self::HandRing(_) => "Turn hand",
+            Self::Target(..) => "Move target",
+            Self::LimbPole(..) => "Move pole",
+            Self::Head(..) => "Move head",
+            Self::Tip(..) => "Pose joints",
+            Self::Ring(..) => "Turn joint",
+            Self::Orientation(..) => "Turn target",
+        }
+    }
+
+    /// Whether the grip is of the arm rather than of a skeleton.
+    pub(in crate::session) fn is_of_arm(self) -> bool {
+        match self {
+            Self::Hand(_)
+            | Self::Pole(_)
+            | Self::Root(_)
+            | Self::Twist
+            | Self::Limb
+            | Self::UpperLimb
+            | Self::Shoulder(_)
+            | Self::Bend
+            | Self::HandRing(_) => true,
+            Self::Target(..)
+            | Self::LimbPole(..)
+            | Self::Head(..)
+            | Self::Tip(..)
+            | Self::Ring(..)
+            | Self::Orientation(..) => false,
+        }
+    }
+
+    /// The joint of the arm that the grip selects; `None` for handles that are always shown.
+    pub(in crate::session) fn arm_joint(self) -> Option<ArmJoint> {
+        match self {
+            Self::Root(_) => Some(ArmJoint::Root),
+            Self::Twist | Self::Limb => Some(ArmJoint::Elbow),
+            Self::HandRing(_) => Some(ArmJoint::Hand),
+            _ => None,
+        }
+    }
+}
+
+/// A drag in the viewport.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drag {
+    grip: Grip,
+    kind: DragKind,
+    /// Points in the world through which the head of a skeleton was dragged.
+    waypoints: Vec<Vec3>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum DragKind {
+    Point(PointDrag),
+    Turn(TurnDrag),
+}
+
+/// Where a drag has moved its grip.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::session) enum Dragged {
+    Point {
+        /// The point, relative to the origin of the drag.
+        to: Vec3,
+        /// Offset since the press.
+        moved: Vec3,
+        /// Whether the mouse has moved, or an offset was typed.
+        has_moved: bool,
+    },
+    /// The angle of a ring, in radians.
+    Angle(f32),
+}
+
+impl Drag {
+    pub(in crate::session) fn of_point(grip: Grip, drag: PointDrag) -> Self {
+        Self { grip, kind: DragKind::Point(drag), waypoints: Vec::new() }
+    }
+
+    pub(in crate::session) fn of_ring(grip: Grip, drag: TurnDrag) -> Self {
+        Self { grip, kind: DragKind::Turn(drag), waypoints: Vec::new() }
+    }
+
+    /// Computes where the grip is now. The path of a head keeps points that are `spacing` apart.
+    pub(in crate::session) fn dragged(&mut self, spacing: f32) -> Dragged {
+        if matches!(self.grip, Grip::Head(..)) {
+            self.add_waypoint(spacing);
+        }
+        match &mut self.kind {
+            DragKind::Turn(turn) => Dragged::Angle(turn.angle()),
+            DragKind::Point(point) => {
+                let to = point.point();
+                Dragged::Point { to, moved: point.moved(), has_moved: point.has_moved() }
+            }
+        }
+    }
+
+    /// Points in the world through which the head of a skeleton was dragged.
+    pub(in crate::session) fn waypoints(&self) -> &[Vec3] {
+        &self.waypoints
+    }
+
+    /// Adds the dragged point to [`Drag::waypoints`]; it replaces the last one if that was nearer than
+    /// `spacing` to the one before it. A typed offset discards the others: the head moves straight to
+    /// its point. There are none before the mouse moves.
+    fn add_waypoint(&mut self, spacing: f32) {
+        let DragKind::Point(drag) = &mut self.kind else {
+            return;
+        };
+        if !drag.typed().is_empty() || !drag.has_moved() {
+            self.waypoints.clear();
+        } else if let [.., before, last] = self.waypoints[..]
+            && before.distance(last) < spacing
+        {
+            self.waypoints.pop();
+        }
+        if drag.has_moved() {
+            self.waypoints.push(drag.point());
+        }
+    }
+
+    /// The part of a gizmo that is dragged.
+    pub fn grip(&self) -> Grip {
+        self.grip
+    }
+
+    /// The drag of a point; `None` for a ring.
+    pub fn point(&self) -> Option<&PointDrag> {
+        match &self.kind {
+            DragKind::Point(drag) => Some(drag),
+            DragKind::Turn(_) => None,
+        }
+    }
+
+    /// The drag of a ring; `None` for a point.
+    pub fn turn(&self) -> Option<&TurnDrag> {
+        match &self.kind {
+            DragKind::Turn(drag) => Some(drag),
+            DragKind::Point(_) => None,
+        }
+    }
+
+    /// The offset as typed, in degrees for a ring; empty while the mouse sets the offset.
+    pub fn typed(&self) -> &str {
+        match &self.kind {
+            DragKind::Point(drag) => drag.typed(),
+            DragKind::Turn(drag) => drag.typed(),
+        }
+    }
+
+    pub(in crate::session) fn set_input(&mut self, input: DragInput) {
+        match &mut self.kind {
+            DragKind::Point(drag) => drag.set_input(input),
+            DragKind::Turn(drag) => drag.set_input(input),
+        }
+    }
+
+    pub(in crate::session) fn set_typed(&mut self, typed: String) {
+        match &mut self.kind {
+            DragKind::Point(drag) => drag.set_typed(typed),
+            DragKind::Turn(drag) => drag.set_typed(typed),
+        }
+    }
+
+    /// Constrains the drag of a point; does nothing to a ring.
+    pub(in crate::session) fn set_constraint(&mut self, constraint: Option<Constraint>) {
+        if let DragKind::Point(drag) = &mut self.kind {
+            drag.set_constraint(constraint);
+            self.waypoints.clear();
+        }
+    }
+}

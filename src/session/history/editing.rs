@@ -1,0 +1,480 @@
+use std::collections::BTreeSet;
+
+use super::steps::{History, Overrides, Snapshot, TreeChange};
+use crate::document::{Arm, Camera, Channel, Document, PathKind, Posed, Track, TwistReferenceKind};
+use crate::kinematics::angle::wrapped;
+use crate::session::drag::grip::Drag;
+use crate::session::playback::Playback;
+
+/// Label of a transaction without edits.
+const CHANGE: &str = "Change";
+/// Label of the undo step by which a move of the playhead discards unkeyed edits.
+const DISCARD: &str = "Discard unkeyed change";
+
+/// The document, its values at the playhead, the open transaction and the history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Editing {
+    document: Document,
+    track: Track,
+    /// The document posed at the playhead, with unkeyed edits.
+    posed: Posed,
+    /// Unkeyed edits, discarded when the time changes.
+    overrides: Overrides,
+    transaction: Option<Transaction>,
+    history: History,
+    /// Revision of the document: documents with the same revision differ at most in their cameras.
+    revision: u64,
+    newest_revision: u64,
+    /// The revision with which the document was opened.
+    first_revision: u64,
+    /// Revision of the document's content: documents with the same one differ at most in their
+    /// cameras, shown rig and overlays.
+    content: u64,
+    saved_content: u64,
+}
+
+/// Edits between press and release that become one undo step.
+#[derive(Clone, Debug, PartialEq)]
+struct Transaction {
+    /// The state that cancelling restores.
+    before: Snapshot,
+    /// The document from which drags start: as shown before the transaction, with later changes
+    /// that a drag does not revert.
+    shown: Document,
+    /// The label of the latest edit; `None` before the first edit.
+    label: Option<&'static str>,
+    drag: Option<Drag>,
+}
+
+/// Consequences of a change of the document.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::session) struct WriteOutcome {
+    /// Whether the change made unkeyed edits of keyed channels.
+    pub has_overridden: bool,
+    /// Whether auto-key set keys.
+    pub has_auto_keyed: bool,
+}
+
+impl Editing {
+    pub(in crate::session) fn new(document: Document) -> Self {
+        let track = Track::new(&document);
+        Self {
+            posed: track.pose(document.clone(), 0.0),
+            track,
+            document,
+            overrides: Overrides::default(),
+            transaction: None,
+            history: History::default(),
+            revision: 0,
+            newest_revision: 0,
+            first_revision: 0,
+            content: 0,
+            saved_content: 0,
+        }
+    }
+
+    /// Editing of another document, with an empty history and a new revision.
+    pub(in crate::session) fn replaced(&self, document: Document) -> Self {
+        let revision = self.newest_revision + 1;
+        Self {
+            revision,
+            newest_revision: revision,
+            first_revision: revision,
+            content: revision,
+            saved_content: revision,
+            ..Self::new(document)
+        }
+    }
+
+    pub(in crate::session) fn document(&self) -> &Document {
+        &self.document
+    }
+
+    pub(in crate::session) fn track(&self) -> &Track {
+        &self.track
+    }
+
+    pub(in crate::session) fn posed(&self) -> &Posed {
+        &self.posed
+    }
+
+    pub(in crate::session) fn shown(&self) -> &Document {
+        self.posed.document()
+    }
+
+    pub(in crate::session) fn overrides(&self) -> &Overrides {
+        &self.overrides
+    }
+
+    /// Number of the document's state: equal numbers mean equal documents, except for their cameras.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The revision with which the document was opened: another number for each opened document.
+    pub fn first_revision(&self) -> u64 {
+        self.first_revision
+    }
+
+    /// Whether a transaction is open.
+    pub(in crate::session) fn is_open(&self) -> bool {
+        self.transaction.is_some()
+    }
+
+    /// The revision before the open transaction; `None` if none is open.
+    pub(in crate::session) fn revision_before(&self) -> Option<u64> {
+        Some(self.transaction.as_ref()?.before.revision)
+    }
+
+    /// The document as shown before the open transaction, or as shown now if none is open.
+    pub(in crate::session) fn shown_before(&self) -> &Document {
+        self.transaction.as_ref().map_or(self.shown(), |transaction| &transaction.shown)
+    }
+
+    /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
+    /// none is open.
+    pub(in crate::session) fn posed_before(&self) -> Posed {
+        match &self.transaction {
+            Some(transaction) => self.track.pose(transaction.shown.clone(), self.posed.time()),
+            None => self.posed.clone(),
+        }
+    }
+
+    pub(in crate::session) fn drag(&self) -> Option<&Drag> {
+        self.transaction.as_ref()?.drag.as_ref()
+    }
+
+    /// Labels the open transaction by its drag and returns that; `None` if nothing is dragged.
+    pub(in crate::session) fn drag_mut(&mut self) -> Option<&mut Drag> {
+        let transaction = self.transaction.as_mut()?;
+        let drag = transaction.drag.as_mut()?;
+        transaction.label = Some(drag.grip().label());
+        Some(drag)
+    }
+
+    /// Label of the step that Undo undoes; `None` if there is none.
+    pub fn undo_label(&self) -> Option<&'static str> {
+        match &self.transaction {
+            Some(transaction) => Some(transaction.label.unwrap_or(CHANGE)),
+            None => self.history.undo_label(),
+        }
+    }
+
+    /// Label of the step that Redo redoes; `None` if there is none.
+    pub fn redo_label(&self) -> Option<&'static str> {
+        self.history.redo_label()
+    }
+
+    /// Whether the document differs from the saved one in more than cameras, shown rig and
+    /// overlays.
+    pub fn is_unsaved(&self) -> bool {
+        let before = self.transaction.as_ref().map(|transaction| &transaction.before);
+        self.content != self.saved_content
+            || before.is_some_and(|before| before.differs_in_content_from(&self.document))
+    }
+
+    pub(in crate::session) fn mark_saved(&mut self) {
+        self.saved_content = self.content;
+    }
+
+    pub(in crate::session) fn mark_unsaved(&mut self) {
+        self.saved_content = self.content - 1;
+    }
+
+    pub(in crate::session) fn set_camera(&mut self, camera: Camera) {
+        self.document.camera = camera;
+        self.posed.set_camera(camera);
+    }
+
+    /// Removes a channel's unkeyed edit.
+    pub(in crate::session) fn forget_override(&mut self, channel: Channel) {
+        self.overrides.remove(&channel);
+    }
+
+    /// Removes the twist's unkeyed edit if the keys give the same twist at `time`, in seconds; returns
+    /// whether they do.
+    pub(in crate::session) fn forget_twist_like_keys(&mut self, time: f64) -> bool {
+        const SAME: f32 = 1e-4;
+        let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
+        let apart = wrapped(twist(self.document.at(time).document()) - twist(self.shown()) + SAME);
+        let is_same = apart < 2.0 * SAME && self.document.keys.has(Channel::Twist);
+        if is_same {
+            self.forget_override(Channel::Twist);
+        }
+        is_same
+    }
+
+    pub(in crate::session) fn clear_overrides(&mut self) {
+        self.overrides.clear();
+    }
+
+    /// Discards unkeyed edits that were made at `time`, in seconds, because the playhead moves to
+    /// `now`; adds an undo step unless a transaction is open. Returns whether there were any.
+    pub(in crate::session) fn discard_overrides(&mut self, time: f64, now: f64) -> bool {
+        if self.overrides.is_empty() {
+            return false;
+        }
+        let before = self.state(time);
+        self.overrides.clear();
+        if !self.is_open() {
+            self.remember(DISCARD, before, now);
+        }
+        true
+    }
+
+    /// Poses the document at `time`, in seconds, with the unkeyed edits.
+    pub(in crate::session) fn evaluate(&mut self, time: f64) {
+        self.track = Track::new(&self.document);
+        let mut shown = self.track.at(time).into_document();
+        for (channel, value) in &self.overrides {
+            channel.set(&mut shown, *value);
+        }
+        self.posed = self.track.pose(shown, time);
+    }
+
+    /// Replaces the shown document. With auto-key, changed channels get keys; otherwise, changed
+    /// channels with keys get unkeyed edits. Returns `None` if nothing has changed.
+    pub(in crate::session) fn write(
+        &mut self,
+        mut after: Document,
+        playback: &Playback,
+    ) -> Option<WriteOutcome> {
+        if after == *self.shown() {
+            return None;
+        }
+        let [joints_before, joints] = [self.shown(), &after].map(|it| it.skeleton().joints().len());
+        let change = TreeChange::between(self.shown().skeleton(), after.skeleton());
+        let is_rebuilt = change != TreeChange::Kept;
+        let has_other_joints = is_rebuilt || joints != joints_before;
+        let mut outcome = WriteOutcome::default();
+        if is_rebuilt {
+            self.overrides.clear();
+        } else {
+            outcome = self.key_or_override(&mut after, playback);
+            self.keep_unkeyed_values(&mut after);
+        }
+        self.overrides.retain(|channel, _| {
+            let is_transported = *channel == Channel::Twist && is_transported(&after);
+            is_transported || after.keys.has(*channel)
+        });
+        after.skeleton_rig.head_tracks.clear();
+        if !self.is_open() {
+            after.skeleton_rig.refresh_skin();
+        }
+        self.document = after;
+        self.evaluate(playback.time());
+        self.update_transaction(has_other_joints);
+        Some(outcome)
+    }
+
+    /// Adapts the open transaction to a change of the document. The drag ends if joints were added,
+    /// removed or attached to other parents; otherwise, the document from which it starts gets the
+    /// changed keys.
+    fn update_transaction(&mut self, has_other_joints: bool) {
+        let Some(transaction) = &mut self.transaction else { return };
+        if has_other_joints {
+            transaction.drag = None;
+            transaction.shown.clone_from(self.posed.document());
+        } else if transaction.shown.keys != self.document.keys {
+            transaction.shown.keys.clone_from(&self.document.keys);
+        }
+    }
+
+    /// Sets the keys from which the next [`KeysEdit::MoveKeys`](crate::session::KeysEdit::MoveKeys) of
+    /// the open transaction starts.
+    pub(in crate::session) fn restart_keys_from(&mut self, keys: crate::document::Keys) {
+        if let Some(transaction) = &mut self.transaction {
+            transaction.shown.keys = keys;
+        }
+    }
+
+    /// Keys the channels that `after` changes, if auto-key is on; otherwise, records unkeyed edits
+    /// of the changed channels that have keys.
+    fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> WriteOutcome {
+        let changed = |channel: &Channel| {
+            let value = channel.value(after);
+            value.is_some() && value != channel.value(self.shown())
+        };
+        let channels: Vec<Channel> = if playback.is_auto_key() {
+            self.channels_to_auto_key(after)
+        } else {
+            after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
+        };
+        if !playback.is_auto_key() && is_transported(after) {
+            if after.arm.cursor_in_root() != self.shown().arm.cursor_in_root() {
+                // The transported twist is an unkeyed edit, too, discarded together with that of
+                // the hand.
+                let twist = Channel::Twist.value(after).unwrap_or_default();
+                self.overrides.insert(Channel::Twist, twist);
+            } else if changed(&Channel::Twist) {
+                self.overrides.remove(&Channel::Twist);
+            }
+        }
+        let mut outcome = WriteOutcome::default();
+        for channel in channels {
+            if playback.is_auto_key() {
+                after.key_before_switch(channel, self.shown(), playback.time());
+                after.key(channel, playback.time());
+                self.overrides.remove(&channel);
+                outcome.has_auto_keyed = true;
+            } else if let Some(value) = channel.value(after) {
+                self.overrides.insert(channel, value);
+                outcome.has_overridden = true;
+            }
+        }
+        outcome
+    }
+
+    /// Channels that auto-key keys for a change of the shown document to `after`: changed channels
+    /// that shape the rig before or after it, and changed switches that have keys. A switch between
+    /// FK and IK keys the channels of both; a switch of the pin keys the point that comes into use.
+    fn channels_to_auto_key(&self, after: &Document) -> Vec<Channel> {
+        let changed = |channel: &Channel| channel.value(after) != channel.value(self.shown());
+        let (has_mode, has_pinned) = (changed(&Channel::Influence), changed(&Channel::Pinned));
+        let comes_into_use = |channel: &Channel| {
+            let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
+            has_mode && is_posing || has_pinned && *channel == Channel::of_cursor(&after.arm)
+        };
+        let switches = after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
+        let all: BTreeSet<Channel> = [after, self.shown()]
+            .into_iter()
+            .flat_map(Channel::of_rig)
+            .chain(switches)
+            .filter(|channel| changed(channel) || comes_into_use(channel))
+            .filter(|channel| !is_start_of_body(after, *channel))
+            .collect();
+        all.into_iter().collect()
+    }
+
+    /// Restores the document's own values of keyed channels in `after`, since their values at the
+    /// playhead are not saved.
+    fn keep_unkeyed_values(&self, after: &mut Document) {
+        let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
+        let skeleton = &mut after.skeleton_rig.skeleton;
+        let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
+        if skeleton.is_same(&self.shown().skeleton_rig.skeleton)
+            && keyed_before.all(|channel| after.keys.has(channel))
+        {
+            *skeleton = self.document.skeleton_rig.skeleton.clone();
+        }
+        let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
+        for channel in keyed.collect::<Vec<_>>() {
+            if let Some(value) = channel.value(&self.document) {
+                channel.set(after, value);
+            }
+            if matches!(channel, Channel::Hand | Channel::Pin) {
+                after.arm.ik_state.pointer = self.document.arm.ik_state.pointer;
+            }
+        }
+        let is_overridden = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
+        if is_overridden || is_keyed(&Channel::Twist) {
+            let unkeyed = self.document.arm.with_twist_reference(after.arm.twist_reference);
+            after.arm.twist = unkeyed.twist;
+            after.arm.ik_state.transported = unkeyed.ik_state.transported;
+        }
+        if is_keyed(&Channel::HandOrientation) {
+            let Arm { hand_orientation, .. } = self.document.arm;
+            let space = after.arm.hand_orientation.space;
+            after.arm.hand_orientation.angles =
+                hand_orientation.in_space(space, &self.document.arm.pose()).angles;
+        }
+    }
+
+    /// The present state, for undo; `time` is the playhead in seconds.
+    pub(in crate::session) fn state(&self, time: f64) -> Snapshot {
+        Snapshot::new(&self.document, &self.overrides, time, self.revision, self.content)
+    }
+
+    /// Adds an undo step if the document or the unkeyed edits have changed since `before`.
+    pub(in crate::session) fn remember(
+        &mut self,
+        label: &'static str,
+        before: Snapshot,
+        time: f64,
+    ) {
+        if before.differs_from(&self.document) {
+            self.newest_revision += 1;
+            self.revision = self.newest_revision;
+            if before.differs_in_content_from(&self.document) {
+                self.content = self.newest_revision;
+            }
+        } else {
+            // Signs of zeros may have changed, but documents with equal revisions are equal bit for
+            // bit.
+            self.document = before.document(&self.document);
+            if before.is_restored_in(&self.state(time)) {
+                return;
+            }
+        }
+        self.history.push(label, before);
+    }
+
+    /// Restores a state; returns how the tree of joints has changed.
+    pub(in crate::session) fn restore(&mut self, state: &Snapshot) -> TreeChange {
+        let document = state.document(&self.document);
+        let change = TreeChange::between(self.document.skeleton(), document.skeleton());
+        self.document = document;
+        self.overrides = state.overrides().clone();
+        self.revision = state.revision;
+        self.content = state.content;
+        change
+    }
+
+    /// Labels the open transaction; returns whether one is open.
+    pub(in crate::session) fn label_transaction(&mut self, label: &'static str) -> bool {
+        let Some(transaction) = &mut self.transaction else { return false };
+        transaction.label = Some(label);
+        true
+    }
+
+    pub(in crate::session) fn begin(&mut self, drag: Option<Drag>, time: f64) {
+        let (before, shown) = (self.state(time), self.shown().clone());
+        self.transaction = Some(Transaction { before, shown, label: None, drag });
+    }
+
+    /// Closes the transaction, if one is open, with an undo step.
+    pub(in crate::session) fn commit(&mut self, time: f64) {
+        if let Some(transaction) = self.transaction.take() {
+            // Not during a drag, which would stop for the time that it takes.
+            self.document.skeleton_rig.refresh_skin();
+            self.track = Track::new(&self.document);
+            self.posed.set_skin(self.document.skeleton_rig.skin.clone());
+            self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
+        }
+    }
+
+    /// Closes the transaction and returns the state before it; `None` if none is open.
+    pub(in crate::session) fn take_transaction(&mut self) -> Option<Snapshot> {
+        Some(self.transaction.take()?.before)
+    }
+
+    /// Undoes a step; returns its label and the state before it, or `None` if there is nothing to
+    /// undo.
+    pub(in crate::session) fn undo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
+        self.history.undo(self.state(time))
+    }
+
+    /// Redoes a step; returns its label and the state after it, or `None` if there is nothing to
+    /// redo.
+    pub(in crate::session) fn redo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
+        self.history.redo(self.state(time))
+    }
+}
+
+/// Whether the twist is transported along a keyed hand and has no keys of its own.
+fn is_transported(document: &Document) -> bool {
+    let Document { arm, keys, .. } = document;
+    arm.twist_reference == TwistReferenceKind::Transport
+        && keys.has(Channel::of_cursor(arm))
+        && !keys.has(Channel::Twist)
+}
+
+/// Whether a channel has an angle of the body that a head with keys has at its first key: such an angle
+/// is not keyed automatically.
+fn is_start_of_body(document: &Document, channel: Channel) -> bool {
+    let rig = &document.skeleton_rig;
+    let Channel::Rotation(joint) = channel else { return false };
+    let heads = rig.follow_paths.iter().filter(|path| path.kind == PathKind::Head);
+    !document.keys.has(channel)
+        && heads.flat_map(|path| rig.path_joints(path.root)).any(|of_chain| of_chain == joint)
+}

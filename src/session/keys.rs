@@ -1,0 +1,274 @@
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use super::outcome::{Consequence, Outcome};
+use super::parts::{Clipboard, Key};
+use super::session::Session;
+use crate::document::{Baked, Channel, Document, Keys, Quantity, RigKind, Timeline};
+use crate::kinematics::spline::{Interpolation, Knot, Slopes};
+
+/// A change of the keys or of the timeline.
+#[derive(Clone, Debug, PartialEq)]
+pub enum KeysEdit {
+    /// Keys channels at the playhead with their shown values.
+    Key(Vec<Channel>),
+    /// Deletes keys.
+    DeleteKeys(Vec<Key>),
+    /// Deletes all keys of channels.
+    ClearChannels(Vec<Channel>),
+    /// Moves keys in time and in value.
+    MoveKeys {
+        /// The keys to move, each with the time that it had before the transaction.
+        keys: Vec<Key>,
+        /// Shift in seconds; positive is later.
+        by: f64,
+        /// Change of the values. The result is kept within the values that a channel can have.
+        raise: Vec3,
+    },
+    /// Sets the curve from each key to the next one of its channel.
+    SetInterpolation(Vec<Key>, Interpolation),
+    /// Sets the slopes of curves at keys, per second; `None` for those that the neighbours give.
+    SetSlopes(Vec<Key>, Option<Slopes<Vec3>>),
+    /// Pastes the copied keys at the playhead.
+    PasteKeys,
+    /// Replaces the motion by targets and path by the keys of a bake.
+    Bake(Box<Baked>),
+    /// Sets start, end and frame rate of the timeline.
+    SetTimeline(Timeline),
+}
+
+impl KeysEdit {
+    /// Label of the edit's undo step.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::Key(channels) => match channels[..] {
+                [Channel::Hand] => "Key hand",
+                [Channel::Twist] => "Key Socket twist",
+                [..] => "Set keys",
+            },
+            Self::DeleteKeys(_) | Self::ClearChannels(_) => "Delete keys",
+            Self::MoveKeys { .. } => "Move keys",
+            Self::SetInterpolation(..) => "Set interpolation",
+            Self::SetSlopes(..) => "Set tangents",
+            Self::PasteKeys => "Paste keys",
+            Self::Bake(_) => "Bake to keys",
+            Self::SetTimeline(_) => "Change timeline",
+        }
+    }
+
+    pub(super) fn apply(self, session: &mut Session) -> Outcome {
+        let shown = session.shown();
+        match self {
+            Self::Key(channels) => key(session, &channels),
+            Self::DeleteKeys(keys) => {
+                Outcome::change(shown, |document| document.keys.remove_all(&keys))
+            }
+            Self::ClearChannels(channels) => Outcome::change(shown, |document| {
+                channels.iter().for_each(|channel| document.keys.clear(*channel));
+            }),
+            Self::MoveKeys { keys, by, raise } => move_keys(session, &keys, by, raise),
+            Self::SetInterpolation(keys, interpolation) => {
+                change_keys(shown, &keys, |_, key| Knot { interpolation, ..key })
+            }
+            Self::SetSlopes(keys, slopes) => change_keys(shown, &keys, |channel, key| {
+                let slopes = slopes.map(|Slopes { arriving, leaving }| Slopes {
+                    arriving: of_width(channel, arriving),
+                    leaving: of_width(channel, leaving),
+                });
+                Knot { slopes, ..key }
+            }),
+            Self::PasteKeys => paste_keys(session),
+            Self::Bake(baked) => bake(session, &baked),
+            Self::SetTimeline(timeline) if timeline.is_valid() => {
+                Outcome::change(shown, |document| document.timeline = timeline)
+            }
+            Self::SetTimeline(_) => Outcome::fail(format!(
+                "A timeline must start before it ends, within a day of 0, and have {} to {} frames \
+                 per second",
+                Timeline::MIN_FRAME_RATE,
+                Timeline::MAX_FRAME_RATE
+            )),
+        }
+    }
+}
+
+/// Keys channels at the playhead with their shown values.
+pub(super) fn key(session: &mut Session, channels: &[Channel]) -> Outcome {
+    let time = session.time();
+    let are_overridden = channels.iter().any(|channel| session.is_overridden(*channel));
+    let keys = session.document().keys.clone();
+    session.act(Consequence::ForgetUnkeyed(channels.to_vec()));
+    let keyed = Outcome::change(session.shown(), |document| {
+        channels.iter().for_each(|channel| document.key(*channel, time));
+    });
+    session.act(keyed);
+    // If the keys had these values already, nothing was written.
+    let is_same = are_overridden && keys == session.document().keys;
+    Outcome::from(is_same.then_some(Consequence::Refresh)).and(Outcome::say(match channels {
+        [] => "There is nothing to key".to_owned(),
+        _ if session.playback().is_auto_key_news() => {
+            format!("Keyed at {time:.2} s. Auto-key is on: every edit sets keys")
+        }
+        _ => format!("Keyed at {time:.2} s"),
+    }))
+}
+
+/// Moves `keys`, given with their times before the transaction, by `by` seconds, and adds `raise` to
+/// their values. Replaces other keys at the new times.
+fn move_keys(session: &Session, keys: &[Key], by: f64, raise: Vec3) -> Outcome {
+    let farthest = Timeline::MAX_TIME;
+    let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
+    let raise = if raise.is_finite() { raise } else { Vec3::ZERO };
+    let before = session.shown_before().keys.clone();
+    let timeline = session.document().timeline;
+    let moved: Clipboard = keys
+        .iter()
+        .filter_map(|(channel, time)| {
+            let key = before.key(*channel, *time)?;
+            let time = moved_to(timeline, *time, by);
+            let value = raised(*channel, key.value, raise);
+            Some((*channel, Knot { time, value, ..key }))
+        })
+        .collect();
+    let mut after = before.clone();
+    after.remove_all(keys);
+    insert(&mut after, &moved);
+    // The next move of this drag starts from the same keys.
+    Outcome::from(Consequence::SelectKeys(names(&moved)))
+        .and(Outcome::change(session.shown(), |document| document.keys = after))
+        .and(Consequence::RestartKeysFrom(Box::new(before)))
+}
+
+fn change_keys(
+    shown: &Document,
+    keys: &[Key],
+    change: impl Fn(Channel, Knot<Vec3>) -> Knot<Vec3>,
+) -> Outcome {
+    Outcome::change(shown, |document| {
+        for (channel, time) in keys {
+            if let Some(key) = document.keys.key(*channel, *time) {
+                document.keys.insert_key(*channel, change(*channel, key));
+            }
+        }
+    })
+}
+
+/// Pastes the copied keys at the playhead, except those of missing joints.
+fn paste_keys(session: &Session) -> Outcome {
+    let (shown, timeline) = (session.shown(), session.document().timeline);
+    let copies = session.clipboard().iter();
+    let pasted: Clipboard = copies
+        .filter(|(channel, _)| channel.value(shown).is_some())
+        .map(|(channel, key)| {
+            (*channel, Knot { time: moved_to(timeline, session.time(), key.time), ..*key })
+        })
+        .collect();
+    Outcome::from(Consequence::SelectKeys(names(&pasted)))
+        .and(Outcome::change(shown, |document| insert(&mut document.keys, &pasted)))
+}
+
+/// Replaces the motion by targets and path by the keys of a bake.
+fn bake(session: &mut Session, baked: &Baked) -> Outcome {
+    // Also if the bake changes nothing, the discarded edits are no longer shown.
+    session.act(Outcome::from(Consequence::DiscardUnkeyed).and(Consequence::Refresh));
+    Outcome::change(session.shown(), |document| {
+        document.keys = baked.document.keys.clone();
+        let paths = &baked.document.skeleton_rig.follow_paths;
+        document.skeleton_rig.follow_paths.clone_from(paths);
+    })
+}
+
+/// The time of a key after a move by `by`, in seconds. A move from one frame to another ends exactly
+/// on the frame.
+fn moved_to(timeline: Timeline, time: f64, by: f64) -> f64 {
+    let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
+    let is_on_frame = |time: f64, frame: f64| (time - frame).abs() < 1e-9;
+    if is_on_frame(time, from) && is_on_frame(time + by, to) { to } else { time + by }
+}
+
+fn names(keys: &Clipboard) -> Vec<Key> {
+    keys.iter().map(|(channel, key)| (*channel, key.time)).collect()
+}
+
+fn insert(keys: &mut Keys, all: &Clipboard) {
+    for (channel, key) in all {
+        keys.insert_key(*channel, *key);
+    }
+}
+
+/// The sum of a key's value and `by`, within the values that the channel can have.
+fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
+    /// Smallest part of a length that a move of its key leaves.
+    const LEAST: f32 = 1e-3;
+    let sum = (value + of_width(channel, by)).clamp(Vec3::MIN, Vec3::MAX);
+    match channel.quantity() {
+        Quantity::Switch => value,
+        Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
+        Quantity::Length => sum.max(value * LEAST),
+        Quantity::Point | Quantity::Angle | Quantity::Angles | Quantity::Rotation => sum,
+    }
+}
+
+/// The vector without the components that values of the channel do not have.
+fn of_width(channel: Channel, vector: Vec3) -> Vec3 {
+    let mut components = vector.to_array();
+    components.iter_mut().skip(channel.quantity().width()).for_each(|it| *it = 0.0);
+    Vec3::from_array(components)
+}
+
+/// Channels for the keys.
+impl Session {
+    /// Channels that the shortcut K keys: those selected in the timeline, if any. Otherwise, for
+    /// the arm, the channels that pose it and those with unkeyed edits; for the skeleton, the
+    /// channels of the selected joints, or all channels if no joint is selected.
+    pub fn channels_to_key(&self) -> Vec<Channel> {
+        let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
+        if !self.selected_channels().is_empty() {
+            return self.selected_channels().iter().copied().filter(is_there).collect();
+        }
+        match self.rig() {
+            RigKind::Arm => {
+                let overridden = self.overridden_channels().filter(is_there);
+                let all: BTreeSet<_> =
+                    self.posing_channels().into_iter().chain(overridden).collect();
+                all.into_iter().collect()
+            }
+            RigKind::Skeleton if self.selection().is_empty() => self.all_channels(),
+            RigKind::Skeleton => {
+                let rig = self.skeleton_rig();
+                let ends = self.selection().iter().filter_map(|it| rig.target_of_end(*it));
+                let targeted: Vec<_> = ends.map(|index| rig.targets[index].joint).collect();
+                let is_selected = |channel: &Channel| match channel.target() {
+                    Some(joint) => targeted.contains(&joint),
+                    None => channel.joint().is_some_and(|it| self.selection().contains(&it)),
+                };
+                Channel::of_rig(self.shown()).into_iter().filter(is_selected).collect()
+            }
+        }
+    }
+
+    /// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
+    /// influence is below 1. The switch of the pin is among them if it is on or has keys.
+    fn posing_channels(&self) -> Vec<Channel> {
+        let (arm, keys) = (self.arm(), &self.shown().keys);
+        let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
+        let poses = |channel: &Channel| {
+            channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
+        };
+        hand.chain(Channel::FK).filter(poses).collect()
+    }
+
+    /// Channels that affect the pose of the shown rig, and those of [`Self::keyed_channels`].
+    pub fn all_channels(&self) -> Vec<Channel> {
+        let of_rig = Channel::of_rig(self.shown()).into_iter();
+        let all: BTreeSet<Channel> = of_rig.chain(self.keyed_channels()).collect();
+        all.into_iter().collect()
+    }
+
+    /// All channels with keys, except the point of the arm's Cursor that is not in use.
+    pub fn keyed_channels(&self) -> impl Iterator<Item = Channel> {
+        let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
+        keyed.filter(|channel| !channel.is_idle(self.arm()))
+    }
+}

@@ -1,0 +1,5 @@
+//! Edits of joints, targets and paths, each with its label.
+
+pub mod joints;
+pub mod path;
+pub mod targets;

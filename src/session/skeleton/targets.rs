@@ -1,0 +1,259 @@
+use crate::document::{Channel, Document, RigKind, SkeletonRig, Target};
+use crate::kinematics::diagnosis::{Diagnosis, Remedy};
+use crate::kinematics::skeleton::JointId;
+use crate::rig::TargetSpace;
+use crate::session::outcome::Outcome;
+use crate::session::session::Session;
+use crate::words::{self, significant};
+
+/// A change of a target.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TargetEdit {
+    /// Adds a target at the tip of a joint.
+    AddTarget(JointId),
+    /// Removes the target of a joint, with its keys.
+    RemoveTarget(JointId),
+    /// Replaces the target of the joint [`Target::joint`].
+    SetTarget(Target),
+    /// Moves a joint's target to another space; it stays where it is in the world.
+    SetTargetSpace {
+        /// Joint of the target.
+        joint: JointId,
+        /// The space.
+        space: TargetSpace,
+    },
+    /// Moves the pole of a joint's target to another space; it stays where it is in the world.
+    SetPoleSpace {
+        /// Joint of the target.
+        joint: JointId,
+        /// The space.
+        space: TargetSpace,
+    },
+    /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation and the
+    /// elbow's side.
+    MatchTargetToFk(JointId),
+    /// Writes the shown pose to the FK angles of the joints that the target of a joint moves.
+    MatchFkToPose(JointId),
+    /// Applies a remedy for a target that is not reached.
+    ApplyRemedy {
+        /// Joint of the target.
+        target: JointId,
+        /// The remedy.
+        remedy: Remedy,
+    },
+}
+
+impl TargetEdit {
+    /// Label of the edit's undo step.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::AddTarget(_) => "Add target",
+            Self::RemoveTarget(_) => "Remove target",
+            Self::SetTarget(_) => "Change target",
+            Self::MatchTargetToFk(_) => "Move target to FK",
+            Self::MatchFkToPose(_) => "Write pose to FK",
+            Self::SetTargetSpace { .. } => "Change target space",
+            Self::SetPoleSpace { .. } => "Change pole space",
+            Self::ApplyRemedy { remedy, .. } => remedy_label(remedy),
+        }
+    }
+
+    pub(in crate::session) fn apply(self, session: &mut Session) -> Outcome {
+        let (shown, time) = (session.shown(), session.time());
+        match self {
+            Self::AddTarget(joint) => add(session, joint),
+            Self::RemoveTarget(joint) => remove(shown, joint),
+            Self::SetTarget(target) => set_target(session, target),
+            Self::MatchTargetToFk(joint) => {
+                matched(session, joint, SkeletonRig::match_target_to_fk)
+            }
+            Self::MatchFkToPose(joint) => matched(session, joint, SkeletonRig::match_fk_to_pose),
+            Self::SetTargetSpace { joint, space } => {
+                Outcome::change(shown, |document| document.set_target_space(joint, space, time))
+            }
+            Self::SetPoleSpace { joint, space } => {
+                Outcome::change(shown, |document| document.set_pole_space(joint, space, time))
+            }
+            Self::ApplyRemedy { target, remedy } => apply_remedy(session, target, &remedy),
+        }
+    }
+}
+
+fn remedy_label(remedy: &Remedy) -> &'static str {
+    match remedy {
+        Remedy::MoveTarget { .. } => "Move target",
+        Remedy::Lengthen { .. } => "Lengthen bones",
+        Remedy::SetRoot(_) => "Change root",
+        Remedy::WidenLimits(_) => "Widen limits",
+        Remedy::Unlock(_) => "Unlock joints",
+        Remedy::SwitchOff(_) => "Switch off target",
+        Remedy::SetWeight { .. } => "Change weight",
+        Remedy::UseMethod(_) => "Change solver",
+        Remedy::StartFrom(_) => "Change start",
+        Remedy::AllowIterations(_) => "Allow iterations",
+        Remedy::FullInfluence(_) => "Change influence",
+        Remedy::Stretch { .. } | Remedy::HardLimits(_) => "Change soft reach",
+    }
+}
+
+/// Adds a target for a joint that has none.
+fn add(session: &Session, joint: JointId) -> Outcome {
+    let pose = &session.evaluated_skeleton().solved;
+    let Some(target) = session.skeleton_rig().new_target(joint, pose) else {
+        return Outcome::default();
+    };
+    if !target.home.is_finite() {
+        let home = target.home;
+        return Outcome::fail(format!("The position of a target must be finite, got {home}"));
+    }
+    Outcome::change(session.shown(), |document| document.skeleton_rig.targets.push(target))
+}
+
+/// Removes the target of a joint, with its keys.
+fn remove(shown: &Document, joint: JointId) -> Outcome {
+    Outcome::change(shown, |document| {
+        document.skeleton_rig.targets.retain(|target| target.joint != joint);
+        Channel::of_target(joint).into_iter().for_each(|it| document.keys.clear(it));
+    })
+}
+
+/// Matches the FK pose and a target, at the playhead.
+fn matched(
+    session: &Session,
+    joint: JointId,
+    matched: fn(&mut SkeletonRig, usize, f64),
+) -> Outcome {
+    let Some(index) = session.skeleton_rig().target(joint) else {
+        return Outcome::default();
+    };
+    let time = session.time();
+    Outcome::change(session.shown(), |document| matched(&mut document.skeleton_rig, index, time))
+}
+
+/// Replaces the target of a joint.
+pub(in crate::session) fn set_target(session: &Session, target: Target) -> Outcome {
+    if let Some(fault) = fault(&target) {
+        return Outcome::fail(fault);
+    }
+    let Some(index) = session.skeleton_rig().target(target.joint) else {
+        return Outcome::default();
+    };
+    Outcome::change(session.shown(), |document| document.skeleton_rig.targets[index] = target)
+}
+
+/// The rule that a target breaks; `None` for a valid one.
+fn fault(target: &Target) -> Option<String> {
+    let Target { home, motion, weight, influence, .. } = *target;
+    let above_0 = |value: f32| value.is_finite() && value > 0.0;
+    if !home.is_finite() {
+        Some(format!("The position of a target must be finite, got {home}"))
+    } else if !above_0(weight) {
+        Some(format!("The weight of a target must be finite and above 0, got {weight}"))
+    } else if !(above_0(motion.period) && motion.radius.is_finite()) {
+        Some("The path of a target must have a period above 0 and a finite radius".to_owned())
+    } else if !(0.0..=1.0).contains(&influence) {
+        Some(format!("The influence of a target must be from 0 to 1, got {influence}"))
+    } else if !target.has_finite_kind() {
+        Some("The twist, pole and orientation of a limb's target must be finite".to_owned())
+    } else {
+        None
+    }
+}
+
+/// Applies a remedy for a target that is not reached, and says what it did.
+fn apply_remedy(session: &mut Session, target: JointId, remedy: &Remedy) -> Outcome {
+    let time = session.time();
+    let edited = Outcome::edit_with(session.shown(), |document| {
+        document.skeleton_rig.apply_remedy(remedy, time)
+    });
+    match edited {
+        Ok((written, _)) => drop(session.act(written)),
+        Err(refused) => return refused,
+    }
+    let rig = session.skeleton_rig();
+    let done = words::remedy_done(rig, remedy);
+    let result = match rig.target(target).filter(|index| rig.targets[*index].enabled) {
+        Some(index) => describe_result(session, rig, index),
+        None => String::new(),
+    };
+    Outcome::say(format!("{done}{result}"))
+}
+
+fn describe_result(session: &Session, rig: &SkeletonRig, index: usize) -> String {
+    let Some(report) = session.evaluated_skeleton().targets.get(index) else {
+        return String::new();
+    };
+    let name = &rig.skeleton[rig.end_of(&rig.targets[index])].name;
+    let missing = significant(report.rotation_error.unwrap_or_default().to_degrees());
+    if rig.is_reached(report) {
+        format!(": {name} is at its target now")
+    } else if report.error > rig.tolerance() {
+        format!(": {name} is {} from its target now", significant(report.error))
+    } else {
+        format!(": {name} is {missing}° short of its target's rotation now")
+    }
+}
+
+/// Why targets are not reached.
+impl Session {
+    /// The causes for which the target of the selected joint is not reached, the most likely first;
+    /// without such a target, those of the posing target that is farthest from its tip. Empty if all
+    /// are reached, while something is dragged or plays, and for other rigs than skeletons.
+    pub fn why(&self) -> &[Diagnosis] {
+        let index = self.examined_target();
+        index.map_or(&[], |index| self.why_target(index))
+    }
+
+    /// [`Session::why`] without finding it out: empty if it was not called since the last change.
+    pub fn known_why(&self) -> &[Diagnosis] {
+        if !self.evaluated().knows_why() {
+            return &[];
+        }
+        self.examined_target().map_or(&[], |index| self.known_why_target(index))
+    }
+
+    /// The causes for which the target with this index in
+    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached.
+    pub fn why_target(&self, index: usize) -> &[Diagnosis] {
+        let rig = self.skeleton_rig();
+        if !self.can_examine() || index >= rig.targets.len() {
+            return &[];
+        }
+        let targets = rig.targets.len();
+        self.evaluated().why(index, targets, || rig.diagnose_targets(&[index], self.time()))
+    }
+
+    /// [`Session::why_target`] without finding it out.
+    pub fn known_why_target(&self, index: usize) -> &[Diagnosis] {
+        if self.can_examine() { self.evaluated().known_why(index) } else { &[] }
+    }
+
+    fn can_examine(&self) -> bool {
+        let is_moving = self.is_editing() || self.is_playing();
+        let is_on_path = self.skeleton_rig().is_on_path(self.time());
+        self.rig() == RigKind::Skeleton && !is_moving && !is_on_path
+    }
+
+    /// The selected joint's target if it is not reached, or else the posing one farthest from its
+    /// tip; if all tips are at their targets, the one whose hand misses most of its rotation.
+    fn examined_target(&self) -> Option<usize> {
+        let rig = self.skeleton_rig();
+        let is_missed = |index: &usize| {
+            let report = self.evaluated_skeleton().targets.get(*index);
+            report.is_some_and(|report| !rig.is_reached(report))
+        };
+        let selected = self.selected().and_then(|joint| rig.target_of_end(joint));
+        let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
+        let errors = rig.targets.iter().zip(&self.evaluated_skeleton().targets).enumerate();
+        let posing = errors.filter(|(_, (target, _))| rig.is_solved_for(target));
+        let missed = posing.filter(|(_, (_, report))| !rig.is_reached(report));
+        let most = missed.max_by(|(_, (_, one)), (_, (_, other))| {
+            let [one, other] = [one, other].map(|report| {
+                let distance = if report.error > rig.tolerance() { report.error } else { 0.0 };
+                (distance, report.rotation_error.unwrap_or_default())
+            });
+            one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
+        });
+        selected.or(most.map(|(index, _)| index))
+    }
+}

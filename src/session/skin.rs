@@ -1,0 +1,168 @@
+use std::path::Path;
+
+use super::files::action::PathDialog;
+use super::outcome::{Consequence, Outcome};
+use super::session::Session;
+use super::skin_areas::SkinAreas;
+use crate::document::{Document, Overlay, Ray, Skin};
+use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::SkinShapeError;
+use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
+
+/// Weight of a root without a bone, as a fraction of the greatest one, from which the skin is its
+/// own.
+const SHARED: f32 = 0.5;
+
+/// A change of the skin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SkinEdit {
+    /// Gives the skeleton a skin from its bones, and shows it.
+    AddSkin,
+    /// Shows the skin of the skeleton, its bones, or both.
+    ShowSkin {
+        /// Whether the skin is shown.
+        skin: bool,
+        /// Whether the bones are shown through the skin.
+        bones: bool,
+    },
+    /// Makes the mesh of a file, which the skin has, a part of the document.
+    PackSkin,
+    /// Replaces the skin of the skeleton; `None` removes it.
+    SetSkin(Option<Skin>),
+}
+
+impl SkinEdit {
+    /// Label of the edit's undo step.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::AddSkin => "Add skin",
+            Self::ShowSkin { skin: true, bones: true } => "Show skin and bones",
+            Self::ShowSkin { skin: true, bones: false } => "Show skin",
+            Self::ShowSkin { skin: false, .. } => "Show bones",
+            Self::PackSkin => "Pack skin into file",
+            Self::SetSkin(None) => "Remove skin",
+            Self::SetSkin(Some(_)) => "Change skin",
+        }
+    }
+
+    pub(super) fn apply(self, session: &Session) -> Outcome {
+        match self {
+            Self::AddSkin => add(session),
+            Self::ShowSkin { skin, bones } => show(session.shown(), skin, bones),
+            Self::PackSkin => pack(session),
+            Self::SetSkin(skin) => set(session, skin),
+        }
+    }
+}
+
+/// Gives the skeleton a skin from its bones, and shows it.
+fn add(session: &Session) -> Outcome {
+    let skin = Skin::from_bones(&session.skeleton_rig().skeleton);
+    Outcome::edit(session.shown(), |document| {
+        skin.mesh()?;
+        document.skeleton_rig.skin = Some(skin);
+        document.display = document.display.with(Overlay::Skin, true);
+        Ok::<(), SkinMeshError>(())
+    })
+}
+
+/// Shows the skin, the bones or both.
+fn show(shown: &Document, skin: bool, bones: bool) -> Outcome {
+    let display = shown.display.with(Overlay::Skin, skin).with(Overlay::Bones, bones);
+    Consequence::Write(Box::new(Document { display, ..shown.clone() })).into()
+}
+
+/// Makes the mesh of a file, which the skin has, a part of the document.
+fn pack(session: &Session) -> Outcome {
+    let packed = session.skeleton_rig().skin.as_ref().and_then(|skin| match &skin.source {
+        SkinSource::Mesh(mesh) => {
+            Some(Skin { source: SkinSource::Mesh(mesh.packed()?), ..skin.clone() })
+        }
+        SkinSource::Bones(_) => None,
+    });
+    packed.map(|packed| set(session, Some(packed))).into()
+}
+
+/// Replaces the skin, with its colour clamped to valid channels. During a drag its mesh stays; otherwise
+/// it is made at once.
+fn set(session: &Session, skin: Option<Skin>) -> Outcome {
+    let skin = skin.map(|skin| Skin {
+        colour: skin.colour.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }),
+        ..skin
+    });
+    let is_dragging = session.is_editing();
+    Outcome::edit(session.shown(), |document| {
+        let rig = &mut document.skeleton_rig;
+        rig.skin = skin;
+        if !is_dragging {
+            rig.refresh_skin();
+        }
+        if let Some(Skin { source: SkinSource::Bones(bones), .. }) = &rig.skin {
+            bones.shape().check(&rig.skeleton)?;
+            if !is_dragging {
+                bones.mesh()?;
+            }
+        }
+        Ok::<(), SkinShapeError>(())
+    })
+}
+
+/// The edit that replaces the mesh of the skin by that of a file, unless the skin is no longer that of
+/// the file `before`.
+///
+/// # Errors
+///
+/// The report of the error. If the file cannot be read, it asks for another one.
+pub(super) fn located(
+    session: &Session,
+    path: &Path,
+    before: Option<&SkinFile>,
+    read: Result<MeshSkin, SkinFileError>,
+) -> Result<SkinEdit, Outcome> {
+    let mesh = read.map_err(|error| {
+        let (path, problem) = (path.display().to_string(), Some(error.to_string()));
+        let dialog = PathDialog::LocateSkin { path, problem }.into();
+        Outcome::fail(error.to_string()).and(Consequence::OpenDialog(Box::new(dialog)))
+    })?;
+    let skin = session.skeleton_rig().skin.clone();
+    match skin.filter(|skin| skin.can_become(&mesh, before)) {
+        Some(skin) => {
+            let source = SkinSource::Mesh(mesh.attached_to(session.skeleton()));
+            Ok(SkinEdit::SetSkin(Some(Skin { source, ..skin })))
+        }
+        None => Err(Outcome::fail("the skin has changed since its file was chosen")),
+    }
+}
+
+/// The skin under the mouse.
+impl Session {
+    /// The joint with the greatest weight at the point of the shown skin that a ray meets first;
+    /// `None` if the skin is hidden or the ray meets none. A root without a bone, such as a pelvis,
+    /// shares its skin with the bones on it, and wins where it has at least half of their weight.
+    pub fn joint_on_skin(&self, ray: Ray) -> Option<JointId> {
+        let skin = self.skeleton_rig().skin.as_ref();
+        let skin = skin.filter(|_| self.shown().display.shows(Overlay::Skin))?;
+        let mesh = &skin.mesh().ok()?.mesh;
+        let posed = self.evaluated().posed_skin(|| {
+            mesh.posed(&mesh.pose(&self.evaluated_skeleton().solved), skin.skinning)
+        });
+        let hit = posed.hit(ray.origin, ray.direction)?;
+        let weights = mesh.weights_at(&hit);
+        let least = SHARED * weights.of(weights.first());
+        let root = weights.iter().find(|(joint, _)| self.is_root_point(*joint));
+        Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
+    }
+
+    /// Whether the shown skin hides the bones.
+    pub fn hides_bones(&self) -> bool {
+        let display = self.shown().display;
+        let skin = self.skeleton_rig().skin.as_ref().filter(|_| display.shows(Overlay::Skin));
+        !display.shows(Overlay::Bones) && skin.is_some_and(|skin| skin.mesh().is_ok())
+    }
+
+    /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
+    /// skins are not compared or have no section there.
+    pub fn skin_areas(&self) -> Option<&SkinAreas> {
+        self.evaluated().skin_areas(|| SkinAreas::new(self.track(), self.selected()))
+    }
+}

@@ -1,0 +1,297 @@
+use std::time::{Duration, Instant};
+
+use super::inside::Inside;
+use super::iterates::{Iterate, Iterates};
+use crate::document::{Document, RigKind};
+use crate::kinematics::Shared;
+use crate::kinematics::chain_ik::{
+    ChainSolver, Method, Report, SolveError, SolverOptions, SubStep, TipTarget,
+};
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
+
+/// What a solver run solves: the FK pose, the targets and the options of a document at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::session) struct SolverInputs {
+    pub fk: Shared<Skeleton>,
+    pub targets: Vec<TipTarget>,
+    pub options: SolverOptions,
+}
+
+impl SolverInputs {
+    /// The inputs of a document that is evaluated at `time`, in seconds.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is nothing to solve.
+    pub fn of(shown: &Document, time: f64) -> Result<Self, &'static str> {
+        let rig = &shown.skeleton_rig;
+        if shown.rig != RigKind::Skeleton {
+            return Err("Show the skeleton to solve it");
+        }
+        let targets = rig.targets_at(time);
+        if targets.iter().any(|target| rig.is_joint_on_path(target.joint, time)) {
+            return Err("A chain that follows a path has nothing to solve");
+        }
+        if targets.is_empty() {
+            return Err("There is no target to solve for; add one to a joint");
+        }
+        Ok(Self { fk: rig.fk_at(time), targets, options: rig.solver })
+    }
+
+    /// A solver with the bound of a pose, so that the window stays responsive.
+    pub fn solver(&self) -> Result<ChainSolver, SolveError> {
+        let Self { fk, targets, options } = self;
+        ChainSolver::bounded(fk, targets, options, ChainSolver::POSE_WORK)
+    }
+}
+
+/// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of them
+/// is shown. The document does not change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverRun {
+    inputs: SolverInputs,
+    solver: ChainSolver,
+    /// Number of iterations to make, unless the solver ends before; `None` for as many as until the
+    /// solver ends.
+    wanted: Option<u32>,
+    iterates: Iterates,
+    /// Number of the iteration to show; `None` for the latest.
+    held: Option<u32>,
+    inside: Inside,
+    /// The skeleton in the shown iterate, or in the shown part of its iteration.
+    skeleton: Skeleton,
+    /// The pose before the shown part, in world space.
+    before: Shared<SkeletonPose>,
+    running: bool,
+    elapsed: Duration,
+}
+
+impl SolverRun {
+    /// Maximum number of iterations that are made anew when the inputs change.
+    const MOST_ANEW: u32 = 1000;
+
+    pub(in crate::session) fn new(inputs: SolverInputs) -> Result<Self, SolveError> {
+        let solver = inputs.solver()?;
+        let skeleton = Skeleton::clone(&inputs.fk);
+        Ok(Self {
+            inputs,
+            wanted: Some(0),
+            iterates: Iterates::new(Iterate::new(solver.report(), &skeleton)),
+            solver,
+            held: None,
+            inside: Inside::default(),
+            before: Shared::from(skeleton.pose()),
+            skeleton,
+            running: false,
+            elapsed: Duration::ZERO,
+        })
+    }
+
+    /// The same run with other inputs: it makes as many iterations and shows the same one.
+    pub(in crate::session) fn anew(&self, inputs: SolverInputs) -> Result<Self, SolveError> {
+        let mut anew = Self::new(inputs)?;
+        (anew.wanted, anew.held, anew.running) = (self.wanted, self.held, self.running);
+        anew.make_wanted(Self::MOST_ANEW);
+        anew.inside.walk(self.inside.is_walking());
+        anew.show_part(self.inside.part());
+        Ok(anew)
+    }
+
+    pub(in crate::session) fn inputs(&self) -> &SolverInputs {
+        &self.inputs
+    }
+
+    /// The method of the solver.
+    pub fn method(&self) -> Method {
+        self.inputs.options.method
+    }
+
+    /// The targets that are solved for.
+    pub fn targets(&self) -> &[TipTarget] {
+        &self.inputs.targets
+    }
+
+    /// Whether the run is not paused.
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
+    /// Whether the solver makes no further iterations.
+    pub fn is_over(&self) -> bool {
+        self.solver.is_over()
+    }
+
+    /// Status and residual after the latest iteration.
+    pub fn report(&self) -> Report {
+        self.solver.report()
+    }
+
+    /// Total duration of all iterations.
+    pub fn elapsed(&self) -> Duration {
+        self.elapsed
+    }
+
+    /// The kept iterates.
+    pub fn iterates(&self) -> &Iterates {
+        &self.iterates
+    }
+
+    /// The shown iterate.
+    pub fn shown(&self) -> &Iterate {
+        self.iterates.at(self.held.unwrap_or(u32::MAX))
+    }
+
+    /// The skeleton in the shown iterate, or in the shown part of its iteration.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Shows the latest kept iterate of at most `held` iterations; for `None`, each iterate as it is
+    /// made.
+    pub(in crate::session) fn hold(&mut self, held: Option<u32>) {
+        self.held = held;
+        self.inside.clear();
+        self.write_shown();
+    }
+
+    /// What the method computes in the shown iteration, part by part; empty for iteration 0.
+    pub fn parts(&self) -> &[Shared<SubStep>] {
+        self.inside.parts(|| self.replay(self.shown().iteration))
+    }
+
+    /// Index of the part of the shown iteration that is looked at; `None` if the whole iteration is
+    /// shown, or while the run goes on.
+    pub fn shown_part(&self) -> Option<usize> {
+        let part = self.inside.part().filter(|_| !self.running)?;
+        Some(part.min(self.parts().len().checked_sub(1)?))
+    }
+
+    /// The pose before the shown part, in world space; of no meaning without one.
+    pub(in crate::session) fn before_part(&self) -> &Shared<SkeletonPose> {
+        &self.before
+    }
+
+    /// Whether the parts of all iterations are shown one after the other.
+    pub fn is_walking(&self) -> bool {
+        self.inside.is_walking()
+    }
+
+    /// Makes an iteration again and returns its parts.
+    fn replay(&self, iteration: u32) -> Vec<SubStep> {
+        let solver = self.inputs.solver();
+        let (Ok(mut solver), Some(before)) = (solver, iteration.checked_sub(1)) else {
+            return Vec::new();
+        };
+        for _ in 0..before {
+            solver.step();
+        }
+        solver.step_inside(&self.inputs.fk).1
+    }
+
+    /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at the
+    /// whole iteration.
+    pub(in crate::session) fn show_part(&mut self, part: Option<usize>) {
+        self.inside.show(part);
+        self.write_shown();
+    }
+
+    /// Shows the parts of all iterations one after the other, from the shown one on, or stops that.
+    pub(in crate::session) fn walk(&mut self, walks: bool) {
+        if walks {
+            self.running = false;
+            self.show_part(self.inside.part().or(Some(0)));
+        }
+        self.inside.walk(walks);
+    }
+
+    /// Lets time pass, in seconds, while the parts are shown one after the other.
+    pub(in crate::session) fn advance_walk(&mut self, passed: f64) {
+        if self.is_walking() && self.inside.advance(passed, self.parts().len()) {
+            self.next_part();
+        }
+    }
+
+    /// Shows the next part; after the last part of an iteration, the first one of the next, which is
+    /// made if need be. At the end of the run, the parts no longer follow each other.
+    fn next_part(&mut self) {
+        let next = self.shown_part().map_or(0, |part| part + 1);
+        if next < self.parts().len() {
+            return self.show_part(Some(next));
+        }
+        let iteration = self.shown().iteration;
+        if self.iterates.after(iteration).is_none() {
+            self.advance(1);
+        }
+        match self.iterates.after(iteration).map(|after| after.iteration) {
+            Some(after) => {
+                self.hold(Some(after));
+                self.show_part(Some(0));
+            }
+            None => self.inside.walk(false),
+        }
+    }
+
+    /// Writes the shown iterate, or the shown part of its iteration, to the skeleton.
+    fn write_shown(&mut self) {
+        match self.shown_part() {
+            Some(part) => {
+                self.before = Shared::from(self.pose_before(part));
+                self.skeleton = self.parts()[part].pose.clone();
+            }
+            None => self.iterates.at(self.held.unwrap_or(u32::MAX)).write(&mut self.skeleton),
+        }
+    }
+
+    fn pose_before(&self, part: usize) -> SkeletonPose {
+        let Some(previous) = part.checked_sub(1) else {
+            let mut skeleton = Skeleton::clone(&self.inputs.fk);
+            self.iterates.at(self.shown().iteration.saturating_sub(1)).write(&mut skeleton);
+            return skeleton.pose();
+        };
+        self.parts()[previous].pose.pose()
+    }
+
+    /// Starts or pauses the run.
+    pub(in crate::session) fn set_running(&mut self, running: bool) {
+        self.running = running;
+        if running {
+            self.inside.walk(false);
+        }
+        self.write_shown();
+    }
+
+    /// Pauses a run that is over. From now on, other inputs are solved until the solver ends.
+    pub(in crate::session) fn finish(&mut self) {
+        self.running = false;
+        self.wanted = None;
+        self.write_shown();
+    }
+
+    /// Makes `iterations` further iterations, fewer if the solver ends.
+    pub(in crate::session) fn advance(&mut self, iterations: u32) {
+        if !self.is_over() {
+            self.wanted = Some(self.report().iterations.saturating_add(iterations));
+            self.make_wanted(iterations);
+        }
+    }
+
+    /// Makes the wanted iterations that are left, at most `most` of them.
+    fn make_wanted(&mut self, most: u32) {
+        let end =
+            self.report().iterations.saturating_add(most).min(self.wanted.unwrap_or(u32::MAX));
+        while !self.solver.is_over() && self.report().iterations < end {
+            self.make_one();
+        }
+        self.hold(self.held);
+    }
+
+    /// Makes one iteration and keeps it, with the angles nearest to those of the FK pose.
+    fn make_one(&mut self) {
+        let started = Instant::now();
+        let report = self.solver.step();
+        self.elapsed += started.elapsed();
+        self.iterates.at(0).write(&mut self.skeleton);
+        self.solver.write(&mut self.skeleton);
+        self.iterates.push(Iterate::new(report, &self.skeleton));
+    }
+}

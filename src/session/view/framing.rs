@@ -1,0 +1,76 @@
+use glam::Vec3;
+
+use crate::document::{Camera, Overlay, RigKind};
+use crate::kinematics::skeleton::JointId;
+use crate::session::preferences::PanelTab;
+use crate::session::session::{ASPECT, Session};
+
+/// Cameras that frame the rig, and the open panels.
+impl Session {
+    /// A camera that frames the selected joints; without a selection, the whole rig. If the crowd
+    /// is shown, the camera frames the crowd.
+    pub fn framing_selection(&self) -> Camera {
+        if self.crowd().is_some() {
+            return self.framing_all();
+        }
+        let (centre, radius) = match self.rig() {
+            RigKind::Arm => self.arm().bounds(self.pose()),
+            RigKind::Skeleton => self
+                .skeleton_rig()
+                .bounds_of(self.skeleton_pose(), self.selection())
+                .unwrap_or_else(|| self.skeleton_rig().bounds(self.skeleton_pose(), self.time())),
+        };
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// A camera that frames what is shown, over the whole timeline: all points in reach of the arm, the
+    /// skeleton with its targets, or the crowd.
+    pub fn framing_all(&self) -> Camera {
+        if let Some(crowd) = self.crowd() {
+            let (centre, radius) = crowd.bounds();
+            return self.settled_camera().framing(centre, radius, ASPECT);
+        }
+        let (centre, radius) = self
+            .shown()
+            .motion_bounds_by(|posed| (posed.arm().root, posed.arm().reach_limits().outer));
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// The page of the panel on the right.
+    pub fn tab(&self) -> PanelTab {
+        match self.rig() {
+            RigKind::Arm => self.preferences().arm_tab,
+            RigKind::Skeleton => self.preferences().skeleton_tab,
+        }
+    }
+
+    /// Whether the skin is shown for each way of blending joints.
+    pub fn compares_skinning(&self) -> bool {
+        let display = self.shown().display;
+        let is_shown = display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning);
+        is_shown && self.rig() == RigKind::Skeleton
+    }
+
+    /// Whether the timeline is open above the transport bar: by choice, else if the document has keys.
+    pub fn shows_timeline(&self) -> bool {
+        let has_keys = || !self.document().keys.is_empty();
+        self.preferences().timeline_open.unwrap_or_else(has_keys)
+    }
+
+    /// The point that the camera follows, in the world: the mean of the bases of the selected joints, or
+    /// without a selection of all joints. For the arm it is the Root.
+    pub(in crate::session) fn followed_point(&self) -> Vec3 {
+        let pose = self.skeleton_pose();
+        let bases = |joints: &[JointId]| {
+            let weight = 1.0 / joints.len() as f32;
+            joints.iter().map(|joint| pose.base(*joint) * weight).sum()
+        };
+        match self.rig() {
+            RigKind::Arm => self.arm().root,
+            RigKind::Skeleton if self.selection().is_empty() => {
+                bases(&pose.ids().collect::<Vec<_>>())
+            }
+            RigKind::Skeleton => bases(self.selection()),
+        }
+    }
+}
