@@ -1,10 +1,12 @@
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use super::arm::Arm;
 use super::camera::Camera;
 use super::channel::Channel;
 use super::document::Document;
 use crate::kinematics::Shared;
+use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::ik::IkSolution;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::two_bone::TwoBonePose;
@@ -69,6 +71,54 @@ impl Track {
     }
 }
 
+impl Track {
+    /// Maximum work of [`Track::sample`], beyond the pose that exceeds it.
+    const SAMPLED_WORK: u64 = ChainSolver::POSE_WORK;
+
+    /// Poses the document at `count` times or, where that is too much work, at every second, fourth …
+    /// of them. Returns the results of `take` in the order of the times, each with its index.
+    pub fn sample<T>(
+        &self,
+        count: usize,
+        time: impl Fn(usize) -> f64,
+        take: impl Fn(&Posed) -> T,
+    ) -> Vec<(usize, T)> {
+        coarse_to_fine(count, Self::SAMPLED_WORK, |index| {
+            let posed = self.at(time(index));
+            (take(&posed), posed.work())
+        })
+    }
+}
+
+/// Values of `take` at all indices below `count`, or at multiples of the least power of two for which
+/// no value is taken after the work, which `take` returns, has exceeded `most_work`.
+fn coarse_to_fine<T>(
+    count: usize,
+    most_work: u64,
+    take: impl Fn(usize) -> (T, u64),
+) -> Vec<(usize, T)> {
+    let mut taken: BTreeMap<usize, T> = BTreeMap::new();
+    let (mut stride, mut work) = (count.next_power_of_two(), 0);
+    loop {
+        for index in (0..count).step_by(stride) {
+            if taken.contains_key(&index) {
+                continue;
+            }
+            if work > most_work {
+                taken.retain(|index, _| index % (2 * stride) == 0);
+                return taken.into_iter().collect();
+            }
+            let (value, of_value) = take(index);
+            taken.insert(index, value);
+            work += of_value;
+        }
+        if stride == 1 {
+            return taken.into_iter().collect();
+        }
+        stride /= 2;
+    }
+}
+
 impl Posed {
     /// The document with the values that its channels have at the time.
     pub fn document(&self) -> &Document {
@@ -113,6 +163,11 @@ impl Posed {
     /// The skeleton posed by FK and by its targets, with a report for each target.
     pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
         self.skeleton.get_or_init(|| self.document.skeleton_rig.evaluate(self.time))
+    }
+
+    /// Work of the skeleton's pose, in the unit of [`ChainSolver::bounded`]; 0 until it is read.
+    pub fn work(&self) -> u64 {
+        self.skeleton.get().map_or(0, EvaluatedSkeleton::work)
     }
 
     /// Sets the camera, on which no pose depends.
@@ -185,5 +240,19 @@ mod tests {
         assert!(core::ptr::eq(posed.evaluated_skeleton(), posed.evaluated_skeleton()));
         let moved = posed.clone();
         assert!(moved.arm.get().is_some() && moved.skeleton.get().is_some(), "copies are solved");
+    }
+
+    #[test]
+    fn fewer_poses_are_sampled_where_each_is_much_work() {
+        let indices = |count, work| -> Vec<usize> {
+            let sampled = coarse_to_fine(count, 1000, |index| (index, work));
+            sampled.into_iter().map(|(index, _)| index).collect()
+        };
+        assert_eq!(indices(20, 50), (0..20).collect::<Vec<_>>());
+        assert_eq!(indices(20, 51), (0..20).collect::<Vec<_>>(), "the last pose exceeds it");
+        assert_eq!(indices(20, 100), (0..20).step_by(2).collect::<Vec<_>>());
+        assert_eq!(indices(20, 300), [0, 8, 16]);
+        assert_eq!(indices(20, 1001), [0]);
+        assert_eq!(indices(0, 1), [0; 0]);
     }
 }

@@ -1,4 +1,4 @@
-use crate::document::{Overlay, Track};
+use crate::document::{Overlay, Posed, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{MeshSection, SkinPose, SkinnedMesh, Skinning};
 
@@ -29,9 +29,9 @@ impl SkinAreas {
         let count = if document.is_animated() { timeline.frames().clamp(2, MOST_TIMES) } else { 2 };
         let time =
             |index: usize| timeline.start + timeline.duration() * index as f64 / (count - 1) as f64;
-        let times: Vec<f64> = (0..count).map(time).collect();
-        let pose = |time: &f64| mesh.pose(track.at(*time).skeleton());
-        let poses: Vec<SkinPose> = times.iter().map(pose).collect();
+        let pose = |posed: &Posed| (posed.time(), mesh.pose(posed.skeleton()));
+        let sampled = track.sample(count, time, pose).into_iter().map(|(_, posed)| posed);
+        let (times, poses): (Vec<f64>, Vec<SkinPose>) = sampled.unzip();
         let joint = joint.or_else(|| most_rolled(&poses))?;
         let section = section(mesh, document.skeleton(), joint)?;
         let plain = section.area(|vertex| mesh.mesh().positions[vertex as usize]);

@@ -19,6 +19,18 @@ pub struct EvaluatedSkeleton {
     pub targets: Vec<TargetReport>,
 }
 
+impl EvaluatedSkeleton {
+    /// About the work of the pose, in the unit of [`ChainSolver::bounded`]: the number of joints, once
+    /// and for each iteration of the whole-body targets' solver.
+    pub fn work(&self) -> u64 {
+        let iterations = self.targets.iter().find_map(|target| match &target.outcome {
+            TargetOutcome::WholeBody(report) => Some(report.iterations),
+            _ => None,
+        });
+        self.fk.joints().len() as u64 * (1 + u64::from(iterations.unwrap_or(0)))
+    }
+}
+
 /// Result of an evaluation for one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetReport {

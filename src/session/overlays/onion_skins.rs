@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use crate::document::{Overlay, Posed, Track};
+use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::skeleton::SkeletonPose;
 use crate::rig::ArmPart;
 
@@ -31,7 +32,10 @@ pub(in crate::session) fn write_onion_skins(
     if !posed.document().display.shows(Overlay::OnionSkins) || !document.is_animated() {
         return skins.clear();
     }
-    let (count, frames) = SKINS;
+    /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
+    const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
+    let (all, frames) = SKINS;
+    let count = if posed.evaluated_skeleton().work() > MOST_WORK { 1 } else { all };
     let timeline = document.timeline;
     let step = frames / timeline.frame_rate;
     let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;

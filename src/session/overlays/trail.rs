@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use crate::document::{Document, Overlay, RigKind, Track};
+use crate::document::{Document, Overlay, Posed, RigKind, Track};
 use crate::kinematics::skeleton::JointId;
 
 /// True if a document is animated and shows its motion trail.
@@ -9,7 +9,7 @@ pub(in crate::session) fn has_trail(document: &Document, shown: &Document) -> bo
 }
 
 /// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
-/// frames for a long timeline or a large skeleton. Empty for a skeleton without a `joint`.
+/// frames for a long timeline, a large skeleton or poses that take much work. Empty for a skeleton without a `joint`.
 pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Maximum of the number of joints times the number of points.
@@ -23,12 +23,11 @@ pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) ->
     };
     let frames = timeline.frames();
     let stride = frames.div_ceil((MOST_POSES / joints.max(1)).clamp(1, MOST_POINTS));
-    let point = |frame| {
-        let posed = track.at(timeline.time(frame));
-        match document.rig {
-            RigKind::Arm => Some(posed.arm().root + posed.arm_pose().hand),
-            RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
-        }
+    let point = |posed: &Posed| match document.rig {
+        RigKind::Arm => Some(posed.arm().root + posed.arm_pose().hand),
+        RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
     };
-    (0..frames).step_by(stride).filter_map(point).collect()
+    let time = |index| timeline.time(index * stride);
+    let points = track.sample(frames.div_ceil(stride), time, point);
+    points.into_iter().filter_map(|(_, point)| point).collect()
 }

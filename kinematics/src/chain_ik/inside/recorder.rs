@@ -65,7 +65,7 @@ impl Recorder {
     /// Keeps a part of the iteration that ended with `config`.
     pub fn record(&mut self, config: &Configuration, event: impl FnOnce() -> Event) {
         if let Some(records) = &mut self.0 {
-            records.push(Record { event: event(), config: config.clone() });
+            push(records, Record { event: event(), config: config.clone() });
         }
     }
 
@@ -74,11 +74,22 @@ impl Recorder {
         if let Some(records) = &mut self.0
             && records.last().is_none_or(|last| !last.config.is_same(config))
         {
-            records.push(Record { event, config: config.clone() });
+            push(records, Record { event, config: config.clone() });
         }
     }
 
     pub fn into_records(self) -> Vec<Record> {
         self.0.unwrap_or_default()
     }
+}
+
+/// Appends a record. Where a method has a part for each of very many links, the last record takes the
+/// place of the one before it: otherwise memory would grow with the square of the number of links.
+fn push(records: &mut Vec<Record>, record: Record) {
+    /// Maximum number of links in all records.
+    const MOST: usize = 1 << 18;
+    if records.len() > 1 && (records.len() + 1) * record.config.bases.len() > MOST {
+        records.pop();
+    }
+    records.push(record);
 }
