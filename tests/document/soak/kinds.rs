@@ -280,7 +280,7 @@ kinds! {
         Recover: Files 1, |v| FileAction::Recover { document: Box::new(v.document()), file: v.file() };
         DeclineRecovery: Look 1, |_| FileAction::DeclineRecovery;
         DeclineTurn: Look 1, |_| FileAction::DeclineTurn;
-        OpenExample: Files 1, |v| FileAction::OpenExample(v.example());
+        OpenExample: Files 2, |v| FileAction::OpenExample(v.example());
         New: Files 1, |_| FileAction::New;
         NewSkeleton: Files 1, |_| FileAction::NewSkeleton;
         Quit: Look 2, |_| FileAction::Quit;
