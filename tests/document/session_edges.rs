@@ -3,9 +3,10 @@
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
 use ik_arm::io::{Example, to_json};
-use ik_arm::kinematics::chain_ik::Method;
+use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolveError};
 use ik_arm::kinematics::diagnosis::Remedy;
-use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
+use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+use ik_arm::rig::{SkeletonRig, Target, TargetOutcome};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
     Action, ArmEdit, CameraMotion, Constraint, DisplayEdit, Drag, DragInput, FileAction, Grip,
@@ -374,4 +375,68 @@ fn a_target_at_a_tip_that_overflows_is_refused() {
     let message = session.message().unwrap_or_default();
     assert!(message.starts_with("The position of a target must be finite, got"), "{message}");
     assert_eq!(session.document(), &before);
+}
+
+/// A star with a target at the end of each ray, which asks for as many iterations as there are numbers.
+fn star(rays: u16, method: Method) -> Document {
+    let mut skeleton = Skeleton::with_root("centre");
+    let mut targets = Vec::new();
+    for ray in 0..rays {
+        let angle = f32::from(ray) * 0.1;
+        let (sin, cos) = angle.sin_cos();
+        let ray =
+            Joint::new(&format!("ray_{ray}"), Some(JointId::new(0)), Vec3::new(cos, sin, 0.0));
+        let joint = skeleton.add(ray).expect("a ray");
+        let target = Target::new(joint, Vec3::new(sin, 0.5, cos), 1.0);
+        targets.push(Target { influence: 1.0, ..target });
+    }
+    let mut rig = SkeletonRig::new(skeleton);
+    (rig.targets, rig.solver.method) = (targets, method);
+    rig.solver.iterations = Some(1_000_000_000);
+    Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
+}
+
+#[test]
+fn the_work_of_each_pose_of_a_huge_star_is_bounded_while_it_is_dragged_played_and_raced() {
+    const RAYS: u16 = 9_999;
+    let is_bounded =
+        |iterations: u32| u64::from(iterations) * u64::from(RAYS) <= ChainSolver::POSE_WORK;
+    for method in [Method::Fabrik, Method::DampedLeastSquares] {
+        let mut session = Session::with_document(Preferences::default(), star(RAYS, method));
+        let tip = JointId::new(7);
+        let (forward, at) = (Vec3::NEG_Z, session.skeleton_pose().tip(tip));
+        let ray = Ray { origin: at + 5.0 * Vec3::Z, direction: forward };
+        for action in [
+            Action::from(TransactionAction::Grab {
+                grip: Grip::Target(tip, PointHandle::Free),
+                ray,
+                forward,
+            }),
+            TransactionAction::Drag(DragInput {
+                ray: Ray { origin: ray.origin + Vec3::X, ..ray },
+                precise: false,
+                snap: false,
+            })
+            .into(),
+            TransactionAction::Commit.into(),
+            PlaybackAction::Play(true).into(),
+            PlaybackAction::Advance(0.1).into(),
+            PlaybackAction::Play(false).into(),
+            SolverAction::Compare.into(),
+        ] {
+            session.apply(action.clone());
+            let reports = &session.evaluated_skeleton().targets;
+            for outcome in reports.iter().map(|report| &report.outcome) {
+                match outcome {
+                    TargetOutcome::WholeBody(report) => assert!(is_bounded(report.iterations)),
+                    refused => assert!(
+                        matches!(refused, TargetOutcome::Refused(SolveError::TooMuchWork { .. })),
+                        "{refused:?} after {action:?}"
+                    ),
+                }
+            }
+        }
+        session.apply(PlaybackAction::Advance(1.0 / 60.0));
+        assert!(session.solvers().runs().all(|run| is_bounded(run.report().iterations)));
+    }
 }
