@@ -7,7 +7,7 @@ pub(crate) fn normalize(v: Vec3A) -> Option<Vec3A> {
     if squares_safely(v) { v.try_normalize() } else { scaled_near_1(v)?.try_normalize() }
 }
 
-/// Whether the squared length, and the product of two such squares, neither overflows nor
+/// True if the squared length, and the product of two such squares, neither overflows nor
 /// underflows.
 pub(super) fn squares_safely(v: Vec3A) -> bool {
     (1e-15..=1e15).contains(&v.length_squared())

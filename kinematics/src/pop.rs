@@ -240,7 +240,7 @@ fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
     (upper / distance.max(NEAR_SHOULDER * sum)).max(1.0)
 }
 
-/// Whether the hand's mean distance in both poses is nearer to the outer limit than to the inner
+/// True if the hand's mean distance in both poses is nearer to the outer limit than to the inner
 /// one.
 fn is_far_out(before: &PosedArm, after: &PosedArm, sum: f64) -> bool {
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));

@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub struct Shared<T>(Arc<T>);
 
 impl<T> Shared<T> {
-    /// Whether both clones share one value in memory. Values that are not shared may still be
+    /// True if both clones share one value in memory. Values that are not shared may still be
     /// equal.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)

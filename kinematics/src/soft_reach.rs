@@ -156,7 +156,7 @@ impl SoftReach {
         self.min_elbow_angle
     }
 
-    /// Whether the limits are hard: a plain clamp without softness, stretch and minimum elbow
+    /// True if the limits are hard: a plain clamp without softness, stretch and minimum elbow
     /// angle.
     pub fn is_hard(self) -> bool {
         self == Self::default()

@@ -125,7 +125,7 @@ impl Interpolation {
     /// All kinds, in the order of menus.
     pub const ALL: [Self; 5] = [Self::Auto, Self::Smooth, Self::Linear, Self::Step, Self::Slerp];
 
-    /// Whether the curve is a cubic polynomial with the slopes of both knots.
+    /// True if the curve is a cubic polynomial with the slopes of both knots.
     pub fn is_cubic(self) -> bool {
         match self {
             Self::Auto | Self::Smooth => true,
@@ -195,7 +195,7 @@ impl<V: Copy> Spline<V> {
         &self.knots
     }
 
-    /// Whether the spline has no knots.
+    /// True if the spline has no knots.
     pub fn is_empty(&self) -> bool {
         self.knots.is_empty()
     }

@@ -149,7 +149,7 @@ impl Actions {
         self.0.push(action.into());
     }
 
-    /// Whether the list is empty.
+    /// True if the list is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -72,7 +72,7 @@ pub enum Dialog {
 }
 
 impl Dialog {
-    /// Whether the dialog takes all keyboard and mouse input.
+    /// True if the dialog takes all keyboard and mouse input.
     pub fn is_modal(&self) -> bool {
         *self != Self::Statistics
     }
@@ -103,7 +103,7 @@ impl PartialEq for BakeJob {
 pub(super) struct Message {
     text: String,
     is_error: bool,
-    /// Whether the message is about the pose at the current time, and goes when the time changes.
+    /// True if the message is about the pose at the current time, and goes when the time changes.
     is_of_moment: bool,
 }
 

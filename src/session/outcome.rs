@@ -155,7 +155,7 @@ pub(super) struct Opening {
     pub file: Option<PathBuf>,
     /// What else the file of another program has.
     pub contents: Option<Box<FileContents>>,
-    /// Whether z seems to point up in the file.
+    /// True if z seems to point up in the file.
     pub seems_z_up: bool,
 }
 

@@ -33,7 +33,7 @@ pub struct Playback {
     last_frame: Option<f64>,
 }
 
-/// Whether edits set keys.
+/// True if edits set keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum AutoKey {
     /// Off until the document has its first key.
@@ -103,22 +103,22 @@ impl Playback {
         self.time
     }
 
-    /// Whether the timeline plays.
+    /// True if the timeline plays.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
 
-    /// Whether playback continues from the start of the timeline when it reaches the end.
+    /// True if playback continues from the start of the timeline when it reaches the end.
     pub fn is_looping(&self) -> bool {
         self.looping
     }
 
-    /// Whether auto-key is on, so that every edit sets keys.
+    /// True if auto-key is on, so that every edit sets keys.
     pub fn is_auto_key(&self) -> bool {
         matches!(self.auto_key, AutoKey::SinceFirstKey { .. } | AutoKey::Chosen(true))
     }
 
-    /// Whether the user is to be told that the first key has turned auto-key on.
+    /// True if the user is to be told that the first key has turned auto-key on.
     pub fn is_auto_key_news(&self) -> bool {
         self.auto_key == AutoKey::SinceFirstKey { is_news: true }
     }
@@ -128,7 +128,7 @@ impl Playback {
         self.speed
     }
 
-    /// Whether the previous frame was made at `seconds` on the window's clock.
+    /// True if the previous frame was made at `seconds` on the window's clock.
     pub(super) fn has_frame_at(&self, seconds: f64) -> bool {
         self.last_frame == Some(seconds)
     }

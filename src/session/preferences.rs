@@ -14,19 +14,19 @@ pub struct Preferences {
     pub navigation: Navigation,
     /// Time for a frame while something moves.
     pub frame_budget: FrameBudget,
-    /// Whether the panel on the right is open.
+    /// True if the panel on the right is open.
     pub explain: bool,
     /// The page of that panel for the arm.
     pub arm_tab: PanelTab,
     /// The page of that panel for the skeleton.
     pub skeleton_tab: PanelTab,
-    /// Whether the timeline is open above the transport bar; `None`: while the document has keys.
+    /// True if the timeline is open above the transport bar; `None`: while the document has keys.
     pub timeline_open: Option<bool>,
-    /// Whether the timeline shows the graph editor instead of the dope sheet.
+    /// True if the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
-    /// Whether the hand of the arm was ever dragged, so that no hint is needed.
+    /// True if the hand of the arm was ever dragged, so that no hint is needed.
     pub has_dragged_hand: bool,
-    /// Whether the tour is offered at the start.
+    /// True if the tour is offered at the start.
     pub offers_tour: bool,
 }
 

@@ -143,7 +143,7 @@ impl Selection {
         SelectedKeys { keys: self.keys.clone(), channels: self.channels.clone() }
     }
 
-    /// Whether there are copied keys to paste.
+    /// True if there are copied keys to paste.
     pub fn can_paste(&self) -> bool {
         !self.clipboard.is_empty()
     }

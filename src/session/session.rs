@@ -265,17 +265,17 @@ impl Session {
         self.playback.time()
     }
 
-    /// Whether the timeline plays.
+    /// True if the timeline plays.
     pub fn is_playing(&self) -> bool {
         self.playback.is_playing()
     }
 
-    /// Whether the document has keys, or a target or the shown skeleton moves without keys.
+    /// True if the document has keys, or a target or the shown skeleton moves without keys.
     pub fn has_motion(&self) -> bool {
         self.document().is_moving()
     }
 
-    /// Whether the next frame differs without further input.
+    /// True if the next frame differs without further input.
     pub fn is_moving(&self) -> bool {
         self.view.is_gliding()
             || self.playback.is_playing()
@@ -284,12 +284,12 @@ impl Session {
             || self.view.wiggled().is_some()
     }
 
-    /// Whether a transaction is open.
+    /// True if a transaction is open.
     pub fn is_editing(&self) -> bool {
         self.editing.is_open()
     }
 
-    /// Whether the channel has an unkeyed edit.
+    /// True if the channel has an unkeyed edit.
     pub fn is_overridden(&self, channel: Channel) -> bool {
         self.editing.overrides().contains_key(&channel)
     }
@@ -348,7 +348,7 @@ impl Session {
         self.selection.keys()
     }
 
-    /// Whether there are copied keys to paste.
+    /// True if there are copied keys to paste.
     pub fn can_paste(&self) -> bool {
         self.selection.can_paste()
     }
@@ -383,13 +383,13 @@ impl Session {
         wiggle.view(self.skeleton_rig(), self.evaluated_skeleton())
     }
 
-    /// Whether targets move heads, which can follow the mouse.
+    /// True if targets move heads, which can follow the mouse.
     pub fn can_follow_mouse(&self) -> bool {
         let is_shown = self.rig() == RigKind::Skeleton && self.crowd().is_none();
         is_shown && self.following_heads().is_some()
     }
 
-    /// Whether heads follow the mouse.
+    /// True if heads follow the mouse.
     pub fn follows_mouse(&self) -> bool {
         self.follow_mouse.is_some()
     }

@@ -31,7 +31,7 @@ pub enum ShellAction {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shell {
     dialog: Option<Dialog>,
-    /// Whether the system's file dialog is open.
+    /// True if the system's file dialog is open.
     choosing: bool,
     message: Option<Message>,
 }
@@ -69,7 +69,7 @@ impl Shell {
         self.dialog.as_ref()
     }
 
-    /// Whether the system's file dialog is open.
+    /// True if the system's file dialog is open.
     pub fn is_choosing(&self) -> bool {
         self.choosing
     }
@@ -80,12 +80,12 @@ impl Shell {
         self.message.as_ref().map(Message::text)
     }
 
-    /// Whether [`Self::message`] is an error.
+    /// True if [`Self::message`] is an error.
     pub fn has_failed(&self) -> bool {
         self.message.as_ref().is_some_and(Message::is_error)
     }
 
-    /// Whether a modal dialog of the program or a file dialog of the system is open.
+    /// True if a modal dialog of the program or a file dialog of the system is open.
     pub fn is_asking(&self) -> bool {
         self.choosing || self.dialog.as_ref().is_some_and(Dialog::is_modal)
     }

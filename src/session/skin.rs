@@ -20,9 +20,9 @@ pub enum SkinEdit {
     AddSkin,
     /// Shows the skin of the skeleton, its bones, or both.
     ShowSkin {
-        /// Whether the skin is shown.
+        /// True if the skin is shown.
         skin: bool,
-        /// Whether the bones are shown through the skin.
+        /// True if the bones are shown through the skin.
         bones: bool,
     },
     /// Makes the mesh of a file, which the skin has, a part of the document.
@@ -153,7 +153,7 @@ impl Session {
         Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
     }
 
-    /// Whether the shown skin hides the bones.
+    /// True if the shown skin hides the bones.
     pub fn hides_bones(&self) -> bool {
         let display = self.shown().display;
         let skin = self.skeleton_rig().skin.as_ref().filter(|_| display.shows(Overlay::Skin));

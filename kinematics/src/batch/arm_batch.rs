@@ -54,7 +54,7 @@ impl<'a> ArmBatch<'a> {
         self.cursor[0].len()
     }
 
-    /// Whether the batch has no arms.
+    /// True if the batch has no arms.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -186,7 +186,7 @@ impl<'a> ArmBatch<'a> {
     }
 }
 
-/// Whether all values are finite and above 0. Checking all of them is faster than stopping at the
+/// True if all values are finite and above 0. Checking all of them is faster than stopping at the
 /// first invalid one.
 fn are_lengths(values: &[f32]) -> bool {
     values.iter().fold(true, |are, value| are & (*value > 0.0) & (*value < f32::INFINITY))

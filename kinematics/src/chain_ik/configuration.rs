@@ -134,7 +134,7 @@ impl Configuration {
         both.map(|(here, there)| here.distance_squared(*there)).fold(0.0, f32::max).sqrt()
     }
 
-    /// Whether both configurations have equal angles, orientations and positions.
+    /// True if both configurations have equal angles, orientations and positions.
     pub fn is_same(&self, other: &Self) -> bool {
         self.angles == other.angles
             && self.orientations == other.orientations

@@ -121,7 +121,7 @@ fn straight_end(problem: &Problem, config: &Configuration, effector: usize) -> O
     })
 }
 
-/// Whether a straight end could come nearer to its target, but no method can move the joints below
+/// True if a straight end could come nearer to its target, but no method can move the joints below
 /// its top: the target has no moment about them, or pushes them against their limits.
 fn is_stuck(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool {
     if !inner_links(problem, end).all(|link| is_held(problem, config, end.effector, link)) {
@@ -132,7 +132,7 @@ fn is_stuck(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool
     is_behind || (can_bend(problem, config, end) && must_bend(problem, config, end))
 }
 
-/// Whether an end effector has no moment about a link, or its moments push the link against its
+/// True if an end effector has no moment about a link, or its moments push the link against its
 /// limits.
 fn is_held(problem: &Problem, config: &Configuration, effector: usize, link: usize) -> bool {
     let arm = config.tips[effector] - config.bases[link];
@@ -151,7 +151,7 @@ fn inner_links(problem: &Problem, end: StraightEnd) -> impl Iterator<Item = usiz
     path(problem, end.effector).take(end.links - 1)
 }
 
-/// Whether a straight end has a joint between its ends that brings them nearer to each other.
+/// True if a straight end has a joint between its ends that brings them nearer to each other.
 fn can_bend(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool {
     let (base, tip) = (config.bases[end.top], config.tips[end.effector]);
     let least = STRAIGHT * tip.distance(base);
@@ -160,7 +160,7 @@ fn can_bend(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool
         .any(|joint| joint.distance(base) > least && joint.distance(tip) > least)
 }
 
-/// Whether a straight end is folded, or longer than its target is far.
+/// True if a straight end is folded, or longer than its target is far.
 fn must_bend(problem: &Problem, config: &Configuration, end: StraightEnd) -> bool {
     // Relative shortening of a stretched path whose joints are within `STRAIGHT` of its line.
     const STRETCHED: f32 = 1e-3;

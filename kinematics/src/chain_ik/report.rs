@@ -17,7 +17,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether the error is within the tolerance.
+    /// True if the error is within the tolerance.
     pub fn converged(&self) -> bool {
         self.status == Status::Converged
     }

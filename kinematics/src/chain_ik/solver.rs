@@ -194,7 +194,7 @@ impl ChainSolver {
         self.report
     }
 
-    /// Whether the solver has converged, has stalled, is out of iterations or has come to its bound.
+    /// True if the solver has converged, has stalled, is out of iterations or has come to its bound.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.report.status != Status::Iterating
@@ -302,7 +302,7 @@ impl ChainSolver {
         any
     }
 
-    /// Whether the method may start from another pose than it has come to.
+    /// True if the method may start from another pose than it has come to.
     fn can_escape(&self) -> bool {
         !self.report.method.is_closed_form() && !self.problem.free_roots
     }

@@ -6,7 +6,7 @@ use super::problem::Problem;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Patience {
     iterations: u32,
-    /// Whether the method repeats the same steps from the same angles.
+    /// True if the method repeats the same steps from the same angles.
     repeats_steps: bool,
     /// See [`StallDetector::least_moving`].
     least_moving: f64,
@@ -100,7 +100,7 @@ impl StallDetector {
         self.idle >= self.patience
     }
 
-    /// Whether a joint or tip has moved away from the reference. In a flat valley of the cost,
+    /// True if a joint or tip has moved away from the reference. In a flat valley of the cost,
     /// chains move far for little improvement.
     fn is_moving(&self, problem: &Problem, config: &Configuration) -> bool {
         const STILL: f32 = 1e-5;

@@ -70,7 +70,7 @@ pub struct WidenedLimit {
 /// Joint angles from which a solve starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Whether the chain is only bent a little from where it is.
+    /// True if the chain is only bent a little from where it is.
     pub is_bend: bool,
     /// Euler angles in radians.
     pub angles: Vec<(JointId, Vec3)>,
@@ -157,7 +157,7 @@ pub(crate) fn limited_angles(
     limited.collect()
 }
 
-/// Whether the limits of an angle leave it one value.
+/// True if the limits of an angle leave it one value.
 pub(crate) fn is_fixed(skeleton: &Skeleton, (joint, axis): Angle) -> bool {
     skeleton[joint].limits.is_fixed(axis)
 }

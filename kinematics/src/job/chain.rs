@@ -12,7 +12,7 @@ pub(super) struct JointChain {
     axes: DMat3,
     /// M_s⁻¹.
     axes_inverse: DMat3,
-    /// Whether the start joint's axes have a scale other than 0.
+    /// True if the start joint's axes have a scale other than 0.
     can_turn: bool,
     /// u, the vector from the start joint to the middle joint.
     upper_ss: DVec3,
@@ -45,7 +45,7 @@ pub(super) struct LimbBones {
     pub hand_ss: DVec3,
     /// 1 / L, with the chain's length L in start joint space.
     pub inv_length: f64,
-    /// Whether both bones have lengths above 0 and the middle joint can turn the lower bone.
+    /// True if both bones have lengths above 0 and the middle joint can turn the lower bone.
     pub is_jointed: bool,
     /// Displacement of a joint by the rounding of its coordinates, in chain lengths.
     pub rounding: f64,

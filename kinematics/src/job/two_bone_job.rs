@@ -206,7 +206,7 @@ pub struct TwoBoneCorrection {
     pub start_correction: Quat,
     /// Δ₂, the correction of the middle joint: a unit quaternion with w ≥ 0.
     pub middle_correction: Quat,
-    /// Whether the corrected hand reaches the target, measured in start joint space (in model space
+    /// True if the corrected hand reaches the target, measured in start joint space (in model space
     /// if the start joint has scale 0). [`Reach::Reached`] means within 7e-7 of the chain's length;
     /// a limit may keep the hand at most 2e-7 of the chain's length from the target. Any other hand
     /// (out of reach, softened, or with a weight below 1) is [`Reach::TooClose`] if it is farther

@@ -99,7 +99,7 @@ fn hand(skeleton: &Skeleton, joint: JointId) -> Option<JointId> {
     children.next().filter(|_| children.next().is_none())
 }
 
-/// Whether limits let a joint turn through a right angle about one of its axes.
+/// True if limits let a joint turn through a right angle about one of its axes.
 fn can_bend(joint: &Joint) -> bool {
     let is_wide = |axis| joint.limits.span(axis) >= FRAC_PI_2;
     !joint.locked && RotationAxis::ALL.into_iter().any(is_wide)

@@ -59,13 +59,13 @@ pub enum ElbowReference {
 pub struct LimbReport {
     /// Distance from the tip to the target, in the world.
     pub error: f32,
-    /// Whether the tip is at the target and, if not, why.
+    /// True if the tip is at the target and, if not, why.
     pub reach: LimbReach,
     /// Factor by which the bones are lengthened.
     pub stretch: f32,
 }
 
-/// Whether a limb reaches its target at full influence and, if not, what prevents it.
+/// True if a limb reaches its target at full influence and, if not, what prevents it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -170,7 +170,7 @@ impl<'a> LocalTarget<'a> {
     }
 }
 
-/// Whether a target is the tip of a limb, computed in f32. Rounding of a target would turn the elbow of
+/// True if a target is the tip of a limb, computed in f32. Rounding of a target would turn the elbow of
 /// a straight limb by its square root.
 fn is_rounded([tip, base]: [DVec3; 2], target: Vec3) -> bool {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
@@ -350,7 +350,7 @@ struct LowerAngles {
     angles: Vec3,
     /// β.
     bend: f64,
-    /// Whether limits changed the angles.
+    /// True if limits changed the angles.
     is_limited: bool,
 }
 

@@ -58,7 +58,7 @@ impl AttachedMesh {
         Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes, axes }
     }
 
-    /// Whether the mesh was measured on joints with the bones of this skeleton.
+    /// True if the mesh was measured on joints with the bones of this skeleton.
     pub(super) fn is_measured_on(&self, skeleton: &Skeleton) -> bool {
         skeleton.joints().iter().map(|joint| joint.axis).eq(self.axes.iter().copied())
     }
@@ -119,7 +119,7 @@ impl SkinTexture {
     }
 }
 
-/// Whether two textures are the same file.
+/// True if two textures are the same file.
 impl PartialEq for SkinTexture {
     fn eq(&self, other: &Self) -> bool {
         self.size == other.size && self.file == other.file

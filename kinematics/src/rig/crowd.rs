@@ -122,7 +122,7 @@ impl CrowdArrays {
         self.cos.len()
     }
 
-    /// Whether there are no arms.
+    /// True if there are no arms.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -66,7 +66,7 @@ pub enum TargetOutcome {
 }
 
 impl TargetReport {
-    /// Whether the hand is farther from the rotation that its target asks for than
+    /// True if the hand is farther from the rotation that its target asks for than
     /// [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn misses_rotation(&self) -> bool {
         self.rotation_error.is_some_and(|angle| angle > SkeletonRig::ROTATION_TOLERANCE)
@@ -114,7 +114,7 @@ impl SkeletonRig {
         Some((2.0 * DVec3::new(x, y, z).length().atan2(w.abs())) as f32)
     }
 
-    /// Whether the tip of a target's joint, and the rotation of its hand, are as the target asks,
+    /// True if the tip of a target's joint, and the rotation of its hand, are as the target asks,
     /// within [`SkeletonRig::tolerance`] and [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn is_reached(&self, report: &TargetReport) -> bool {
         report.error <= self.tolerance() && !report.misses_rotation()

@@ -36,7 +36,7 @@ pub enum PathKind {
 }
 
 impl PathKind {
-    /// Whether the path has finite lengths and a period above 0.
+    /// True if the path has finite lengths and a period above 0.
     pub fn is_valid(&self) -> bool {
         match self {
             Self::Ring(WavyRing { radius, amplitude, waves: _, period }) => {

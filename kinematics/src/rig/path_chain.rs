@@ -17,7 +17,7 @@ pub(super) struct PathChain<'a> {
     head: Vec3,
     /// Points of the path at which the bones end.
     tips: Vec<Vec3>,
-    /// Whether joints keep their roll: they are turned onto the path from their own rotation, not from
+    /// True if joints keep their roll: they are turned onto the path from their own rotation, not from
     /// the bind pose.
     keeps_roll: bool,
 }
@@ -70,7 +70,7 @@ impl<'a> PathChain<'a> {
             .then(|| Self::behind(skeleton, bones, path))
     }
 
-    /// Whether a head with keys, which is at `head` at a time in seconds, has left its first key.
+    /// True if a head with keys, which is at `head` at a time in seconds, has left its first key.
     pub fn has_left_first_key(keys: &Spline<Vec3>, time: f64, head: Vec3) -> bool {
         keys.knots().first().is_some_and(|first| time > first.time || head != first.value)
     }

@@ -30,23 +30,23 @@ impl SkeletonRig {
         self.skeleton.ancestors(joint).last()
     }
 
-    /// Whether any chain follows a path at a time in seconds, so that its own angles do not pose it: on
+    /// True if any chain follows a path at a time in seconds, so that its own angles do not pose it: on
     /// a ring always, behind a target while it is enabled, behind a head from its first key on.
     pub fn is_on_path(&self, time: f64) -> bool {
         self.paths_at(time).next().is_some()
     }
 
-    /// Whether a path poses a joint at a time in seconds.
+    /// True if a path poses a joint at a time in seconds.
     pub fn is_joint_on_path(&self, joint: JointId, time: f64) -> bool {
         self.paths_at(time).any(|path| self.path_joints(path.root).any(|other| other == joint))
     }
 
-    /// Whether the target moves the head of a chain, which follows its path.
+    /// True if the target moves the head of a chain, which follows its path.
     pub fn leads_path(&self, target: &Target) -> bool {
         self.path_kind(target.joint) == Some(PathKind::Target)
     }
 
-    /// Whether the target poses the skeleton by a solver.
+    /// True if the target poses the skeleton by a solver.
     pub fn is_solved_for(&self, target: &Target) -> bool {
         target.is_posing() && !self.leads_path(target)
     }

@@ -150,14 +150,14 @@ impl SkeletonRig {
         }
     }
 
-    /// Whether an enabled target or the skeleton moves over time without keys.
+    /// True if an enabled target or the skeleton moves over time without keys.
     pub fn is_moving(&self) -> bool {
         let moves = |target: &Target| target.enabled && target.is_moving();
         let mut paths = self.follow_paths.iter();
         paths.any(|path| matches!(path.kind, PathKind::Ring(_))) || self.targets.iter().any(moves)
     }
 
-    /// Whether any joint has a bone, that is, an axis of non-zero length.
+    /// True if any joint has a bone, that is, an axis of non-zero length.
     pub fn has_bones(&self) -> bool {
         self.skeleton.joints().iter().any(|joint| joint.axis != Vec3::ZERO)
     }

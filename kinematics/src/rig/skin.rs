@@ -87,7 +87,7 @@ impl Skin {
         }
     }
 
-    /// Whether the mesh of the skin is from the file `before`, and follows the same joints as `mesh`.
+    /// True if the mesh of the skin is from the file `before`, and follows the same joints as `mesh`.
     pub fn can_become(&self, mesh: &MeshSkin, before: Option<&SkinFile>) -> bool {
         let SkinSource::Mesh(own) = &self.source else { return false };
         own.joints() == mesh.joints() && own.file() == before

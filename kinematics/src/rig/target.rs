@@ -22,7 +22,7 @@ pub struct Target {
     pub influence: f32,
     /// Weight relative to the other whole-body targets, above 0.
     pub weight: f32,
-    /// Whether the target has any effect.
+    /// True if the target has any effect.
     pub enabled: bool,
     /// Motion in time, in the target's space.
     pub motion: TargetMotion,
@@ -73,22 +73,22 @@ impl Target {
         }
     }
 
-    /// Whether the settings of a limb target are finite.
+    /// True if the settings of a limb target are finite.
     pub fn has_finite_kind(&self) -> bool {
         self.limb().is_none_or(LimbSettings::is_finite)
     }
 
-    /// Whether the target poses the skeleton.
+    /// True if the target poses the skeleton.
     pub fn is_posing(&self) -> bool {
         self.enabled && self.influence > 0.0
     }
 
-    /// Whether the target poses the skeleton between its FK pose and the solved one.
+    /// True if the target poses the skeleton between its FK pose and the solved one.
     pub fn is_blended(&self) -> bool {
         self.is_posing() && self.influence < 1.0
     }
 
-    /// Whether the target moves over time without keys.
+    /// True if the target moves over time without keys.
     pub fn is_moving(&self) -> bool {
         self.motion.path != TargetPath::Still
     }
@@ -248,7 +248,7 @@ impl LimbSettings {
         self.orientation.map(|angles| space.rotation(pose) * turned(angles))
     }
 
-    /// Whether all numbers are finite.
+    /// True if all numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.pole().is_none_or(|(_, pole)| pole.is_finite())
             && self.twist.is_finite()
@@ -349,12 +349,12 @@ impl MovedJoints {
         }
     }
 
-    /// Whether the target moves `joint`: turns it or a joint above it.
+    /// True if the target moves `joint`: turns it or a joint above it.
     pub fn moves(&self, skeleton: &Skeleton, joint: JointId) -> bool {
         skeleton.ancestors(joint).any(|above| self.turned.contains(&above))
     }
 
-    /// Whether `target`, which moves these joints, must be solved after a target that moves the joints
+    /// True if `target`, which moves these joints, must be solved after a target that moves the joints
     /// of `other`: because it is on one of them, or because its limb is attached to one.
     pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
         let base = self.upper.and_then(|upper| skeleton[upper].parent);

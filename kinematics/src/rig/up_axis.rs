@@ -80,7 +80,7 @@ impl UpAxis {
     }
 }
 
-/// Whether a joint is called a foot, or a part of one.
+/// True if a joint is called a foot, or a part of one.
 fn is_foot(name: &str) -> bool {
     const WORDS: [&str; 6] = ["foot", "toe", "ankle", "heel", "paw", "hoof"];
     let name = name.to_lowercase();

@@ -26,9 +26,9 @@ pub struct Joint {
     pub frame: Mat3,
     /// Limits of the rotation.
     pub limits: JointLimits,
-    /// Whether solvers leave the rotation unchanged.
+    /// True if solvers leave the rotation unchanged.
     pub locked: bool,
-    /// Whether keys that move this joint also move the tip of its parent's bone, so that the bone ends
+    /// True if keys that move this joint also move the tip of its parent's bone, so that the bone ends
     /// here at every time.
     pub connected: bool,
     /// Radius with which the bone is drawn, in skeleton units.
@@ -150,7 +150,7 @@ impl Joint {
 pub(crate) struct AnglesWithin {
     /// The angles, radians.
     pub angles: Vec3,
-    /// Whether the limits changed the angles by more than rounding.
+    /// True if the limits changed the angles by more than rounding.
     pub is_limited: bool,
 }
 

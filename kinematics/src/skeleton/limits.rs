@@ -51,7 +51,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether the angle is in the range.
+    /// True if the angle is in the range.
     pub fn contains(self, angle: f32) -> bool {
         (self.min..=self.max).contains(&angle)
     }
@@ -118,17 +118,17 @@ impl JointLimits {
         self.ranges[axis.index()] = range;
     }
 
-    /// Whether anything is limited.
+    /// True if anything is limited.
     pub fn is_limited(&self) -> bool {
         self.ranges.iter().any(Option::is_some)
     }
 
-    /// Whether the limits leave the angle about an axis one value.
+    /// True if the limits leave the angle about an axis one value.
     pub fn is_fixed(&self, axis: RotationAxis) -> bool {
         self.range(axis).is_some_and(|range| range.min == range.max)
     }
 
-    /// Whether Euler angles, in radians, are within the limits.
+    /// True if Euler angles, in radians, are within the limits.
     pub fn contains(&self, angles: Vec3) -> bool {
         RotationAxis::ALL.into_iter().all(|axis| self.allows(axis, angles[axis.index()]))
     }
@@ -160,7 +160,7 @@ impl JointLimits {
         }
     }
 
-    /// Whether an angle about an axis is within its limits.
+    /// True if an angle about an axis is within its limits.
     pub(crate) fn allows(&self, axis: RotationAxis, angle: f32) -> bool {
         self.range(axis).is_none_or(|range| range.contains(angle))
     }
@@ -170,13 +170,13 @@ impl JointLimits {
         self.range(axis).map_or(f32::INFINITY, |range| range.max - range.min)
     }
 
-    /// Whether the angle about an axis is at an end of its range, or beyond.
+    /// True if the angle about an axis is at an end of its range, or beyond.
     pub(crate) fn is_at_end(&self, angles: Vec3, axis: RotationAxis) -> bool {
         let angle = angles[axis.index()];
         self.range(axis).is_some_and(|range| angle <= range.min || angle >= range.max)
     }
 
-    /// Whether the angle about an axis is at the end of its range towards which it is pushed: to
+    /// True if the angle about an axis is at the end of its range towards which it is pushed: to
     /// greater angles by a positive `push`, to smaller ones by a negative one. An angle within
     /// `margin` of the end counts as at it.
     pub(crate) fn stops(&self, angles: Vec3, axis: RotationAxis, push: f32, margin: f32) -> bool {

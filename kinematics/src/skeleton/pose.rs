@@ -54,7 +54,7 @@ impl SkeletonPose {
         self.joints.len()
     }
 
-    /// Whether the pose has no joints.
+    /// True if the pose has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
@@ -97,7 +97,7 @@ impl SkeletonPose {
     }
 }
 
-/// Whether the point is finite and was not clamped.
+/// True if the point is finite and was not clamped.
 pub fn is_within_numbers(point: Vec3) -> bool {
     point.is_finite() && point.abs().max_element() < f32::MAX
 }

@@ -109,7 +109,7 @@ impl Skeleton {
         std::iter::successors(first, |joint| self.joint(*joint)?.parent)
     }
 
-    /// Whether `joint` is in the subtree of `root`: `root` itself or one of its descendants.
+    /// True if `joint` is in the subtree of `root`: `root` itself or one of its descendants.
     pub fn is_in_subtree(&self, joint: JointId, root: JointId) -> bool {
         self.ancestors(joint).any(|above| above == root)
     }

@@ -25,7 +25,7 @@ pub(crate) struct ClosedForm {
     /// by rounding; [`Self::hand_or`] returns the cursor then.
     pub hand: Vec3,
     pub reach: Reach,
-    /// Whether all numbers were normal: see the module.
+    /// True if all numbers were normal: see the module.
     pub is_normal: bool,
     pub pointer: Pointer,
     /// Unit vector perpendicular to the Pointer, on the side of the elbow.
@@ -225,7 +225,7 @@ pub(super) struct ScaledCursor {
     pub distance: f32,
     /// Length in the caller's unit that is 1 in `distance`, a power of two.
     pub unit: f32,
-    /// Whether the squared lengths were in the range `NORMAL`.
+    /// True if the squared lengths were in the range `NORMAL`.
     pub is_normal: bool,
 }
 
@@ -265,7 +265,7 @@ impl Pointer {
     }
 }
 
-/// Whether a set of squares is in the range `NORMAL`, by its smallest and its largest square.
+/// True if a set of squares is in the range `NORMAL`, by its smallest and its largest square.
 #[inline(always)]
 pub(super) fn is_normal(least: f32, most: f32) -> bool {
     (least >= NORMAL[0]) & (most <= NORMAL[1])

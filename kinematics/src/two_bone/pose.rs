@@ -38,7 +38,7 @@ impl Pointer {
     }
 }
 
-/// Whether the hand reaches the cursor, and which limit prevents it if not.
+/// True if the hand reaches the cursor, and which limit prevents it if not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -65,7 +65,7 @@ pub struct TwoBonePose {
     /// Position of the hand. With hard limits it is the cursor if that is reached, otherwise a
     /// point on a limit sphere.
     pub hand: Vec3,
-    /// Whether the hand reaches the cursor; `None` for a pose without a cursor, such as one made
+    /// True if the hand reaches the cursor; `None` for a pose without a cursor, such as one made
     /// from joint angles.
     pub reach: Option<Reach>,
     /// D, the distance from shoulder to hand.

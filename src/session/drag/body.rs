@@ -85,18 +85,18 @@ impl Session {
         paths.filter(|path| path.kind == PathKind::Head).map(|path| path.root)
     }
 
-    /// Whether a path poses a joint at the playhead.
+    /// True if a path poses a joint at the playhead.
     fn is_on_path(&self, joint: JointId) -> bool {
         self.skeleton_rig().is_joint_on_path(joint, self.time())
     }
 
-    /// Whether a joint is a root without a bone, such as a pelvis.
+    /// True if a joint is a root without a bone, such as a pelvis.
     pub fn is_root_point(&self, joint: JointId) -> bool {
         let joint = self.skeleton().joint(joint);
         joint.is_some_and(|joint| joint.parent.is_none() && joint.axis == Vec3::ZERO)
     }
 
-    /// Whether the elbow of the arm is so far from the Pointer that its circle can be seen.
+    /// True if the elbow of the arm is so far from the Pointer that its circle can be seen.
     fn is_bent(&self) -> bool {
         const LEAST: f32 = 0.02;
         self.pose().out > LEAST * self.arm().bones.outer_limit()

@@ -42,7 +42,7 @@ pub enum Grip {
 }
 
 impl Grip {
-    /// Whether the axis of the grip's handle, if it has one, is 0, 1 or 2.
+    /// True if the axis of the grip's handle, if it has one, is 0, 1 or 2.
     pub(in crate::session) fn has_valid_axis(self) -> bool {
         match self {
             Self::Hand(handle)
@@ -82,7 +82,7 @@ impl Grip {
         }
     }
 
-    /// Whether the grip is of the arm rather than of a skeleton.
+    /// True if the grip is of the arm rather than of a skeleton.
     pub(in crate::session) fn is_of_arm(self) -> bool {
         match self {
             Self::Hand(_)
@@ -137,7 +137,7 @@ pub(in crate::session) enum Dragged {
         to: Vec3,
         /// Offset since the press.
         moved: Vec3,
-        /// Whether the mouse has moved, or an offset was typed.
+        /// True if the mouse has moved, or an offset was typed.
         has_moved: bool,
     },
     /// The angle of a ring, in radians.

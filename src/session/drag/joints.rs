@@ -70,7 +70,7 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
     match (grip, dragged) {
         (Grip::Ring(joint, axis), Dragged::Angle(angle)) => {
             Outcome::edit_joint(session.shown(), joint, |joint| {
-                joint.rotation[axis.index()] = angle
+                joint.rotation[axis.index()] = angle;
             })
         }
         (Grip::Orientation(joint, axis), Dragged::Angle(angle)) => {

@@ -16,7 +16,7 @@ pub enum PointHandle {
 }
 
 impl PointHandle {
-    /// Whether the handle's axis, if it has one, is 0, 1 or 2.
+    /// True if the handle's axis, if it has one, is 0, 1 or 2.
     pub(in crate::session) fn has_valid_axis(self) -> bool {
         match self {
             Self::Free => true,
@@ -35,7 +35,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// Whether the constraint's axis is 0, 1 or 2.
+    /// True if the constraint's axis is 0, 1 or 2.
     pub(in crate::session) fn has_valid_axis(self) -> bool {
         let (Self::Axis(axis) | Self::Plane(axis)) = self;
         axis < 3
@@ -47,9 +47,9 @@ impl Constraint {
 pub struct DragInput {
     /// The ray through the mouse, in world space.
     pub ray: Ray,
-    /// Whether precision is on: the drag moves a tenth as far as the mouse.
+    /// True if precision is on: the drag moves a tenth as far as the mouse.
     pub precise: bool,
-    /// Whether snapping is on: the drag ends on whole steps.
+    /// True if snapping is on: the drag ends on whole steps.
     pub snap: bool,
 }
 
@@ -137,7 +137,7 @@ impl PointDrag {
         &self.typed
     }
 
-    /// Whether the mouse has moved, an offset was typed, or precision was switched on or off.
+    /// True if the mouse has moved, an offset was typed, or precision was switched on or off.
     pub(in crate::session) fn has_moved(&self) -> bool {
         !self.typed.is_empty() || self.precision.is_some() || self.now.ray != self.pressed
     }

@@ -104,7 +104,7 @@ fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Out
 
 /// Tips that can be dragged.
 impl Session {
-    /// Whether a drag of the tip of `joint` changes the pose.
+    /// True if a drag of the tip of `joint` changes the pose.
     pub fn can_drag_tip(&self, joint: JointId) -> bool {
         let rig = self.skeleton_rig();
         let Some(own) = rig.skeleton.joint(joint) else {
@@ -128,7 +128,7 @@ impl Session {
         above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
     }
 
-    /// Whether a drag of the tip of `joint` turns the elbow of a limb that is bent.
+    /// True if a drag of the tip of `joint` turns the elbow of a limb that is bent.
     pub fn turns_elbow(&self, joint: JointId) -> bool {
         // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
         const LEAST: f32 = 0.02;
@@ -160,7 +160,7 @@ fn fk_start(track: &Track, before: &Posed) -> Skeleton {
     pose
 }
 
-/// Whether the tip of `joint` is the elbow of a target's limb.
+/// True if the tip of `joint` is the elbow of a target's limb.
 fn is_elbow(skeleton: &Skeleton, target: &Target, joint: JointId) -> bool {
     target.limb().is_some()
         && Limb::ending_at(skeleton, target.joint).is_ok_and(|limb| limb.upper == joint)

@@ -112,7 +112,7 @@ impl FileAction {
         Self::Opened { document: Box::new(opened.document), file, contents }
     }
 
-    /// Whether the action saves the document.
+    /// True if the action saves the document.
     pub(in crate::session) fn saves_document(&self) -> bool {
         let asks = |dialog: &PathDialog| matches!(dialog, PathDialog::SaveAs { .. });
         match self {
@@ -122,7 +122,7 @@ impl FileAction {
         }
     }
 
-    /// Whether the action changes, replaces or closes the open document.
+    /// True if the action changes, replaces or closes the open document.
     pub(in crate::session) fn concerns_document(&self) -> bool {
         let reads = matches!(
             self,
@@ -136,7 +136,7 @@ impl FileAction {
         reads || self.leaves_document()
     }
 
-    /// Whether the action replaces or closes the open document.
+    /// True if the action replaces or closes the open document.
     pub(in crate::session) fn leaves_document(&self) -> bool {
         matches!(
             self,
@@ -177,12 +177,12 @@ impl FileContents {
         }
     }
 
-    /// Whether the user is asked what to open: there is a choice, and none was made.
+    /// True if the user is asked what to open: there is a choice, and none was made.
     pub fn asks(&self) -> bool {
         self.options == OpenOptions::default() && self.has_choice()
     }
 
-    /// Whether the file has several skeletons or animations to choose from.
+    /// True if the file has several skeletons or animations to choose from.
     pub fn has_choice(&self) -> bool {
         self.skeletons.len() > 1 || self.animations.len() > 1
     }

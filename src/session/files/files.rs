@@ -14,7 +14,7 @@ pub struct Files {
     recent: Vec<PathBuf>,
     export_folder: Option<PathBuf>,
     job: Option<ExportJob>,
-    /// Whether an earlier run's unsaved document was opened or declined.
+    /// True if an earlier run's unsaved document was opened or declined.
     recovery_settled: bool,
     /// What to say once the file is open that was read.
     remark: Option<String>,
@@ -22,7 +22,7 @@ pub struct Files {
     opening_stamp: Option<(PathBuf, FileStamp)>,
     /// What else the file of another program has that the document comes from.
     contents: Option<Box<FileContents>>,
-    /// Whether z seems to point up in the document's file, and this was not settled yet.
+    /// True if z seems to point up in the document's file, and this was not settled yet.
     seems_z_up: bool,
     /// The action to apply once the document is saved; `None` if no action waits.
     after_save: Option<Box<FileAction>>,
@@ -58,7 +58,7 @@ impl Files {
         self.contents.as_deref()
     }
 
-    /// Whether z seems to point up in the file of the document, which was not turned yet.
+    /// True if z seems to point up in the file of the document, which was not turned yet.
     pub fn seems_z_up(&self) -> bool {
         self.seems_z_up
     }
@@ -92,12 +92,12 @@ impl Files {
         self.job.as_ref()
     }
 
-    /// Whether the unsaved document of an earlier run was opened or declined.
+    /// True if the unsaved document of an earlier run was opened or declined.
     pub fn has_settled_recovery(&self) -> bool {
         self.recovery_settled
     }
 
-    /// Whether another program has changed the document's file since it was last opened or saved.
+    /// True if another program has changed the document's file since it was last opened or saved.
     pub fn has_changed(&self) -> bool {
         let now = self.file.as_deref().and_then(FileStamp::of);
         now.is_some() && now != self.stamp
@@ -182,7 +182,7 @@ impl Files {
         self.after_save = None;
     }
 
-    /// Whether an export runs and is not cancelled.
+    /// True if an export runs and is not cancelled.
     pub(in crate::session) fn is_exporting(&self) -> bool {
         self.job.as_ref().is_some_and(|job| !job.progress.is_cancelled())
     }

@@ -49,9 +49,9 @@ struct Transaction {
 /// Consequences of a change of the document.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::session) struct WriteOutcome {
-    /// Whether the change made unkeyed edits of keyed channels.
+    /// True if the change made unkeyed edits of keyed channels.
     pub has_overridden: bool,
-    /// Whether auto-key set keys.
+    /// True if auto-key set keys.
     pub has_auto_keyed: bool,
 }
 
@@ -116,7 +116,7 @@ impl Editing {
         self.first_revision
     }
 
-    /// Whether a transaction is open.
+    /// True if a transaction is open.
     pub(in crate::session) fn is_open(&self) -> bool {
         self.transaction.is_some()
     }
@@ -165,7 +165,7 @@ impl Editing {
         self.history.redo_label()
     }
 
-    /// Whether the document differs from the saved one in more than cameras, shown rig and
+    /// True if the document differs from the saved one in more than cameras, shown rig and
     /// overlays.
     pub fn is_unsaved(&self) -> bool {
         let before = self.transaction.as_ref().map(|transaction| &transaction.before);
@@ -461,7 +461,7 @@ impl Editing {
     }
 }
 
-/// Whether the twist is transported along a keyed hand and has no keys of its own.
+/// True if the twist is transported along a keyed hand and has no keys of its own.
 fn is_transported(document: &Document) -> bool {
     let Document { arm, keys, .. } = document;
     arm.twist_reference == TwistReferenceKind::Transport
@@ -469,7 +469,7 @@ fn is_transported(document: &Document) -> bool {
         && !keys.has(Channel::Twist)
 }
 
-/// Whether a channel has an angle of the body that a head with keys has at its first key: such an angle
+/// True if a channel has an angle of the body that a head with keys has at its first key: such an angle
 /// is not keyed automatically.
 fn is_start_of_body(document: &Document, channel: Channel) -> bool {
     let rig = &document.skeleton_rig;

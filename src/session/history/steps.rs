@@ -132,14 +132,14 @@ impl Snapshot {
         document
     }
 
-    /// Whether the snapshot's document differs from `document` in more than cameras.
+    /// True if the snapshot's document differs from `document` in more than cameras.
     pub fn differs_from(&self, document: &Document) -> bool {
         self.document.rig != document.rig
             || self.document.display != document.display
             || self.differs_in_content_from(document)
     }
 
-    /// Whether the snapshot's document differs from `other` in more than cameras, shown rig and
+    /// True if the snapshot's document differs from `other` in more than cameras, shown rig and
     /// overlays.
     pub fn differs_in_content_from(&self, other: &Document) -> bool {
         let Document { arm, skeleton_rig, keys, timeline, metres_per_unit, .. } = &self.document;
@@ -154,7 +154,7 @@ impl Snapshot {
         &self.overrides
     }
 
-    /// Whether restoring this state from `now` would change nothing.
+    /// True if restoring this state from `now` would change nothing.
     pub fn is_restored_in(&self, now: &Self) -> bool {
         let is_same_time = self.overrides.is_empty() || self.time == now.time;
         self.revision == now.revision && self.overrides == now.overrides && is_same_time

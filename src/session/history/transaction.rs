@@ -71,7 +71,7 @@ fn commit(session: &Session) -> Outcome {
     Outcome::from(has_dragged_hand.then_some(Consequence::Prefer(known))).and(Consequence::Commit)
 }
 
-/// Whether a drag has moved the hand of the arm.
+/// True if a drag has moved the hand of the arm.
 fn moves_hand(drag: &Drag) -> bool {
     let is_hand = matches!(drag.grip(), Grip::Hand(_));
     is_hand && drag.point().is_some_and(|point| point.moved() != Vec3::ZERO)

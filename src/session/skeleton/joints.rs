@@ -71,7 +71,7 @@ pub enum JointEdit {
     SetLocked {
         /// The joint.
         joint: JointId,
-        /// Whether the joint is to be locked.
+        /// True if the joint is to be locked.
         locked: bool,
     },
     /// Moves the origin of the skeleton to a point in world space.
@@ -124,7 +124,7 @@ impl JointEdit {
             }
             Self::SetLimit { joint, axis, limit } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| {
-                    joint.limits.set_range(axis, limit)
+                    joint.limits.set_range(axis, limit);
                 })
             }
             Self::SetLocked { joint, locked } => {

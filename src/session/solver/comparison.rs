@@ -59,7 +59,7 @@ impl Comparison {
         self.solvers.iter_mut().filter_map(|solver| solver.run.as_mut().ok())
     }
 
-    /// Whether any solver makes further iterations.
+    /// True if any solver makes further iterations.
     pub fn is_running(&self) -> bool {
         self.runs().any(|run| !run.is_over())
     }

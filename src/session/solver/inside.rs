@@ -94,7 +94,7 @@ impl Default for InsideLayers {
 }
 
 impl InsideLayers {
-    /// Whether a layer is shown.
+    /// True if a layer is shown.
     pub fn shows(self, layer: InsideLayer) -> bool {
         self.0[layer as usize]
     }

@@ -111,12 +111,12 @@ impl SolverRun {
         &self.inputs.targets
     }
 
-    /// Whether the run is not paused.
+    /// True if the run is not paused.
     pub fn is_running(&self) -> bool {
         self.running
     }
 
-    /// Whether the solver makes no further iterations.
+    /// True if the solver makes no further iterations.
     pub fn is_over(&self) -> bool {
         self.solver.is_over()
     }
@@ -171,7 +171,7 @@ impl SolverRun {
         &self.before
     }
 
-    /// Whether the parts of all iterations are shown one after the other.
+    /// True if the parts of all iterations are shown one after the other.
     pub fn is_walking(&self) -> bool {
         self.inside.is_walking()
     }

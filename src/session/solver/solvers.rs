@@ -92,7 +92,7 @@ impl Solvers {
         }
     }
 
-    /// Whether neither a run nor a comparison is looked at.
+    /// True if neither a run nor a comparison is looked at.
     pub fn is_idle(&self) -> bool {
         matches!(self, Self::Idle)
     }
@@ -124,12 +124,12 @@ impl Solvers {
         ShownIteration::of(self.runs())
     }
 
-    /// Whether a solver run is in progress and not paused.
+    /// True if a solver run is in progress and not paused.
     pub fn is_running(&self) -> bool {
         self.run().is_some_and(SolverRun::is_running)
     }
 
-    /// Whether the run or the comparison makes iterations.
+    /// True if the run or the comparison makes iterations.
     pub fn is_busy(&self) -> bool {
         self.is_running()
             || self.run().is_some_and(SolverRun::is_walking)

@@ -44,14 +44,14 @@ impl Session {
         }
     }
 
-    /// Whether the skin is shown for each way of blending joints.
+    /// True if the skin is shown for each way of blending joints.
     pub fn compares_skinning(&self) -> bool {
         let display = self.shown().display;
         let is_shown = display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning);
         is_shown && self.rig() == RigKind::Skeleton
     }
 
-    /// Whether the timeline is open above the transport bar: by choice, else if the document has keys.
+    /// True if the timeline is open above the transport bar: by choice, else if the document has keys.
     pub fn shows_timeline(&self) -> bool {
         let has_keys = || !self.document().keys.is_empty();
         self.preferences().timeline_open.unwrap_or_else(has_keys)

@@ -176,7 +176,7 @@ impl View {
         self.drag.as_ref()
     }
 
-    /// Whether the camera is gliding, which is a smooth move to another camera.
+    /// True if the camera is gliding, which is a smooth move to another camera.
     pub fn is_gliding(&self) -> bool {
         self.glide.is_some()
     }
@@ -214,7 +214,7 @@ impl View {
         Some(self.drag.take()?.before)
     }
 
-    /// Whether the camera follows the selected joints, or without a selection the whole rig,
+    /// True if the camera follows the selected joints, or without a selection the whole rig,
     /// while the time changes.
     pub fn follows_selection(&self) -> bool {
         self.follows_selection
@@ -235,12 +235,12 @@ impl View {
         self.crowd_shown.then_some(Crowd { arms, bones, time: crowd_time as f32, processor })
     }
 
-    /// Whether the crowd's targets are animated rather than paused.
+    /// True if the crowd's targets are animated rather than paused.
     pub fn is_crowd_animated(&self) -> bool {
         self.crowd_animated
     }
 
-    /// Whether the crowd is shown and animated.
+    /// True if the crowd is shown and animated.
     pub(in crate::session) fn is_crowd_moving(&self) -> bool {
         self.crowd_shown && self.crowd_animated
     }

@@ -78,7 +78,7 @@ impl Pull {
         if size > LEAST { size } else { 0.0 }
     }
 
-    /// Whether a limit of the joint is in the way.
+    /// True if a limit of the joint is in the way.
     fn is_outward(&self, joint: &Joint) -> bool {
         // Angles this near to a limit are at it.
         const AT: f32 = 1e-4;

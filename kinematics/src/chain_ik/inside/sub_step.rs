@@ -103,7 +103,7 @@ pub struct AngleChange {
     pub gradient: f32,
     /// The change in radians.
     pub by: f32,
-    /// Whether the angle is at a limit afterwards.
+    /// True if the angle is at a limit afterwards.
     pub is_at_limit: bool,
 }
 

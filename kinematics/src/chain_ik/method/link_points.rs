@@ -108,7 +108,7 @@ impl LinkPoints {
         lists
     }
 
-    /// Whether any link has limits.
+    /// True if any link has limits.
     pub fn are_limited(&self) -> bool {
         self.limited
     }
@@ -133,7 +133,7 @@ impl LinkPoints {
         self.all[index].position_in(config) - config.bases[link]
     }
 
-    /// Whether the problem is a chain without limits, with a fixed root, whose one target is out of
+    /// True if the problem is a chain without limits, with a fixed root, whose one target is out of
     /// reach.
     pub fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
         let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
@@ -323,7 +323,7 @@ fn add_member(points: &mut Vec<LinkPoint>, position: Vec3A, member: PointMember)
 }
 
 impl LinkPoint {
-    /// Whether only tips are at the point, which have targets.
+    /// True if only tips are at the point, which have targets.
     pub fn is_target(&self) -> bool {
         self.members.iter().all(|member| matches!(member.kind, MemberKind::Tip(_)))
     }

@@ -68,7 +68,7 @@ pub(super) struct MethodRow {
     uses_damping: bool,
     uses_step: bool,
     is_closed_form: bool,
-    /// Whether the method works on orientations instead of angles.
+    /// True if the method works on orientations instead of angles.
     pub uses_orientations: bool,
     /// Distance of a target from the root, in lengths of the path to the tip, up to which the
     /// iteration is stable; infinite if it always is.
@@ -273,17 +273,17 @@ impl Method {
         self.row().budget
     }
 
-    /// Whether the method reads [`SolverOptions::damping`](super::SolverOptions::damping).
+    /// True if the method reads [`SolverOptions::damping`](super::SolverOptions::damping).
     pub const fn uses_damping(self) -> bool {
         self.row().uses_damping
     }
 
-    /// Whether the method reads [`SolverOptions::step`](super::SolverOptions::step).
+    /// True if the method reads [`SolverOptions::step`](super::SolverOptions::step).
     pub const fn uses_step(self) -> bool {
         self.row().uses_step
     }
 
-    /// Whether one iteration is all: the method solves limbs of two bones at once and refuses others.
+    /// True if one iteration is all: the method solves limbs of two bones at once and refuses others.
     pub const fn is_closed_form(self) -> bool {
         self.row().is_closed_form
     }

@@ -40,7 +40,7 @@ pub(in crate::chain_ik) struct Relaxation {
     points: LinkPoints,
     sweep: SweepAfterPasses,
     pairs: Vec<PointPair>,
-    /// Whether the next pass goes on from the points of the last one, not from the pose.
+    /// True if the next pass goes on from the points of the last one, not from the pose.
     goes_on: bool,
 }
 
@@ -164,7 +164,7 @@ impl Relaxation {
     }
 }
 
-/// Whether the joint of a link is fixed to a root that cannot move.
+/// True if the joint of a link is fixed to a root that cannot move.
 fn is_fixed(problem: &Problem, link: usize) -> bool {
     problem.links[link].parent.is_none() && !problem.free_roots
 }

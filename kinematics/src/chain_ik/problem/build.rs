@@ -189,7 +189,7 @@ fn with_inverse(transform: Affine3A) -> Option<(DMat3, DAffine3)> {
     inverse.is_finite().then_some((matrix, inverse))
 }
 
-/// Whether each joint is a target's joint or an ancestor of one.
+/// True if each joint is a target's joint or an ancestor of one.
 fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
     let mut on_path = vec![false; skeleton.joints().len()];
     for target in targets {

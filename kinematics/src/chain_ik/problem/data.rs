@@ -139,7 +139,7 @@ impl Problem {
         sum / weight
     }
 
-    /// Whether the offset of a tree's root, shifted by `shift`, is finite in f32.
+    /// True if the offset of a tree's root, shifted by `shift`, is finite in f32.
     pub fn can_shift(&self, tree: usize, shift: Vec3A) -> bool {
         (self.trees[tree].origin + shift.as_dvec3() / self.unit).as_vec3().is_finite()
     }

@@ -65,7 +65,7 @@ impl JobInputs<'_> {
         self.target.x.len()
     }
 
-    /// Whether there is no limb.
+    /// True if there is no limb.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -33,7 +33,7 @@ pub(super) fn solve_checked(inputs: &JobInputs<'_>, outputs: &mut JobOutputs<'_>
     }
 }
 
-/// Whether the results are those of the limb's job, because it fits the fast path.
+/// True if the results are those of the limb's job, because it fits the fast path.
 fn is_done(inputs: &JobInputs<'_>, results: &Results, limb: usize) -> bool {
     let weight = inputs.weight.map_or(1.0, |weight| weight[limb]);
     results.outcome[limb] != outcome::IRREGULAR && weight == 1.0 && inputs.softness == 0.0

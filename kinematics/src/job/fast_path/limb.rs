@@ -93,7 +93,7 @@ impl Limb {
         }
     }
 
-    /// Whether no bone is negligible, the limb is clearly bent, and the hand is clearly away from
+    /// True if no bone is negligible, the limb is clearly bent, and the hand is clearly away from
     /// the start joint. `sine` is d₁d₂ times the sine of the inner angle.
     #[inline(always)]
     fn is_regular(&self, sine: f64) -> bool {

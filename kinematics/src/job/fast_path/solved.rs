@@ -15,7 +15,7 @@ pub struct Solved {
     pub start_correction: [f32; 4],
     pub middle_correction: [f32; 4],
     pub is_reached: bool,
-    /// Whether the hand is farther from the start joint than the target is.
+    /// True if the hand is farther from the start joint than the target is.
     pub is_too_close: bool,
     /// Distance from the hand to the target in model space.
     pub hand_error: f32,

@@ -69,7 +69,7 @@ impl SkeletonRig {
         in_turn(missed.into_iter().map(examine).collect())
     }
 
-    /// Whether the place or the rotation of an enabled target is not reached in the evaluated pose.
+    /// True if the place or the rotation of an enabled target is not reached in the evaluated pose.
     fn is_missed(&self, index: usize, evaluated: &EvaluatedSkeleton, tolerance: f32) -> bool {
         let (target, report) = (&self.targets[index], &evaluated.targets[index]);
         let has_converged = match &report.outcome {

@@ -64,7 +64,7 @@ impl RigCase<'_> {
         (stays && left.angle <= WORTH * self.rotation_residual).then(|| left.by(remedy))
     }
 
-    /// Whether a remedy brings the tip to its target at full influence.
+    /// True if a remedy brings the tip to its target at full influence.
     pub fn reaches(&self, remedy: &Remedy) -> bool {
         self.left_by(self.full, remedy).is_some_and(|left| self.is_reached(left.distance))
     }

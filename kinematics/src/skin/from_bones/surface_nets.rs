@@ -196,7 +196,7 @@ impl Patches {
         Some(self.patch[edge]).filter(|patch| *patch != NONE).map(usize::from)
     }
 
-    /// Whether the face is crossed by two segments that belong to one patch.
+    /// True if the face is crossed by two segments that belong to one patch.
     pub fn has_twice(&self, face: usize) -> bool {
         let corners = FACES[face];
         let of = |index: usize| self.of_edge(edge(corners[index], corners[(index + 1) % 4]));
