@@ -76,13 +76,13 @@ impl Track {
     const SAMPLED_WORK: u64 = ChainSolver::POSE_WORK;
 
     /// Poses the document at `count` times or, where that is too much work, at every second, fourth …
-    /// of them. Returns the results of `take` in the order of the times, each with its index.
+    /// of them. Returns the results of `take` in the order of the times.
     pub fn sample<T>(
         &self,
         count: usize,
         time: impl Fn(usize) -> f64,
         take: impl Fn(&Posed) -> T,
-    ) -> Vec<(usize, T)> {
+    ) -> Vec<T> {
         coarse_to_fine(count, Self::SAMPLED_WORK, |index| {
             let posed = self.at(time(index));
             (take(&posed), posed.work())
@@ -92,11 +92,7 @@ impl Track {
 
 /// Values of `take` at all indices below `count`, or at multiples of the least power of two for which
 /// no value is taken after the work, which `take` returns, has exceeded `most_work`.
-fn coarse_to_fine<T>(
-    count: usize,
-    most_work: u64,
-    take: impl Fn(usize) -> (T, u64),
-) -> Vec<(usize, T)> {
+fn coarse_to_fine<T>(count: usize, most_work: u64, take: impl Fn(usize) -> (T, u64)) -> Vec<T> {
     let mut taken: BTreeMap<usize, T> = BTreeMap::new();
     let (mut stride, mut work) = (count.next_power_of_two(), 0);
     loop {
@@ -106,14 +102,14 @@ fn coarse_to_fine<T>(
             }
             if work > most_work {
                 taken.retain(|index, _| index % (2 * stride) == 0);
-                return taken.into_iter().collect();
+                return taken.into_values().collect();
             }
             let (value, of_value) = take(index);
             taken.insert(index, value);
             work += of_value;
         }
         if stride == 1 {
-            return taken.into_iter().collect();
+            return taken.into_values().collect();
         }
         stride /= 2;
     }
@@ -244,10 +240,7 @@ mod tests {
 
     #[test]
     fn fewer_poses_are_sampled_where_each_is_much_work() {
-        let indices = |count, work| -> Vec<usize> {
-            let sampled = coarse_to_fine(count, 1000, |index| (index, work));
-            sampled.into_iter().map(|(index, _)| index).collect()
-        };
+        let indices = |count, work| coarse_to_fine(count, 1000, |index| (index, work));
         assert_eq!(indices(20, 50), (0..20).collect::<Vec<_>>());
         assert_eq!(indices(20, 51), (0..20).collect::<Vec<_>>(), "the last pose exceeds it");
         assert_eq!(indices(20, 100), (0..20).step_by(2).collect::<Vec<_>>());

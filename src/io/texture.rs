@@ -6,8 +6,7 @@ use image::{ImageReader, Limits};
 
 use super::error::Remark;
 use crate::document::Document;
-use crate::kinematics::Shared;
-use crate::rig::{SkinSource, SkinTexture};
+use crate::rig::{SkinPart, SkinSource, SkinTexture};
 
 /// Reads the images of one skin, as long as they have no more pixels in all than a skin may have.
 pub struct TextureReader {
@@ -61,21 +60,16 @@ pub fn texture_pixels(texture: &SkinTexture) -> Result<&[[u8; 4]], &str> {
     })
 }
 
-/// Decodes the textures of the document's skin, before they are drawn. Returns a remark for each that cannot
-/// be decoded and is drawn as white.
+/// Decodes the textures of the document's skin, before they are drawn. Returns a remark for each that
+/// cannot be decoded and is drawn as white.
 pub fn undrawn_textures(document: &Document) -> Vec<Remark> {
     let Some(SkinSource::Mesh(skin)) = document.skeleton_rig.skin.as_ref().map(|skin| &skin.source)
     else {
         return Vec::new();
     };
     let parts = skin.mesh().map_or(&[][..], |mesh| &mesh.parts);
-    let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();
-    for texture in parts.iter().filter_map(|part| part.texture.as_ref()) {
-        if !textures.iter().any(|known| known.is_same(texture)) {
-            textures.push(texture);
-        }
-    }
-    let broken = textures.into_iter().filter_map(|texture| texture_pixels(texture).err());
+    let textures = SkinPart::textures(parts).into_iter();
+    let broken = textures.filter_map(|texture| texture_pixels(texture).err());
     broken.map(|reason| Remark::new(format!("a texture is drawn as white: {reason}"))).collect()
 }
 

@@ -30,8 +30,8 @@ impl SkinAreas {
         let time =
             |index: usize| timeline.start + timeline.duration() * index as f64 / (count - 1) as f64;
         let pose = |posed: &Posed| (posed.time(), mesh.pose(posed.skeleton()));
-        let sampled = track.sample(count, time, pose).into_iter().map(|(_, posed)| posed);
-        let (times, poses): (Vec<f64>, Vec<SkinPose>) = sampled.unzip();
+        let (times, poses): (Vec<f64>, Vec<SkinPose>) =
+            track.sample(count, time, pose).into_iter().unzip();
         let joint = joint.or_else(|| most_rolled(&poses))?;
         let section = section(mesh, document.skeleton(), joint)?;
         let plain = section.area(|vertex| mesh.mesh().positions[vertex as usize]);

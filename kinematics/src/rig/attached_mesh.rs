@@ -87,6 +87,19 @@ pub struct SkinPart {
     pub texture: Option<Shared<SkinTexture>>,
 }
 
+impl SkinPart {
+    /// The textures of parts, each once, in the order of the parts that have them first.
+    pub fn textures(parts: &[Self]) -> Vec<&Shared<SkinTexture>> {
+        let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();
+        for texture in parts.iter().filter_map(|part| part.texture.as_ref()) {
+            if !textures.iter().any(|known| known.is_same(texture)) {
+                textures.push(texture);
+            }
+        }
+        textures
+    }
+}
+
 /// An image on a skin, kept as the file that holds it. Most of what a program does with a skin needs no
 /// pixels, and a small file can hold many of them, so they are decoded when they are first needed.
 #[derive(Clone)]

@@ -25,19 +25,19 @@ pub(in crate::session) fn write_onion_skins(
     posed: &Posed,
     skins: &mut Vec<OnionSkin>,
 ) {
-    /// Number of onion skins on each side of `time`, and number of frames from one skin to the
-    /// next.
-    const SKINS: (isize, f64) = (3, 5.0);
+    /// Number of onion skins on each side of the playhead.
+    const MOST: isize = 3;
+    /// Number of frames from one skin to the next.
+    const FRAMES: f64 = 5.0;
+    /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
+    const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
     let document = track.document();
     if !posed.document().display.shows(Overlay::OnionSkins) || !document.is_animated() {
         return skins.clear();
     }
-    /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
-    const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
-    let (all, frames) = SKINS;
-    let count = if posed.evaluated_skeleton().work() > MOST_WORK { 1 } else { all };
+    let count = if posed.evaluated_skeleton().work() > MOST_WORK { 1 } else { MOST };
     let timeline = document.timeline;
-    let step = frames / timeline.frame_rate;
+    let step = FRAMES / timeline.frame_rate;
     let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
     let all = (-count..=count).filter(|place| *place != 0);
     let times = all.map(|place| (place, posed.time() + place as f64 * step));

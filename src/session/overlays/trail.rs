@@ -9,7 +9,8 @@ pub(in crate::session) fn has_trail(document: &Document, shown: &Document) -> bo
 }
 
 /// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
-/// frames for a long timeline, a large skeleton or poses that take much work. Empty for a skeleton without a `joint`.
+/// frames for a long timeline, a large skeleton or poses that take much work. Empty for a skeleton
+/// without a `joint`.
 pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Maximum of the number of joints times the number of points.
@@ -28,6 +29,5 @@ pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) ->
         RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
     };
     let time = |index| timeline.time(index * stride);
-    let points = track.sample(frames.div_ceil(stride), time, point);
-    points.into_iter().filter_map(|(_, point)| point).collect()
+    track.sample(frames.div_ceil(stride), time, point).into_iter().flatten().collect()
 }

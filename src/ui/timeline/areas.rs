@@ -1,6 +1,6 @@
 //! The areas of the timeline, and text in them.
 
-use egui::{Color32, FontId, Rect, Response, TextStyle, Ui, UiBuilder, pos2, vec2};
+use egui::{Color32, FontId, Rect, Response, StrokeKind, TextStyle, Ui, UiBuilder, pos2, vec2};
 
 /// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;
@@ -41,6 +41,20 @@ impl TimelineAreas {
             ruler: Rect::from_min_max(pos2(split, whole.top()), pos2(right, top)),
             keys: Rect::from_min_max(pos2(split, top), pos2(right, whole.bottom())),
         }
+    }
+}
+
+/// Paints a row that can be clicked as selected or under the mouse, and its keyboard focus.
+pub(super) fn paint_state(ui: &Ui, rect: Rect, is_selected: bool, row: &Response) {
+    let visuals = ui.visuals();
+    let inside = rect.shrink2(vec2(2.0, 1.0));
+    if is_selected {
+        ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
+    } else if row.hovered() {
+        ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
+    }
+    if row.has_focus() {
+        ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, StrokeKind::Inside);
     }
 }
 

@@ -5,7 +5,9 @@ use egui::{Id, Key, Pos2, Ui};
 use super::time_scale::{TimeScale, span};
 use super::value_scale::{ValueKind, ValueScales};
 use crate::document::Timeline;
-use crate::session::{Actions, Key as KeyOf, PlaybackAction, Session};
+use crate::session::{
+    Actions, Key as KeyOf, PlaybackAction, SelectAction, Session, TransactionAction,
+};
 
 #[derive(Clone, Debug)]
 pub(in crate::ui) enum TimelineDrag {
@@ -94,6 +96,25 @@ pub(in crate::ui) fn clear(ui: &Ui) {
 /// True if a drag ends: a mouse button was released in this frame, or none is held.
 pub(in crate::ui) fn is_released(ui: &Ui) -> bool {
     ui.input(|input| !input.pointer.any_down() || input.pointer.any_released())
+}
+
+/// Ends a drag of keys once the mouse button is released: commits it if the keys have `moved`, else
+/// selects the `clicked` keys.
+pub(in crate::ui) fn release_keys(
+    ui: &Ui,
+    moved: bool,
+    clicked: Vec<KeyOf>,
+    actions: &mut Actions,
+) {
+    if !is_released(ui) {
+        return;
+    }
+    if moved {
+        actions.push(TransactionAction::Commit);
+    } else {
+        actions.push(SelectAction::Keys(clicked));
+    }
+    clear(ui);
 }
 
 /// Moves the playhead with the mouse while it is dragged; Esc restores the time before the drag.

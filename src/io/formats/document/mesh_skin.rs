@@ -159,12 +159,7 @@ impl FileMeshFields {
         let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
         let coordinates = &triangles.texture_coordinates;
         let weights = || mesh.weights().iter();
-        let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();
-        for texture in parts.iter().filter_map(|part| part.texture.as_ref()) {
-            if !textures.iter().any(|known| known.is_same(texture)) {
-                textures.push(texture);
-            }
-        }
+        let textures = SkinPart::textures(parts);
         Self {
             parents: wholes(parents),
             inverse_binds: Bytes::of_floats(

@@ -124,17 +124,8 @@ impl DopeSheet<'_> {
         response.widget_info(|| {
             WidgetInfo::selected(Role::Button, true, selected, format!("Channel {shown}"))
         });
+        areas::paint_state(ui, rect, selected, &response);
         let visuals = ui.visuals();
-        let inside = rect.shrink2(vec2(2.0, 1.0));
-        if selected {
-            ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
-        } else if response.hovered() {
-            ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
-        }
-        if response.has_focus() {
-            let kind = egui::StrokeKind::Inside;
-            ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, kind);
-        }
         let is_of_rig = channel.rig().is_none_or(|rig| rig == session.rig());
         let colour = match (selected || response.hovered(), is_of_rig) {
             (true, _) => visuals.strong_text_color(),

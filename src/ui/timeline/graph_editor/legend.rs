@@ -133,16 +133,6 @@ fn item(
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let response = ui.interact(rect, Id::unique(id), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, said.to_owned()));
-    let visuals = ui.visuals();
-    let inside = rect.shrink2(vec2(2.0, 1.0));
-    if is_selected {
-        ui.painter().rect_filled(inside, 4.0, visuals.selection.bg_fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(inside, 4.0, visuals.widgets.hovered.weak_bg_fill);
-    }
-    if response.has_focus() {
-        let kind = egui::StrokeKind::Inside;
-        ui.painter().rect_stroke(inside, 4.0, visuals.selection.stroke, kind);
-    }
+    areas::paint_state(ui, rect, is_selected, &response);
     (rect, response)
 }

@@ -277,14 +277,7 @@ fn move_keys(
         actions.push(KeysEdit::MoveKeys { keys: drag.keys.clone(), by, raise });
         actions.push(ShellAction::Report(said));
     }
-    if drag::is_released(ui) {
-        if drag.moved {
-            actions.push(TransactionAction::Commit);
-        } else {
-            actions.push(SelectAction::Keys(drag.clicked));
-        }
-        drag::clear(ui);
-    }
+    drag::release_keys(ui, drag.moved, drag.clicked, actions);
 }
 
 fn turn_tangent(
