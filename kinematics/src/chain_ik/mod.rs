@@ -42,26 +42,21 @@
 mod align;
 mod configuration;
 mod diagnose;
-mod error;
 mod inside;
 mod jacobian;
 mod method;
 mod options;
 mod perturb;
 mod problem;
-mod report;
 mod solver;
 mod stall;
-mod target;
 
 pub use diagnose::{diagnose, diagnose_targets};
-pub use error::{OptionField, SolveError};
 pub use inside::{
     AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
 };
 pub use jacobian::jacobian;
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
-pub use options::{Root, SolverOptions};
-pub use report::{Report, Status};
-pub use solver::{ChainSolver, solve};
-pub use target::TipTarget;
+pub use options::{OptionField, Root, SolveError, SolverOptions};
+pub use problem::TipTarget;
+pub use solver::{ChainSolver, Report, Status, solve};

@@ -1,9 +1,11 @@
+use core::fmt;
+
 use super::configuration::Configuration;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
-use super::method::{MethodInputs, MethodState};
+use super::method::{Method, MethodInputs, MethodState};
 use super::problem::{self, Problem};
 use super::stall::{Escape, StallDetector};
-use super::{Report, SolveError, SolverOptions, Status, TipTarget, perturb};
+use super::{SolveError, SolverOptions, TipTarget, perturb};
 use crate::saturate::saturate;
 use crate::skeleton::Skeleton;
 
@@ -362,6 +364,63 @@ impl ChainSolver {
                 return true;
             }
         }
+    }
+}
+
+/// Progress of a solver run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Report {
+    /// The method.
+    pub method: Method,
+    /// Number of iterations so far.
+    pub iterations: u32,
+    /// Largest distance from a tip to its target, in world units.
+    pub error: f32,
+    /// Whether and why the run has ended.
+    pub status: Status,
+}
+
+impl Report {
+    /// True if the error is within the tolerance.
+    pub fn converged(&self) -> bool {
+        self.status == Status::Converged
+    }
+}
+
+/// State of a solver run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Status {
+    /// The error is above the tolerance, and iterations are left.
+    Iterating,
+    /// The error is within the tolerance.
+    Converged,
+    /// Further iterations would change nothing: targets are out of reach, or limits prevent
+    /// reaching them.
+    Stalled,
+    /// The maximum number of iterations has been made.
+    OutOfIterations,
+    /// The work that [`ChainSolver::bounded`] allows has been done, and
+    /// iterations are left.
+    Bounded,
+}
+
+/// Writes the state in words: "iterating", "converged", "stalled", "out of iterations" or
+/// "stopped at the bound on work".
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Iterating => "iterating",
+            Self::Converged => "converged",
+            Self::Stalled => "stalled",
+            Self::OutOfIterations => "out of iterations",
+            Self::Bounded => "stopped at the bound on work",
+        })
     }
 }
 

@@ -1,6 +1,12 @@
-use glam::{Quat, Vec3A};
+use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
 
+use super::{
+    AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
+};
 use crate::chain_ik::configuration::{Configuration, Coordinates};
+use crate::chain_ik::problem::Problem;
+use crate::saturate::{saturate, saturate_vector};
+use crate::skeleton::{RotationAxis, Skeleton};
 
 /// Keeps what a method computes in an iteration, in the problem's units; nothing if it is off.
 pub(in crate::chain_ik) struct Recorder(Option<Vec<Record>>);
@@ -92,4 +98,222 @@ fn push(records: &mut Vec<Record>, record: Record) {
         records.pop();
     }
     records.push(record);
+}
+
+/// The sub-steps of an iteration. `pose` gives the skeleton in a configuration.
+pub(in crate::chain_ik) fn sub_steps(
+    records: Vec<Record>,
+    problem: &Problem,
+    transform: Affine3A,
+    pose: impl Fn(&Configuration) -> Skeleton,
+) -> Vec<SubStep> {
+    let world = World { problem, transform };
+    let mut before: Option<Before> = None;
+    let mut steps = Vec::with_capacity(records.len());
+    for Record { event, config } in records {
+        let kind = world.kind(&event, &config, before.as_ref());
+        if let Event::Gradient { descent, .. } = event {
+            before = Some(Before { config: config.clone(), descent });
+        }
+        steps.push(SubStep { kind, pose: pose(&config), error: saturate(config.error(problem)) });
+    }
+    steps
+}
+
+/// The configuration before a step, and the negative gradient there.
+struct Before {
+    config: Configuration,
+    descent: Coordinates,
+}
+
+/// Conversion from the problem's units to the world.
+struct World<'a> {
+    problem: &'a Problem,
+    transform: Affine3A,
+}
+
+impl World<'_> {
+    fn kind(&self, event: &Event, config: &Configuration, before: Option<&Before>) -> SubStepKind {
+        let joint = |link: usize| self.problem.links[link].joint;
+        match event {
+            Event::Bend => SubStepKind::Bend,
+            Event::Gradient { damping, .. } => {
+                SubStepKind::Gradient(self.gradient(config, *damping))
+            }
+            Event::Step { by, factor, tries, damping } => match before {
+                Some(before) => {
+                    let length = damping.is_none().then(|| self.step_length(*factor));
+                    let damping = damping.map(|damping| self.length(damping));
+                    let predicted = self.predicted(before, by, *factor);
+                    SubStepKind::Step(StepTaken {
+                        changes: self.changes(before, config),
+                        tips: self.tip_moves(&before.config, &predicted, config),
+                        length,
+                        damping,
+                        refused: *tries,
+                    })
+                }
+                None => SubStepKind::Restart,
+            },
+            Event::Turn { link, rotation, pairs } => {
+                SubStepKind::Turn(self.turn(config, *link, *rotation, pairs))
+            }
+            Event::MoveRoots => SubStepKind::MoveRoots,
+            Event::Backward(chain) => SubStepKind::Backward(self.chain(chain)),
+            Event::Forward(chain) => SubStepKind::Forward(self.chain(chain)),
+            Event::Relaxed(chain) => SubStepKind::Relaxed(self.chain(chain)),
+            Event::LaidOut(chain) => SubStepKind::LaidOut(self.chain(chain)),
+            Event::Undo => SubStepKind::Undo,
+            Event::PlaceElbow(link) => SubStepKind::PlaceElbow(joint(*link)),
+            Event::Aim(link) => SubStepKind::Aim(joint(*link)),
+            Event::Restart => SubStepKind::Restart,
+        }
+    }
+
+    fn gradient(&self, config: &Configuration, damping: Option<f32>) -> Gradient {
+        let columns = self.columns(config);
+        let tips = self.problem.effectors.iter().zip(&config.tips);
+        let ellipsoids = tips.map(|(effector, tip)| {
+            let own = columns.iter().filter(|column| column.tip == effector.joint);
+            let centre = self.point(effector.tree, *tip);
+            Ellipsoid::of(effector.joint, centre, own.map(|column| column.by))
+        });
+        let ellipsoids = ellipsoids.collect();
+        Gradient { columns, ellipsoids, damping: damping.map(|damping| self.length(damping)) }
+    }
+
+    fn columns(&self, config: &Configuration) -> Vec<Column> {
+        let mut columns = Vec::new();
+        for (index, link) in self.problem.links.iter().enumerate() {
+            for effector in self.problem.below(link) {
+                let tip = config.tips[*effector];
+                let effector = &self.problem.effectors[*effector];
+                let arm = tip - config.bases[index];
+                for axis in RotationAxis::ALL {
+                    columns.push(Column {
+                        joint: link.joint,
+                        axis,
+                        tip: effector.joint,
+                        at: self.point(effector.tree, tip),
+                        by: self.vector(config.axes[index].col(axis.index()).cross(arm)),
+                    });
+                }
+            }
+        }
+        columns
+    }
+
+    /// The tips that the Jacobian predicts for a step, before limits.
+    fn predicted(&self, before: &Before, by: &Coordinates, factor: f32) -> Vec<Vec3A> {
+        let config = &before.config;
+        let mut tips = config.tips.clone();
+        for (index, link) in self.problem.links.iter().enumerate() {
+            let turn = config.axes[index] * Vec3A::from(by.angles[index] * factor);
+            for effector in self.problem.below(link) {
+                tips[*effector] += turn.cross(config.tips[*effector] - config.bases[index]);
+            }
+        }
+        if self.problem.free_roots {
+            let lever = factor * self.problem.length * self.problem.length;
+            for (effector, tip) in self.problem.effectors.iter().zip(&mut tips) {
+                *tip += lever * by.shifts[effector.tree];
+            }
+        }
+        tips
+    }
+
+    fn changes(&self, before: &Before, after: &Configuration) -> Vec<AngleChange> {
+        let links = self.problem.links.iter().enumerate();
+        let changes = links.flat_map(|(index, link)| {
+            RotationAxis::ALL.into_iter().map(move |axis| {
+                let nth = axis.index();
+                let is_at_limit = link.limits.is_at_end(after.angles[index], axis);
+                let gradient = -before.descent.angles[index][nth];
+                let by = after.angles[index][nth] - before.config.angles[index][nth];
+                let gradient = (f64::from(gradient) * self.scale().powi(2)) as f32;
+                AngleChange { joint: link.joint, axis, gradient, by, is_at_limit }
+            })
+        });
+        changes.collect()
+    }
+
+    fn tip_moves(
+        &self,
+        before: &Configuration,
+        predicted: &[Vec3A],
+        after: &Configuration,
+    ) -> Vec<TipMove> {
+        let effectors = self.problem.effectors.iter().enumerate();
+        let moves = effectors.map(|(index, effector)| TipMove {
+            joint: effector.joint,
+            from: self.point(effector.tree, before.tips[index]),
+            predicted: self.point(effector.tree, predicted[index]),
+            to: self.point(effector.tree, after.tips[index]),
+        });
+        moves.collect()
+    }
+
+    fn turn(
+        &self,
+        config: &Configuration,
+        index: usize,
+        rotation: Quat,
+        pairs: &[[Vec3A; 2]],
+    ) -> Turn {
+        let link = &self.problem.links[index];
+        let base = config.bases[index];
+        let (axis, angle) = rotation.to_axis_angle();
+        let axis = if angle == 0.0 { Vec3::ZERO } else { axis };
+        let (axis, angle) = if angle > core::f32::consts::PI {
+            (-axis, core::f32::consts::TAU - angle)
+        } else {
+            (axis, angle)
+        };
+        let side = self.transform.matrix3.determinant().signum();
+        let tips = pairs.iter().map(|[tip, target]| {
+            let after = base + rotation * (*tip - base);
+            [*tip, *target, after].map(|point| self.point(link.tree, point))
+        });
+        Turn {
+            joint: link.joint,
+            base: self.point(link.tree, base),
+            // An axis of a turn changes its sign in a mirror.
+            axis: side * self.vector(axis.into()).normalize_or_zero(),
+            angle,
+            tips: tips.collect(),
+        }
+    }
+
+    fn chain(&self, segments: &[LinkSegment]) -> Vec<[Vec3; 2]> {
+        let segment = |segment: &LinkSegment| {
+            let tree = self.problem.links[segment.link].tree;
+            segment.ends.map(|end| self.point(tree, end))
+        };
+        segments.iter().map(segment).collect()
+    }
+
+    /// A point of a tree in the world.
+    fn point(&self, tree: usize, point: Vec3A) -> Vec3 {
+        let in_skeleton = self.problem.trees[tree].origin + point.as_dvec3() / self.problem.unit();
+        saturate_vector(self.transform.as_daffine3().transform_point3(in_skeleton))
+    }
+
+    fn vector(&self, vector: Vec3A) -> Vec3 {
+        let in_skeleton: DVec3 = vector.as_dvec3() / self.problem.unit();
+        saturate_vector(self.transform.as_daffine3().transform_vector3(in_skeleton))
+    }
+
+    fn length(&self, length: f32) -> f32 {
+        saturate(f64::from(length) * self.scale())
+    }
+
+    /// A step length τ, which has the unit of 1/length².
+    fn step_length(&self, step: f32) -> f32 {
+        saturate(f64::from(step) / self.scale().powi(2))
+    }
+
+    /// Factor from the problem's units to the world's, by the transform's mean scale.
+    fn scale(&self) -> f64 {
+        1.0 / self.problem.length_from_world(1.0)
+    }
 }

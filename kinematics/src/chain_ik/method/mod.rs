@@ -1,6 +1,5 @@
 //! Methods of solvers: one row of [`METHODS`] and one file for each.
 
-mod barzilai_borwein;
 mod ccd;
 mod damped_least_squares;
 mod fabrik;
@@ -14,12 +13,11 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use self::barzilai_borwein::BarzilaiBorwein;
 use self::ccd::Ccd;
 use self::damped_least_squares::DampedLeastSquares;
 use self::fabrik::Fabrik;
 use self::relaxation::Relaxation;
-use self::transpose::Transpose;
+use self::transpose::{Transpose, TransposeFixed};
 pub use self::two_bone::TwoBoneRefusal;
 use self::two_bone::TwoBones;
 pub(super) use self::two_bone::TwoBonesRefused;
@@ -107,7 +105,7 @@ const METHODS: [MethodRow; 7] = [
         // Up to about twice the distance; the direction is all that counts of a target out of reach.
         stable_distance: 1.25,
         work: visits,
-        prepare: |it| Ok(MethodState::Transpose(Transpose::new(it.problem, it.step))),
+        prepare: |it| Ok(MethodState::TransposeFixed(TransposeFixed::new(it.problem, it.step))),
     },
     MethodRow {
         method: Method::Transpose,
@@ -123,7 +121,7 @@ const METHODS: [MethodRow; 7] = [
         uses_orientations: false,
         stable_distance: f64::INFINITY,
         work: visits,
-        prepare: |it| Ok(MethodState::BarzilaiBorwein(BarzilaiBorwein::new(it.problem))),
+        prepare: |it| Ok(MethodState::Transpose(Transpose::new(it.problem))),
     },
     MethodRow {
         method: Method::DampedLeastSquares,
@@ -335,8 +333,8 @@ pub struct ParseMethodError(String);
 /// A method with the state that it keeps between iterations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MethodState {
+    TransposeFixed(TransposeFixed),
     Transpose(Transpose),
-    BarzilaiBorwein(BarzilaiBorwein),
     DampedLeastSquares(DampedLeastSquares),
     Ccd(Ccd),
     Fabrik(Fabrik),
@@ -357,8 +355,8 @@ impl MethodState {
         recorder: &mut Recorder,
     ) -> bool {
         match self {
-            Self::Transpose(transpose) => transpose.iterate(problem, config, recorder),
-            Self::BarzilaiBorwein(descent) => descent.iterate(problem, config, recorder),
+            Self::TransposeFixed(transpose) => transpose.iterate(problem, config, recorder),
+            Self::Transpose(descent) => descent.iterate(problem, config, recorder),
             Self::DampedLeastSquares(damped) => damped.iterate(problem, config, recorder),
             Self::Ccd(ccd) => ccd.iterate(problem, config, recorder),
             Self::Fabrik(fabrik) => fabrik.iterate(problem, config, recorder),
@@ -372,8 +370,8 @@ impl MethodState {
         match self {
             Self::Fabrik(fabrik) => fabrik.points().update_orientations(config),
             Self::Relaxation(relaxation) => relaxation.points().update_orientations(config),
-            Self::Transpose(_)
-            | Self::BarzilaiBorwein(_)
+            Self::TransposeFixed(_)
+            | Self::Transpose(_)
             | Self::DampedLeastSquares(_)
             | Self::Ccd(_)
             | Self::TwoBone(_) => {}
@@ -384,10 +382,10 @@ impl MethodState {
     /// and points. Returns whether it keeps anything.
     pub fn restart(&mut self) -> bool {
         match self {
-            Self::BarzilaiBorwein(descent) => descent.restart(),
+            Self::Transpose(descent) => descent.restart(),
             Self::DampedLeastSquares(damped) => damped.restart(),
             Self::Relaxation(relaxation) => relaxation.restart(),
-            Self::Transpose(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
+            Self::TransposeFixed(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
         }
     }
 }

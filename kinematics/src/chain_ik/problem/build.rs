@@ -1,6 +1,6 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3A};
 
-use super::data::{EndEffector, KinematicTree, Link, Problem};
+use super::{EndEffector, KinematicTree, Link, Problem};
 use crate::chain_ik::{Method, Root, SolveError, SolverOptions, TipTarget};
 use crate::skeleton::{Joint, JointId, Skeleton};
 

@@ -14,8 +14,177 @@
 //! solve like others.
 
 mod build;
-mod data;
 
-pub(super) use build::build;
-pub(super) use build::check_target;
-pub(super) use data::{EndEffector, Link, Problem};
+use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
+
+use crate::skeleton::{JointId, JointLimits};
+
+pub(super) use build::{build, check_target};
+
+/// A target for the tip of a joint's bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TipTarget {
+    /// The joint whose tip is to reach the target.
+    pub joint: JointId,
+    /// Position of the target in the world.
+    pub point: Vec3,
+    /// Weight relative to other targets, above 0.
+    pub weight: f32,
+}
+
+/// A joint that rotates, with everything that is rigidly attached to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    pub joint: JointId,
+    /// Index of the parent link; `None` if all joints above are locked.
+    pub parent: Option<usize>,
+    pub tree: usize,
+    /// Position of the link's joint in the parent link's space; without a parent link, relative to
+    /// the tree's origin.
+    pub pivot: Vec3A,
+    pub mount: Mat3A,
+    pub limits: JointLimits,
+    /// End effectors at the link and below, as a range of [`Problem::below`].
+    pub below: (usize, usize),
+    /// Euler angles before the run, in radians.
+    pub start: Vec3,
+}
+
+/// A tip with its target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EndEffector {
+    pub joint: JointId,
+    /// Index of the link that moves the tip; `None` if the joint and all joints above are locked.
+    pub link: Option<usize>,
+    pub tree: usize,
+    /// Position of the tip in the link's space; without a link, relative to the tree's origin.
+    pub tip: Vec3A,
+    /// Position to which solvers move the tip, in problem space: `requested`, or, if that is
+    /// farther than `max_distance` from the tree's origin, the point at `max_distance` in the same
+    /// direction.
+    pub target: Vec3A,
+    /// Position of the caller's target, in problem space.
+    pub requested: DVec3,
+    /// Weight as a fraction of the greatest weight, at most 1.
+    pub weight: f32,
+    /// Maximum distance of `target` from the tree's origin, in the problem's units.
+    pub max_distance: f64,
+}
+
+/// A root and its descendants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KinematicTree {
+    pub root: JointId,
+    /// Origin of the tree's points, in skeleton space: the root's offset before the run, until
+    /// [`Problem::approach`] moves the origin.
+    pub origin: DVec3,
+}
+
+/// A skeleton with targets, in the form on which solvers work: see the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// All links, parents before children.
+    pub links: Vec<Link>,
+    pub effectors: Vec<EndEffector>,
+    pub trees: Vec<KinematicTree>,
+    /// Indices of the end effectors at each link and below, one list after the other.
+    pub below: Vec<usize>,
+    pub free_roots: bool,
+    /// Length of the longest path from a root to a tip, in the problem's units.
+    pub length: f32,
+    /// Σ w r² in the bind pose, the reciprocal of the transpose method's step τ.
+    pub inertia: f32,
+    to_skeleton: DAffine3,
+    to_world: DMat3,
+    /// Factor from skeleton units to the problem's units.
+    unit: f64,
+}
+
+impl Problem {
+    /// Indices of the end effectors at a link and below.
+    pub fn below(&self, link: &Link) -> &[usize] {
+        &self.below[link.below.0..link.below.1]
+    }
+
+    /// Length of the longest path from a root to a tip in world units, by the transform's mean
+    /// scale.
+    pub fn world_length(&self) -> f64 {
+        f64::from(self.length) / self.unit * self.scale()
+    }
+
+    /// Factor from skeleton units to the problem's units.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Converts a length from the world's units to the problem's, by the transform's mean scale.
+    pub fn length_from_world(&self, length: f64) -> f64 {
+        length / self.scale() * self.unit
+    }
+
+    fn scale(&self) -> f64 {
+        self.to_world.determinant().abs().cbrt()
+    }
+
+    /// Distance from a tip to its requested target, in world units.
+    pub fn error(&self, effector: &EndEffector, tip: Vec3A) -> f64 {
+        let residual = (tip.as_dvec3() - effector.requested) / self.unit;
+        (self.to_world * residual).length()
+    }
+
+    pub fn set_targets(&mut self, targets: &[TipTarget]) {
+        for (effector, target) in self.effectors.iter_mut().zip(targets) {
+            let point = self.to_skeleton.transform_point3(target.point.as_dvec3());
+            effector.requested = (point - self.trees[effector.tree].origin) * self.unit;
+            effector.target = effector.requested.clamp_length_max(effector.max_distance).as_vec3a();
+        }
+    }
+
+    /// Sets the targets. If a tree is farther than two chain lengths from its targets, moves its
+    /// origin to one chain length from them, within the range of f32, because coordinates are exact
+    /// near the origin only.
+    pub fn approach(&mut self, targets: &[TipTarget], tips: &[Vec3A]) {
+        for tree in 0..self.trees.len() {
+            let residual = self.mean_residual(tree, tips);
+            let most = f64::from(self.length);
+            let distance = residual.length();
+            if distance > 2.0 * most {
+                let by = residual * ((distance - most) / distance / self.unit);
+                let origin = &mut self.trees[tree].origin;
+                *origin = clamp_to_f32(*origin + by);
+            }
+        }
+        self.set_targets(targets);
+    }
+
+    /// Weighted mean vector from the tips of a tree to their requested targets, in the problem's
+    /// units.
+    fn mean_residual(&self, tree: usize, tips: &[Vec3A]) -> DVec3 {
+        let of_tree = self.effectors.iter().zip(tips).filter(|(effector, _)| effector.tree == tree);
+        let (sum, weight) = of_tree.fold((DVec3::ZERO, 0.0), |(sum, all), (effector, tip)| {
+            let weight = f64::from(effector.weight);
+            (sum + (effector.requested - tip.as_dvec3()) * weight, all + weight)
+        });
+        sum / weight
+    }
+
+    /// True if the offset of a tree's root, shifted by `shift`, is finite in f32.
+    pub fn can_shift(&self, tree: usize, shift: Vec3A) -> bool {
+        (self.trees[tree].origin + shift.as_dvec3() / self.unit).as_vec3().is_finite()
+    }
+
+    /// Offset of a tree's root, shifted by `shift`, in skeleton space.
+    pub fn root_offset(&self, tree: usize, shift: Vec3A) -> Vec3 {
+        let offset = self.trees[tree].origin + shift.as_dvec3() / self.unit;
+        clamp_to_f32(offset).as_vec3()
+    }
+
+    fn scaled(&self, v: Vec3) -> Vec3A {
+        (v.as_dvec3() * self.unit).as_vec3a()
+    }
+}
+
+fn clamp_to_f32(point: DVec3) -> DVec3 {
+    point.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3())
+}
