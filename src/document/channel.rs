@@ -1,15 +1,12 @@
+use core::fmt;
 use core::mem::discriminant;
+use core::str::FromStr;
 
 use glam::Vec3;
+use thiserror::Error;
 
-use super::arm::Arm;
 use super::display::Overlay;
-use super::hand_orientation::HandOrientation;
-use super::rig_kind::RigKind;
-use crate::kinematics::limb_ik::ElbowReference;
-use crate::kinematics::skeleton::{Joint, JointId, JointRemap, Skeleton};
-use crate::kinematics::twist::TwistReferenceKind;
-use crate::rig::{LimbSettings, SkeletonRig, Target};
+use crate::kinematics::skeleton::{JointId, JointRemap};
 
 /// A value of a document that keys can animate.
 ///
@@ -97,209 +94,9 @@ impl Quantity {
     }
 }
 
-/// A row of the table of channels: all that is particular to one channel.
-struct Row {
-    heading: Heading,
-    access: Access,
-}
-
-/// The names of a channel and the kind of its values.
-struct Heading {
-    /// Name in files and on the command line, without the joint or overlay.
-    name: &'static str,
-    /// Name on screen, beside that of the joint or overlay.
-    label: &'static str,
-    quantity: Quantity,
-}
-
-/// The part of a document that holds a channel's value, and the functions that read and write it.
-pub(super) enum Access {
-    Arm {
-        get: fn(&Arm) -> Vec3,
-        set: fn(&mut Arm, Vec3),
-        /// True if the channel affects the pose with the arm's present settings.
-        shapes: fn(&Arm) -> bool,
-    },
-    Skeleton {
-        get: fn(&Skeleton) -> Vec3,
-        set: fn(&mut SkeletonRig, Vec3),
-    },
-    Joint {
-        joint: JointId,
-        get: fn(&Joint) -> Vec3,
-        set: fn(&mut SkeletonRig, JointId, Vec3),
-    },
-    Target {
-        joint: JointId,
-        /// `None` if the target has no such setting.
-        get: fn(&Target) -> Option<Vec3>,
-        set: fn(&mut Target, Vec3),
-        /// True if the channel affects the pose with this value.
-        shapes: fn(Vec3) -> bool,
-    },
-    Overlay(Overlay),
-}
-
-fn named(name: &'static str, label: &'static str, quantity: Quantity) -> Heading {
-    Heading { name, label, quantity }
-}
-
-impl Heading {
-    fn of_arm(
-        self,
-        get: fn(&Arm) -> Vec3,
-        set: fn(&mut Arm, Vec3),
-        shapes: fn(&Arm) -> bool,
-    ) -> Row {
-        Row { heading: self, access: Access::Arm { get, set, shapes } }
-    }
-
-    fn of_skeleton(self, get: fn(&Skeleton) -> Vec3, set: fn(&mut SkeletonRig, Vec3)) -> Row {
-        Row { heading: self, access: Access::Skeleton { get, set } }
-    }
-
-    fn of_joint(
-        self,
-        joint: JointId,
-        get: fn(&Joint) -> Vec3,
-        set: fn(&mut SkeletonRig, JointId, Vec3),
-    ) -> Row {
-        Row { heading: self, access: Access::Joint { joint, get, set } }
-    }
-
-    fn of_target(
-        self,
-        joint: JointId,
-        get: fn(&Target) -> Option<Vec3>,
-        set: fn(&mut Target, Vec3),
-        shapes: fn(Vec3) -> bool,
-    ) -> Row {
-        Row { heading: self, access: Access::Target { joint, get, set, shapes } }
-    }
-
-    fn of_overlay(self, overlay: Overlay) -> Row {
-        Row { heading: self, access: Access::Overlay(overlay) }
-    }
-}
-
-/// The table.
-impl Channel {
-    fn row(self) -> Row {
-        use Quantity::{Angle, Angles, Fraction, Length, Point, Rotation, Switch};
-        match self {
-            Self::Hand => named("hand", "Hand", Point).of_arm(
-                |arm| arm.cursor.in_root,
-                |arm, to| arm.cursor.in_root = to,
-                |arm| !arm.is_pinned(),
-            ),
-            Self::Twist => named("twist", "Socket twist", Angle).of_arm(
-                |arm| number(arm.keyed_twist()),
-                |arm, to| arm.set_keyed_twist(to.x),
-                |_| true,
-            ),
-            Self::Root => named("root", "Root", Point).of_arm(
-                |arm| arm.root,
-                |arm, to| arm.root = to,
-                |_| true,
-            ),
-            Self::Upper => named("upper", "Upper length", Length).of_arm(
-                |arm| number(arm.bones.upper()),
-                |arm, to| arm.set_lengths(to.x, arm.bones.lower()),
-                |_| true,
-            ),
-            Self::Lower => named("lower", "Lower length", Length).of_arm(
-                |arm| number(arm.bones.lower()),
-                |arm, to| arm.set_lengths(arm.bones.upper(), to.x),
-                |_| true,
-            ),
-            Self::Pin => named("pin", "Pinned hand", Point).of_arm(
-                |arm| arm.cursor.in_world,
-                |arm, to| arm.cursor.in_world = to,
-                Arm::is_pinned,
-            ),
-            Self::Pinned => named("pinned", "Pinned to world", Switch).of_arm(
-                |arm| switch(arm.cursor.is_pinned),
-                |arm, to| arm.cursor.is_pinned = is_on(to),
-                Arm::is_pinned,
-            ),
-            Self::Pole => named("pole", "Pole", Point).of_arm(
-                |arm| arm.pole,
-                |arm, to| arm.pole = to,
-                |arm| arm.twist_reference == TwistReferenceKind::Pole,
-            ),
-            Self::Influence => named("influence", "IK influence", Fraction).of_arm(
-                |arm| number(arm.influence),
-                |arm, to| arm.influence = fraction(to),
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Shoulder => named("shoulder", "Shoulder angles", Angles).of_arm(
-                |arm| arm.fk.shoulder,
-                |arm, to| arm.fk.shoulder = to,
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Bend => named("bend", "Elbow bend", Angle).of_arm(
-                |arm| number(arm.fk.bend),
-                |arm, to| arm.fk.bend = to.x,
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Stretch => named("stretch", "FK stretch", Length).of_arm(
-                |arm| number(arm.fk.stretch),
-                |arm, to| arm.fk.stretch = to.x.max(f32::MIN_POSITIVE),
-                |arm| arm.influence < 1.0 && arm.is_stretching(),
-            ),
-            Self::HandOrientation => named("hand_orientation", "Hand orientation", Angles).of_arm(
-                |arm| arm.hand_orientation.angles,
-                |arm, to| arm.hand_orientation.angles = to,
-                |arm| arm.hand_orientation != HandOrientation::default(),
-            ),
-            Self::Translation => named("translation", "Skeleton translation", Point)
-                .of_skeleton(|skeleton| skeleton.transform().translation.into(), translate),
-            Self::Rotation(joint) => {
-                named("rotation", "rotation", Rotation).of_joint(joint, |it| it.rotation, rotate)
-            }
-            Self::Offset(joint) => {
-                named("offset", "offset", Point).of_joint(joint, |it| it.offset, offset)
-            }
-            Self::Target(joint) => named("target", "target", Point).of_target(
-                joint,
-                |it| Some(it.home),
-                |it, to| it.home = to,
-                |_| true,
-            ),
-            Self::TargetInfluence(joint) => named("target_influence", "target influence", Fraction)
-                .of_target(
-                    joint,
-                    |it| Some(number(it.influence)),
-                    |it, to| it.influence = fraction(to),
-                    |value| value.x < 1.0,
-                ),
-            Self::TargetOrientation(joint) => named(
-                "target_orientation",
-                "target orientation",
-                Rotation,
-            )
-            .of_target(joint, |it| it.limb()?.orientation, set_orientation, |_| true),
-            Self::TargetTwist(joint) => named("target_twist", "target twist", Angle).of_target(
-                joint,
-                |it| Some(number(it.limb()?.twist)),
-                set_twist,
-                |value| value.x != 0.0,
-            ),
-            Self::TargetPole(joint) => named("target_pole", "target pole", Point).of_target(
-                joint,
-                |it| Some(it.limb()?.pole()?.1),
-                set_pole,
-                |_| true,
-            ),
-            Self::Enabled(joint) => named("enabled", "target enabled", Switch).of_target(
-                joint,
-                |it| Some(switch(it.enabled)),
-                |it, to| it.enabled = is_on(to),
-                |_| false,
-            ),
-            Self::Overlay(overlay) => named("overlay", "shown", Switch).of_overlay(overlay),
-        }
-    }
+/// True if the value of a switch is on.
+pub(super) fn is_on(value: Vec3) -> bool {
+    value.x >= 0.5
 }
 
 /// Lists of channels. A new channel must be in one of them, or files cannot name it.
@@ -344,28 +141,14 @@ impl Channel {
             Self::Enabled(joint),
         ]
     }
-}
 
-/// Facts from the table.
-impl Channel {
-    /// The part of a document that holds the channel's value.
-    pub(super) fn access(self) -> Access {
-        self.row().access
-    }
-
-    /// Name of the channel in files, without its joint or overlay.
-    pub fn name(self) -> &'static str {
-        self.row().heading.name
-    }
-
-    /// Name of the channel on screen, beside that of its joint or overlay.
-    pub fn label(self) -> &'static str {
-        self.row().heading.label
-    }
-
-    /// The kind of the channel's values.
-    pub fn quantity(self) -> Quantity {
-        self.row().heading.quantity
+    /// The channel that has this [`name`](Self::name), for the given joint or overlay if the
+    /// channel belongs to one. `None` if the name is unknown, or the joint or overlay is missing.
+    pub fn named(name: &str, joint: Option<JointId>, overlay: Option<Overlay>) -> Option<Self> {
+        let of_rigs = Self::ARM.into_iter().chain([Self::Translation]);
+        let of_joint = joint.into_iter().flat_map(Self::of_joint);
+        let mut channels = of_rigs.chain(of_joint).chain(overlay.map(Self::Overlay));
+        channels.find(|channel| channel.name() == name)
     }
 
     /// True if the channel's values are switches, 0 or 1.
@@ -378,41 +161,6 @@ impl Channel {
         self.quantity() == Quantity::Rotation
     }
 
-    /// True if the channel affects the pose of `arm` with its present settings.
-    pub fn shapes(self, arm: &Arm) -> bool {
-        matches!(self.access(), Access::Arm { shapes, .. } if shapes(arm))
-    }
-
-    /// The rig that the channel belongs to; `None` for overlays.
-    pub fn rig(self) -> Option<RigKind> {
-        match self.access() {
-            Access::Arm { .. } => Some(RigKind::Arm),
-            Access::Skeleton { .. } | Access::Joint { .. } | Access::Target { .. } => {
-                Some(RigKind::Skeleton)
-            }
-            Access::Overlay(_) => None,
-        }
-    }
-
-    /// The joint that the channel belongs to; `None` if it belongs to no joint.
-    pub fn joint(self) -> Option<JointId> {
-        match self.access() {
-            Access::Joint { joint, .. } | Access::Target { joint, .. } => Some(joint),
-            Access::Arm { .. } | Access::Skeleton { .. } | Access::Overlay(_) => None,
-        }
-    }
-
-    /// The joint whose target the channel belongs to; `None` if it belongs to no target.
-    pub fn target(self) -> Option<JointId> {
-        match self.access() {
-            Access::Target { joint, .. } => Some(joint),
-            Access::Arm { .. }
-            | Access::Skeleton { .. }
-            | Access::Joint { .. }
-            | Access::Overlay(_) => None,
-        }
-    }
-
     /// The same channel after its joint was renumbered; `None` if its joint was removed.
     #[must_use]
     pub fn remapped(self, remap: &JointRemap) -> Option<Self> {
@@ -422,72 +170,78 @@ impl Channel {
     }
 }
 
-fn number(value: f32) -> Vec3 {
-    Vec3::new(value, 0.0, 0.0)
-}
+/// A text that names no channel.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error(
+    "channel must be a name such as twist, a name and a joint's index such as \"rotation 3\", or \
+     \"overlay\" and an overlay's name, got {0:?}"
+)]
+pub struct UnknownChannel(String);
 
-pub(super) fn switch(is_on: bool) -> Vec3 {
-    number(f32::from(u8::from(is_on)))
-}
-
-pub(super) fn is_on(value: Vec3) -> bool {
-    value.x >= 0.5
-}
-
-fn fraction(value: Vec3) -> f32 {
-    value.x.clamp(0.0, 1.0)
-}
-
-fn set_orientation(target: &mut Target, angles: Vec3) {
-    if let Some(LimbSettings { orientation: Some(orientation), .. }) = target.limb_mut() {
-        *orientation = angles;
+/// Writes the name and, if the channel belongs to a joint or an overlay, a space and the joint's
+/// index or the overlay's name.
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())?;
+        if let Self::Overlay(overlay) = self {
+            write!(f, " {}", overlay.name())?;
+        }
+        self.joint().map_or(Ok(()), |joint| write!(f, " {joint}"))
     }
 }
 
-fn set_twist(target: &mut Target, twist: Vec3) {
-    if let Some(limb) = target.limb_mut() {
-        limb.twist = twist.x;
+/// Inverse of [`Display`](fmt::Display).
+impl FromStr for Channel {
+    type Err = UnknownChannel;
+
+    fn from_str(text: &str) -> Result<Self, UnknownChannel> {
+        let (name, owner) = text.split_once(' ').unwrap_or((text, ""));
+        let joint = owner.parse().ok().map(JointId::new);
+        let channel = Self::named(name, joint, Overlay::from_name(owner));
+        // Refuses an owner of a channel that has none, and joints such as "+1".
+        let channel = channel.filter(|channel| channel.to_string() == text);
+        channel.ok_or_else(|| UnknownChannel(text.to_owned()))
     }
 }
 
-fn set_pole(target: &mut Target, pole: Vec3) {
-    if let Some(limb) = target.limb_mut().filter(|limb| limb.pole().is_some()) {
-        limb.reference = ElbowReference::Pole(pole);
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-// Documents share the skeleton. Setting an identical value must not copy it.
-
-fn translate(rig: &mut SkeletonRig, translation: Vec3) {
-    let mut transform = rig.skeleton.transform();
-    if !is_identical(transform.translation.into(), translation) {
-        transform.translation = translation.into();
-        // Only a transform that is not finite is refused; this one is finite.
-        let _ = rig.skeleton_mut().set_transform(transform);
+    #[test]
+    fn every_channel_reads_back_from_its_text() {
+        let joint = JointId::new(12);
+        let of_owners = Overlay::all().map(Channel::Overlay).chain(Channel::of_joint(joint));
+        for channel in Channel::ARM.into_iter().chain([Channel::Translation]).chain(of_owners) {
+            assert_eq!(channel.to_string().parse(), Ok(channel), "{channel}");
+        }
+        assert_eq!(Channel::Rotation(joint).to_string(), "rotation 12");
+        assert_eq!(Channel::Overlay(Overlay::GridXy).to_string(), "overlay grid_xy");
     }
-}
 
-fn rotate(rig: &mut SkeletonRig, joint: JointId, rotation: Vec3) {
-    let Some(before) = rig.skeleton.joint(joint) else { return };
-    let rotation = before.limits.project(rotation);
-    if !is_identical(before.rotation, rotation) {
-        rig.skeleton_mut().write_local(joint, |joint| joint.rotation = rotation);
+    #[test]
+    fn texts_that_name_no_channel_are_refused() {
+        for text in [
+            "",
+            "Twist",
+            "rotation",
+            "rotation x",
+            "rotation -1",
+            "twist 1",
+            "overlay",
+            "hand ",
+            "offset +1",
+        ] {
+            let error = text.parse::<Channel>().expect_err(text);
+            assert!(error.to_string().ends_with(&format!("got {text:?}")), "{error}");
+        }
     }
-}
 
-/// Sets the offset of a joint, and for a connected one its parent's bone.
-fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
-    let Some(before) = rig.skeleton.joint(joint) else { return };
-    let above = before.parent.filter(|_| before.connected);
-    if !is_identical(before.offset, offset) {
-        rig.skeleton_mut().write_local(joint, |joint| joint.offset = offset);
+    #[test]
+    fn overlays_have_the_names_of_files() {
+        for overlay in Overlay::all() {
+            let in_file = serde_json::to_value(overlay).expect("a name");
+            assert_eq!(in_file, overlay.name());
+        }
     }
-    if let Some(above) = above.filter(|it| !is_identical(rig.skeleton[*it].axis, offset)) {
-        rig.skeleton_mut().write_local(above, |above| above.axis = offset);
-    }
-}
-
-/// True if two vectors are bit-identical.
-fn is_identical(a: Vec3, b: Vec3) -> bool {
-    a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
 }

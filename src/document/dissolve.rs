@@ -1,7 +1,7 @@
 use glam::Vec3;
 
+use super::Document;
 use super::channel::Channel;
-use super::document::Document;
 use super::keys::Keys;
 use super::track::Track;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, SkeletonError};

@@ -1,8 +1,9 @@
+use core::ops::RangeInclusive;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::channel::{Channel, Quantity};
+use super::channel::{Channel, Quantity, is_on};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointRemap, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Segment, Spline};
@@ -188,4 +189,71 @@ fn min_length(track: &Spline<Vec3>) -> f32 {
     const FRACTION: f32 = 1e-3;
     let longest = track.knots().iter().map(|knot| knot.value.x).fold(0.0, f32::max);
     (FRACTION * longest).max(f32::MIN_POSITIVE)
+}
+
+/// Points of a Cursor whose pin is keyed. A plant is a stretch of time in which a keyed pin holds
+/// the Cursor in the world. The splines of the points end where plants begin and end, so that
+/// keys of one plant move the hand neither in another one nor on the way to it.
+impl Keys {
+    /// Interpolated value of [`Channel::Pin`] at a time in seconds: on the spline through the keys
+    /// of one plant alone, its ends included. A plant without keys is at the last key before it.
+    fn pin(&self, time: f64) -> Option<Vec3> {
+        let pin = self.track(Channel::Pin)?;
+        let Some(switch) = self.track(Channel::Pinned) else {
+            return pin.at(time);
+        };
+        pin.at_among(stretch(switch, time), time).or_else(|| pin.step(time))
+    }
+
+    /// Interpolated value of [`Channel::Hand`] at a time in seconds. A key in a plant, its ends
+    /// included, ends the spline before it and begins the one after it.
+    fn hand(&self, time: f64) -> Option<Vec3> {
+        let hand = self.track(Channel::Hand)?;
+        let Some(switch) = self.track(Channel::Pinned) else {
+            return hand.at(time);
+        };
+        let is_end = |knot: &&Knot<Vec3>| is_planted(switch, knot.time);
+        let (past, future) = split(hand, |knot| knot.time <= time);
+        let start = past.iter().rfind(is_end).map_or(f64::NEG_INFINITY, |knot| knot.time);
+        let end = future.iter().find(is_end).map_or(f64::INFINITY, |knot| knot.time);
+        hand.at_among(start..=end, time)
+    }
+
+    /// Time in seconds at which the last plant before `time` begins; `None` if none does.
+    pub(super) fn last_plant_start(&self, time: f64) -> Option<f64> {
+        let (past, _) = split(self.track(Channel::Pinned)?, |knot| knot.time < time);
+        let starts = |pair: &&[Knot<Vec3>]| !is_on(pair[0].value) && is_on(pair[1].value);
+        Some(past.windows(2).rfind(starts)?[1].time)
+    }
+}
+
+/// The stretch of time around `time`, in seconds, from one change of a switch to the next.
+fn stretch(switch: &Spline<Vec3>, time: f64) -> RangeInclusive<f64> {
+    let (past, future) = split(switch, |knot| knot.time <= time);
+    let is_now = is_on_after(past, switch);
+    let differs = |knot: &Knot<Vec3>| is_on(knot.value) != is_now;
+    let last = past.iter().rposition(differs).map(|last| switch.knots()[last + 1].time);
+    let next = future.iter().find(|knot| differs(knot)).map(|next| next.time);
+    last.unwrap_or(f64::NEG_INFINITY)..=next.unwrap_or(f64::INFINITY)
+}
+
+/// True if a time, in seconds, is in a plant or at one of its ends.
+fn is_planted(switch: &Spline<Vec3>, time: f64) -> bool {
+    let (before, _) = split(switch, |knot| knot.time < time);
+    let (until, _) = split(switch, |knot| knot.time <= time);
+    [before, until].into_iter().any(|past| is_on_after(past, switch))
+}
+
+/// The knots of a spline for which `is_past` holds, and those after them.
+fn split(
+    spline: &Spline<Vec3>,
+    is_past: impl Fn(&Knot<Vec3>) -> bool,
+) -> (&[Knot<Vec3>], &[Knot<Vec3>]) {
+    let knots = spline.knots();
+    knots.split_at(knots.partition_point(is_past))
+}
+
+/// True if a switch is on after its knots `past`. Before its first knot it is as at that knot.
+fn is_on_after(past: &[Knot<Vec3>], switch: &Spline<Vec3>) -> bool {
+    past.last().or(switch.knots().first()).is_some_and(|knot| is_on(knot.value))
 }

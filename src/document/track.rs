@@ -1,10 +1,10 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
+use super::Document;
 use super::arm::Arm;
 use super::camera::Camera;
 use super::channel::Channel;
-use super::document::Document;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::ik::IkSolution;

@@ -1,9 +1,8 @@
 use glam::{Affine3A, Mat3A, Vec3};
 
-use super::baked_track::{BakedFrames, BakedTrack};
-use super::outcome::{BakeError, ShortenedBone};
 use crate::document::{Channel, Posed, Timeline, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::kinematics::spline::Spline;
 use crate::rig::Target;
 
 /// Rotation and offset of a joint.
@@ -37,17 +36,26 @@ pub(super) struct Motion {
     /// Largest distance in the world between each joint's evaluated tip and that in `ends`.
     lengthened: Vec<f32>,
     /// Joints of the targets that pose the skeleton at any frame.
-    posed: Vec<JointId>,
+    pub posed: Vec<JointId>,
     follows_path: bool,
+}
+
+/// A bone that cannot keep the length that a target gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShortenedBone {
+    /// The bone's joint.
+    pub joint: JointId,
+    /// Largest distance of its tip from the evaluated position at a frame, in the world.
+    pub error: f32,
 }
 
 impl Motion {
     /// Records a track at all frames. `go_on` is called before each with its number.
-    pub fn record(
+    pub fn record<E>(
         track: &Track,
         frames: &Timeline,
-        go_on: &mut impl FnMut(usize) -> Result<(), BakeError>,
-    ) -> Result<Self, BakeError> {
+        go_on: &mut impl FnMut(usize) -> Result<(), E>,
+    ) -> Result<Self, E> {
         let first = track.at(frames.start);
         let rig = &first.document().skeleton_rig;
         let joints = rig.skeleton.joints().len();
@@ -95,11 +103,6 @@ impl Motion {
         self.follows_path || !self.posed.is_empty()
     }
 
-    /// Joints of the targets that pose the skeleton at any frame.
-    pub fn posed_targets(&self) -> impl Iterator<Item = JointId> + '_ {
-        self.posed.iter().copied()
-    }
-
     /// Bones that evaluation lengthens.
     pub fn shortened(&self) -> Vec<ShortenedBone> {
         let bones = self.skeleton.ids().zip(self.lengthened.iter().copied());
@@ -118,13 +121,20 @@ impl Motion {
         let mut tracks = Vec::new();
         for joint in self.skeleton.ids() {
             let both = || self.of_joint(&self.keyed, joint).zip(self.of_joint(&self.solved, joint));
+            let mut add = |channel, values: Vec<Vec3>| {
+                let mut spline = frames.surroundings(track, channel);
+                for (frame, value) in values.into_iter().enumerate() {
+                    spline.insert(frames.time(frame), value);
+                }
+                let frames = (0..frames.count()).collect();
+                tracks.push(BakedTrack { channel, joint, spline, frames });
+            };
             if both().any(|(keyed, solved)| keyed.rotation != solved.rotation) {
-                let values = self.unwrapped(joint);
-                tracks.push(baked_track(track, frames, Channel::Rotation(joint), joint, values));
+                add(Channel::Rotation(joint), self.unwrapped(joint).collect());
             }
             if both().any(|(keyed, solved)| keyed.offset != solved.offset) {
-                let values = self.of_joint(&self.solved, joint).map(|placement| placement.offset);
-                tracks.push(baked_track(track, frames, Channel::Offset(joint), joint, values));
+                let solved = self.of_joint(&self.solved, joint);
+                add(Channel::Offset(joint), solved.map(|placement| placement.offset).collect());
             }
         }
         tracks
@@ -162,16 +172,70 @@ fn placements(skeleton: &Skeleton) -> impl Iterator<Item = Placement> + '_ {
     skeleton.iter().map(|(_, joint)| Placement { rotation: joint.rotation, offset: joint.offset })
 }
 
-fn baked_track(
-    track: &Track,
-    frames: &BakedFrames,
-    channel: Channel,
-    joint: JointId,
-    values: impl Iterator<Item = Vec3>,
-) -> BakedTrack {
-    let mut spline = frames.surroundings(track, channel);
-    for (frame, value) in values.enumerate() {
-        spline.insert(frames.time(frame), value);
+/// Keys of a baked channel.
+#[derive(Clone, Debug)]
+pub(super) struct BakedTrack {
+    /// [`Channel::Rotation`] or [`Channel::Offset`].
+    pub channel: Channel,
+    pub joint: JointId,
+    /// All keys, those outside the range too.
+    pub spline: Spline<Vec3>,
+    /// The frames that have a key, ascending.
+    pub frames: Vec<usize>,
+}
+
+/// The frames of a bake, and what is kept of the keys around them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BakedFrames {
+    timeline: Timeline,
+    /// True if the document's timeline starts before the range.
+    starts_late: bool,
+    /// True if the document's timeline ends after the range.
+    ends_early: bool,
+}
+
+impl BakedFrames {
+    pub fn new(own: Timeline, timeline: Timeline) -> Self {
+        let last = timeline.time(timeline.frames() - 1);
+        Self { timeline, starts_late: own.start < timeline.start, ends_early: last < own.end }
     }
-    BakedTrack { channel, joint, spline, frames: (0..frames.count()).collect() }
+
+    pub fn count(&self) -> usize {
+        self.timeline.frames()
+    }
+
+    /// Time of a frame in seconds.
+    pub fn time(&self, frame: usize) -> f64 {
+        self.timeline.time(frame)
+    }
+
+    /// The frames between two times, both excluded. Infinite times are allowed.
+    pub fn between(&self, from: f64, to: f64) -> core::ops::Range<usize> {
+        let position = |time: f64| (time - self.timeline.start) * self.timeline.frame_rate;
+        // Conversion saturates. Frames next to the bounds may be included by rounding; their values
+        // do not change.
+        let first = position(from).floor() as usize;
+        let last = position(to).ceil() as usize;
+        first..last.saturating_add(1).min(self.count())
+    }
+
+    /// The keys of a channel outside the range. Where the document's timeline goes on beyond the
+    /// range, the two frames beyond it have keys too, which keep the channel as it was there: two,
+    /// because a key shapes the curve up to the second key away from it.
+    pub fn surroundings(&self, track: &Track, channel: Channel) -> Spline<Vec3> {
+        let (start, end) = (self.time(0), self.time(self.count() - 1));
+        let is_outside = |time: f64| time < start || time > end;
+        let knots = track.document().keys.track(channel).into_iter().flat_map(Spline::knots);
+        let mut spline: Spline<Vec3> =
+            knots.filter(|knot| is_outside(knot.time)).copied().collect();
+        let frame = 1.0 / self.timeline.frame_rate;
+        let before = [start - 2.0 * frame, start - frame].map(|time| (self.starts_late, time));
+        let after = [end + frame, end + 2.0 * frame].map(|time| (self.ends_early, time));
+        for (_, time) in before.into_iter().chain(after).filter(|(is_open, _)| *is_open) {
+            if let Some(value) = channel.value(track.at(time).document()) {
+                spline.insert(time, value);
+            }
+        }
+        spline
+    }
 }

@@ -2,9 +2,7 @@ use core::iter::once;
 
 use glam::{Affine3A, Vec3};
 
-use super::baked_track::{BakedFrames, BakedTrack};
-use super::motion::{Ends, Motion, Placement};
-use super::outcome::BakeError;
+use super::motion::{BakedFrames, BakedTrack, Ends, Motion, Placement};
 use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 
@@ -62,11 +60,11 @@ impl<'a> Reduction<'a> {
 
     /// Removes keys while all bases and tips are within `tolerance`, in the world, until no key can
     /// be removed. `go_on` is called with the part of the work that is done, from 0 to 1.
-    pub fn run(
+    pub fn run<E>(
         &mut self,
         tolerance: f32,
-        mut go_on: impl FnMut(f32) -> Result<(), BakeError>,
-    ) -> Result<(), BakeError> {
+        mut go_on: impl FnMut(f32) -> Result<(), E>,
+    ) -> Result<(), E> {
         // The rest of the tolerance is for the rounding of positions in the world.
         let most = 0.99 * tolerance;
         for round in 0.. {
@@ -97,12 +95,12 @@ impl<'a> Reduction<'a> {
 
     /// Removes keys of one track while all bases and tips are within `most`, in the world. At least
     /// one key is left. `go_on` is called for each key.
-    fn reduce(
+    fn reduce<E>(
         &mut self,
         track: usize,
         most: f32,
-        mut go_on: impl FnMut() -> Result<(), BakeError>,
-    ) -> Result<(), BakeError> {
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<(), E> {
         self.trial.start(self.motion, self.tracks[track].joint);
         let before = std::mem::take(&mut self.tracks[track].frames);
         let mut left = Vec::with_capacity(before.len());
