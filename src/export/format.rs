@@ -1,10 +1,15 @@
-use std::ffi::OsStr;
+//! The formats of exports, the names of their files and their errors.
+
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::numbered_name::NumberedName;
-use crate::io::{ExportKind, ExportOption, FileFormat, WriteContent, Writer, dotted};
+use crate::io::{
+    Cancelled, ContentError, ExportKind, ExportOption, FileFormat, MotionError, WriteContent,
+    WriteError, Writer, dotted,
+};
+use crate::render::{DrawError, GpuError};
 
 /// A format that an export can write.
 #[derive(Clone, Copy)]
@@ -144,6 +149,113 @@ pub fn existing(path: &Path) -> Option<PathBuf> {
     found.map(|file| file.path()).min()
 }
 
+/// Placeholder for one digit of a frame's number.
+const DIGIT: char = '#';
+
+/// A file name with a placeholder for a number: the last run of `#` in the name.
+pub(super) struct NumberedName {
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl NumberedName {
+    /// Finds the placeholder; `None` if the name has no `#` or is not Unicode.
+    pub fn new(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?;
+        let end = name.rfind(DIGIT)? + DIGIT.len_utf8();
+        let (run, after) = name.split_at_checked(end)?;
+        let before = run.trim_end_matches(DIGIT);
+        Some(Self {
+            before: before.to_owned(),
+            digits: run.len() - before.len(),
+            after: after.to_owned(),
+        })
+    }
+
+    /// Returns whether `name` is the name of a file of the sequence, with a number in place of the
+    /// placeholder.
+    pub fn contains(&self, name: &OsStr) -> bool {
+        let digits = name.to_str().and_then(|name| {
+            name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())
+        });
+        digits.is_some_and(|digits| {
+            digits.len() >= self.digits && digits.bytes().all(|digit| digit.is_ascii_digit())
+        })
+    }
+
+    /// The file name with `number` in place of the placeholder. The number is padded with zeros to
+    /// the length of the placeholder.
+    pub fn with_number(&self, number: usize) -> OsString {
+        const MAX_DIGITS: usize = 64;
+        let Self { before, after, .. } = self;
+        let digits = self.digits.min(MAX_DIGITS);
+        format!("{before}{number:0digits$}{after}").into()
+    }
+}
+
+/// Reasons why no file is exported.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The export was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The path selects no format.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The format cannot hold the document.
+    #[error(transparent)]
+    Content(ContentError),
+    /// The time of a single picture is not finite.
+    #[error("time must be a finite number of seconds, got {0}")]
+    Time(f64),
+    /// There is no graphics device for pictures.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Draw(#[from] DrawError),
+    /// A picture could not be encoded.
+    #[error("cannot encode PNG: {0}")]
+    Png(#[from] png::EncodingError),
+    /// An animated picture has too many frames.
+    #[error("an animated PNG must have at most {max} frames, got {0}", max = u32::MAX)]
+    Frames(usize),
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl ExportError {
+    /// Returns whether the error is about the file to write, or about no file, rather than about
+    /// the document.
+    pub fn is_about_output(&self) -> bool {
+        match self {
+            Self::Cancelled(_) | Self::Format(_) | Self::Gpu(_) | Self::Write(_) => true,
+            Self::Content(_) | Self::Time(_) | Self::Draw(_) | Self::Png(_) | Self::Frames(_) => {
+                false
+            }
+        }
+    }
+}
+
+/// Turns a nested `Cancelled` into [`ExportError::Cancelled`].
+impl From<ContentError> for ExportError {
+    fn from(error: ContentError) -> Self {
+        match error {
+            ContentError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Content(error),
+        }
+    }
+}
+
+impl From<MotionError> for ExportError {
+    fn from(error: MotionError) -> Self {
+        ContentError::from(error).into()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,5 +293,15 @@ mod tests {
         }
         assert_eq!(existing(&path), Some(folder.path().join("walk_07.png")));
         assert!(existing(&folder.path().join("walk_1.png")).is_some());
+    }
+
+    #[test]
+    fn a_number_replaces_the_last_placeholder() {
+        let name = |path: &str, number| {
+            NumberedName::new(Path::new(path)).map(|it| it.with_number(number))
+        };
+        assert_eq!(name("x/walk_####.png", 7), Some("walk_0007.png".into()));
+        assert_eq!(name("#a##b.png", 12345), Some("#a12345b.png".into()));
+        assert_eq!(name("x#/a.png", 1), None);
     }
 }

@@ -4,22 +4,17 @@
 //! document and graphics device, reports its progress, and can be cancelled. A file or sequence of
 //! files is written completely or not at all.
 
-mod error;
 mod format;
-mod frame_writers;
-mod numbered_name;
 mod pictures;
 
 use std::path::Path;
 
 pub use crate::io::ExportOptions;
-pub use error::ExportError;
-pub use format::{ExportFormat, FormatError, existing};
+pub use format::{ExportError, ExportFormat, FormatError, existing};
 
 use crate::document::Document;
 use crate::io::{self, Exported, Progress};
-use format::ExportContent;
-use numbered_name::NumberedName;
+use format::{ExportContent, NumberedName};
 
 /// Writes a document to a file whose extension selects the [`ExportFormat`], and returns notes on
 /// what the format cannot hold.

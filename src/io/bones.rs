@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 
 use crate::kinematics::skeleton::Joint;
 
-/// The bone of a joint.
+/// The bone that the joint of a file gets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bone {
+pub struct JointBone {
     /// Vector from the joint to the bone's tip.
     pub axis: Vec3,
     /// The child at the tip, which continues the chain; `None` for a leaf, and where no child
@@ -49,29 +49,25 @@ impl<'a> JointTree<'a> {
         &self,
         ends: impl Fn(usize) -> Option<Vec3>,
         next: impl Fn(usize) -> Option<usize>,
-    ) -> Vec<Bone> {
+    ) -> Vec<JointBone> {
         let bone = |joint| {
             if let Some(axis) = ends(joint) {
-                return Bone { axis, child: None };
+                return JointBone { axis, child: None };
             }
             let child = next(joint).or_else(|| self.next(joint));
-            Bone { axis: child.map_or(Vec3::ZERO, |child| self.joints[child].offset), child }
+            JointBone { axis: child.map_or(Vec3::ZERO, |child| self.joints[child].offset), child }
         };
         (0..self.joints.len()).map(bone).collect()
     }
 
     /// Takes the bones from roots that are no part of the body but the origin that it stands on:
     /// their one child moves, or is where the body branches.
-    pub fn free_origins(&self, bones: &mut [Bone], moves: impl Fn(usize) -> bool) {
+    pub fn free_origins(&self, bones: &mut [JointBone], moves: impl Fn(usize) -> bool) {
         for (index, joint) in self.joints.iter().enumerate() {
-            let is_origin = match self.children[index][..] {
-                [child] => {
-                    joint.parent.is_none() && (moves(child) || self.children[child].len() > 1)
-                }
-                _ => false,
-            };
-            if is_origin {
-                bones[index] = Bone::default();
+            if let ([child], None) = (&self.children[index][..], joint.parent)
+                && (moves(*child) || self.children[*child].len() > 1)
+            {
+                bones[index] = JointBone::default();
             }
         }
     }
@@ -79,7 +75,7 @@ impl<'a> JointTree<'a> {
     /// Gives bones to those leaves of which the file tells no end: straight on from their parents,
     /// as long as the mean of their siblings' bones, otherwise half as long as the way from their
     /// parents.
-    pub fn guess_leaves(&self, bones: &mut [Bone], has_end: impl Fn(usize) -> bool) {
+    pub fn guess_leaves(&self, bones: &mut [JointBone], has_end: impl Fn(usize) -> bool) {
         let known = bones.to_vec();
         for (index, joint) in self.joints.iter().enumerate() {
             let Some(parent) = joint.parent else { continue };
@@ -133,7 +129,7 @@ impl<'a> JointTree<'a> {
 }
 
 /// Sets the axes of the joints, and radii that suit them.
-pub fn give_bones(joints: &mut [Joint], bones: &[Bone]) {
+pub fn give_bones(joints: &mut [Joint], bones: &[JointBone]) {
     for (joint, bone) in joints.iter_mut().zip(bones) {
         joint.axis = bone.axis;
         joint.radius = Joint::new("", None, bone.axis).radius.min(f32::MAX);
@@ -141,7 +137,7 @@ pub fn give_bones(joints: &mut [Joint], bones: &[Bone]) {
 }
 
 /// Connects those children at the tips of bones that move, so that the bones follow them.
-pub fn connect(joints: &mut [Joint], bones: &[Bone], moves: impl Fn(usize) -> bool) {
+pub fn connect(joints: &mut [Joint], bones: &[JointBone], moves: impl Fn(usize) -> bool) {
     for child in bones.iter().filter_map(|bone| bone.child).filter(|child| moves(*child)) {
         joints[child].connected = true;
     }

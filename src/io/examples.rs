@@ -7,7 +7,7 @@ use crate::document::Document;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
     /// The list in which the example is shown.
-    pub group: Group,
+    pub group: ExampleGroup,
     /// Name of the example's file, without extension.
     pub name: &'static str,
     /// Name of the example on screen.
@@ -20,7 +20,7 @@ pub struct Example {
 
 /// A list of examples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum ExampleGroup {
     /// Introduction to what the program can do.
     Basics,
     /// Targets that are not reached, one example for each cause.
@@ -43,28 +43,28 @@ impl Example {
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 32] = [
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "arm",
             title: "Arm",
             sentence: "The arm of the paper, two limbs in closed form.",
             text: include_str!("../../assets/arm.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "two-targets",
             title: "Two targets on a Y",
             sentence: "A tree with two branches, each with a target of its own.",
             text: include_str!("../../assets/two-targets.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "human",
             title: "Human",
             sentence: "A figure whose hands and feet stay at their targets while its pelvis is dragged.",
             text: include_str!("../../assets/human.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "walk",
             title: "Walk",
             sentence: "A figure that walks: its feet stand at their targets while the pelvis moves \
@@ -72,14 +72,14 @@ impl Example {
             text: include_str!("../../assets/walk.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "wheel",
             title: "Two hands on a wheel",
             sentence: "A figure whose hands hold a wheel that turns: their targets are on the wheel.",
             text: include_str!("../../assets/wheel.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "candy-wrapper",
             title: "Candy wrapper",
             sentence: "A forearm that is twisted by 180°, with its skin blended in three ways; press \
@@ -87,21 +87,21 @@ impl Example {
             text: include_str!("../../assets/candy-wrapper.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "table",
             title: "Table",
             sentence: "An arm whose hand rests on a table while its shoulder moves.",
             text: include_str!("../../assets/table.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "snake",
             title: "Snake",
             sentence: "Drag the circle at the head across the floor: 24 joints follow its path.",
             text: include_str!("../../assets/snake.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "tadpoles",
             title: "Tadpoles",
             sentence: "Five heads swim after moving targets, and their tails follow their paths; \
@@ -109,14 +109,14 @@ impl Example {
             text: include_str!("../../assets/tadpoles.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "ten-joints",
             title: "Ten-joint chain",
             sentence: "A chain with one target, to watch the solvers at work.",
             text: include_str!("../../assets/ten-joints.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "keyframes",
             title: "Keyframes",
             sentence: "An arm whose hand goes along a spline through six keys; press Space to \
@@ -124,7 +124,7 @@ impl Example {
             text: include_str!("../../assets/keyframes.json"),
         },
         Self {
-            group: Group::Basics,
+            group: ExampleGroup::Basics,
             name: "degenerate",
             title: "Degenerate cases",
             sentence: "Cases that break careless solvers: a bone without length, a target at the \
@@ -132,70 +132,70 @@ impl Example {
             text: include_str!("../../assets/degenerate.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "out-of-reach",
             title: "Out of reach",
             sentence: "The target is farther away than the bones are long; the note beside it offers what would help.",
             text: include_str!("../../assets/why/out-of-reach.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "at-a-limit",
             title: "At a limit",
             sentence: "The shin cannot bend far enough for the target; the note says by how much its limit must be widened.",
             text: include_str!("../../assets/why/at-a-limit.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "locked",
             title: "Locked",
             sentence: "A locked joint keeps the chain from its target, which it would reach if that joint could turn.",
             text: include_str!("../../assets/why/locked.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "pulled-apart",
             title: "Pulled apart",
             sentence: "Two targets are too far apart for the two arms of a Y: each can be reached alone, not both.",
             text: include_str!("../../assets/why/pulled-apart.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "gimbal-lock",
             title: "Gimbal lock",
             sentence: "At y = 90° two of a joint's angles turn about one axis, and none turns towards the target.",
             text: include_str!("../../assets/why/gimbal-lock.json"),
         },
         Self {
-            group: Group::WhyNot,
+            group: ExampleGroup::WhyNot,
             name: "too-few-iterations",
             title: "Too few iterations",
             sentence: "The solver stops after 20 iterations, while the tip is still coming nearer.",
             text: include_str!("../../assets/why/too-few-iterations.json"),
         },
         Self {
-            group: Group::InsideSolver,
+            group: ExampleGroup::InsideSolver,
             name: "inside-dls",
             title: "Inside damped least squares",
             sentence: "One iteration, part by part: the columns of the Jacobian, its ellipsoid and what the damping leaves of it, and the step; Shift . shows the next part.",
             text: include_str!("../../assets/inside/inside-dls.json"),
         },
         Self {
-            group: Group::InsideSolver,
+            group: ExampleGroup::InsideSolver,
             name: "inside-ccd",
             title: "Inside CCD",
             sentence: "One iteration, part by part: each joint in turn swings the tip towards the target; Shift . shows the next part.",
             text: include_str!("../../assets/inside/inside-ccd.json"),
         },
         Self {
-            group: Group::InsideSolver,
+            group: ExampleGroup::InsideSolver,
             name: "inside-fabrik",
             title: "Inside FABRIK",
             sentence: "One iteration, part by part: the points go to the target and then back to the root; Shift . shows the next part.",
             text: include_str!("../../assets/inside/inside-fabrik.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "through-the-root",
             title: "Target through the root",
             sentence: "The target goes straight through the shoulder: the hand comes no nearer \
@@ -204,7 +204,7 @@ impl Example {
             text: include_str!("../../assets/hard/through-the-root.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "straight-up-and-down",
             title: "Straight up and down",
             sentence: "The hand goes around through straight up and straight down, where the \
@@ -213,7 +213,7 @@ impl Example {
             text: include_str!("../../assets/hard/straight-up-and-down.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "along-the-pole",
             title: "Along the pole",
             sentence: "The hand crosses the line to the pole, and the elbow that points at it \
@@ -221,7 +221,7 @@ impl Example {
             text: include_str!("../../assets/hard/along-the-pole.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "exactly-straight",
             title: "Exactly straight",
             sentence: "The target is exactly as far away as the arm is long: it is reached, and \
@@ -229,7 +229,7 @@ impl Example {
             text: include_str!("../../assets/hard/exactly-straight.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "just-past-straight",
             title: "Just past straight",
             sentence: "The target leaves the arm's reach and comes back, and the elbow snaps where \
@@ -237,7 +237,7 @@ impl Example {
             text: include_str!("../../assets/hard/just-past-straight.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "equal-bones-folded",
             title: "Equal bones folded",
             sentence: "The target goes through the shoulder of two equal limbs: they fold up \
@@ -245,7 +245,7 @@ impl Example {
             text: include_str!("../../assets/hard/equal-bones-folded.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "thousand-to-one",
             title: "One bone a thousand times the other",
             sentence: "A forearm of 0.3 on an upper arm of 300, small as its joints: the hand goes \
@@ -253,7 +253,7 @@ impl Example {
             text: include_str!("../../assets/hard/thousand-to-one.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "far-root",
             title: "Root a million units away",
             sentence: "The shoulder is a million units away, where f32 positions are 1/16 \
@@ -261,21 +261,21 @@ impl Example {
             text: include_str!("../../assets/hard/far-root.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "tiny",
             title: "Tiny arm",
             sentence: "An arm a thousandth of a unit long, which moves as the large ones do.",
             text: include_str!("../../assets/hard/tiny.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "huge",
             title: "Huge arm",
             sentence: "An arm a million units long, which moves as the small ones do.",
             text: include_str!("../../assets/hard/huge.json"),
         },
         Self {
-            group: Group::HardCases,
+            group: ExampleGroup::HardCases,
             name: "mirrored",
             title: "Mirrored",
             sentence: "Two bones in a mirror, where turning left is turning right: the hand is at \
@@ -285,7 +285,7 @@ impl Example {
     ];
 
     /// All examples of a group.
-    pub fn of(group: Group) -> impl Iterator<Item = Self> {
+    pub fn of(group: ExampleGroup) -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(move |example| example.group == group)
     }
 

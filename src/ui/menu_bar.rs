@@ -4,7 +4,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::{commands, labels, panels};
 use crate::document::{Channel, Overlay, RigKind, Theme};
-use crate::io::{Example, Group, OpenOptions};
+use crate::io::{Example, ExampleGroup, OpenOptions};
 use crate::session::{
     Action, Actions, Dialog, DisplayEdit, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation,
     Session, ShellAction, TourAction, TransactionAction, ViewAction,
@@ -301,14 +301,14 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn examples(ui: &mut Ui, actions: &mut Actions) {
-    examples_of(Group::Basics, ui, actions);
+    examples_of(ExampleGroup::Basics, ui, actions);
     ui.separator();
-    ui.menu_button("Why not?", |ui| examples_of(Group::WhyNot, ui, actions));
-    ui.menu_button("Inside a solver", |ui| examples_of(Group::InsideSolver, ui, actions));
-    ui.menu_button("Hard cases", |ui| examples_of(Group::HardCases, ui, actions));
+    ui.menu_button("Why not?", |ui| examples_of(ExampleGroup::WhyNot, ui, actions));
+    ui.menu_button("Inside a solver", |ui| examples_of(ExampleGroup::InsideSolver, ui, actions));
+    ui.menu_button("Hard cases", |ui| examples_of(ExampleGroup::HardCases, ui, actions));
 }
 
-fn examples_of(group: Group, ui: &mut Ui, actions: &mut Actions) {
+fn examples_of(group: ExampleGroup, ui: &mut Ui, actions: &mut Actions) {
     for example in Example::of(group) {
         if ui.button(example.title).on_hover_text(example.sentence).clicked() {
             actions.push(FileAction::OpenExample(example));

@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::Vec3;
 use ik_arm::document::{Arm, Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
-use ik_arm::io::{self, Example, Group, Opened};
+use ik_arm::io::{self, Example, ExampleGroup, Opened};
 use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
@@ -524,10 +524,10 @@ fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
         let again = open(&io::to_json(&opened.document).expect("written"));
         assert_eq!(again.document, opened.document, "{}", example.name);
         let folder = match example.group {
-            Group::Basics => "assets",
-            Group::WhyNot => "assets/why",
-            Group::InsideSolver => "assets/inside",
-            Group::HardCases => "assets/hard",
+            ExampleGroup::Basics => "assets",
+            ExampleGroup::WhyNot => "assets/why",
+            ExampleGroup::InsideSolver => "assets/inside",
+            ExampleGroup::HardCases => "assets/hard",
         };
         let path = format!("{}/{folder}/{}.json", env!("CARGO_MANIFEST_DIR"), example.name);
         assert_eq!(fs::read_to_string(path).expect("named as its file"), example.text);

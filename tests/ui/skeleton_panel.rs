@@ -8,7 +8,7 @@ use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{RigKind, Target, TargetPath};
-use ik_arm::io::{Example, FileAnimation, Group, OpenOptions, Upwards};
+use ik_arm::io::{Example, ExampleGroup, FileAnimation, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
     Action, Dialog, Effect, FileAction, FileContents, Iterate, JointEdit, PanelTab, PathDialog,
@@ -659,7 +659,7 @@ fn a_figure_that_stands_along_z_can_be_turned_or_left() {
 #[test]
 fn every_example_of_the_tour_opens_from_its_menu() {
     let mut bench = Bench::new();
-    for example in Example::of(Group::Basics) {
+    for example in Example::of(ExampleGroup::Basics) {
         bench.choose(&["Examples", example.title]);
         let opened = example.open().expect("it opens").document;
         assert_eq!(bench.session().document(), &opened, "{}", example.title);

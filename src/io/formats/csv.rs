@@ -1,8 +1,8 @@
 use glam::Vec3;
 
 use crate::document::{Document, Posed, RigKind, Track};
+use crate::io::exported::ExportFrames;
 use crate::io::exported::{Exported, MotionError, Progress};
-use crate::io::frames::ExportFrames;
 use crate::kinematics::skeleton::is_within_numbers;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 

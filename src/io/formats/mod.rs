@@ -318,7 +318,7 @@ impl Reader {
         }
         let mut found = None;
         let mut json = serde_json::Deserializer::from_str(source.text());
-        let read = json.deserialize_map(KeyVisitor(&mut found)).and_then(|()| json.end());
+        let read = json.deserialize_map(FormatVisitor(&mut found)).and_then(|()| json.end());
         match (found, read) {
             (Some(reader), _) => Ok(reader),
             (None, Err(error)) => Err(source.parse_error(&JsonPath::root(), &error)),
@@ -380,9 +380,9 @@ fn no_key(source: &Source) -> OpenError {
     source.error(&FieldError::new(JsonPath::root(), reason))
 }
 
-struct KeyVisitor<'a>(&'a mut Option<Reader>);
+struct FormatVisitor<'a>(&'a mut Option<Reader>);
 
-impl<'de> Visitor<'de> for KeyVisitor<'_> {
+impl<'de> Visitor<'de> for FormatVisitor<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

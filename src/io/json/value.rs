@@ -1,6 +1,7 @@
 //! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected.
 
 use std::fmt;
+use std::io::{self, Write};
 use std::marker::PhantomData;
 
 use glam::Vec3;
@@ -8,6 +9,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::ser::{Error as _, SerializeSeq as _, Serializer};
 use serde::{Deserialize, Serialize};
+use serde_json::ser::Formatter;
 
 /// An object. Without this wrapper, serde's derived code would accept an array, too.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -78,15 +80,15 @@ impl Serialize for JsonNumber {
 
 /// A time in seconds: a finite f64, because f32 is too coarse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Seconds(pub f64);
+pub struct JsonSeconds(pub f64);
 
-impl<'de> Deserialize<'de> for Seconds {
+impl<'de> Deserialize<'de> for JsonSeconds {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         f64::deserialize(deserializer).map(Self)
     }
 }
 
-impl Serialize for Seconds {
+impl Serialize for JsonSeconds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !self.0.is_finite() {
             return Err(S::Error::custom(format!("number must be finite, got {}", self.0)));
@@ -98,7 +100,7 @@ impl Serialize for Seconds {
 /// A key: its time and its numbers, as one array.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyRow {
-    pub time: Seconds,
+    pub time: JsonSeconds,
     pub values: Vec<JsonNumber>,
 }
 
@@ -231,5 +233,54 @@ impl<'de> Deserialize<'de> for Whole {
 impl Serialize for Whole {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_u32(self.0)
+    }
+}
+
+/// Serializes a value as JSON that is easy to read: each field on its own line, each array of
+/// numbers on one line.
+pub fn to_styled_json(value: &impl Serialize) -> Result<String, serde_json::Error> {
+    let mut bytes = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, JsonStyle::default());
+    value.serialize(&mut serializer)?;
+    bytes.push(b'\n');
+    String::from_utf8(bytes).map_err(|error| serde::ser::Error::custom(error.to_string()))
+}
+
+#[derive(Default)]
+struct JsonStyle {
+    depth: usize,
+}
+
+impl JsonStyle {
+    fn line<W: ?Sized + Write>(&self, writer: &mut W) -> io::Result<()> {
+        write!(writer, "\n{:1$}", "", 2 * self.depth)
+    }
+}
+
+impl Formatter for JsonStyle {
+    fn begin_array_value<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
+        if first { Ok(()) } else { out.write_all(b", ") }
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.depth += 1;
+        out.write_all(b"{")
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.depth -= 1;
+        self.line(out)?;
+        out.write_all(b"}")
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
+        if !first {
+            out.write_all(b",")?;
+        }
+        self.line(out)
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
+        out.write_all(b": ")
     }
 }

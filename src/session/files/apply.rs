@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::action::{Export, FileAction, PathDialog};
 use crate::document::{Document, RigKind};
-use crate::io::{Example, Group};
+use crate::io::{Example, ExampleGroup};
 use crate::kinematics::skeleton::JointId;
 use crate::session::dialog::Dialog;
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
@@ -70,7 +70,7 @@ fn open_example(example: Example) -> Outcome {
         Err(error) => return Outcome::fail(error.to_string()),
     };
     let plays = document.follows_path() && document.is_animated();
-    let looks_inside = example.group == Group::InsideSolver;
+    let looks_inside = example.group == ExampleGroup::InsideSolver;
     let opening = Opening { document, ..Opening::default() };
     Outcome::from(Consequence::Open(Box::new(opening)))
         .and(plays.then_some(Consequence::Play))

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use ik_arm::document::{Arm, Cursor, Document, TwistReferenceKind};
-use ik_arm::io::{self, Example, Group};
+use ik_arm::io::{self, Example, ExampleGroup};
 use ik_arm::kinematics::chain_ik;
 use ik_arm::kinematics::skeleton::Skeleton;
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -22,7 +22,7 @@ const EXACT: f64 = 3e-7;
 /// Opens a hard case and checks that it is unchanged by saving and opening.
 fn opened(name: &str) -> Document {
     let example = Example::find(name).expect("in the gallery");
-    assert_eq!(example.group, Group::HardCases);
+    assert_eq!(example.group, ExampleGroup::HardCases);
     let opened = example.open().expect("it opens");
     assert_eq!(opened.warnings, []);
     let json = io::to_json(&opened.document).expect("written");

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Document, Theme, Track};
-use ik_arm::io::{Example, Group};
+use ik_arm::io::{Example, ExampleGroup};
 use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
@@ -11,7 +11,7 @@ use crate::gallery::{opened, times};
 
 #[test]
 fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
-    for example in Example::of(Group::HardCases) {
+    for example in Example::of(ExampleGroup::HardCases) {
         let document = opened(example.name);
         for time in times(&document) {
             let posed = document.at(time);
@@ -35,7 +35,7 @@ fn every_number_of_every_picture_is_finite_and_the_limbs_are_in_it() {
 #[test]
 fn grid_cells_scale_with_the_rig() {
     assert_eq!(Document::default().grid_cell(), 100.0);
-    for example in Example::of(Group::HardCases) {
+    for example in Example::of(ExampleGroup::HardCases) {
         let document = opened(example.name);
         let planes = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark).planes;
         let cells = planes.radius / planes.cell;
@@ -74,7 +74,7 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
 fn every_hard_case_is_drawn() {
     let gpu = ik_arm::render::Gpu::headless().expect("a graphics adapter");
     let mut picture = ik_arm::render::PictureRenderer::new(&gpu, 240, 150, 1.0);
-    for example in Example::of(Group::HardCases) {
+    for example in Example::of(ExampleGroup::HardCases) {
         let document = opened(example.name);
         let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
         let with = picture.draw(&scene).expect("drawn");

@@ -6,8 +6,8 @@ use glam::DVec3;
 use super::rig::{BvhPose, BvhRig};
 use super::transform::SkeletonTransform;
 use crate::document::{Document, RigKind, Track};
+use crate::io::exported::ExportFrames;
 use crate::io::exported::{BvhUnit, Exported, MotionError, Progress};
-use crate::io::frames::ExportFrames;
 use crate::kinematics::skeleton::exact_angles;
 
 /// Numbers of a node in a frame: its offset, and its angles about x, y and z.

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::check;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
-use crate::io::json::{FieldError, JsonNumber, JsonObject, JsonPath, KeyRow, Seconds, Whole};
+use crate::io::json::{FieldError, JsonNumber, JsonObject, JsonPath, JsonSeconds, KeyRow, Whole};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
@@ -29,8 +29,8 @@ pub struct ChannelFields {
 
 #[derive(Serialize, Deserialize)]
 pub struct TimelineFields {
-    start: Option<Seconds>,
-    end: Option<Seconds>,
+    start: Option<JsonSeconds>,
+    end: Option<JsonSeconds>,
     frame_rate: Option<FramesPerSecond>,
 }
 
@@ -45,7 +45,7 @@ impl Serialize for FramesPerSecond {
         if f64::from(whole) == rate {
             serializer.serialize_u32(whole)
         } else {
-            Seconds(rate).serialize(serializer)
+            JsonSeconds(rate).serialize(serializer)
         }
     }
 }
@@ -124,18 +124,18 @@ pub fn keys(
 impl TimelineFields {
     pub fn new(timeline: Timeline) -> Self {
         Self {
-            start: Some(Seconds(timeline.start)),
-            end: Some(Seconds(timeline.end)),
+            start: Some(JsonSeconds(timeline.start)),
+            end: Some(JsonSeconds(timeline.end)),
             frame_rate: Some(FramesPerSecond(timeline.frame_rate)),
         }
     }
 
     pub fn timeline(&self, at: JsonPath) -> Result<Timeline, FieldError> {
         let default = Timeline::default();
-        let start = self.start.map_or(default.start, |Seconds(start)| start);
+        let start = self.start.map_or(default.start, |JsonSeconds(start)| start);
         let timeline = Timeline {
             start,
-            end: self.end.map_or(start + default.duration(), |Seconds(end)| end),
+            end: self.end.map_or(start + default.duration(), |JsonSeconds(end)| end),
             frame_rate: self.frame_rate.map_or(default.frame_rate, |FramesPerSecond(rate)| rate),
         };
         if timeline.is_valid() {
@@ -175,9 +175,9 @@ impl ShapedKeyFields {
 
 impl<'de> Deserialize<'de> for KeyFields {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct KeyVisitor;
+        struct KeyFieldsVisitor;
 
-        impl<'de> Visitor<'de> for KeyVisitor {
+        impl<'de> Visitor<'de> for KeyFieldsVisitor {
             type Value = KeyFields;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -194,7 +194,7 @@ impl<'de> Deserialize<'de> for KeyFields {
             }
         }
 
-        deserializer.deserialize_any(KeyVisitor)
+        deserializer.deserialize_any(KeyFieldsVisitor)
     }
 }
 
@@ -217,7 +217,7 @@ impl KeyFields {
         };
         let is_smooth = knot.interpolation == Interpolation::Smooth;
         Self(ShapedKeyFields {
-            key: KeyRow { time: Seconds(knot.time), values: numbers(knot.value) },
+            key: KeyRow { time: JsonSeconds(knot.time), values: numbers(knot.value) },
             interpolation: (!is_smooth).then_some(knot.interpolation),
             arriving: knot.slopes.map(|slopes| numbers(slopes.arriving)),
             leaving: knot.slopes.map(|slopes| numbers(slopes.leaving)),
@@ -239,7 +239,7 @@ impl KeyFields {
                 Some(Slopes { arriving: slope, leaving: slope })
             }
         };
-        let Seconds(time) = key.time;
+        let JsonSeconds(time) = key.time;
         Ok(Knot { time, value, interpolation: interpolation.unwrap_or_default(), slopes })
     }
 }

@@ -7,25 +7,33 @@
 
 mod arm;
 mod check;
-mod file;
-mod follow_path;
 mod keys;
-mod mesh_skin;
 mod skeleton;
 mod skin;
 mod targets;
 
 use std::path::{Path, PathBuf};
 
-use crate::document::{Document, RigKind, Skin};
+use core::f32::consts::FRAC_PI_2;
+use serde::{Deserialize, Serialize};
+
+use self::arm::ArmFields;
+use self::check::{above_0, number, within};
+use self::keys::{ChannelFields, TimelineFields, keys};
+use self::skeleton::SkeletonFields;
+use self::skin::SkinFields;
+use self::targets::{SolverFields, TargetFields, add_targets};
+use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig, Skin};
 use crate::io::error::{OpenError, SaveError};
-use crate::io::json::to_styled_json;
-use crate::io::json::{FieldWarnings, JsonObject};
+use crate::io::formats::document::targets::FollowPathList;
+use crate::io::json::{
+    FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPath, JsonPoint, Whole, to_styled_json,
+};
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::io::write::write;
 use crate::rig::{SkinFile, SkinSource};
-use file::{DocumentFields, Header};
+
 pub use keys::KeyFields;
 
 /// The key by which a file is recognized.
@@ -101,4 +109,162 @@ fn with_relative_skin(document: &Document, folder: &Path) -> Document {
         *skin = skin.with_path(relative);
     }
     document
+}
+
+const FORMAT: &str = "ik-arm";
+/// The version of files.
+const VERSION: u32 = 2;
+
+/// The first two fields: the name of the format and its version.
+#[derive(Deserialize)]
+pub struct Header {
+    format: String,
+    version: Whole,
+}
+
+impl Header {
+    /// Fails if this program cannot read the format or the version.
+    pub fn check(&self) -> Result<(), FieldError> {
+        if self.format != FORMAT {
+            let reason = format!("must be {FORMAT:?}, got {:?}", self.format);
+            return Err(FieldError::new(JsonPath::root().key("format"), reason));
+        }
+        let reason = match self.version.0 {
+            VERSION => return Ok(()),
+            version if version > VERSION => {
+                format!("must be {VERSION}, got {version}, which needs a newer ik-arm")
+            }
+            version => format!("must be {VERSION}, the version that is read, got {version}"),
+        };
+        Err(FieldError::new(JsonPath::root().key("version"), reason))
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct DocumentFields {
+    format: String,
+    version: Whole,
+    rig: RigKind,
+    arm: Option<JsonObject<ArmFields>>,
+    skeleton: Option<JsonObject<SkeletonFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skin: Option<JsonObject<SkinFields>>,
+    targets: Option<Vec<JsonObject<TargetFields>>>,
+    solver: Option<JsonObject<SolverFields>>,
+    follow_path: Option<FollowPathList>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channels: Option<Vec<JsonObject<ChannelFields>>>,
+    timeline: Option<JsonObject<TimelineFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    metres_per_unit: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation_name: Option<String>,
+    camera: Option<JsonObject<CameraFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_camera: Option<JsonObject<CameraFields>>,
+    overlays: Option<Vec<Overlay>>,
+}
+
+impl DocumentFields {
+    /// Returns whether the file has a camera for its rig.
+    pub fn has_camera(&self) -> bool {
+        self.camera.is_some()
+    }
+
+    pub fn new(document: &Document) -> Self {
+        let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
+        let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
+        Self {
+            format: FORMAT.to_owned(),
+            version: Whole(VERSION),
+            rig: document.rig,
+            arm: Some(JsonObject(ArmFields::new(&document.arm))),
+            skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
+            skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
+            targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
+            solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
+            follow_path: Some(FollowPathList::new(follow_paths)),
+            channels,
+            timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
+            metres_per_unit: document.metres_per_unit.map(JsonNumber),
+            animation_name: document.animation_name.clone(),
+            camera: Some(JsonObject(CameraFields::new(&document.camera))),
+            other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
+            overlays: Some(document.display.overlays().collect()),
+        }
+    }
+
+    pub fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
+        let at = |key| JsonPath::root().key(key);
+        let arm = self.arm.map(|JsonObject(fields)| fields.arm(&at("arm"))).transpose()?;
+        let mut skeleton_rig = SkeletonRig::default();
+        if let Some(JsonObject(fields)) = self.skeleton {
+            skeleton_rig.skeleton = fields.skeleton(&at("skeleton"), warnings)?.into();
+        }
+        if let Some(JsonObject(fields)) = self.skin {
+            skeleton_rig.skin = Some(fields.skin(&skeleton_rig.skeleton, &at("skin"))?);
+        }
+        add_targets(&mut skeleton_rig, self.targets.unwrap_or_default())?;
+        if let Some(JsonObject(fields)) = self.solver {
+            fields.set(&mut skeleton_rig, &at("solver"))?;
+        }
+        if let Some(paths) = self.follow_path {
+            paths.add_to(&mut skeleton_rig, &at("follow_path"))?;
+        }
+        let camera = self.camera.map(|JsonObject(fields)| fields.camera(&at("camera")));
+        let camera = camera.transpose()?;
+        let other_camera =
+            self.other_camera.map(|JsonObject(fields)| fields.camera(&at("other_camera")));
+        let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline(at("timeline")));
+        let metres =
+            self.metres_per_unit.map(|JsonNumber(metres)| above_0(at("metres_per_unit"), metres));
+        let overlays = self.overlays.map(|overlays| overlays.into_iter().collect());
+        let mut document = Document {
+            rig: self.rig,
+            arm: arm.unwrap_or_else(Arm::default),
+            skeleton_rig,
+            keys: Keys::default(),
+            timeline: timeline.transpose()?.unwrap_or_default(),
+            camera: camera.unwrap_or_default(),
+            other_rig_camera: other_camera.transpose()?,
+            display: overlays.unwrap_or_default(),
+            metres_per_unit: metres.transpose()?,
+            animation_name: self.animation_name,
+        };
+        document.keys = keys(self.channels.unwrap_or_default(), &document)?;
+        Ok(document)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct CameraFields {
+    target: Option<JsonPoint>,
+    yaw: Option<JsonNumber>,
+    pitch: Option<JsonNumber>,
+    distance: Option<JsonNumber>,
+    orthographic: Option<bool>,
+}
+
+impl CameraFields {
+    pub fn new(camera: &Camera) -> Self {
+        Self {
+            target: Some(JsonPoint(camera.target)),
+            yaw: Some(JsonNumber(camera.yaw)),
+            pitch: Some(JsonNumber(camera.pitch)),
+            distance: Some(JsonNumber(camera.distance)),
+            orthographic: Some(camera.orthographic),
+        }
+    }
+
+    pub fn camera(&self, at: &JsonPath) -> Result<Camera, FieldError> {
+        let default = Camera::default();
+        let at = |key| at.clone().key(key);
+        Ok(Camera {
+            target: self.target.map_or(default.target, |JsonPoint(target)| target),
+            yaw: number(self.yaw, default.yaw),
+            pitch: within(at("pitch"), number(self.pitch, default.pitch), FRAC_PI_2)?,
+            distance: above_0(at("distance"), number(self.distance, default.distance))?,
+            orthographic: self.orthographic.unwrap_or(default.orthographic),
+        })
+    }
 }

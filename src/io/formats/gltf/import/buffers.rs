@@ -9,8 +9,8 @@ use crate::io::error::{OpenError, system_reason};
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
 use crate::io::packed;
-use crate::io::regular_file::open_regular;
 use crate::io::source::Source;
+use crate::io::source::open_regular;
 
 /// The bytes of the buffers that the import reads; `None` for all other buffers.
 pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);

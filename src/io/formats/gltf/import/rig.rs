@@ -8,7 +8,7 @@ use super::node_poser::JointPlacement;
 use super::nodes::NodeTree;
 use super::skins::SkinJoints;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
-use crate::io::bones::{self, Bone, JointTree};
+use crate::io::bones::{self, JointBone, JointTree};
 use crate::io::formats::gltf::names::UniqueNames;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 use crate::kinematics::spline::Spline;
@@ -157,7 +157,7 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
 
 /// The bone of each joint: to its tip, to one of the `ends`, to the child along the joint's y axis
 /// (as Blender has its bones), or to the child that continues the chain.
-fn bones(joints: &[Joint], are_tips: &[bool], moves: &[bool], ends: &BoneEnds) -> Vec<Bone> {
+fn bones(joints: &[Joint], are_tips: &[bool], moves: &[bool], ends: &BoneEnds) -> Vec<JointBone> {
     /// Cosine of the greatest angle between the y axis and a bone along it.
     const ALONG: f64 = 0.999;
     let tree = JointTree::new(joints);
