@@ -10,17 +10,31 @@ use serde::de::{
 };
 
 pub use value::{
-    JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds, KeyRow, Whole, to_styled_json,
+    Above0, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds, KeyRow, Whole,
+    to_styled_json, value_or,
 };
 
 /// The path to a value in a JSON text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JsonPath(Vec<PathSegment>);
 
+/// A step of a path: into a field of an object, or to an element of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum PathSegment {
+pub enum PathSegment {
     Key(String),
     Index(usize),
+}
+
+impl From<&str> for PathSegment {
+    fn from(key: &str) -> Self {
+        Self::Key(key.to_owned())
+    }
+}
+
+impl From<usize> for PathSegment {
+    fn from(index: usize) -> Self {
+        Self::Index(index)
+    }
 }
 
 impl JsonPath {
@@ -202,6 +216,44 @@ impl FieldError {
     pub fn new(field: JsonPath, reason: impl Into<String>) -> Self {
         Self { field, reason: reason.into() }
     }
+}
+
+/// The error of a value whose path is still to be told, by [`AtField::at`].
+impl From<String> for FieldError {
+    fn from(reason: String) -> Self {
+        Self::new(JsonPath::root(), reason)
+    }
+}
+
+impl From<&str> for FieldError {
+    fn from(reason: &str) -> Self {
+        Self::new(JsonPath::root(), reason)
+    }
+}
+
+/// Tells the path of an error from the inside outwards.
+pub trait AtField<T> {
+    /// Puts a step in front of the path of the error.
+    fn at(self, step: impl Into<PathSegment>) -> Result<T, FieldError>;
+}
+
+impl<T, E: Into<FieldError>> AtField<T> for Result<T, E> {
+    fn at(self, step: impl Into<PathSegment>) -> Result<T, FieldError> {
+        self.map_err(|error| {
+            let mut error = error.into();
+            error.field.0.insert(0, step.into());
+            error
+        })
+    }
+}
+
+/// Converts the elements of an array. An error names the index of its element.
+pub fn converted<T, U, E: Into<FieldError>>(
+    array: impl IntoIterator<Item = T>,
+    mut convert: impl FnMut(T) -> Result<U, E>,
+) -> Result<Vec<U>, FieldError> {
+    let elements = array.into_iter().enumerate();
+    elements.map(|(index, element)| convert(element).at(index)).collect()
 }
 
 /// Warnings about a file that can be opened all the same. Only the first few are kept, because

@@ -1,4 +1,5 @@
-//! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected.
+//! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected. A
+//! number with a rule is checked while it is read, where the parser knows the path of its field.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -7,7 +8,7 @@ use std::marker::PhantomData;
 use glam::Vec3;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
-use serde::ser::{Error as _, SerializeSeq as _, Serializer};
+use serde::ser::{SerializeSeq as _, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::ser::Formatter;
 
@@ -71,28 +72,64 @@ impl<'de> Deserialize<'de> for JsonNumber {
 
 impl Serialize for JsonNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if !self.0.is_finite() {
-            return Err(S::Error::custom(format!("number must be finite, got {}", self.0)));
-        }
+        check_finite(self.0.into())?;
         serializer.serialize_f32(self.0)
     }
 }
 
-/// A time in seconds: a finite f64, because f32 is too coarse.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct JsonSeconds(pub f64);
-
-impl<'de> Deserialize<'de> for JsonSeconds {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        f64::deserialize(deserializer).map(Self)
+fn check_finite<E: serde::ser::Error>(number: f64) -> Result<(), E> {
+    if number.is_finite() {
+        return Ok(());
     }
+    Err(E::custom(format!("number must be finite, got {number}")))
 }
+
+/// A number with a rule: its type, the rule in words, and the rule.
+macro_rules! number_with_rule {
+    ($(#[$doc:meta])* $name:ident, $words:literal, $rule:expr) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Serialize, Deserialize)]
+        #[serde(try_from = "JsonNumber", into = "JsonNumber")]
+        pub struct $name(f32);
+
+        impl TryFrom<JsonNumber> for $name {
+            type Error = String;
+
+            fn try_from(JsonNumber(value): JsonNumber) -> Result<Self, String> {
+                let holds: fn(f32) -> bool = $rule;
+                let error = || format!(concat!("must be ", $words, ", got {}"), value);
+                holds(value).then_some(Self(value)).ok_or_else(error)
+            }
+        }
+
+        impl From<$name> for JsonNumber {
+            fn from($name(value): $name) -> Self {
+                Self(value)
+            }
+        }
+    };
+}
+
+number_with_rule!(
+    /// A number above 0.
+    Above0,
+    "above 0",
+    |value| value > 0.0
+);
+number_with_rule!(
+    /// A number from 0 to 1.
+    Fraction,
+    "from 0 to 1",
+    |value| (0.0..=1.0).contains(&value)
+);
+
+/// A time in seconds: a finite f64, because f32 is too coarse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub struct JsonSeconds(pub f64);
 
 impl Serialize for JsonSeconds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if !self.0.is_finite() {
-            return Err(S::Error::custom(format!("number must be finite, got {}", self.0)));
-        }
+        check_finite(self.0)?;
         serializer.serialize_f64(self.0)
     }
 }
@@ -206,7 +243,7 @@ impl Serialize for JsonPoint {
 }
 
 /// A whole number from 0 to 4294967295.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Whole(pub u32);
 
 impl<'de> Deserialize<'de> for Whole {
@@ -230,10 +267,28 @@ impl<'de> Deserialize<'de> for Whole {
     }
 }
 
-impl Serialize for Whole {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_u32(self.0)
-    }
+/// Conversions between values and the types that stand for them in files.
+macro_rules! stands_for {
+    ($($file:ident: $value:ty),*) => {$(
+        impl From<$value> for $file {
+            fn from(value: $value) -> Self {
+                Self(value)
+            }
+        }
+
+        impl From<$file> for $value {
+            fn from($file(value): $file) -> Self {
+                value
+            }
+        }
+    )*};
+}
+
+stands_for!(JsonNumber: f32, Above0: f32, Fraction: f32, JsonPoint: Vec3, JsonSeconds: f64, Whole: u32);
+
+/// The value in a file, or `default` if the file has none.
+pub fn value_or<T>(file: Option<impl Into<T>>, default: T) -> T {
+    file.map_or(default, Into::into)
 }
 
 /// Serializes a value as JSON that is easy to read: each field on its own line, each array of

@@ -1,17 +1,15 @@
 //! Fields of the arm in a file, and conversions between these fields and an arm.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::check::SoftReachFields;
-use super::check::{UNIT_TOLERANCE, above_0, fraction, number, unit_vector};
+use super::targets::SoftReachFields;
 use crate::document::{Arm, Cursor, HandOrientation, HandSpace, TwistReferenceKind};
-use crate::io::json::FieldError;
-use crate::io::json::JsonPath;
+use crate::io::json::{Above0, AtField, FieldError, Fraction, value_or};
 use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
 use crate::kinematics::fk::Fk;
 use crate::kinematics::twist::TransportedFrame;
-use crate::kinematics::two_bone::{Pointer, TwoBone};
+use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone};
 
 #[derive(Serialize, Deserialize)]
 pub struct ArmFields {
@@ -28,7 +26,7 @@ pub struct ArmFields {
     facing: Option<JsonObject<FacingFields>>,
     twist_reference: Option<JsonObject<TwistReferenceFields>>,
     soft_reach: Option<JsonObject<SoftReachFields>>,
-    influence: Option<JsonNumber>,
+    influence: Option<Fraction>,
     fk: Option<JsonObject<FkFields>>,
     hand_orientation: Option<JsonObject<HandOrientationFields>>,
 }
@@ -57,7 +55,7 @@ struct TransportedFields {
 struct FkFields {
     shoulder: Option<JsonPoint>,
     bend: Option<JsonNumber>,
-    stretch: Option<JsonNumber>,
+    stretch: Option<Above0>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -90,71 +88,79 @@ impl ArmFields {
             facing: Some(JsonObject(facing)),
             twist_reference: Some(JsonObject(TwistReferenceFields::new(arm))),
             soft_reach: Some(JsonObject(SoftReachFields::new(arm.soft_reach))),
-            influence: Some(JsonNumber(arm.influence)),
+            influence: Some(arm.influence.into()),
             fk: Some(JsonObject(FkFields::new(arm.fk))),
             hand_orientation: Some(JsonObject(HandOrientationFields::new(arm.hand_orientation))),
         }
     }
 
-    pub fn arm(&self, at: &JsonPath) -> Result<Arm, FieldError> {
+    pub fn arm(self) -> Result<Arm, FieldError> {
         let default = Arm::default();
         let cursor = Cursor {
-            in_root: self.cursor.map_or(default.cursor.in_root, |JsonPoint(cursor)| cursor),
-            in_world: self.pin.map_or(default.cursor.in_world, |JsonPoint(pin)| pin),
+            in_root: value_or(self.cursor, default.cursor.in_root),
+            in_world: value_or(self.pin, default.cursor.in_world),
             is_pinned: self.pinned.unwrap_or(self.pin.is_some()),
         };
+        let bones = TwoBone::new(
+            value_or(self.upper, default.bones.upper()),
+            value_or(self.lower, default.bones.lower()),
+        );
+        let bones = bones.or_else(|LengthError { bone, value }| {
+            let reason = format!("must be finite and above 0, got {value}");
+            Err(reason).at(bone.to_string().as_str())
+        })?;
         let mut arm = Arm {
             cursor,
-            twist: number(self.twist, default.twist),
-            root: self.root.map_or(default.root, |JsonPoint(root)| root),
-            bones: self.bones(at, default.bones)?,
-            influence: fraction(
-                at.clone().key("influence"),
-                number(self.influence, default.influence),
-            )?,
+            twist: value_or(self.twist, default.twist),
+            root: value_or(self.root, default.root),
+            bones,
+            influence: value_or(self.influence, default.influence),
             ..default
         };
         arm.ik_state.pointer = Pointer::towards(arm.cursor_in_root(), Pointer::default());
-        if let Some(JsonObject(fields)) = &self.twist_reference {
-            fields.set(&mut arm, &at.clone().key("twist_reference"))?;
+        if let Some(JsonObject(fields)) = self.twist_reference {
+            fields.set(&mut arm).at("twist_reference")?;
         }
-        if let Some(JsonObject(fields)) = &self.soft_reach {
-            arm.soft_reach = fields.soft_reach(&at.clone().key("soft_reach"))?;
+        if let Some(JsonObject(fields)) = self.soft_reach {
+            arm.soft_reach = fields.soft_reach().at("soft_reach")?;
         }
-        if let Some(JsonObject(fields)) = &self.fk {
-            arm.fk = fields.fk(&at.clone().key("fk"))?;
+        if let Some(JsonObject(fields)) = self.fk {
+            arm.fk = fields.fk();
         }
-        if let Some(JsonObject(fields)) = &self.hand_orientation {
+        if let Some(JsonObject(fields)) = self.hand_orientation {
             arm.hand_orientation = fields.hand_orientation();
         }
-        if let Some(JsonObject(fields)) = &self.facing {
-            arm.ik_state.pointer = fields.facing(&at.clone().key("facing"))?;
+        if let Some(JsonObject(fields)) = self.facing {
+            arm.ik_state.pointer = fields.facing().at("facing")?;
         }
         Ok(arm)
     }
+}
 
-    fn bones(&self, at: &JsonPath, default: TwoBone) -> Result<TwoBone, FieldError> {
-        TwoBone::new(number(self.upper, default.upper()), number(self.lower, default.lower()))
-            .map_err(|error| {
-                let reason = format!("must be finite and above 0, got {}", error.value);
-                FieldError::new(at.clone().key(&error.bone.to_string()), reason)
-            })
+/// Tolerance for unit vectors in a file: the maximum difference of a length from 1, and the maximum
+/// absolute cosine of the angle between two vectors that must be perpendicular.
+const UNIT_TOLERANCE: f32 = 1e-3;
+
+/// Checks that the length of a vector is 1 within [`UNIT_TOLERANCE`], and returns the normalized
+/// vector. If the length is 1 within rounding, returns the vector unchanged, bit for bit.
+fn unit_vector(vector: Vec3) -> Result<Vec3, String> {
+    const ROUNDING: f32 = 1e-6;
+    let length = vector.length();
+    if (length - 1.0).abs() > UNIT_TOLERANCE {
+        return Err(format!("must have length 1, got {length}"));
     }
+    Ok(if (length - 1.0).abs() <= ROUNDING { vector } else { vector.normalize() })
 }
 
 impl FacingFields {
-    fn facing(&self, at: &JsonPath) -> Result<Pointer, FieldError> {
-        let [direction, heading] = [
-            ("direction", self.direction.0),
-            ("heading", Vec2::from_array(self.heading.0).extend(0.0)),
-        ]
-        .map(|(key, vector)| unit_vector(at.clone().key(key), vector));
-        let (direction, heading) = (direction?, heading?.truncate());
+    fn facing(self) -> Result<Pointer, FieldError> {
+        let direction = unit_vector(self.direction.0).at("direction")?;
+        let [x, z] = self.heading.0;
+        let heading = unit_vector(Vec3::new(x, z, 0.0)).at("heading")?.truncate();
         let flat = Vec2::new(direction.x, direction.z);
         if flat.length() > UNIT_TOLERANCE && flat.normalize().distance(heading) > UNIT_TOLERANCE {
-            let [x, z] = self.heading.0;
             let reason = format!("must be `direction` as seen from above, got [{x}, {z}]");
-            return Err(FieldError::new(at.clone().key("heading"), reason));
+            return Err(reason).at("heading");
         }
         Ok(Pointer { direction, heading })
     }
@@ -175,24 +181,24 @@ impl TwistReferenceFields {
         }
     }
 
-    fn set(&self, arm: &mut Arm, at: &JsonPath) -> Result<(), FieldError> {
+    fn set(self, arm: &mut Arm) -> Result<(), FieldError> {
         arm.twist_reference = self.kind.unwrap_or(arm.twist_reference);
-        arm.pole = self.pole.map_or(arm.pole, |JsonPoint(pole)| pole);
-        if let Some(JsonObject(fields)) = &self.transported {
-            arm.ik_state.transported = Some(fields.frame(&at.clone().key("transported"))?);
+        arm.pole = value_or(self.pole, arm.pole);
+        if let Some(JsonObject(fields)) = self.transported {
+            arm.ik_state.transported = Some(fields.frame().at("transported")?);
         }
         Ok(())
     }
 }
 
 impl TransportedFields {
-    fn frame(&self, at: &JsonPath) -> Result<TransportedFrame, FieldError> {
-        let direction = unit_vector(at.clone().key("direction"), self.direction.0)?;
-        let outward = unit_vector(at.clone().key("outward"), self.outward.0)?;
+    fn frame(self) -> Result<TransportedFrame, FieldError> {
+        let direction = unit_vector(self.direction.0).at("direction")?;
+        let outward = unit_vector(self.outward.0).at("outward")?;
         if self.direction.0.dot(self.outward.0).abs() > UNIT_TOLERANCE {
             let [x, y, z] = self.outward.0.to_array();
             let reason = format!("must be perpendicular to `direction`, got [{x}, {y}, {z}]");
-            return Err(FieldError::new(at.clone().key("outward"), reason));
+            return Err(reason).at("outward");
         }
         Ok(TransportedFrame { direction, outward })
     }
@@ -201,19 +207,19 @@ impl TransportedFields {
 impl FkFields {
     fn new(fk: Fk) -> Self {
         Self {
-            shoulder: Some(JsonPoint(fk.shoulder)),
-            bend: Some(JsonNumber(fk.bend)),
-            stretch: Some(JsonNumber(fk.stretch)),
+            shoulder: Some(fk.shoulder.into()),
+            bend: Some(fk.bend.into()),
+            stretch: Some(fk.stretch.into()),
         }
     }
 
-    fn fk(&self, at: &JsonPath) -> Result<Fk, FieldError> {
+    fn fk(self) -> Fk {
         let default = Fk::default();
-        Ok(Fk {
-            shoulder: self.shoulder.map_or(default.shoulder, |JsonPoint(shoulder)| shoulder),
-            bend: number(self.bend, default.bend),
-            stretch: above_0(at.clone().key("stretch"), number(self.stretch, default.stretch))?,
-        })
+        Fk {
+            shoulder: value_or(self.shoulder, default.shoulder),
+            bend: value_or(self.bend, default.bend),
+            stretch: value_or(self.stretch, default.stretch),
+        }
     }
 }
 
@@ -226,12 +232,12 @@ impl HandOrientationFields {
         }
     }
 
-    fn hand_orientation(&self) -> HandOrientation {
+    fn hand_orientation(self) -> HandOrientation {
         let default = HandOrientation::default();
         HandOrientation {
             space: self.space.unwrap_or(default.space),
-            angles: self.angles.map_or(default.angles, |JsonPoint(angles)| angles),
-            roll: number(self.roll, default.roll),
+            angles: value_or(self.angles, default.angles),
+            roll: value_or(self.roll, default.roll),
         }
     }
 }

@@ -10,9 +10,10 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::check;
+use super::skeleton::joint;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
-use crate::io::json::{FieldError, JsonNumber, JsonObject, JsonPath, JsonSeconds, KeyRow, Whole};
+use crate::io::json::{AtField, FieldError, value_or};
+use crate::io::json::{JsonNumber, JsonObject, JsonSeconds, KeyRow, Whole};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
@@ -61,43 +62,36 @@ impl ChannelFields {
             _ => None,
         };
         let width = channel.quantity().width();
-        let joint = channel.joint().and_then(|joint| u32::try_from(joint.index()).ok());
         Self {
             channel: channel.name().to_owned(),
-            joint: joint.map(Whole),
+            joint: channel.joint().map(Whole::from),
             overlay,
             keys: track.knots().iter().map(|key| KeyFields::new(key, width)).collect(),
         }
     }
 
-    fn channel(&self, at: &JsonPath, document: &Document) -> Result<Channel, FieldError> {
-        let unknown = || {
-            let reason = format!("must be the name of a channel, got {:?}", self.channel);
-            FieldError::new(at.clone().key("channel"), reason)
+    fn channel(&self, document: &Document) -> Result<Channel, FieldError> {
+        let named = |joint, overlay| {
+            let unknown = || format!("must be the name of a channel, got {:?}", self.channel);
+            Channel::named(&self.channel, joint, overlay).ok_or_else(unknown).at("channel")
         };
-        let any_owner = (Some(JointId::default()), Some(Overlay::Cursor));
-        let any = Channel::named(&self.channel, any_owner.0, any_owner.1).ok_or_else(unknown)?;
-        let joint = any.joint().map(|_| self.joint(at, document)).transpose()?;
+        let any = named(Some(JointId::default()), Some(Overlay::Cursor))?;
+        let joint = any.joint().map(|_| self.joint(document)).transpose()?;
         if matches!(any, Channel::Overlay(_)) && self.overlay.is_none() {
-            let reason = "must have `overlay`: each overlay has such a channel";
-            return Err(FieldError::new(at.clone(), reason));
+            return Err("must have `overlay`: each overlay has such a channel".into());
         }
-        let channel = Channel::named(&self.channel, joint, self.overlay).ok_or_else(unknown)?;
-        if let Some(joint) = channel.target()
-            && document.skeleton_rig.target(joint).is_none()
-        {
-            let reason = format!("must be a joint with a target, got {joint}");
-            return Err(FieldError::new(at.clone().key("joint"), reason));
+        let channel = named(joint, self.overlay)?;
+        match channel.target() {
+            Some(joint) if document.skeleton_rig.target(joint).is_none() => {
+                Err(format!("must be a joint with a target, got {joint}")).at("joint")
+            }
+            _ => Ok(channel),
         }
-        Ok(channel)
     }
 
-    fn joint(&self, at: &JsonPath, document: &Document) -> Result<JointId, FieldError> {
-        let missing =
-            || FieldError::new(at.clone(), "must have `joint`: each joint has such a channel");
-        let joint = self.joint.ok_or_else(missing)?;
-        let joints = document.skeleton().joints().len();
-        check::joint(at.clone().key("joint"), joint, joints).map(JointId::new)
+    fn joint(&self, document: &Document) -> Result<JointId, FieldError> {
+        let number = self.joint.ok_or("must have `joint`: each joint has such a channel")?;
+        joint(number, document.skeleton().joints().len()).at("joint")
     }
 }
 
@@ -108,14 +102,13 @@ pub fn keys(
 ) -> Result<Keys, FieldError> {
     let mut keys = Keys::default();
     for (index, JsonObject(fields)) in channels.into_iter().enumerate() {
-        let at = JsonPath::root().key("channels").index(index);
-        let channel = fields.channel(&at, document)?;
+        let channel = fields.channel(document).at(index)?;
         if keys.has(channel) {
-            return Err(FieldError::new(at, "channel must have one entry, got a second"));
+            return Err("channel must have one entry, got a second").at(index);
         }
-        for (index, key) in fields.keys.iter().enumerate() {
-            let at = at.clone().key("keys").index(index);
-            keys.insert_key(channel, key.key(channel.quantity(), &at)?);
+        for (key_index, key) in fields.keys.iter().enumerate() {
+            let key = key.key(channel.quantity()).at(key_index).at("keys").at(index)?;
+            keys.insert_key(channel, key);
         }
     }
     Ok(keys)
@@ -130,12 +123,12 @@ impl TimelineFields {
         }
     }
 
-    pub fn timeline(&self, at: JsonPath) -> Result<Timeline, FieldError> {
+    pub fn timeline(self) -> Result<Timeline, FieldError> {
         let default = Timeline::default();
-        let start = self.start.map_or(default.start, |JsonSeconds(start)| start);
+        let start = value_or(self.start, default.start);
         let timeline = Timeline {
             start,
-            end: self.end.map_or(start + default.duration(), |JsonSeconds(end)| end),
+            end: value_or(self.end, start + default.duration()),
             frame_rate: self.frame_rate.map_or(default.frame_rate, |FramesPerSecond(rate)| rate),
         };
         if timeline.is_valid() {
@@ -149,7 +142,7 @@ impl TimelineFields {
             Timeline::MIN_FRAME_RATE,
             Timeline::MAX_FRAME_RATE,
         );
-        Err(FieldError::new(at, reason))
+        Err(reason.into())
     }
 }
 
@@ -167,12 +160,6 @@ struct ShapedKeyFields {
     leaving: Option<Vec<JsonNumber>>,
 }
 
-impl ShapedKeyFields {
-    fn of_row(key: KeyRow) -> Self {
-        Self { key, interpolation: None, arriving: None, leaving: None }
-    }
-}
-
 impl<'de> Deserialize<'de> for KeyFields {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct KeyFieldsVisitor;
@@ -185,8 +172,9 @@ impl<'de> Deserialize<'de> for KeyFields {
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, row: A) -> Result<KeyFields, A::Error> {
-                let row = KeyRow::deserialize(SeqAccessDeserializer::new(row))?;
-                Ok(KeyFields(ShapedKeyFields::of_row(row)))
+                let key = KeyRow::deserialize(SeqAccessDeserializer::new(row))?;
+                let (interpolation, arriving, leaving) = (None, None, None);
+                Ok(KeyFields(ShapedKeyFields { key, interpolation, arriving, leaving }))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<KeyFields, A::Error> {
@@ -224,21 +212,18 @@ impl KeyFields {
         })
     }
 
-    /// The key of a channel with a kind of value; `at` is the place of these fields.
-    pub fn key(&self, quantity: Quantity, at: &JsonPath) -> Result<Knot<Vec3>, FieldError> {
+    /// The key of a channel with a kind of value.
+    pub fn key(&self, quantity: Quantity) -> Result<Knot<Vec3>, FieldError> {
         let ShapedKeyFields { key, interpolation, arriving, leaving } = &self.0;
-        let value = value(quantity, key).map_err(|reason| FieldError::new(at.clone(), reason))?;
         let slope = |name: &str, slope: &Option<Vec<JsonNumber>>| {
-            let slope = slope.as_ref().map(|slope| vector(quantity, slope)).transpose();
-            slope.map_err(|reason| FieldError::new(at.clone().key(name), reason))
+            slope.as_ref().map(|slope| vector(quantity, slope).at(name)).transpose()
         };
-        let slopes = match (slope("arriving", arriving)?, slope("leaving", leaving)?) {
-            (None, None) => None,
-            (Some(arriving), Some(leaving)) => Some(Slopes { arriving, leaving }),
-            (Some(slope), None) | (None, Some(slope)) => {
-                Some(Slopes { arriving: slope, leaving: slope })
-            }
-        };
+        let value = value(quantity, key)?;
+        let (arriving, leaving) = (slope("arriving", arriving)?, slope("leaving", leaving)?);
+        let slopes = arriving.or(leaving).map(|either| Slopes {
+            arriving: arriving.unwrap_or(either),
+            leaving: leaving.unwrap_or(either),
+        });
         let JsonSeconds(time) = key.time;
         Ok(Knot { time, value, interpolation: interpolation.unwrap_or_default(), slopes })
     }
@@ -246,8 +231,8 @@ impl KeyFields {
 
 fn value(quantity: Quantity, row: &KeyRow) -> Result<Vec3, String> {
     let value = vector(quantity, &row.values).map_err(|_| {
-        let numbers = if quantity.width() == 1 { "one number" } else { "three numbers" };
-        format!("must have {numbers} after the time, got {}", row.values.len())
+        let (numbers, got) = (numbers_of(quantity), row.values.len());
+        format!("must have {numbers} after the time, got {got}")
     })?;
     let x = value.x;
     match quantity {
@@ -262,14 +247,17 @@ fn value(quantity: Quantity, row: &KeyRow) -> Result<Vec3, String> {
 
 /// The numbers as a vector; the components that the quantity does not have are 0.
 fn vector(quantity: Quantity, numbers: &[JsonNumber]) -> Result<Vec3, String> {
-    let width = quantity.width();
-    if numbers.len() != width {
-        let wanted = if width == 1 { "one number" } else { "three numbers" };
-        return Err(format!("must have {wanted}, got {}", numbers.len()));
+    if numbers.len() != quantity.width() {
+        return Err(format!("must have {}, got {}", numbers_of(quantity), numbers.len()));
     }
     let mut vector = [0.0; 3];
     for (component, JsonNumber(number)) in vector.iter_mut().zip(numbers) {
         *component = *number;
     }
     Ok(Vec3::from_array(vector))
+}
+
+/// The count of numbers of a quantity, in words.
+fn numbers_of(quantity: Quantity) -> &'static str {
+    if quantity.width() == 1 { "one number" } else { "three numbers" }
 }

@@ -1,40 +1,36 @@
 //! The program's own format: JSON, described in docs/files.md field by field.
 //!
-//! serde parses the text to [fields](file::DocumentFields), where `None` stands for a field that
-//! the file leaves out. The fields are converted to a document: missing fields get defaults, and
-//! [ranges are checked](check). Saving converts the document to fields, and serde writes the fields
-//! as text.
+//! serde parses the text to [fields](DocumentFields), where `None` stands for a field that the file
+//! leaves out. The fields are converted to a document: missing fields get defaults. Rules of single
+//! numbers are checked while these are read, all other rules by the conversions, whose callers
+//! [tell the path](AtField) of an error. Saving converts the document to fields, and serde writes the
+//! fields as text.
 
 mod arm;
-mod check;
 mod keys;
 mod skeleton;
 mod skin;
 mod targets;
 
+use core::f32::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
-use core::f32::consts::FRAC_PI_2;
 use serde::{Deserialize, Serialize};
 
-use self::arm::ArmFields;
-use self::check::{above_0, number, within};
-use self::keys::{ChannelFields, TimelineFields, keys};
-use self::skeleton::SkeletonFields;
-use self::skin::SkinFields;
-use self::targets::{SolverFields, TargetFields, add_targets};
 use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig, Skin};
 use crate::io::error::{OpenError, SaveError};
-use crate::io::formats::document::targets::FollowPathList;
-use crate::io::json::{
-    FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPath, JsonPoint, Whole, to_styled_json,
-};
+use crate::io::json::{Above0, JsonNumber, JsonObject, JsonPoint, Whole};
+use crate::io::json::{AtField, FieldError, FieldWarnings, to_styled_json, value_or};
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::io::write::write;
 use crate::rig::{SkinFile, SkinSource};
-
+use arm::ArmFields;
 pub use keys::KeyFields;
+use keys::{ChannelFields, TimelineFields, keys};
+use skeleton::SkeletonFields;
+use skin::SkinFields;
+use targets::{FollowPathList, SolverFields, TargetFields, add_targets};
 
 /// The key by which a file is recognized.
 pub const KEY: &str = "format";
@@ -53,7 +49,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let JsonObject(fields) = source.parse::<JsonObject<DocumentFields>>(|field| {
         warnings.push(field, "unknown field, ignored");
     })?;
-    let has_camera = fields.has_camera();
+    let has_camera = fields.camera.is_some();
     let mut document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
     if !has_camera && !options.without_camera && document.rig == RigKind::Skeleton {
         document.camera = document.framing_camera();
@@ -117,17 +113,16 @@ const VERSION: u32 = 2;
 
 /// The first two fields: the name of the format and its version.
 #[derive(Deserialize)]
-pub struct Header {
+struct Header {
     format: String,
     version: Whole,
 }
 
 impl Header {
     /// Fails if this program cannot read the format or the version.
-    pub fn check(&self) -> Result<(), FieldError> {
+    fn check(&self) -> Result<(), FieldError> {
         if self.format != FORMAT {
-            let reason = format!("must be {FORMAT:?}, got {:?}", self.format);
-            return Err(FieldError::new(JsonPath::root().key("format"), reason));
+            return Err(format!("must be {FORMAT:?}, got {:?}", self.format)).at("format");
         }
         let reason = match self.version.0 {
             VERSION => return Ok(()),
@@ -136,12 +131,12 @@ impl Header {
             }
             version => format!("must be {VERSION}, the version that is read, got {version}"),
         };
-        Err(FieldError::new(JsonPath::root().key("version"), reason))
+        Err(reason).at("version")
     }
 }
 
 #[derive(Serialize, Deserialize)]
-pub struct DocumentFields {
+struct DocumentFields {
     format: String,
     version: Whole,
     rig: RigKind,
@@ -156,7 +151,7 @@ pub struct DocumentFields {
     channels: Option<Vec<JsonObject<ChannelFields>>>,
     timeline: Option<JsonObject<TimelineFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    metres_per_unit: Option<JsonNumber>,
+    metres_per_unit: Option<Above0>,
     #[serde(skip_serializing_if = "Option::is_none")]
     animation_name: Option<String>,
     camera: Option<JsonObject<CameraFields>>,
@@ -166,12 +161,7 @@ pub struct DocumentFields {
 }
 
 impl DocumentFields {
-    /// Returns whether the file has a camera for its rig.
-    pub fn has_camera(&self) -> bool {
-        self.camera.is_some()
-    }
-
-    pub fn new(document: &Document) -> Self {
+    fn new(document: &Document) -> Self {
         let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
@@ -186,7 +176,7 @@ impl DocumentFields {
             follow_path: Some(FollowPathList::new(follow_paths)),
             channels,
             timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
-            metres_per_unit: document.metres_per_unit.map(JsonNumber),
+            metres_per_unit: document.metres_per_unit.map(Above0::from),
             animation_name: document.animation_name.clone(),
             camera: Some(JsonObject(CameraFields::new(&document.camera))),
             other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
@@ -194,76 +184,75 @@ impl DocumentFields {
         }
     }
 
-    pub fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
-        let at = |key| JsonPath::root().key(key);
-        let arm = self.arm.map(|JsonObject(fields)| fields.arm(&at("arm"))).transpose()?;
-        let mut skeleton_rig = SkeletonRig::default();
+    fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
+        let arm = self.arm.map(|JsonObject(fields)| fields.arm().at("arm")).transpose()?;
+        let mut rig = SkeletonRig::default();
         if let Some(JsonObject(fields)) = self.skeleton {
-            skeleton_rig.skeleton = fields.skeleton(&at("skeleton"), warnings)?.into();
+            rig.skeleton = fields.skeleton(warnings).at("skeleton")?.into();
         }
         if let Some(JsonObject(fields)) = self.skin {
-            skeleton_rig.skin = Some(fields.skin(&skeleton_rig.skeleton, &at("skin"))?);
+            rig.skin = Some(fields.skin(&rig.skeleton).at("skin")?);
         }
-        add_targets(&mut skeleton_rig, self.targets.unwrap_or_default())?;
+        add_targets(&mut rig, self.targets.unwrap_or_default()).at("targets")?;
         if let Some(JsonObject(fields)) = self.solver {
-            fields.set(&mut skeleton_rig, &at("solver"))?;
+            fields.set(&mut rig).at("solver")?;
         }
         if let Some(paths) = self.follow_path {
-            paths.add_to(&mut skeleton_rig, &at("follow_path"))?;
+            paths.add_to(&mut rig).at("follow_path")?;
         }
-        let camera = self.camera.map(|JsonObject(fields)| fields.camera(&at("camera")));
-        let camera = camera.transpose()?;
-        let other_camera =
-            self.other_camera.map(|JsonObject(fields)| fields.camera(&at("other_camera")));
-        let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline(at("timeline")));
-        let metres =
-            self.metres_per_unit.map(|JsonNumber(metres)| above_0(at("metres_per_unit"), metres));
-        let overlays = self.overlays.map(|overlays| overlays.into_iter().collect());
+        let camera = |file: Option<JsonObject<CameraFields>>, key| {
+            file.map(|JsonObject(fields)| fields.camera().at(key)).transpose()
+        };
+        let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline().at("timeline"));
         let mut document = Document {
             rig: self.rig,
             arm: arm.unwrap_or_else(Arm::default),
-            skeleton_rig,
+            skeleton_rig: rig,
             keys: Keys::default(),
             timeline: timeline.transpose()?.unwrap_or_default(),
-            camera: camera.unwrap_or_default(),
-            other_rig_camera: other_camera.transpose()?,
-            display: overlays.unwrap_or_default(),
-            metres_per_unit: metres.transpose()?,
+            camera: camera(self.camera, "camera")?.unwrap_or_default(),
+            other_rig_camera: camera(self.other_camera, "other_camera")?,
+            display: self.overlays.map(FromIterator::from_iter).unwrap_or_default(),
+            metres_per_unit: self.metres_per_unit.map(f32::from),
             animation_name: self.animation_name,
         };
-        document.keys = keys(self.channels.unwrap_or_default(), &document)?;
+        document.keys = keys(self.channels.unwrap_or_default(), &document).at("channels")?;
         Ok(document)
     }
 }
 
 #[derive(Serialize, Deserialize)]
-pub struct CameraFields {
+struct CameraFields {
     target: Option<JsonPoint>,
     yaw: Option<JsonNumber>,
     pitch: Option<JsonNumber>,
-    distance: Option<JsonNumber>,
+    distance: Option<Above0>,
     orthographic: Option<bool>,
 }
 
 impl CameraFields {
-    pub fn new(camera: &Camera) -> Self {
+    fn new(camera: &Camera) -> Self {
         Self {
-            target: Some(JsonPoint(camera.target)),
-            yaw: Some(JsonNumber(camera.yaw)),
-            pitch: Some(JsonNumber(camera.pitch)),
-            distance: Some(JsonNumber(camera.distance)),
+            target: Some(camera.target.into()),
+            yaw: Some(camera.yaw.into()),
+            pitch: Some(camera.pitch.into()),
+            distance: Some(camera.distance.into()),
             orthographic: Some(camera.orthographic),
         }
     }
 
-    pub fn camera(&self, at: &JsonPath) -> Result<Camera, FieldError> {
+    fn camera(self) -> Result<Camera, FieldError> {
         let default = Camera::default();
-        let at = |key| at.clone().key(key);
+        let pitch = value_or(self.pitch, default.pitch);
+        if pitch.abs() > FRAC_PI_2 {
+            let rule = format!("must be from {} to {FRAC_PI_2}", -FRAC_PI_2);
+            return Err(format!("{rule}, got {pitch}")).at("pitch");
+        }
         Ok(Camera {
-            target: self.target.map_or(default.target, |JsonPoint(target)| target),
-            yaw: number(self.yaw, default.yaw),
-            pitch: within(at("pitch"), number(self.pitch, default.pitch), FRAC_PI_2)?,
-            distance: above_0(at("distance"), number(self.distance, default.distance))?,
+            target: value_or(self.target, default.target),
+            yaw: value_or(self.yaw, default.yaw),
+            pitch,
+            distance: value_or(self.distance, default.distance),
             orthographic: self.orthographic.unwrap_or(default.orthographic),
         })
     }

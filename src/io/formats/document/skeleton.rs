@@ -1,10 +1,10 @@
-//! Fields of the skeleton in a file, and conversions between these fields and a skeleton.
+//! Fields of the skeleton and indices of its joints in a file, and conversions between these and a
+//! skeleton.
 
 use glam::{Affine3A, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::io::json::JsonPath;
-use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::json::{AtField, FieldError, FieldWarnings, JsonPath, value_or};
 use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 use crate::kinematics::skeleton::{
     Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
@@ -55,39 +55,33 @@ impl SkeletonFields {
     }
 
     /// Converts the fields to a skeleton. A rotation beyond the joint's limits is clamped, with a
-    /// warning. `at` is the path of the fields.
-    pub fn skeleton(
-        self,
-        at: &JsonPath,
-        warnings: &mut FieldWarnings,
-    ) -> Result<Skeleton, FieldError> {
-        let at_joints = at.clone().key("joints");
+    /// warning.
+    pub fn skeleton(self, warnings: &mut FieldWarnings) -> Result<Skeleton, FieldError> {
         let mut joints: Vec<Joint> = Vec::new();
         for (index, JsonObject(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
             let joint = fields.joint(&joints);
             if !joint.limits.contains(joint.rotation) {
-                let field = at_joints.clone().index(index).key("rotation");
-                warnings.push(field, "must be within the joint's limits; clamped");
+                let joint = JsonPath::root().key("skeleton").key("joints").index(index);
+                warnings.push(joint.key("rotation"), "must be within the joint's limits; clamped");
             }
             joints.push(joint);
         }
         let names: Vec<_> = joints.iter().map(|joint| joint.name.clone()).collect();
-        let mut skeleton = Skeleton::from_joints(joints).map_err(|error| {
-            FieldError::new(invalid_field(&error, at_joints, &names), error.to_string())
-        })?;
+        let mut skeleton = Skeleton::from_joints(joints)
+            .map_err(|error| FieldError::new(invalid_field(&error, &names), error.to_string()))
+            .at("joints")?;
         if let Some(JsonNumbers(transform)) = self.transform {
-            skeleton
-                .set_transform(Affine3A::from_cols_array(&transform))
-                .map_err(|error| FieldError::new(at.clone().key("transform"), error.to_string()))?;
+            let set = skeleton.set_transform(Affine3A::from_cols_array(&transform));
+            set.map_err(|error| error.to_string()).at("transform")?;
         }
         Ok(skeleton)
     }
 }
 
-/// Returns the path of the field that caused `error`. `at_joints` is the path of the joints, and
-/// `names` has their names.
-fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -> JsonPath {
-    let at = |joint: usize| at_joints.clone().index(joint);
+/// Returns the path from the joints to the field that caused `error`. `names` has the names of the
+/// joints.
+fn invalid_field(error: &SkeletonError, names: &[String]) -> JsonPath {
+    let at = |joint: usize| JsonPath::root().index(joint);
     match error {
         SkeletonError::Parent { joint, .. } => at(joint.index()).key("parent"),
         SkeletonError::Radius { joint, .. } => at(joint.index()).key("radius"),
@@ -104,7 +98,7 @@ fn invalid_field(error: &SkeletonError, at_joints: JsonPath, names: &[String]) -
             let mut same = (0..names.len()).filter(|index| names[*index] == *repeated);
             at(same.nth(1).unwrap_or_default()).key("name")
         }
-        _ => at_joints,
+        _ => JsonPath::root(),
     }
 }
 
@@ -118,40 +112,56 @@ impl JointFields {
             .map(|axis| joint.limits.range(axis).map(|Limit { min, max }| JsonNumbers([min, max])));
         Self {
             name: joint.name.clone(),
-            parent: joint.parent.and_then(|parent| u32::try_from(parent.index()).ok()).map(Whole),
-            offset: Some(JsonPoint(joint.offset)),
-            axis: Some(JsonPoint(joint.axis)),
-            rotation: Some(JsonPoint(joint.rotation)),
+            parent: joint.parent.map(Whole::from),
+            offset: Some(joint.offset.into()),
+            axis: Some(joint.axis.into()),
+            rotation: Some(joint.rotation.into()),
             frame: (!is_identity).then_some(JsonNumbers(frame)),
             limits: joint.limits.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
             locked: joint.locked.then_some(true),
             connected: joint.connected.then_some(true),
-            radius: Some(JsonNumber(joint.radius)),
+            radius: Some(joint.radius.into()),
         }
     }
 
     /// Converts the fields to a joint. Without an offset, the joint is at the tip of its parent,
     /// which is one of the `preceding` joints.
     fn joint(self, preceding: &[Joint]) -> Joint {
-        let parent = self.parent.map(|Whole(parent)| parent as usize);
-        let axis = self.axis.map_or(Vec3::ZERO, |JsonPoint(axis)| axis);
-        let parent_tip = parent.and_then(|parent| Some(preceding.get(parent)?.axis));
-        let default = Joint::new(&self.name, parent.map(JointId::new), axis);
-        let limits = self.limits.map(|JsonObject(limits)| limits).unwrap_or_default();
+        let parent = self.parent.map(|Whole(parent)| JointId::new(parent as usize));
+        let parent_tip = parent.and_then(|parent| Some(preceding.get(parent.index())?.axis));
+        let default = Joint::new(&self.name, parent, value_or(self.axis, Vec3::ZERO));
+        let JsonObject(LimitsFields { x, y, z }) = self.limits.unwrap_or_default();
+        let limits = [x, y, z].map(|axis| axis.map(|JsonNumbers([min, max])| Limit { min, max }));
+        let frame = self.frame.map(|JsonNumbers(frame)| Mat3::from_cols_array(&frame));
         Joint {
-            offset: self.offset.map_or(parent_tip.unwrap_or_default(), |JsonPoint(offset)| offset),
-            rotation: self.rotation.map_or(Vec3::ZERO, |JsonPoint(rotation)| rotation),
-            frame: self
-                .frame
-                .map_or(Mat3::IDENTITY, |JsonNumbers(frame)| Mat3::from_cols_array(&frame)),
-            limits: JointLimits::new(
-                [limits.x, limits.y, limits.z]
-                    .map(|limit| limit.map(|JsonNumbers([min, max])| Limit { min, max })),
-            ),
+            offset: value_or(self.offset, parent_tip.unwrap_or_default()),
+            rotation: value_or(self.rotation, Vec3::ZERO),
+            frame: frame.unwrap_or(Mat3::IDENTITY),
+            limits: JointLimits::new(limits),
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),
-            radius: self.radius.map_or(default.radius.min(f32::MAX), |JsonNumber(radius)| radius),
+            radius: value_or(self.radius, default.radius.min(f32::MAX)),
             ..default
         }
     }
+}
+
+impl From<JointId> for Whole {
+    fn from(joint: JointId) -> Self {
+        Self(u32::try_from(joint.index()).unwrap_or(u32::MAX))
+    }
+}
+
+/// The joint of an index in a file, which must be below `joints`, the number of joints.
+pub fn joint(Whole(joint): Whole, joints: usize) -> Result<JointId, String> {
+    let index = joint as usize;
+    if index < joints {
+        return Ok(JointId::new(index));
+    }
+    let rule = match joints {
+        0 => "must be a joint, but the skeleton has none".to_owned(),
+        1 => "must be 0, the only joint".to_owned(),
+        _ => format!("must be a joint from 0 to {}", joints - 1),
+    };
+    Err(format!("{rule}, got {joint}"))
 }

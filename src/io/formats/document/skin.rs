@@ -1,14 +1,16 @@
 //! Fields of a skin in a file, and conversions between these fields and a [`Skin`].
+//!
+//! A mesh from a file of another program stands there as the name of that file, or by its lists of
+//! numbers, which are little-endian bytes in base64.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::check::{fraction, joint, number};
-use crate::io::json::{
-    FieldError, JsonNumber, JsonNumbers, JsonObject, JsonPath, JsonPoint, Whole,
-};
+use super::skeleton::joint;
+use crate::io::json::{AtField, FieldError, converted, value_or};
+use crate::io::json::{Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 use crate::io::packed;
 use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
@@ -66,63 +68,59 @@ impl SkinFields {
         }
     }
 
-    /// Converts the fields to a skin of `skeleton`. `at` is the path of the fields.
-    pub fn skin(self, skeleton: &Shared<Skeleton>, at: &JsonPath) -> Result<Skin, FieldError> {
+    pub fn skin(self, skeleton: &Shared<Skeleton>) -> Result<Skin, FieldError> {
         let source = match (self.bones, self.mesh) {
-            (Some(_), Some(_)) => {
-                return Err(FieldError::new(at.clone(), "must not have both `bones` and `mesh`"));
-            }
-            (None, Some(JsonObject(mesh))) => {
-                SkinSource::Mesh(mesh.skin(skeleton, &at.clone().key("mesh"))?)
-            }
+            (Some(_), Some(_)) => return Err("must not have both `bones` and `mesh`".into()),
+            (None, Some(JsonObject(mesh))) => SkinSource::Mesh(mesh.skin(skeleton).at("mesh")?),
             (bones, None) => {
-                let JsonObject(bones) = bones.unwrap_or(JsonObject(SkinShapeFields::default()));
-                SkinSource::Bones(bones.skin(skeleton, &at.clone().key("bones"))?)
+                let JsonObject(bones) = bones.unwrap_or_default();
+                SkinSource::Bones(bones.skin(skeleton).at("bones")?)
             }
         };
         let skin = Skin::new(source);
-        let JsonNumbers(colour) = self.colour.unwrap_or(JsonNumbers(skin.colour));
-        for (channel, value) in colour.into_iter().enumerate() {
-            fraction(at.clone().key("colour").index(channel), value)?;
-        }
-        Ok(Skin { skinning: self.skinning.unwrap_or(skin.skinning), colour, ..skin })
+        Ok(Skin {
+            skinning: self.skinning.unwrap_or(skin.skinning),
+            colour: self.colour.map(colour).transpose()?.unwrap_or(skin.colour),
+            ..skin
+        })
     }
+}
+
+fn colour(JsonNumbers(colour): JsonNumbers<3>) -> Result<[f32; 3], FieldError> {
+    for (channel, value) in colour.into_iter().enumerate() {
+        Fraction::try_from(JsonNumber(value)).at(channel).at("colour")?;
+    }
+    Ok(colour)
 }
 
 impl SkinShapeFields {
     fn new(shape: &SkinShape) -> Self {
         let blobs = shape.blobs.iter().map(BlobFields::new).map(JsonObject).collect();
         Self {
-            detail: Some(JsonNumber(shape.detail)),
-            thickness: Some(JsonNumber(shape.thickness)),
+            detail: Some(shape.detail.into()),
+            thickness: Some(shape.thickness.into()),
             blobs: (!shape.blobs.is_empty()).then_some(blobs),
         }
     }
 
-    fn skin(self, skeleton: &Shared<Skeleton>, at: &JsonPath) -> Result<BoneSkin, FieldError> {
-        let shape = self.shape(skeleton.joints().len(), at)?;
-        shape.check(skeleton).map_err(|error| {
-            let field = match &error {
-                SkinShapeError::Detail(_) => at.clone().key("detail"),
-                SkinShapeError::Thickness(_) => at.clone().key("thickness"),
-                SkinShapeError::Blob { blob } => at.clone().key("blobs").index(*blob),
-                _ => at.clone(),
+    fn skin(self, skeleton: &Shared<Skeleton>) -> Result<BoneSkin, FieldError> {
+        let (default, joints) = (SkinShape::default(), skeleton.joints().len());
+        let blobs = self.blobs.unwrap_or_default();
+        let shape = SkinShape {
+            detail: value_or(self.detail, default.detail),
+            thickness: value_or(self.thickness, default.thickness),
+            blobs: converted(blobs, |JsonObject(blob)| blob.blob(joints)).at("blobs")?,
+        };
+        if let Err(error) = shape.check(skeleton) {
+            let reason = Err(error.to_string());
+            return match error {
+                SkinShapeError::Detail(_) => reason.at("detail"),
+                SkinShapeError::Thickness(_) => reason.at("thickness"),
+                SkinShapeError::Blob { blob } => reason.at(blob).at("blobs"),
+                _ => Ok(reason?),
             };
-            FieldError::new(field, error.to_string())
-        })?;
+        }
         Ok(BoneSkin::new(skeleton.clone(), shape))
-    }
-
-    fn shape(self, joints: usize, at: &JsonPath) -> Result<SkinShape, FieldError> {
-        let default = SkinShape::default();
-        let at_blob = |index: usize| at.clone().key("blobs").index(index);
-        let blobs = self.blobs.unwrap_or_default().into_iter().enumerate();
-        let blobs = blobs.map(|(index, JsonObject(blob))| blob.blob(joints, at_blob(index)));
-        Ok(SkinShape {
-            detail: number(self.detail, default.detail),
-            thickness: number(self.thickness, default.thickness),
-            blobs: blobs.collect::<Result<_, _>>()?,
-        })
     }
 }
 
@@ -130,29 +128,28 @@ impl BlobFields {
     fn new(blob: &Blob) -> Self {
         let Blob { joint, base, tip, base_radius, tip_radius } = *blob;
         Self {
-            joint: Whole(u32::try_from(joint.index()).unwrap_or(u32::MAX)),
-            base: JsonPoint(base),
-            tip: (tip != base).then_some(JsonPoint(tip)),
-            radius: JsonNumber(base_radius),
-            tip_radius: (tip_radius != base_radius).then_some(JsonNumber(tip_radius)),
+            joint: joint.into(),
+            base: base.into(),
+            tip: (tip != base).then_some(tip.into()),
+            radius: base_radius.into(),
+            tip_radius: (tip_radius != base_radius).then_some(tip_radius.into()),
         }
     }
 
-    fn blob(self, joints: usize, at: JsonPath) -> Result<Blob, FieldError> {
-        let JsonPoint(base) = self.base;
-        let JsonNumber(base_radius) = self.radius;
+    fn blob(self, joints: usize) -> Result<Blob, FieldError> {
+        let (JsonPoint(base), JsonNumber(base_radius)) = (self.base, self.radius);
         Ok(Blob {
-            joint: joint(at.key("joint"), self.joint, joints)?.into(),
+            joint: joint(self.joint, joints).at("joint")?,
             base,
-            tip: self.tip.map_or(base, |JsonPoint(tip)| tip),
+            tip: value_or(self.tip, base),
             base_radius,
-            tip_radius: number(self.tip_radius, base_radius),
+            tip_radius: value_or(self.tip_radius, base_radius),
         })
     }
 }
 
 #[derive(Serialize, Deserialize)]
-pub struct MeshSkinFields {
+struct MeshSkinFields {
     /// Path of the file; without it, `packed` has the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
@@ -202,39 +199,38 @@ impl Bytes {
     }
 
     fn new(bytes: impl IntoIterator<Item = u8>) -> Self {
-        Self(packed::encode_base64(&bytes.into_iter().collect::<Vec<u8>>()))
+        Self::of(&bytes.into_iter().collect::<Vec<u8>>())
     }
 
-    fn decoded(&self, at: &JsonPath) -> Result<Vec<u8>, FieldError> {
-        packed::decode_base64(&self.0).map_err(|reason| FieldError::new(at.clone(), reason))
+    fn of(bytes: &[u8]) -> Self {
+        Self(packed::encode_base64(bytes))
+    }
+
+    fn decoded(&self) -> Result<Vec<u8>, String> {
+        packed::decode_base64(&self.0)
     }
 
     /// Rows of `N` floats.
-    fn floats<const N: usize>(&self, at: &JsonPath) -> Result<Vec<[f32; N]>, FieldError> {
-        let bytes = self.decoded(at)?;
+    fn floats<const N: usize>(&self) -> Result<Vec<[f32; N]>, String> {
+        let bytes = self.decoded()?;
         let (row, got) = (4 * N, bytes.len());
         if got % row != 0 {
-            let reason = format!("must have a multiple of {row} bytes, got {got}");
-            return Err(FieldError::new(at.clone(), reason));
+            return Err(format!("must have a multiple of {row} bytes, got {got}"));
         }
         Ok(packed::floats(&bytes).as_chunks().0.to_vec())
     }
 
-    fn vectors(&self, at: &JsonPath) -> Result<Vec<Vec3>, FieldError> {
-        Ok(self.floats(at)?.into_iter().map(Vec3::from_array).collect())
+    fn vectors(&self) -> Result<Vec<Vec3>, String> {
+        Ok(self.floats()?.into_iter().map(Vec3::from_array).collect())
     }
 }
 
-fn whole(number: usize) -> Whole {
-    Whole(u32::try_from(number).unwrap_or(u32::MAX))
-}
-
 fn wholes(joints: &[Option<JointId>]) -> Vec<Option<Whole>> {
-    joints.iter().map(|joint| joint.map(|joint| whole(joint.index()))).collect()
+    joints.iter().map(|joint| joint.map(Whole::from)).collect()
 }
 
 impl MeshSkinFields {
-    pub fn new(skin: &MeshSkin) -> Self {
+    fn new(skin: &MeshSkin) -> Self {
         let file = skin.file();
         let packed = skin.in_file().filter(|_| file.is_none());
         Self {
@@ -246,42 +242,37 @@ impl MeshSkinFields {
         }
     }
 
-    /// Converts the fields to a skin of `skeleton`. `at` is their path. The file of a skin that has
-    /// one is still to be read.
-    pub fn skin(self, skeleton: &Skeleton, at: &JsonPath) -> Result<MeshSkin, FieldError> {
+    /// Converts the fields to a skin. The file of a skin that has one is still to be read.
+    fn skin(self, skeleton: &Skeleton) -> Result<MeshSkin, FieldError> {
         let count = skeleton.joints().len();
-        let at_joint = |index| at.clone().key("joints").index(index);
-        let joints = self.joints.into_iter().enumerate().map(|(index, number)| {
-            let number = number.map(|number| joint(at_joint(index), number, count));
-            Ok(number.transpose()?.map(JointId::new))
-        });
-        let joints: Vec<Option<JointId>> = joints.collect::<Result<_, FieldError>>()?;
+        let joint = |number: Option<Whole>| number.map(|number| joint(number, count)).transpose();
+        let joints = converted(self.joints, joint).at("joints")?;
         match (self.file, self.packed) {
             (Some(path), None) => {
                 let file = SkinFile {
                     path: PathBuf::from(path),
-                    checksum: self.checksum.map_or(0, |checksum| checksum.0),
+                    checksum: value_or(self.checksum, 0),
                     skeleton: self.skeleton.unwrap_or_default(),
                 };
                 let missing = SkinFileError::Missing(file.path.clone());
                 Ok(MeshSkin::without_mesh(file, joints, missing))
             }
             (None, Some(JsonObject(packed))) => {
-                let mesh = packed.mesh(&at.clone().key("packed"))?;
-                if mesh.parents.len() != joints.len() {
-                    let (expected, got) = (mesh.parents.len(), joints.len());
+                let mesh = packed.mesh().at("packed")?;
+                let (expected, got) = (mesh.parents.len(), joints.len());
+                if expected != got {
                     let reason = format!("must have {expected} entries, as `parents`, got {got}");
-                    return Err(FieldError::new(at.clone().key("joints"), reason));
+                    return Err(reason).at("joints");
                 }
                 Ok(MeshSkin::new(mesh.into(), None, joints, skeleton))
             }
-            _ => Err(FieldError::new(at.clone(), "must have either `file` or `packed`")),
+            _ => Err("must have either `file` or `packed`".into()),
         }
     }
 }
 
 /// A path with `/` between its parts, as on all systems.
-fn portable(path: &std::path::Path) -> String {
+fn portable(path: &Path) -> String {
     let text = path.to_string_lossy();
     if path.is_relative() { text.replace('\\', "/") } else { text.into_owned() }
 }
@@ -291,99 +282,76 @@ impl FileMeshFields {
         let FileMesh { mesh, parents, parts } = mesh;
         let triangles = mesh.mesh();
         let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
-        let coordinates = &triangles.texture_coordinates;
+        let coordinates = triangles.texture_coordinates.iter().flat_map(Vec2::to_array);
+        let binds = mesh.inverse_binds().iter().flat_map(Affine3A::to_cols_array);
+        let corners = triangles.triangles.iter().flatten();
         let weights = || mesh.weights().iter();
+        let vertex_joints = weights().flat_map(VertexWeights::joints);
         let textures = SkinPart::textures(parts);
+        let parts = parts.iter().map(|part| JsonObject(SkinPartFields::new(part, &textures)));
         Self {
             parents: wholes(parents),
-            inverse_binds: Bytes::of_floats(
-                mesh.inverse_binds().iter().flat_map(Affine3A::to_cols_array),
-            ),
+            inverse_binds: Bytes::of_floats(binds),
             positions: points(&triangles.positions),
             normals: points(&triangles.normals),
-            texture_coordinates: (!coordinates.is_empty())
-                .then(|| Bytes::of_floats(coordinates.iter().flat_map(Vec2::to_array))),
-            triangles: Bytes::new(
-                triangles.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()),
-            ),
-            vertex_joints: Bytes::new(
-                weights().flat_map(VertexWeights::joints).flat_map(u16::to_le_bytes),
-            ),
+            texture_coordinates: (!triangles.texture_coordinates.is_empty())
+                .then(|| Bytes::of_floats(coordinates)),
+            triangles: Bytes::new(corners.flat_map(|corner| corner.to_le_bytes())),
+            vertex_joints: Bytes::new(vertex_joints.flat_map(u16::to_le_bytes)),
             vertex_weights: Bytes::of_floats(weights().flat_map(VertexWeights::weights)),
-            parts: parts
-                .iter()
-                .map(|part| JsonObject(SkinPartFields::new(part, &textures)))
-                .collect(),
-            textures: textures
-                .iter()
-                .map(|texture| Bytes(packed::encode_base64(&texture.file)))
-                .collect(),
+            parts: parts.collect(),
+            textures: textures.iter().map(|texture| Bytes::of(&texture.file)).collect(),
         }
     }
 
-    fn mesh(self, at: &JsonPath) -> Result<FileMesh, FieldError> {
-        let at = |key: &str| at.clone().key(key);
-        let mut parents = Vec::with_capacity(self.parents.len());
-        for (index, parent) in self.parents.into_iter().enumerate() {
-            let at = at("parents").index(index);
-            let parent = parent.map(|parent| joint(at, parent, index)).transpose()?;
-            parents.push(parent.map(JointId::new));
-        }
-        let coordinates = self.texture_coordinates;
-        let coordinates =
-            coordinates.map(|bytes| bytes.floats(&at("texture_coordinates"))).transpose()?;
-        let mesh = TriangleMesh {
-            positions: self.positions.vectors(&at("positions"))?,
-            normals: self.normals.vectors(&at("normals"))?,
-            texture_coordinates: coordinates
-                .unwrap_or_default()
-                .into_iter()
-                .map(Vec2::from_array)
-                .collect(),
-            triangles: packed::wholes(&self.triangles.decoded(&at("triangles"))?)
+    fn mesh(self) -> Result<FileMesh, FieldError> {
+        // A parent precedes its joint.
+        let parents = converted(self.parents.into_iter().enumerate(), |(index, parent)| {
+            parent.map(|parent| joint(parent, index)).transpose()
+        })
+        .at("parents")?;
+        let coordinates = match self.texture_coordinates {
+            Some(bytes) => bytes.floats().at("texture_coordinates")?,
+            None => Vec::new(),
+        };
+        let triangles = TriangleMesh {
+            positions: self.positions.vectors().at("positions")?,
+            normals: self.normals.vectors().at("normals")?,
+            texture_coordinates: coordinates.into_iter().map(Vec2::from_array).collect(),
+            triangles: packed::wholes(&self.triangles.decoded().at("triangles")?)
                 .as_chunks()
                 .0
                 .to_vec(),
         };
-        let joints = self.vertex_joints.decoded(&at("vertex_joints"))?;
-        let (joints, _) = joints.as_chunks::<8>();
-        let joints = joints.iter().map(|bytes| {
+        let joint_bytes = self.vertex_joints.decoded().at("vertex_joints")?;
+        let joints = joint_bytes.as_chunks::<8>().0.iter().map(|bytes| {
             std::array::from_fn(|index| {
                 u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]])
             })
         });
-        let weights = joints.zip(self.vertex_weights.floats(&at("vertex_weights"))?);
-        let weights = weights.map(|(joints, weights)| VertexWeights::listed(joints, weights));
-        let binds: Vec<[f32; 12]> = self.inverse_binds.floats(&at("inverse_binds"))?;
-        if binds.len() != parents.len() {
-            let (expected, got) = (parents.len(), binds.len());
+        let weights = joints.zip(self.vertex_weights.floats().at("vertex_weights")?);
+        let binds: Vec<[f32; 12]> = self.inverse_binds.floats().at("inverse_binds")?;
+        let (expected, got) = (parents.len(), binds.len());
+        if expected != got {
             let reason = format!("must have {expected} transforms, as `parents`, got {got}");
-            return Err(FieldError::new(at("inverse_binds"), reason));
+            return Err(reason).at("inverse_binds");
         }
-        let binds = binds.iter().map(Affine3A::from_cols_array).collect();
-        let mesh = SkinnedMesh::new(mesh, weights.collect(), binds)
-            .map_err(|error| FieldError::new(at("positions"), error.to_string()))?;
-        let textures = textures(self.textures, &at("textures"))?;
-        let parts = self.parts.into_iter().enumerate();
-        let parts =
-            parts.map(|(index, JsonObject(part))| part.part(&textures, &at("parts").index(index)));
-        Ok(FileMesh { mesh, parents, parts: parts.collect::<Result<_, _>>()? })
+        let weights = weights.map(|(joints, weights)| VertexWeights::listed(joints, weights));
+        let binds = binds.iter().map(Affine3A::from_cols_array);
+        let mesh = SkinnedMesh::new(triangles, weights.collect(), binds.collect())
+            .map_err(|error| error.to_string())
+            .at("positions")?;
+        let mut reader = TextureReader::default();
+        let texture = |bytes: Bytes| reader.read(bytes.decoded()?).map(Shared::from);
+        let textures = converted(self.textures, texture).at("textures")?;
+        let parts = converted(self.parts, |JsonObject(part)| part.part(&textures)).at("parts")?;
+        Ok(FileMesh { mesh, parents, parts })
     }
-}
-
-/// Reads the textures of a mesh.
-fn textures(files: Vec<Bytes>, at: &JsonPath) -> Result<Vec<Shared<SkinTexture>>, FieldError> {
-    let mut reader = TextureReader::default();
-    let texture = |(index, bytes): (usize, Bytes)| {
-        let at = at.clone().index(index);
-        let texture = reader.read(bytes.decoded(&at)?);
-        Ok(texture.map_err(|reason| FieldError::new(at, reason))?.into())
-    };
-    files.into_iter().enumerate().map(texture).collect()
 }
 
 impl SkinPartFields {
     fn new(part: &SkinPart, textures: &[&Shared<SkinTexture>]) -> Self {
+        let whole = |number| Whole(u32::try_from(number).unwrap_or(u32::MAX));
         let index = |texture| textures.iter().position(|known| known.is_same(texture));
         Self {
             triangles: whole(part.triangles),
@@ -392,19 +360,17 @@ impl SkinPartFields {
         }
     }
 
-    fn part(self, textures: &[Shared<SkinTexture>], at: &JsonPath) -> Result<SkinPart, FieldError> {
-        let JsonNumbers(colour) = self.colour;
-        for (channel, value) in colour.into_iter().enumerate() {
-            fraction(at.clone().key("colour").index(channel), value)?;
-        }
+    fn part(self, textures: &[Shared<SkinTexture>]) -> Result<SkinPart, FieldError> {
         let texture = |Whole(index): Whole| {
             textures.get(index as usize).cloned().ok_or_else(|| {
                 let count = textures.len();
-                let reason = format!("must be below {count}, the number of textures, got {index}");
-                FieldError::new(at.clone().key("texture"), reason)
+                format!("must be below {count}, the number of textures, got {index}")
             })
         };
-        let texture = self.texture.map(texture).transpose()?;
-        Ok(SkinPart { triangles: self.triangles.0 as usize, colour, texture })
+        Ok(SkinPart {
+            triangles: self.triangles.0 as usize,
+            colour: colour(self.colour)?,
+            texture: self.texture.map(texture).transpose().at("texture")?,
+        })
     }
 }

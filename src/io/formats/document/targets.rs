@@ -1,22 +1,24 @@
-//! Fields of targets and of the solver in a file, and conversions between these fields and a
-//! skeleton's rig.
+//! Fields of targets, of the solver and of followed paths in a file, and conversions between these
+//! fields and a skeleton's rig.
 
+use core::f32::consts::PI;
 use std::collections::HashSet;
 use std::fmt;
 
+use glam::Vec3;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::check::{SoftReachFields, above_0, fraction, from_1_to, joint, number};
+use super::skeleton::joint;
 use crate::document::{
     FollowPath, PathKind, SkeletonRig, Target, TargetMotion, TargetPath, WavyRing,
 };
-use crate::io::json::{FieldError, JsonNumber, JsonObject, JsonPath, JsonPoint, Whole};
+use crate::io::json::{Above0, Fraction, JsonNumber, JsonObject, JsonPoint, Whole};
+use crate::io::json::{AtField, FieldError, value_or};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::limb_ik::ElbowReference;
-use crate::kinematics::skeleton::JointId;
-use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
 use crate::kinematics::twist::Stereographic;
 use crate::rig::{LimbSettings, TargetKind, TargetSpace};
 
@@ -30,8 +32,8 @@ pub struct TargetFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     limb: Option<JsonObject<LimbFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    influence: Option<JsonNumber>,
-    weight: Option<JsonNumber>,
+    influence: Option<Fraction>,
+    weight: Option<Above0>,
     enabled: Option<bool>,
     motion: Option<JsonObject<TargetMotionFields>>,
 }
@@ -65,16 +67,23 @@ enum ElbowReferenceName {
 struct TargetMotionFields {
     path: TargetPath,
     radius: Option<JsonNumber>,
-    period: Option<JsonNumber>,
+    period: Option<Above0>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct SoftReachFields {
+    softness: Option<JsonNumber>,
+    max_stretch: Option<JsonNumber>,
+    min_elbow_angle: Option<JsonNumber>,
 }
 
 #[derive(Serialize, Deserialize)]
 pub struct SolverFields {
     method: Option<Method>,
     iterations: Option<Whole>,
-    tolerance: Option<JsonNumber>,
-    damping: Option<JsonNumber>,
-    step: Option<JsonNumber>,
+    tolerance: Option<Above0>,
+    damping: Option<Above0>,
+    step: Option<Above0>,
     root: Option<Root>,
     iterations_per_frame: Option<Whole>,
 }
@@ -87,62 +96,51 @@ pub fn add_targets(
     let radius = rig.default_path_radius();
     let mut targeted = HashSet::new();
     for (index, JsonObject(fields)) in targets.into_iter().enumerate() {
-        let at = JsonPath::root().key("targets").index(index);
-        let target = fields.target(&at, rig.skeleton.joints().len(), radius)?;
+        let target = fields.target(rig.skeleton.joints().len(), radius).at(index)?;
         if !targeted.insert(target.joint) {
             let reason = format!("must have one target, got a second for joint {}", target.joint);
-            return Err(FieldError::new(at.key("joint"), reason));
+            return Err(reason).at("joint").at(index);
         }
         rig.targets.push(target);
     }
-    let at = JsonPath::root().key("targets");
-    rig.check_target_spaces().map_err(|error| FieldError::new(at, error.to_string()))
+    Ok(rig.check_target_spaces().map_err(|error| error.to_string())?)
 }
 
 impl TargetFields {
     pub fn new(target: &Target) -> Self {
         let TargetMotion { path, radius, period } = target.motion;
-        let motion = TargetMotionFields {
-            path,
-            radius: Some(JsonNumber(radius)),
-            period: Some(JsonNumber(period)),
-        };
+        let motion =
+            TargetMotionFields { path, radius: Some(radius.into()), period: Some(period.into()) };
         Self {
-            joint: Whole(u32::try_from(target.joint.index()).unwrap_or(u32::MAX)),
-            home: JsonPoint(target.home),
-            on_joint: on_joint(target.space),
+            joint: target.joint.into(),
+            home: target.home.into(),
+            on_joint: target.space.joint().map(Whole::from),
             limb: match &target.kind {
                 TargetKind::WholeBody => None,
                 TargetKind::Limb(settings) => Some(JsonObject(LimbFields::new(settings))),
             },
-            influence: (target.influence != 0.0).then_some(JsonNumber(target.influence)),
-            weight: Some(JsonNumber(target.weight)),
+            influence: (target.influence != 0.0).then_some(target.influence.into()),
+            weight: Some(target.weight.into()),
             enabled: Some(target.enabled),
             motion: Some(JsonObject(motion)),
         }
     }
 
-    fn target(&self, at: &JsonPath, joints: usize, radius: f32) -> Result<Target, FieldError> {
-        let joint = joint(at.clone().key("joint"), self.joint, joints)?;
-        let default = Target::new(JointId::new(joint), self.home.0, radius);
-        let motion = match &self.motion {
-            Some(JsonObject(fields)) => fields.motion(&at.clone().key("motion"), default.motion)?,
-            None => default.motion,
-        };
-        let kind = match &self.limb {
-            Some(JsonObject(fields)) => {
-                TargetKind::Limb(fields.settings(&at.clone().key("limb"), joints)?)
-            }
+    fn target(self, joints: usize, radius: f32) -> Result<Target, FieldError> {
+        let joint = joint(self.joint, joints).at("joint")?;
+        let default = Target::new(joint, self.home.0, radius);
+        let kind = match self.limb {
+            Some(JsonObject(fields)) => TargetKind::Limb(fields.settings(joints).at("limb")?),
             None => TargetKind::WholeBody,
         };
-        let influence = number(self.influence, default.influence);
+        let motion = self.motion.map(|JsonObject(fields)| fields.motion(default.motion));
         Ok(Target {
-            space: space(at.clone().key("on_joint"), self.on_joint, joints)?,
+            space: space(self.on_joint, joints).at("on_joint")?,
             kind,
-            influence: fraction(at.clone().key("influence"), influence)?,
-            weight: above_0(at.clone().key("weight"), number(self.weight, default.weight))?,
+            influence: value_or(self.influence, default.influence),
+            weight: value_or(self.weight, default.weight),
             enabled: self.enabled.unwrap_or(default.enabled),
-            motion,
+            motion: motion.unwrap_or(default.motion),
             ..default
         })
     }
@@ -153,61 +151,80 @@ impl LimbFields {
         let (reference, pole) = match settings.reference {
             ElbowReference::Fk => (ElbowReferenceName::Fk, None),
             ElbowReference::Up => (ElbowReferenceName::Up, None),
-            ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(JsonPoint(pole))),
+            ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(pole.into())),
             ElbowReference::Stereographic(_) => (ElbowReferenceName::Stereographic, None),
         };
         Self {
             reference: Some(reference),
             pole,
-            pole_on_joint: on_joint(settings.pole_space),
-            twist: Some(JsonNumber(settings.twist)),
+            pole_on_joint: settings.pole_space.joint().map(Whole::from),
+            twist: Some(settings.twist.into()),
             soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
             orientation: settings.orientation.map(JsonPoint),
         }
     }
 
-    fn settings(&self, at: &JsonPath, joints: usize) -> Result<LimbSettings, FieldError> {
+    fn settings(self, joints: usize) -> Result<LimbSettings, FieldError> {
         let reference = match (self.reference.unwrap_or_default(), self.pole) {
             (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
             (ElbowReferenceName::Up, _) => ElbowReference::Up,
             (ElbowReferenceName::Pole, Some(JsonPoint(pole))) => ElbowReference::Pole(pole),
             (ElbowReferenceName::Pole, None) => {
-                return Err(FieldError::new(at.clone(), "must have `pole` for reference `pole`"));
+                return Err("must have `pole` for reference `pole`".into());
             }
             (ElbowReferenceName::Stereographic, _) => {
                 ElbowReference::Stereographic(Stereographic::default())
             }
         };
-        let soft_reach = match &self.soft_reach {
-            Some(JsonObject(fields)) => fields.soft_reach(&at.clone().key("soft_reach"))?,
-            None => SoftReach::default(),
-        };
+        let soft_reach = self.soft_reach.map(|JsonObject(fields)| fields.soft_reach());
         Ok(LimbSettings {
             reference,
-            twist: number(self.twist, 0.0),
-            soft_reach,
-            orientation: self.orientation.map(|JsonPoint(angles)| angles),
-            pole_space: space(at.clone().key("pole_on_joint"), self.pole_on_joint, joints)?,
+            twist: value_or(self.twist, 0.0),
+            soft_reach: soft_reach.transpose().at("soft_reach")?.unwrap_or_default(),
+            orientation: self.orientation.map(Vec3::from),
+            pole_space: space(self.pole_on_joint, joints).at("pole_on_joint")?,
         })
     }
 }
 
-fn on_joint(space: TargetSpace) -> Option<Whole> {
-    space.joint().and_then(|joint| u32::try_from(joint.index()).ok()).map(Whole)
+fn space(on_joint: Option<Whole>, joints: usize) -> Result<TargetSpace, String> {
+    on_joint.map_or(Ok(TargetSpace::World), |index| joint(index, joints).map(TargetSpace::Joint))
 }
 
-fn space(at: JsonPath, on_joint: Option<Whole>, joints: usize) -> Result<TargetSpace, FieldError> {
-    let Some(index) = on_joint else { return Ok(TargetSpace::World) };
-    Ok(TargetSpace::Joint(JointId::new(joint(at, index, joints)?)))
+impl SoftReachFields {
+    pub fn new(soft_reach: SoftReach) -> Self {
+        Self {
+            softness: Some(soft_reach.softness().into()),
+            max_stretch: Some(soft_reach.max_stretch().into()),
+            min_elbow_angle: Some(soft_reach.min_elbow_angle().into()),
+        }
+    }
+
+    pub fn soft_reach(self) -> Result<SoftReach, FieldError> {
+        let default = SoftReach::default();
+        let soft_reach = SoftReach::new(
+            value_or(self.softness, default.softness()),
+            value_or(self.max_stretch, default.max_stretch()),
+            value_or(self.min_elbow_angle, default.min_elbow_angle()),
+        );
+        soft_reach.or_else(|error| {
+            let range = match error.field {
+                SoftReachField::MinElbowAngle => format!("from 0 to less than {PI}"),
+                SoftReachField::Softness | SoftReachField::MaxStretch => error.range.to_owned(),
+            };
+            let reason = format!("must be {range}, got {}", error.value);
+            Err(reason).at(error.field.to_string().as_str())
+        })
+    }
 }
 
 impl TargetMotionFields {
-    fn motion(&self, at: &JsonPath, default: TargetMotion) -> Result<TargetMotion, FieldError> {
-        Ok(TargetMotion {
+    fn motion(self, default: TargetMotion) -> TargetMotion {
+        TargetMotion {
             path: self.path,
-            radius: number(self.radius, default.radius),
-            period: above_0(at.clone().key("period"), number(self.period, default.period))?,
-        })
+            radius: value_or(self.radius, default.radius),
+            period: value_or(self.period, default.period),
+        }
     }
 }
 
@@ -217,40 +234,35 @@ impl SolverFields {
         Self {
             method: Some(solver.method),
             iterations: solver.iterations.map(Whole),
-            tolerance: solver.tolerance.map(JsonNumber),
-            damping: Some(JsonNumber(solver.damping)),
-            step: Some(JsonNumber(solver.step)),
+            tolerance: solver.tolerance.map(Above0::from),
+            damping: Some(solver.damping.into()),
+            step: Some(solver.step.into()),
             root: Some(solver.root),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
         }
     }
 
-    pub fn set(&self, rig: &mut SkeletonRig, at: &JsonPath) -> Result<(), FieldError> {
-        let at = |key| at.clone().key(key);
+    pub fn set(self, rig: &mut SkeletonRig) -> Result<(), FieldError> {
+        const MOST: u32 = SkeletonRig::MAX_ITERATIONS_PER_FRAME;
         let default = SolverOptions::default();
-        let positive = |key, value, default| above_0(at(key), number(value, default));
-        let iterations = self.iterations.map(|Whole(count)| count);
-        if iterations == Some(0) {
+        if self.iterations == Some(Whole(0)) {
             let reason = "must be 1 or more, or null for the method's default, got 0";
-            return Err(FieldError::new(at("iterations"), reason));
+            return Err(reason).at("iterations");
         }
-        let tolerance = self.tolerance.map(|JsonNumber(number)| above_0(at("tolerance"), number));
         rig.solver = SolverOptions {
             method: self.method.unwrap_or(default.method),
-            iterations,
-            tolerance: tolerance.transpose()?,
-            damping: positive("damping", self.damping, default.damping)?,
-            step: positive("step", self.step, default.step)?,
+            iterations: self.iterations.map(u32::from),
+            tolerance: self.tolerance.map(f32::from),
+            damping: value_or(self.damping, default.damping),
+            step: value_or(self.step, default.step),
             root: self.root.unwrap_or(default.root),
         };
-        if let Some(count) = self.iterations_per_frame {
-            rig.iterations_per_frame = from_1_to(
-                at("iterations_per_frame"),
-                count,
-                SkeletonRig::MAX_ITERATIONS_PER_FRAME,
-            )?;
+        rig.iterations_per_frame = value_or(self.iterations_per_frame, rig.iterations_per_frame);
+        let count = rig.iterations_per_frame;
+        if (1..=MOST).contains(&count) {
+            return Ok(());
         }
-        Ok(())
+        Err(format!("must be from 1 to {MOST}, got {count}")).at("iterations_per_frame")
     }
 }
 
@@ -293,76 +305,70 @@ impl FollowPathList {
     }
 
     /// Adds the paths to a rig, which must have its skeleton already.
-    pub fn add_to(self, rig: &mut SkeletonRig, at: &JsonPath) -> Result<(), FieldError> {
-        let at_index = |(index, fields)| (at.clone().index(index), fields);
-        let all: Vec<_> = match self {
-            Self::One(fields) => vec![(at.clone(), fields)],
-            Self::Many(fields) => fields.into_iter().enumerate().map(at_index).collect(),
-        };
-        for (at, JsonObject(fields)) in all {
-            let Some(path) = fields.follow_path(rig, &at)? else { continue };
-            if rig.path_kind(path.root).is_some() {
-                let reason = format!("must have one path, got a second for root {}", path.root);
-                return Err(FieldError::new(at.key("root"), reason));
+    pub fn add_to(self, rig: &mut SkeletonRig) -> Result<(), FieldError> {
+        match self {
+            Self::One(JsonObject(fields)) => fields.add_to(rig),
+            Self::Many(paths) => {
+                let mut paths = paths.into_iter().enumerate();
+                paths.try_for_each(|(index, JsonObject(fields))| fields.add_to(rig).at(index))
             }
-            rig.follow_paths = rig.with_path(path.root, Some(path.kind));
         }
-        Ok(())
     }
 }
 
 impl FollowPathFields {
     fn new(path: &FollowPath) -> Self {
-        let root = Some(Whole(u32::try_from(path.root.index()).unwrap_or(u32::MAX)));
+        let root = Some(path.root.into());
         match path.kind {
             PathKind::Ring(ring) => Self {
                 root,
                 path: None,
-                radius: Some(JsonNumber(ring.radius)),
-                amplitude: Some(JsonNumber(ring.amplitude)),
-                waves: Some(Whole(ring.waves)),
-                period: Some(JsonNumber(ring.period)),
+                radius: Some(ring.radius.into()),
+                amplitude: Some(ring.amplitude.into()),
+                waves: Some(ring.waves.into()),
+                period: Some(ring.period.into()),
             },
             PathKind::Head => Self { root, path: Some(PathName::Head), ..Self::default() },
             PathKind::Target => Self { root, path: Some(PathName::Target), ..Self::default() },
         }
     }
 
-    /// The path; `None` for a skeleton without joints.
-    fn follow_path(
-        &self,
-        rig: &SkeletonRig,
-        at: &JsonPath,
-    ) -> Result<Option<FollowPath>, FieldError> {
+    /// Adds the path to a rig that has a joint.
+    fn add_to(self, rig: &mut SkeletonRig) -> Result<(), FieldError> {
         let kind = match self.path.unwrap_or_default() {
-            PathName::Ring => PathKind::Ring(self.ring(at)?),
+            PathName::Ring => PathKind::Ring(self.ring()?),
             PathName::Head => PathKind::Head,
             PathName::Target => PathKind::Target,
         };
         let root = match self.root {
-            Some(root) => {
-                let at = at.clone().key("root");
-                let root = JointId::new(joint(at.clone(), root, rig.skeleton.joints().len())?);
-                if rig.skeleton[root].parent.is_some() {
-                    let reason = format!("must be a joint without a parent, got joint {root}");
-                    return Err(FieldError::new(at, reason));
-                }
-                Some(root)
-            }
-            None => rig.skeleton.ids().next(),
+            Some(root) => joint(root, rig.skeleton.joints().len()).at("root")?,
+            None => match rig.skeleton.ids().next() {
+                Some(first) => first,
+                None => return Ok(()),
+            },
         };
-        Ok(root.map(|root| FollowPath { root, kind }))
+        if rig.skeleton[root].parent.is_some() {
+            let reason = format!("must be a joint without a parent, got joint {root}");
+            return Err(reason).at("root");
+        }
+        if rig.path_kind(root).is_some() {
+            return Err(format!("must have one path, got a second for root {root}")).at("root");
+        }
+        rig.follow_paths = rig.with_path(root, Some(kind));
+        Ok(())
     }
 
-    fn ring(&self, at: &JsonPath) -> Result<WavyRing, FieldError> {
-        let missing = |name| FieldError::new(at.clone(), format!("must have `{name}` for a ring"));
-        let number = |name, field: Option<JsonNumber>| Ok(field.ok_or_else(|| missing(name))?.0);
-        Ok(WavyRing {
-            radius: number("radius", self.radius)?,
-            amplitude: number("amplitude", self.amplitude)?,
+    fn ring(&self) -> Result<WavyRing, FieldError> {
+        let missing = |name: &str| FieldError::from(format!("must have `{name}` for a ring"));
+        let number = |name: &str, field: Option<JsonNumber>| field.ok_or_else(|| missing(name));
+        let ring = WavyRing {
+            radius: number("radius", self.radius)?.0,
+            amplitude: number("amplitude", self.amplitude)?.0,
             waves: self.waves.ok_or_else(|| missing("waves"))?.0,
-            period: above_0(at.clone().key("period"), number("period", self.period)?)?,
-        })
+            period: number("period", self.period)?.0,
+        };
+        Above0::try_from(JsonNumber(ring.period)).at("period")?;
+        Ok(ring)
     }
 }
 

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Quantity, Timeline};
 use crate::io::formats::document::KeyFields;
-use crate::io::json::JsonPath;
 use crate::kinematics::spline::{Knot, Spline};
 
 /// Extras of a sampler: the keys whose curve it is, with times of the file, and in the joint's
@@ -56,7 +55,7 @@ impl SamplerExtras {
 
     /// The keys; `None` if there are none, or one is damaged.
     pub fn spline(&self) -> Option<Spline<Vec3>> {
-        let key = |key: &KeyFields| key.key(Quantity::Point, &JsonPath::root()).ok();
+        let key = |key: &KeyFields| key.key(Quantity::Point).ok();
         let spline = self.keys.iter().map(key).collect::<Option<Spline<Vec3>>>()?;
         (!spline.is_empty()).then_some(spline)
     }

@@ -103,7 +103,7 @@ impl PrimitiveMesh {
     ) -> Result<Self, FieldError> {
         let rows = |accessor, shape| AccessorRows::new(file, buffers, accessor, shape);
         let points = |name: &str| match primitive.attribute(name) {
-            Some(accessor) => Ok(vectors(&rows(accessor, "VEC3")?)),
+            Some(accessor) => Ok::<_, FieldError>(vectors(&rows(accessor, "VEC3")?)),
             None => Ok(Vec::new()),
         };
         let positions = points("POSITION")?;
