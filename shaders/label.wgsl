@@ -24,6 +24,6 @@ fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Glyph {
 
 @fragment
 fn fragment(g: Glyph) -> @location(0) vec4f {
-    let cover = textureSample(atlas, atlas_sampler, g.at).r;
+    let cover = textureSample(atlas, atlas_sampler, g.at).a;
     return vec4f(g.colour.rgb, g.colour.a * cover);
 }

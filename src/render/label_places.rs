@@ -1,9 +1,10 @@
 use glam::Vec2;
 
-use super::glyph_sheet::LINE_HEIGHT;
 use crate::document::Camera;
 use crate::scene::{Label, LabelSide};
 
+/// Height of a line in points.
+pub(super) const LINE_HEIGHT: f32 = 15.0;
 /// Both coordinates of the point on a ball's outline that is nearest to its label, as a fraction of
 /// the ball's radius.
 const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
@@ -28,20 +29,19 @@ impl LabelPlaces {
         &self.pens
     }
 
-    /// Places labels on a picture of a size in pixels. `scale` is the number of pixels per point,
-    /// `width` the width of a label's text in pixels.
-    pub fn place(
+    /// Places labels, each with the width of its text in pixels, on a picture of a size in pixels.
+    /// `scale` is the number of pixels per point.
+    pub fn place<'a>(
         &mut self,
-        labels: &[Label],
+        labels: impl Iterator<Item = (&'a Label, f32)>,
         camera: &Camera,
         size: Vec2,
         scale: f32,
-        width: impl Fn(&Label) -> f32,
     ) {
         self.pens.clear();
         self.taken.clear();
         let projection = camera.projection(size.x / size.y);
-        for label in labels {
+        for (label, width) in labels {
             let Some(at) = projection.project(label.at) else {
                 self.pens.push(None);
                 continue;
@@ -49,7 +49,7 @@ impl LabelPlaces {
             let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
             let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
             let away = ball * DIAGONAL + label.gap * scale;
-            let text = Text { point, away, width: width(label), line: LINE_HEIGHT * scale };
+            let text = Text { point, away, width, line: LINE_HEIGHT * scale };
             let is_free = |pen: &Vec2| {
                 let corners = text.corners(*pen);
                 self.taken.iter().all(|other| !overlap(corners, *other))
@@ -120,7 +120,8 @@ mod tests {
     fn placed(scene: &Scene) -> Vec<[Vec2; 2]> {
         let mut places = LabelPlaces::default();
         let width = |label: &Label| LETTER * scene.text(label).chars().count() as f32;
-        places.place(&scene.labels, &scene.camera, SIZE, 1.0, width);
+        let labels = scene.labels.iter().map(|label| (label, width(label)));
+        places.place(labels, &scene.camera, SIZE, 1.0);
         assert_eq!(places.pens().len(), scene.labels.len());
         places.taken
     }

@@ -4,20 +4,15 @@
 //! A [`Renderer`] holds the pipelines and is created once per device; a [`Canvas`] is its render
 //! target. Each kind of part that is drawn has one file here and one shader of the same name.
 
-mod atlas;
 mod backdrop;
 mod canvas;
 mod compute;
 mod crowd;
 mod crowd_lod;
 mod crowd_solver;
-mod font;
-mod font_face;
 mod globe;
-mod glyph_sheet;
 mod gpu;
 mod gpu_timer;
-mod ignored_letters;
 mod instances;
 mod label;
 mod label_places;
@@ -48,7 +43,7 @@ pub use gpu_timer::{GpuTimer, TimedPass};
 pub use picture::{DrawError, PictureRenderer, SavePictureError, Timings, save};
 pub use renderer::{Counts, Renderer};
 pub use skin_deform::SkinDeformer;
-pub use system_fonts::SystemFace;
+pub use system_fonts::system_fonts;
 pub use texture::TexturePainter;
 pub use triangle::{Corner, TrianglePainter};
 

@@ -1,6 +1,6 @@
 use super::backdrop::Backdrop;
 use super::crowd::Crowds;
-use super::label::Labels;
+use super::label::LabelPainter;
 use super::line::Lines;
 use super::shadow::Shadows;
 use super::skin::Skins;
@@ -21,7 +21,7 @@ pub struct Renderer {
     shadows: Shadows,
     spheres: Spheres,
     lines: Lines,
-    labels: Labels,
+    labels: LabelPainter,
     enlarger: TexturePainter,
     crowds: Crowds,
     skins: Skins,
@@ -62,7 +62,7 @@ impl Renderer {
             shadows: Shadows::new(gpu, view.layout()),
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
-            labels: Labels::new(gpu, format),
+            labels: LabelPainter::new(gpu, format),
             enlarger: TexturePainter::new(gpu, Canvas::FORMAT),
             crowds: Crowds::default(),
             skins: Skins::default(),
@@ -96,8 +96,9 @@ impl Renderer {
     }
 
     /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all
-    /// lists are large enough, the renderer allocates nothing itself; `wgpu` allocates a constant
-    /// amount for each list that has changed, of which there are at most [`Renderer::LISTS`].
+    /// lists are large enough, the renderer allocates nothing itself unless a label's text changes;
+    /// `wgpu` allocates a constant amount for each list that has changed, of which there are at most
+    /// [`Renderer::LISTS`].
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         let size = canvas.drawn_size();
         let uploaded = self.view.upload(gpu, scene, size, scale * canvas.resolution_scale())

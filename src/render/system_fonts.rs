@@ -1,37 +1,30 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-use ab_glyph::Font as _;
+use egui::FontData;
+use egui::epaint::text::{Blob, FallbackRequest, FontInsert, FontProvider};
 use fontdb::{Database, FaceInfo, Family, ID, Source, Stretch, Style, Weight};
 use skrifa::MetadataProvider as _;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::DrawSettings;
+use skrifa::outline::pen::PathElement;
 
-/// A face of a font installed on this system, for letters that the built-in fonts lack.
-#[derive(Clone, Copy, Debug)]
-pub struct SystemFace {
-    /// Number that identifies the face among all installed ones.
-    pub number: u16,
-    /// Contents of the font file, kept until the program ends.
-    pub data: &'static [u8],
-    /// Index of the face in the file.
-    pub index: u32,
-}
-
-impl SystemFace {
-    /// The most preferred face that has a letter; `None` if no installed face has it, or its file
-    /// cannot be loaded.
-    ///
-    /// The first call reads the character maps of all installed fonts, which may take a tenth of a
-    /// second; later calls look the letter up in a table. The result depends only on the installed
-    /// fonts.
-    pub fn find(letter: char) -> Option<Self> {
-        static INSTALLED: LazyLock<Mutex<SystemFonts>> = LazyLock::new(|| {
-            let mut database = Database::new();
-            database.load_system_fonts();
-            Mutex::new(SystemFonts::new(database))
-        });
+/// Finds fonts installed on this system, for letters that the built-in fonts lack.
+///
+/// The first search reads the character maps of all installed fonts, which may take a tenth of a
+/// second; later ones look the letter up in a table. The result depends only on the installed
+/// fonts.
+pub fn system_fonts() -> Arc<dyn FontProvider> {
+    static INSTALLED: LazyLock<Mutex<SystemFonts>> = LazyLock::new(|| {
+        let mut database = Database::new();
+        database.load_system_fonts();
+        Mutex::new(SystemFonts::new(database))
+    });
+    Arc::new(|request: &FallbackRequest<'_>| {
+        let letter = request.cluster.chars().next()?;
         INSTALLED.lock().unwrap_or_else(PoisonError::into_inner).find(letter)
-    }
+    })
 }
 
 /// All faces in order of preference, with a table of their letters.
@@ -40,8 +33,7 @@ struct SystemFonts {
     faces: Vec<ID>,
     /// For each code point, 1 plus the index of the first face that has it, or 0 if no face has it.
     first: Vec<u16>,
-    files: HashMap<PathBuf, &'static [u8]>,
-    loaded: HashMap<u16, SystemFace>,
+    files: HashMap<PathBuf, Blob>,
     bytes: usize,
 }
 
@@ -59,35 +51,30 @@ impl SystemFonts {
         for (number, face) in (1..=u16::MAX).zip(&faces) {
             database.with_face_data(*face, |data, index| claim(&mut first, number, data, index));
         }
-        let (files, loaded) = (HashMap::new(), HashMap::new());
-        Self { database, faces, first, files, loaded, bytes: 0 }
+        Self { database, faces, first, files: HashMap::new(), bytes: 0 }
     }
 
-    fn find(&mut self, letter: char) -> Option<SystemFace> {
+    /// The most preferred face that has a letter; `None` if no installed face has it, or its file
+    /// cannot be loaded.
+    fn find(&mut self, letter: char) -> Option<FontInsert> {
         let number = self.first[letter as usize].checked_sub(1)?;
-        if let Some(face) = self.loaded.get(&number) {
-            return Some(*face);
-        }
         let (source, index) = self.database.face_source(self.faces[usize::from(number)])?;
-        let face = SystemFace { number, data: self.load(&source)?, index };
-        self.loaded.insert(number, face);
-        Some(face)
+        let data = FontData::from_blob(self.load(source)?, index);
+        Some(FontInsert::new(&format!("system {number}"), data, Vec::new()))
     }
 
     /// Contents of a font file, which are read once and shared by all faces of the file; `None` if
     /// the file cannot be read or would exceed `MAX_BYTES`.
-    fn load(&mut self, source: &Source) -> Option<&'static [u8]> {
-        let (path, data) = match source {
-            Source::File(path) | Source::SharedFile(path, _) => {
-                if let Some(data) = self.files.get(path) {
-                    return Some(*data);
-                }
-                let read = std::fs::read(path);
-                let warn = |error: &_| log::warn!("cannot read font {}: {error}", path.display());
-                (Some(path), read.inspect_err(warn).ok()?)
-            }
-            Source::Binary(data) => (None, data.as_ref().as_ref().to_vec()),
+    fn load(&mut self, source: Source) -> Option<Blob> {
+        let path = match source {
+            Source::File(path) | Source::SharedFile(path, _) => path,
+            Source::Binary(data) => return Some(data),
         };
+        if let Some(data) = self.files.get(&path) {
+            return Some(Arc::clone(data));
+        }
+        let warn = |error: &_| log::warn!("cannot read font {}: {error}", path.display());
+        let data = std::fs::read(&path).inspect_err(warn).ok()?;
         if self.bytes + data.len() > Self::MAX_BYTES {
             log::warn!(
                 "font files are limited to {} bytes; some letters are not shown",
@@ -96,8 +83,8 @@ impl SystemFonts {
             return None;
         }
         self.bytes += data.len();
-        let data: &'static [u8] = data.leak();
-        self.files.extend(path.map(|path| (path.clone(), data)));
+        let data: Blob = Arc::new(data);
+        self.files.insert(path, Arc::clone(&data));
         Some(data)
     }
 }
@@ -125,15 +112,17 @@ fn rank(info: &FaceInfo, sans_serif: &str) -> impl Ord + use<> {
 /// Symbol fonts and faces with bitmaps only are skipped.
 fn claim(first: &mut [u16], number: u16, data: &[u8], index: u32) {
     const SAMPLE: usize = 32;
-    let Ok(map) = skrifa::FontRef::from_index(data, index).map(|font| font.charmap()) else {
+    let Ok(font) = skrifa::FontRef::from_index(data, index) else {
         return;
     };
-    let Ok(font) = ab_glyph::FontRef::try_from_slice_and_index(data, index) else {
-        return;
+    let (map, outlines) = (font.charmap(), font.outline_glyphs());
+    let has_outline = |(_, glyph)| {
+        let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+        let mut path: Vec<PathElement> = Vec::new();
+        let outline = outlines.get(glyph);
+        outline.is_some_and(|it| it.draw(settings, &mut path).is_ok() && !path.is_empty())
     };
-    let has_outline = |letter| font.outline(font.glyph_id(letter)).is_some();
-    let mut letters = map.mappings().filter_map(|(code, _)| char::from_u32(code));
-    if map.is_symbol() || !letters.by_ref().take(SAMPLE).any(has_outline) {
+    if map.is_symbol() || !map.mappings().take(SAMPLE).any(has_outline) {
         return;
     }
     for (code, glyph) in map.mappings() {
@@ -147,31 +136,42 @@ fn claim(first: &mut [u16], number: u16, data: &[u8], index: u32) {
 
 #[cfg(test)]
 mod tests {
-    use epaint_default_fonts::{EGUI_ICONS, HACK_REGULAR, UBUNTU_LIGHT, special_emojis};
+    use egui::FontDefinitions;
 
     use super::*;
 
-    fn fonts(files: &[&[u8]]) -> SystemFonts {
+    const HACK: &str = "Hack";
+    const ICONS: &str = "egui-icons";
+    const UBUNTU: &str = "Ubuntu-Light";
+    /// A letter that only the icons have.
+    const GITHUB: char = '\u{e624}';
+
+    /// A font that comes with egui.
+    fn built_in(name: &str) -> Arc<FontData> {
+        Arc::clone(&FontDefinitions::default().font_data[name])
+    }
+
+    fn fonts(files: [Arc<FontData>; 3]) -> SystemFonts {
         let mut database = Database::new();
         for file in files {
-            database.load_font_data(file.to_vec());
+            database.load_font_source(Source::Binary(Arc::clone(&file.font)));
         }
         SystemFonts::new(database)
     }
 
     #[test]
     fn a_letter_comes_from_a_face_that_has_it() {
-        let mut fonts = fonts(&[HACK_REGULAR, EGUI_ICONS, UBUNTU_LIGHT]);
+        let mut fonts = fonts([HACK, ICONS, UBUNTU].map(built_in));
         for (letter, file) in [
-            ('a', HACK_REGULAR), // the other face is light
-            ('─', HACK_REGULAR),
-            ('ƕ', UBUNTU_LIGHT),
-            (special_emojis::GITHUB, EGUI_ICONS),
+            ('a', HACK), // the other face is light
+            ('─', HACK),
+            ('ƕ', UBUNTU),
+            (GITHUB, ICONS),
         ] {
-            let face = fonts.find(letter).expect("a face");
-            assert!(face.data == file && face.index == 0, "{letter}");
-            let again = fonts.find(letter).expect("a face");
-            assert_eq!((again.number, again.data.as_ptr()), (face.number, face.data.as_ptr()));
+            let found = fonts.find(letter).expect("a face");
+            assert!(found.data.bytes() == built_in(file).bytes(), "{letter}");
+            assert_eq!(found.data.index, 0);
+            assert_eq!(fonts.find(letter).expect("a face").name, found.name);
         }
         assert!(fonts.find('左').is_none());
         assert!(fonts.find(char::MAX).is_none());
@@ -179,27 +179,27 @@ mod tests {
 
     #[test]
     fn the_order_of_the_files_does_not_matter() {
-        let files = [HACK_REGULAR, EGUI_ICONS, UBUNTU_LIGHT];
-        let mut turned = files;
-        turned.rotate_left(1);
-        let (mut one, mut other) = (fonts(&files), fonts(&turned));
+        let mut one = fonts([HACK, ICONS, UBUNTU].map(built_in));
+        let mut other = fonts([ICONS, UBUNTU, HACK].map(built_in));
         for letter in '\0'..='\u{2fff}' {
-            let data = |fonts: &mut SystemFonts| fonts.find(letter).map(|face| face.data.len());
-            assert_eq!(data(&mut one), data(&mut other), "{letter:?}");
+            let size = |fonts: &mut SystemFonts| fonts.find(letter).map(|it| it.data.bytes().len());
+            assert_eq!(size(&mut one), size(&mut other), "{letter:?}");
         }
     }
 
     #[test]
     fn no_fonts_and_files_that_are_none_have_no_letters() {
-        assert!(fonts(&[]).find('a').is_none());
-        assert!(fonts(&[b"no font", &UBUNTU_LIGHT[..2000]]).find('a').is_none());
+        assert!(SystemFonts::new(Database::new()).find('a').is_none());
+        let none = Arc::new(FontData::from_static(b"no font"));
+        let half = Arc::new(FontData::from_owned(built_in(UBUNTU).bytes()[..2000].to_vec()));
+        assert!(fonts([none.clone(), half, none]).find('a').is_none());
     }
 
     #[test]
     fn a_file_that_is_gone_has_no_letters() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.ttf");
-        std::fs::write(&path, UBUNTU_LIGHT).expect("written");
+        std::fs::write(&path, built_in(UBUNTU).bytes()).expect("written");
         let mut database = Database::new();
         database.load_font_file(&path).expect("a font");
         let mut fonts = SystemFonts::new(database);

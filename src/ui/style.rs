@@ -1,16 +1,9 @@
 //! Colours, spacing and fonts of the panels. The accent colour is that of the scene's palette.
 
-use std::sync::Arc;
-
-use egui::epaint::text::{
-    FallbackRequest, FontInsert, FontPriority, FontProvider, InsertFontFamily,
-};
-use egui::{
-    Color32, Context, CornerRadius, FontData, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2,
-};
+use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2};
 
 use crate::document::Theme;
-use crate::render::SystemFace;
+use crate::render::system_fonts;
 use crate::scene::{Colour, Palette};
 
 /// Colours that the panels have in addition to the scene's palette.
@@ -59,7 +52,7 @@ impl PanelColours {
 
 /// Installs both themes and a fallback to system fonts; called once at the start.
 pub fn install(ctx: &Context) {
-    ctx.add_font_provider(font_provider(SystemFace::find));
+    ctx.add_font_provider(system_fonts());
     for theme in [Theme::Dark, Theme::Light] {
         ctx.style_mut_of(egui_theme(theme), |style| {
             style.visuals = visuals(theme);
@@ -86,19 +79,6 @@ pub fn install(ctx: &Context) {
             .into();
         });
     }
-}
-
-/// Returns a font provider that calls `find` for letters that egui's fonts lack. egui asks the
-/// provider at most once per letter and font family.
-fn font_provider(find: fn(char) -> Option<SystemFace>) -> Arc<dyn FontProvider> {
-    Arc::new(move |request: &FallbackRequest<'_>| {
-        let face = find(request.cluster.chars().next()?)?;
-        let name = format!("system {}", face.number);
-        let data = FontData { index: face.index, ..FontData::from_static(face.data) };
-        let families = [FontFamily::Proportional, FontFamily::Monospace]
-            .map(|family| InsertFontFamily { family, priority: FontPriority::Lowest });
-        Some(FontInsert::new(&name, data, families.into()))
-    })
 }
 
 /// Applies a theme to the panels.
@@ -217,29 +197,5 @@ mod tests {
                 assert!(contrast >= 4.5, "{theme:?}: {text:?} on {ground:?} has {contrast}");
             }
         }
-    }
-
-    #[test]
-    fn letters_that_egui_lacks_come_from_a_font_that_is_found() {
-        // egui has Hack for monospaced text only.
-        let find = |letter| {
-            let data = epaint_default_fonts::HACK_REGULAR;
-            (letter == '╬').then_some(SystemFace { number: 3, data, index: 0 })
-        };
-        let ctx = Context::default();
-        let has = |letter: char| {
-            let mut found = false;
-            let font = FontId::proportional(13.0);
-            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
-                ui.label(format!("a{letter}"));
-                found = ui.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
-            });
-            output.textures_delta.clear();
-            found
-        };
-        assert!(has('ü') && !has('╬') && !has('\u{10fffd}'));
-        ctx.add_font_provider(font_provider(find));
-        assert!(has('ü') && has('╬') && !has('\u{10fffd}'));
-        assert_eq!(ctx.fonts(|fonts| fonts.discovered_fonts().len()), 1);
     }
 }

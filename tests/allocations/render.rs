@@ -108,8 +108,11 @@ fn a_letter_is_rasterized_and_uploaded_once() {
     }
     let letters = 9 * 48 * 7;
     assert!(sent.iter().all(|sent| *sent < letters), "places of letters alone: {sent:?}");
-    bench.frame(&named("Hände"));
-    assert!(bench.renderer.counts().uploaded > letters, "a new letter");
+    let [new, _, known] = ["Hände", "Hand", "Hände"].map(|name| {
+        bench.frame(&named(name));
+        bench.renderer.counts().uploaded
+    });
+    assert!(new > known, "a new letter");
 }
 
 #[test]
