@@ -145,7 +145,7 @@ impl Recovery {
         self.finish_writing();
         let revision = session.history().revision();
         // An open transaction changes the document but not its revision.
-        let is_editing = session.is_editing();
+        let is_editing = session.history().is_editing();
         if self.newest_revision != Some(revision) {
             self.set_newest(session);
         }

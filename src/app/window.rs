@@ -395,7 +395,7 @@ impl AppWindow {
         }
         let budget = session.preferences().frame_budget.time();
         let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());
-        let is_driven = held || session.is_playing();
+        let is_driven = held || session.playback().is_playing();
         let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
         frame.resolution_scale = self.dynamic_resolution.next(is_moving, budget, Instant::now());
         frame.scene += lap();

@@ -85,7 +85,7 @@ from_edit!(ArmEdit, JointEdit, PathEdit, TargetEdit, SolverEdit, SkinEdit, KeysE
 
 impl Session {
     /// Applies an action and returns the effect that the program must carry out, if any. An invalid
-    /// action changes nothing and is reported by [`Session::message`]; an action that would lose
+    /// action changes nothing and is reported by [`Shell::message`]; an action that would lose
     /// unsaved changes opens a dialog first.
     pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
         let compared = self.compares_skinning();

@@ -19,7 +19,7 @@ pub enum BakeAction {
 impl BakeAction {
     /// Applies the action; a bake that has ended gives the edit to apply.
     pub(super) fn apply(self, session: &Session) -> Result<(KeysEdit, Outcome), Outcome> {
-        match (self, session.dialog()) {
+        match (self, session.shell().dialog()) {
             (Self::Start(settings), _) => Err(start(session, settings)),
             (Self::Started(job), Some(Dialog::Bake { settings, job: None })) => {
                 let dialog = Dialog::Bake { settings: *settings, job: Some(job) };

@@ -11,7 +11,7 @@ use crate::kinematics::skin::TriangleMesh;
 
 /// Values derived from the poses at the playhead.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Evaluated {
+pub struct Evaluated {
     skeleton_pose: SkeletonPose,
     transport_path: TransportPath,
     pops: Pops,
@@ -23,7 +23,7 @@ pub(super) struct Evaluated {
 }
 
 impl Evaluated {
-    pub fn new(posed: &Posed) -> Self {
+    pub(super) fn new(posed: &Posed) -> Self {
         Self {
             skeleton_pose: posed.skeleton().pose(),
             transport_path: TransportPath::new(posed),
@@ -35,20 +35,22 @@ impl Evaluated {
         }
     }
 
-    pub fn skeleton_pose(&self) -> &SkeletonPose {
+    pub(super) fn skeleton_pose(&self) -> &SkeletonPose {
         &self.skeleton_pose
     }
 
+    /// Transport of a frame along the Pointer's path.
     pub fn transport_path(&self) -> &TransportPath {
         &self.transport_path
     }
 
+    /// Ratios of elbow speed to Cursor speed in the latest steps.
     pub fn pops(&self) -> &Pops {
         &self.pops
     }
 
     /// The diagnoses of the target with this index, of as many as the skeleton has.
-    pub fn why(
+    pub(super) fn why(
         &self,
         index: usize,
         targets: usize,
@@ -59,32 +61,35 @@ impl Evaluated {
     }
 
     /// True if the diagnoses of any target were made.
-    pub fn knows_why(&self) -> bool {
+    pub(super) fn knows_why(&self) -> bool {
         self.why.known().is_some()
     }
 
     /// The diagnoses of the target with this index, if they were made.
-    pub fn known_why(&self, index: usize) -> &[Diagnosis] {
+    pub(super) fn known_why(&self, index: usize) -> &[Diagnosis] {
         let why = self.why.known().and_then(|why| why.get(index)?.known());
         why.map_or(&[], Vec::as_slice)
     }
 
-    pub fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
+    pub(super) fn trail(&self, sample: impl FnOnce() -> Vec<Vec3>) -> &[Vec3] {
         self.trail.get(sample)
     }
 
     /// The mesh of the skin in the world.
-    pub fn posed_skin(&self, pose: impl FnOnce() -> TriangleMesh) -> &TriangleMesh {
+    pub(super) fn posed_skin(&self, pose: impl FnOnce() -> TriangleMesh) -> &TriangleMesh {
         self.posed_skin.get(pose)
     }
 
     /// The areas of the skin over the timeline.
-    pub fn skin_areas(&self, compute: impl FnOnce() -> Option<SkinAreas>) -> Option<&SkinAreas> {
+    pub(super) fn skin_areas(
+        &self,
+        compute: impl FnOnce() -> Option<SkinAreas>,
+    ) -> Option<&SkinAreas> {
         self.skin_areas.get(compute).as_ref()
     }
 
     /// Updates the values to other poses.
-    pub fn update(&mut self, posed: &Posed, cause: CursorMove) {
+    pub(super) fn update(&mut self, posed: &Posed, cause: CursorMove) {
         self.transport_path.advance(posed.arm());
         self.pops.record(posed, cause);
         posed.skeleton().write_pose(&mut self.skeleton_pose);
@@ -92,17 +97,17 @@ impl Evaluated {
         self.why.clear();
     }
 
-    pub fn reset_transport(&mut self, posed: &Posed) {
+    pub(super) fn reset_transport(&mut self, posed: &Posed) {
         self.transport_path = TransportPath::new(posed);
     }
 
-    pub fn reset_pops(&mut self, posed: &Posed) {
+    pub(super) fn reset_pops(&mut self, posed: &Posed) {
         self.pops = Pops::new(posed);
     }
 
     /// Discards the trail and the areas of the skin; both are computed again
     /// when they are next needed.
-    pub fn forget_trail(&mut self) {
+    pub(super) fn forget_trail(&mut self) {
         self.trail.clear();
         self.skin_areas.clear();
     }

@@ -95,8 +95,8 @@ impl KeysEdit {
 
 /// Keys channels at the playhead with their shown values.
 pub(super) fn key(session: &mut Session, channels: &[Channel]) -> Outcome {
-    let time = session.time();
-    let are_overridden = channels.iter().any(|channel| session.is_overridden(*channel));
+    let time = session.playback().time();
+    let are_overridden = channels.iter().any(|channel| session.history().is_overridden(*channel));
     let keys = session.document().keys.clone();
     session.act(Consequence::ForgetUnkeyed(channels.to_vec()));
     let keyed = Outcome::change(session.shown(), |document| {
@@ -120,7 +120,7 @@ fn move_keys(session: &Session, keys: &[Key], by: f64, raise: Vec3) -> Outcome {
     let farthest = Timeline::MAX_TIME;
     let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
     let raise = if raise.is_finite() { raise } else { Vec3::ZERO };
-    let before = session.shown_before().keys.clone();
+    let before = session.history().shown_before().keys.clone();
     let timeline = session.document().timeline;
     let moved: Clipboard = keys
         .iter()
@@ -157,11 +157,14 @@ fn change_keys(
 /// Pastes the copied keys at the playhead, except those of missing joints.
 fn paste_keys(session: &Session) -> Outcome {
     let (shown, timeline) = (session.shown(), session.document().timeline);
-    let copies = session.clipboard().iter();
+    let copies = session.selection().clipboard().iter();
     let pasted: Clipboard = copies
         .filter(|(channel, _)| channel.value(shown).is_some())
         .map(|(channel, key)| {
-            (*channel, Knot { time: moved_to(timeline, session.time(), key.time), ..*key })
+            (
+                *channel,
+                Knot { time: moved_to(timeline, session.playback().time(), key.time), ..*key },
+            )
         })
         .collect();
     Outcome::from(Consequence::SelectKeys(names(&pasted)))
@@ -224,24 +227,26 @@ impl Session {
     /// channels of the selected joints, or all channels if no joint is selected.
     pub fn channels_to_key(&self) -> Vec<Channel> {
         let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
-        if !self.selected_channels().is_empty() {
-            return self.selected_channels().iter().copied().filter(is_there).collect();
+        if !self.selection().channels().is_empty() {
+            return self.selection().channels().iter().copied().filter(is_there).collect();
         }
         match self.rig() {
             RigKind::Arm => {
-                let overridden = self.overridden_channels().filter(is_there);
+                let overridden = self.history().overridden_channels().filter(is_there);
                 let all: BTreeSet<_> =
                     self.posing_channels().into_iter().chain(overridden).collect();
                 all.into_iter().collect()
             }
-            RigKind::Skeleton if self.selection().is_empty() => self.all_channels(),
+            RigKind::Skeleton if self.selection().joints().is_empty() => self.all_channels(),
             RigKind::Skeleton => {
                 let rig = self.skeleton_rig();
-                let ends = self.selection().iter().filter_map(|it| rig.target_of_end(*it));
+                let ends = self.selection().joints().iter().filter_map(|it| rig.target_of_end(*it));
                 let targeted: Vec<_> = ends.map(|index| rig.targets[index].joint).collect();
                 let is_selected = |channel: &Channel| match channel.target() {
                     Some(joint) => targeted.contains(&joint),
-                    None => channel.joint().is_some_and(|it| self.selection().contains(&it)),
+                    None => {
+                        channel.joint().is_some_and(|it| self.selection().joints().contains(&it))
+                    }
                 };
                 Channel::of_rig(self.shown()).into_iter().filter(is_selected).collect()
             }

@@ -40,6 +40,7 @@ pub use drag::grip::{Drag, Grip};
 pub use drag::point::{Constraint, DragInput, PointDrag, PointHandle};
 pub use drag::turn::{GripRing, TurnDrag};
 pub use edit::Edit;
+pub use evaluated::Evaluated;
 pub use files::action::{Export, ExportJob, FileAction, FileContents, PathDialog};
 pub use files::files::Files;
 pub use history::editing::Editing;
@@ -51,7 +52,7 @@ pub use overlays::overlays::{InsideView, Overlays, SolverGhost, TwistReferencePo
 pub use parts::{ArmFigure, ArmJoint, BodyPart, Key, PoseMode};
 pub use playback::{Playback, PlaybackAction};
 pub use preferences::{FrameBudget, Navigation, PanelTab, Preferences};
-pub use selection::SelectAction;
+pub use selection::{SelectAction, Selection};
 pub use session::Session;
 pub use shell::{Shell, ShellAction};
 pub use skeleton::joints::JointEdit;

@@ -113,8 +113,13 @@ impl Selection {
         self.joints.last().copied()
     }
 
+    /// The joint under the mouse, in the viewport or in the outliner.
+    pub fn hovered(&self) -> Option<JointId> {
+        self.hovered?.joint()
+    }
+
     /// The part of a body under the mouse, which lights up.
-    pub fn hovered(&self) -> Option<BodyPart> {
+    pub fn hovered_part(&self) -> Option<BodyPart> {
         self.hovered
     }
 

@@ -1,29 +1,22 @@
 use std::path::PathBuf;
 
-use super::arm::pops::Pops;
-use super::arm::transport::TransportPath;
-use super::dialog::Dialog;
 use super::drag::follow_mouse::FollowMouse;
-use super::drag::grip::Drag;
-use super::drag::point::PointDrag;
 use super::evaluated::Evaluated;
 use super::files::files::Files;
 use super::history::editing::Editing;
-use super::parts::{ArmFigure, ArmJoint, BodyPart, Clipboard, Key, SelectedKeys};
 use super::playback::Playback;
 use super::preferences::Preferences;
 use super::selection::Selection;
 use super::shell::Shell;
-use super::solver::run::SolverRun;
 use super::solver::solvers::Solvers;
 use super::solver::wiggle::WiggleView;
 use super::tour::state::TourState;
 use super::view::view::View;
-use crate::document::{Arm, Camera, Channel, Document, Posed, RigKind, SkeletonRig, Track};
+use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
 use crate::io;
 use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{Crowd, EvaluatedSkeleton, TargetReport};
+use crate::rig::{Crowd, TargetReport};
 
 mod act;
 mod time;
@@ -106,7 +99,13 @@ impl Session {
         &self.editing
     }
 
-    pub(super) fn evaluated(&self) -> &Evaluated {
+    /// Selected joints, keys and channels, and what is under the mouse.
+    pub fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    /// Values derived from the pose at the playhead: pops, holonomy, the skin.
+    pub fn evaluated(&self) -> &Evaluated {
         &self.evaluated
     }
 
@@ -186,22 +185,6 @@ impl Session {
         self.editing.shown()
     }
 
-    /// The motion of the document.
-    pub(super) fn track(&self) -> &Track {
-        self.editing.track()
-    }
-
-    /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
-    /// none is open.
-    pub(super) fn posed_before(&self) -> Posed {
-        self.editing.posed_before()
-    }
-
-    /// The document as shown before the open transaction, or as shown now if none is open.
-    pub(super) fn shown_before(&self) -> &Document {
-        self.editing.shown_before()
-    }
-
     /// The rig that is shown.
     pub fn rig(&self) -> RigKind {
         self.document().rig
@@ -227,14 +210,9 @@ impl Session {
         self.posed().arm_pose()
     }
 
-    /// The skeleton at the playhead, posed by FK and by its targets, with a report for each target.
-    pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
-        self.posed().evaluated_skeleton()
-    }
-
     /// The report of a joint's target at the playhead; `None` if the joint has none.
     pub fn target_report(&self, joint: JointId) -> Option<&TargetReport> {
-        self.evaluated_skeleton().targets.get(self.skeleton_rig().target(joint)?)
+        self.posed().evaluated_skeleton().targets.get(self.skeleton_rig().target(joint)?)
     }
 
     /// The pose of the skeleton at the playhead, in world space.
@@ -242,39 +220,14 @@ impl Session {
         self.evaluated.skeleton_pose()
     }
 
-    /// Transport of a frame along the Pointer's path.
-    pub fn transport_path(&self) -> &TransportPath {
-        self.evaluated.transport_path()
-    }
-
-    /// Ratios of elbow speed to Cursor speed in the latest steps.
-    pub fn pops(&self) -> &Pops {
-        self.evaluated.pops()
-    }
-
     /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
     pub fn arm_unit(&self) -> f32 {
-        self.shown_before().arm.grid_cell() * 0.01
+        self.editing.shown_before().arm.grid_cell() * 0.01
     }
 }
 
 /// State of the parts.
 impl Session {
-    /// Time of the playhead, in seconds.
-    pub fn time(&self) -> f64 {
-        self.playback.time()
-    }
-
-    /// True if the timeline plays.
-    pub fn is_playing(&self) -> bool {
-        self.playback.is_playing()
-    }
-
-    /// True if the document has keys, or a target or the shown skeleton moves without keys.
-    pub fn has_motion(&self) -> bool {
-        self.document().is_moving()
-    }
-
     /// True if the next frame differs without further input.
     pub fn is_moving(&self) -> bool {
         self.view.is_gliding()
@@ -282,83 +235,6 @@ impl Session {
             || self.view.is_crowd_moving()
             || self.solvers.is_busy()
             || self.view.wiggled().is_some()
-    }
-
-    /// True if a transaction is open.
-    pub fn is_editing(&self) -> bool {
-        self.editing.is_open()
-    }
-
-    /// True if the channel has an unkeyed edit.
-    pub fn is_overridden(&self, channel: Channel) -> bool {
-        self.editing.overrides().contains_key(&channel)
-    }
-
-    pub(super) fn overridden_channels(&self) -> impl Iterator<Item = Channel> {
-        self.editing.overrides().keys().copied()
-    }
-
-    /// The drag in the viewport; `None` if nothing is dragged.
-    pub fn drag(&self) -> Option<&Drag> {
-        self.editing.drag()
-    }
-
-    /// The drag of a point in the viewport; `None` if no point is dragged.
-    pub fn point_drag(&self) -> Option<&PointDrag> {
-        self.drag()?.point()
-    }
-
-    /// Selected joints; the last of them is the active joint.
-    pub fn selection(&self) -> &[JointId] {
-        self.selection.joints()
-    }
-
-    /// The active joint, which is the last of the selected ones; `None` without a selection.
-    pub fn selected(&self) -> Option<JointId> {
-        self.selection.active()
-    }
-
-    /// The joint under the mouse, in the viewport or in the outliner.
-    pub fn hovered(&self) -> Option<JointId> {
-        self.hovered_part()?.joint()
-    }
-
-    /// The part of a body under the mouse, which lights up.
-    pub fn hovered_part(&self) -> Option<BodyPart> {
-        self.selection.hovered()
-    }
-
-    /// The selected joint of the arm, whose handles are shown; `None` without one.
-    pub fn selected_arm_joint(&self) -> Option<ArmJoint> {
-        self.selection.arm_joint()
-    }
-
-    /// The line of the arm's figures under the mouse.
-    pub fn figure(&self) -> Option<ArmFigure> {
-        self.selection.figure()
-    }
-
-    /// Channels that are selected in the timeline.
-    pub fn selected_channels(&self) -> &std::collections::BTreeSet<Channel> {
-        self.selection.channels()
-    }
-
-    /// Keys that are selected in the timeline.
-    pub fn selected_keys(&self) -> &[Key] {
-        self.selection.keys()
-    }
-
-    /// True if there are copied keys to paste.
-    pub fn can_paste(&self) -> bool {
-        self.selection.can_paste()
-    }
-
-    pub(super) fn clipboard(&self) -> &Clipboard {
-        self.selection.clipboard()
-    }
-
-    pub(super) fn selected_in_timeline(&self) -> SelectedKeys {
-        self.selection.in_timeline()
     }
 
     /// The present camera, which changes during a glide.
@@ -380,7 +256,7 @@ impl Session {
     /// The angle that swings, with the paths of the tip.
     pub fn wiggle_view(&self) -> Option<WiggleView> {
         let wiggle = self.view.wiggle().filter(|_| self.rig() == RigKind::Skeleton)?;
-        wiggle.view(self.skeleton_rig(), self.evaluated_skeleton())
+        wiggle.view(self.skeleton_rig(), self.posed().evaluated_skeleton())
     }
 
     /// True if targets move heads, which can follow the mouse.
@@ -395,22 +271,10 @@ impl Session {
     }
 
     fn following_heads(&self) -> Option<FollowMouse> {
-        FollowMouse::new(self.skeleton_rig(), &self.evaluated_skeleton().solved, self.time())
-    }
-
-    /// The solver run, running or paused; `None` if none is looked at.
-    pub fn solver_run(&self) -> Option<&SolverRun> {
-        self.solvers.run()
-    }
-
-    /// The open dialog.
-    pub fn dialog(&self) -> Option<&Dialog> {
-        self.shell.dialog()
-    }
-
-    /// The message in the status bar; `None` before the first message and after an edit, which
-    /// clears it.
-    pub fn message(&self) -> Option<&str> {
-        self.shell.message()
+        FollowMouse::new(
+            self.skeleton_rig(),
+            &self.posed().evaluated_skeleton().solved,
+            self.playback.time(),
+        )
     }
 }

@@ -5,7 +5,7 @@ use super::outcome::{Consequence, Outcome};
 use super::session::Session;
 use super::skin_areas::SkinAreas;
 use crate::document::{Document, Overlay, Ray, Skin};
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{Joint, JointId};
 use crate::kinematics::skin::SkinShapeError;
 use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
 
@@ -90,7 +90,7 @@ fn set(session: &Session, skin: Option<Skin>) -> Outcome {
         colour: skin.colour.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }),
         ..skin
     });
-    let is_dragging = session.is_editing();
+    let is_dragging = session.history().is_editing();
     Outcome::edit(session.shown(), |document| {
         let rig = &mut document.skeleton_rig;
         rig.skin = skin;
@@ -144,12 +144,14 @@ impl Session {
         let skin = skin.filter(|_| self.shown().display.shows(Overlay::Skin))?;
         let mesh = &skin.mesh().ok()?.mesh;
         let posed = self.evaluated().posed_skin(|| {
-            mesh.posed(&mesh.pose(&self.evaluated_skeleton().solved), skin.skinning)
+            mesh.posed(&mesh.pose(&self.posed().evaluated_skeleton().solved), skin.skinning)
         });
         let hit = posed.hit(ray.origin, ray.direction)?;
         let weights = mesh.weights_at(&hit);
         let least = SHARED * weights.of(weights.first());
-        let root = weights.iter().find(|(joint, _)| self.is_root_point(*joint));
+        let root = weights
+            .iter()
+            .find(|(joint, _)| self.skeleton().joint(*joint).is_some_and(Joint::is_root_point));
         Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
     }
 
@@ -163,6 +165,7 @@ impl Session {
     /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
     /// skins are not compared or have no section there.
     pub fn skin_areas(&self) -> Option<&SkinAreas> {
-        self.evaluated().skin_areas(|| SkinAreas::new(self.track(), self.selected()))
+        self.evaluated()
+            .skin_areas(|| SkinAreas::new(self.history().track(), self.selection().active()))
     }
 }

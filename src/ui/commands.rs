@@ -43,7 +43,7 @@ pub(in crate::ui) fn frame_all(session: &Session) -> ViewAction {
 /// The action that deletes the selected joints. If a selected joint has a child that is not
 /// selected, the action opens a dialog that asks what to do with the children.
 pub(in crate::ui) fn delete(session: &Session) -> Action {
-    let joints = session.selection().to_vec();
+    let joints = session.selection().joints().to_vec();
     let is_left = |parent: Option<JointId>| parent.is_some_and(|parent| joints.contains(&parent));
     let skeleton = session.skeleton();
     let leaves_children =
@@ -64,7 +64,7 @@ pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
 /// The action that adds or removes the target of the selected joint; `None` if no joint is
 /// selected.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Edit> {
-    let joint = session.selected()?;
+    let joint = session.selection().active()?;
     let rig = session.skeleton_rig();
     Some(match rig.target_of_end(joint) {
         Some(target) => TargetEdit::RemoveTarget(rig.targets[target].joint).into(),
@@ -75,7 +75,7 @@ pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Edit> {
 /// Shows the part before the shown one: in the shown iteration, or the last part of the one before.
 /// `None` at the first part of the first iteration, or without a solver run.
 pub(in crate::ui) fn previous_part(session: &Session) -> Option<SolverAction> {
-    let run = session.solver_run()?;
+    let run = session.solvers().run()?;
     let iteration = run.shown().iteration;
     match run.shown_part() {
         Some(0) => {
@@ -93,7 +93,7 @@ pub(in crate::ui) fn previous_part(session: &Session) -> Option<SolverAction> {
 /// need be. Empty at the end of a run that is over.
 pub(in crate::ui) fn next_part(session: &Session) -> Vec<SolverAction> {
     let first_of = |iteration| SolverAction::ShowPart { iteration, part: Some(0) };
-    let Some(run) = session.solver_run() else { return vec![SolverAction::Step, first_of(1)] };
+    let Some(run) = session.solvers().run() else { return vec![SolverAction::Step, first_of(1)] };
     let iteration = run.shown().iteration;
     let next = run.shown_part().map_or(0, |part| part + 1);
     if next < run.parts().len() {

@@ -12,7 +12,7 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
     let end = |target: Option<&Target>| target.map_or("–", |target| name(rig.end_of(target)));
     let of_joint = |joint: JointId| end(rig.target(joint).map(|index| &rig.targets[index]));
     match grip {
-        Grip::Tip(joint, _) if session.turns_elbow(joint) => {
+        Grip::Tip(joint, _) if Grip::turns_elbow(session.posed(), joint) => {
             format!("the limb of {}", end(rig.target_that_turns(joint)))
         }
         Grip::Tip(joint, _) | Grip::Ring(joint, _) => name(joint).to_owned(),
@@ -138,5 +138,5 @@ pub fn why_on_path(session: &Session, joint: JointId) -> Option<&'static str> {
         }
         PathKind::Target => "The joints follow a target; set Path → Follow to None",
     };
-    rig.is_joint_on_path(joint, session.time()).then_some(reason)
+    rig.is_joint_on_path(joint, session.playback().time()).then_some(reason)
 }

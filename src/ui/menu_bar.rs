@@ -197,7 +197,7 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         RigKind::Arm => Channel::ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
         RigKind::Skeleton => {
             one(ui, Channel::Translation, actions);
-            for joint in session.selection() {
+            for joint in session.selection().joints() {
                 let there =
                     Channel::of_joint(*joint).filter(|it| it.value(session.shown()).is_some());
                 there.for_each(|channel| one(ui, channel, actions));

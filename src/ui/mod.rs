@@ -63,7 +63,7 @@ pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Act
     }
     let viewport = CentralPanel::no_frame().show(ui, |ui| viewport::ui(ui, session, actions)).inner;
     let figure = explain.and_then(|explain| panels::right(&mut explain.ui(ui), session, actions));
-    if figure != session.figure() {
+    if figure != session.selection().figure() {
         actions.push(SelectAction::Figure(figure));
     }
     if let Some(keys) = keys {

@@ -40,7 +40,7 @@ pub(in crate::ui) fn describe(session: &Session) -> String {
         RigKind::Arm => describe_pose(session),
         RigKind::Skeleton => describe_skeleton(session),
     };
-    let keys = session.selected_keys().len();
+    let keys = session.selection().keys().len();
     if keys > 0 {
         line += &format!(" · {} selected", count_of_keys(keys));
     }
@@ -67,10 +67,10 @@ fn describe_skeleton(session: &Session) -> String {
     };
     let mut line = vec![count(joints.len(), "joint"), count(rig.targets.len(), "target")];
     line.extend(describe_solver(session));
-    match session.selected().and_then(|joint| joints.get(joint.index())) {
+    match session.selection().active().and_then(|joint| joints.get(joint.index())) {
         Some(joint) => line.insert(
             0,
-            match session.selection().len() {
+            match session.selection().joints().len() {
                 1 => joint.name.clone(),
                 selected => format!("{} and {} more selected", joint.name, selected - 1),
             },
@@ -90,7 +90,7 @@ fn describe_solver(session: &Session) -> Option<String> {
         return Some(session.solver_status()?.state.to_string());
     };
     let iteration = format!("iteration {number} of {latest}");
-    Some(match session.solver_run() {
+    Some(match session.solvers().run() {
         Some(run) => {
             let state = session.solver_status()?.state;
             format!("{}: {iteration}, {state}", run.method().title())

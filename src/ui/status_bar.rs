@@ -8,6 +8,7 @@ use egui::{Align, Id, Label, Layout, ProgressBar, Ui};
 use super::widgets::{self, format};
 use super::{labels, mouse_hints, pose_summary};
 use crate::document::RigKind;
+use crate::kinematics::skeleton::Joint;
 use crate::kinematics::swing::Swing;
 use crate::session::{
     Actions, Drag, ExportJob, FileAction, Grip, JointEdit, PointDrag, Session, ShellAction,
@@ -34,17 +35,17 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.set_height(HEIGHT);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The keys of a drag need the whole line.
-            if session.drag().is_none() {
+            if session.history().drag().is_none() {
                 mouse_hints::ui(ui, session);
             }
             if let Some(job) = session.files().job() {
                 show_job(ui, job, actions);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                if session.files().seems_z_up() && session.drag().is_none() {
+                if session.files().seems_z_up() && session.history().drag().is_none() {
                     offer_turn(ui, actions);
                 }
-                let is_error = session.drag().is_none() && session.shell().has_failed();
+                let is_error = session.history().drag().is_none() && session.shell().has_failed();
                 if is_error {
                     widgets::error_label(ui, &line(session));
                 } else {
@@ -58,7 +59,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Removes the message once its time is over.
 fn expire(ui: &Ui, session: &Session, actions: &mut Actions) {
     let (id, now) = (Id::unique("shown message"), ui.input(|input| input.time));
-    let Some(text) = session.message() else {
+    let Some(text) = session.shell().message() else {
         return ui.data_mut(|data| data.remove::<ShownMessage>(id));
     };
     let shown: ShownMessage = ui.data(|data| data.get_temp(id)).unwrap_or_default();
@@ -103,13 +104,13 @@ fn show_job(ui: &mut Ui, job: &ExportJob, actions: &mut Actions) {
 }
 
 fn line(session: &Session) -> String {
-    if let Some(drag) = session.drag() {
+    if let Some(drag) = session.history().drag() {
         return describe_drag(session, drag);
     }
     if let Some(wiggle) = session.wiggle_view() {
         return describe_wiggle(session, &wiggle);
     }
-    session.message().map_or_else(|| pose_summary::describe(session), ToOwned::to_owned)
+    session.shell().message().map_or_else(|| pose_summary::describe(session), ToOwned::to_owned)
 }
 
 /// Describes the angle that swings, and how the residual changes with it.
@@ -141,7 +142,11 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
     let how = drag.constraint().map_or("freely".to_owned(), |constraint| constraint.to_string());
     let name = labels::grip(session, grip);
     let verb = match grip {
-        Grip::Tip(joint, _) if session.is_root_point(joint) => format!("Move {name}"),
+        Grip::Tip(joint, _)
+            if session.skeleton().joint(joint).is_some_and(Joint::is_root_point) =>
+        {
+            format!("Move {name}")
+        }
         Grip::Tip(..) => format!("Pose {name}"),
         Grip::Target(..) => "Target".to_owned(),
         Grip::Head(..) => "Head".to_owned(),

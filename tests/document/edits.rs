@@ -232,12 +232,17 @@ fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes()
         let (before, label) = (bytes(&session), edit.label());
         session.apply(edit.clone());
         let after = bytes(&session);
-        assert!(before != after, "{} changes the document: {:?}", name(&edit), session.message());
+        assert!(
+            before != after,
+            "{} changes the document: {:?}",
+            name(&edit),
+            session.shell().message()
+        );
         assert_eq!(session.history().undo_label(), Some(label));
         session.apply(TransactionAction::Undo);
         assert!(bytes(&session) == before, "undo of {}", name(&edit));
         assert_eq!(session.history().redo_label(), Some(label));
-        assert_eq!(session.message(), Some(&*format!("Undid {label}")));
+        assert_eq!(session.shell().message(), Some(&*format!("Undid {label}")));
         session.apply(TransactionAction::Redo);
         assert!(bytes(&session) == after, "redo of {}", name(&edit));
     }

@@ -14,9 +14,9 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
     Action, ArmEdit, Dialog, DisplayEdit, DragInput, Effect, Export, FileAction, FileContents,
-    Grip, JointEdit, KeysEdit, PathDialog, PathEdit, PlaybackAction, PointHandle, PoseMode,
-    SelectAction, Session, ShellAction, SolverAction, SolverEdit, TargetEdit, TransactionAction,
-    ViewAction,
+    Grip, GripRing, JointEdit, KeysEdit, PathDialog, PathEdit, PlaybackAction, PointHandle,
+    PoseMode, SelectAction, Session, ShellAction, SolverAction, SolverEdit, TargetEdit,
+    TransactionAction, ViewAction,
 };
 use ik_arm::words;
 use proptest::collection::vec;
@@ -244,8 +244,12 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     let rig = session.skeleton_rig();
     let joints = rig.skeleton.joints();
     prop_assert_eq!(session.skeleton_pose().len(), joints.len());
-    prop_assert!(session.selection().iter().all(|joint| *joint < JointId::new(joints.len())));
-    prop_assert!(session.hovered().is_none_or(|joint| joint < JointId::new(joints.len())));
+    prop_assert!(
+        session.selection().joints().iter().all(|joint| *joint < JointId::new(joints.len()))
+    );
+    prop_assert!(
+        session.selection().hovered().is_none_or(|joint| joint < JointId::new(joints.len()))
+    );
     let mut names = std::collections::HashSet::new();
     for (index, joint) in joints.iter().enumerate() {
         prop_assert!(joint.parent.is_none_or(|parent| parent < JointId::new(index)));
@@ -267,7 +271,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
         prop_assert!(track.knots().is_sorted_by(|a, b| a.time < b.time));
         prop_assert!(track.knots().iter().all(|knot| knot.value.is_finite()));
     }
-    for (channel, time) in session.selected_keys() {
+    for (channel, time) in session.selection().keys() {
         prop_assert!(document.keys.track(*channel).and_then(|track| track.get(*time)).is_some());
     }
     Ok(())
@@ -324,7 +328,7 @@ proptest! {
         let forward = session.camera().projection(1.0).forward;
         let ray = session.camera().projection(1.0).ray(glam::Vec2::ZERO);
         session.apply(TransactionAction::Grab { grip, ray, forward });
-        let held = session.is_editing();
+        let held = session.history().is_editing();
         for action in drag {
             let goes_on = matches!(action, Action::Transaction(TransactionAction::Drag(_)) | Action::Transaction(TransactionAction::TypeOffset(_)));
             if goes_on {
@@ -388,9 +392,9 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
     let document = session.document().clone();
     session.apply(FileAction::Saved("x.json".into()));
     session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
-    assert!(session.is_overridden(Channel::Hand));
+    assert!(session.history().is_overridden(Channel::Hand));
     assert_eq!(
-        session.message(),
+        session.shell().message(),
         Some("Unkeyed change: press K or it is lost when the time changes")
     );
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
@@ -399,7 +403,7 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
         session.apply(PlaybackAction::SetTime(time));
         let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
         assert!(session.arm().cursor_in_root().distance(expected) < 1e-3);
-        assert!(!session.is_overridden(Channel::Hand));
+        assert!(!session.history().is_overridden(Channel::Hand));
     }
 }
 
@@ -436,17 +440,17 @@ fn an_unkeyed_edit_that_a_time_change_discards_comes_back_with_undo() {
     session.apply(PlaybackAction::Advance(0.0));
     session.apply(PlaybackAction::Advance(0.1));
     assert_eq!(
-        session.message(),
+        session.shell().message(),
         Some("The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back")
     );
-    let played = (session.time(), session.arm().cursor_in_root());
+    let played = (session.playback().time(), session.arm().cursor_in_root());
     assert_ne!(played.0, 0.5);
 
     session.apply(TransactionAction::Undo);
-    assert_eq!((session.time(), session.is_playing()), (0.5, false));
+    assert_eq!((session.playback().time(), session.playback().is_playing()), (0.5, false));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
     session.apply(TransactionAction::Redo);
-    assert_eq!((session.time(), session.arm().cursor_in_root()), played);
+    assert_eq!((session.playback().time(), session.arm().cursor_in_root()), played);
 
     session.apply(TransactionAction::Undo);
     session.apply(TransactionAction::Undo);
@@ -459,7 +463,7 @@ fn the_playhead_stays_when_undo_brings_back_no_unkeyed_edit() {
     let mut session = halfway();
     session.apply(PlaybackAction::SetTime(0.7));
     session.apply(TransactionAction::Undo);
-    assert_eq!((session.document().keys.count(), session.time()), (1, 0.7));
+    assert_eq!((session.document().keys.count(), session.playback().time()), (1, 0.7));
 }
 
 #[test]
@@ -471,10 +475,10 @@ fn a_cancelled_drag_during_playback_leaves_the_playhead_alone() {
     session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::Advance(0.1));
     session.apply(ArmEdit::SetHand(Vec3::Z * 51.0));
-    let time = session.time();
+    let time = session.playback().time();
     session.apply(TransactionAction::Cancel);
-    assert_eq!((session.time(), session.is_playing()), (time, true));
-    assert!(!session.is_overridden(Channel::Hand));
+    assert_eq!((session.playback().time(), session.playback().is_playing()), (time, true));
+    assert!(!session.history().is_overridden(Channel::Hand));
 }
 
 #[test]
@@ -499,7 +503,7 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         session.apply(KeysEdit::Key(channels.clone()));
         assert!(session.playback().is_auto_key() && session.playback().is_auto_key_news());
         assert_eq!(
-            session.message(),
+            session.shell().message(),
             Some("Keyed at 0.00 s. Auto-key is on: every edit sets keys")
         );
 
@@ -526,7 +530,7 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         session.apply(PlaybackAction::SetAutoKey(false));
         session.apply(KeysEdit::Key(channels));
         assert!(!session.playback().is_auto_key(), "{name:?}: the user's choice stays");
-        assert_eq!(session.message(), Some("Keyed at 2.00 s"));
+        assert_eq!(session.shell().message(), Some("Keyed at 2.00 s"));
     }
 }
 
@@ -537,7 +541,7 @@ fn a_key_replaces_an_unkeyed_edit() {
     session.apply(PlaybackAction::SetAutoKey(true));
     session.apply(ArmEdit::SetHand(Vec3::Z * 60.0));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 60.0);
-    assert!(!session.is_overridden(Channel::Hand));
+    assert!(!session.history().is_overridden(Channel::Hand));
 
     let mut session = halfway();
     session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
@@ -561,16 +565,16 @@ fn selected_and_copied_keys_follow_their_joints() {
     session.apply(SelectAction::Channels(vec![Channel::Rotation(JointId::new(15))]));
     session.apply(SelectAction::CopyKeys);
     session.apply(JointEdit::DeleteJoints(vec![JointId::new(8)]));
-    let [(Channel::Rotation(joint), _)] = *session.selected_keys() else { panic!("one is") };
+    let [(Channel::Rotation(joint), _)] = *session.selection().keys() else { panic!("one is") };
     assert_eq!(name(&session, joint), foot);
-    assert!(session.selected_channels().contains(&Channel::Rotation(joint)));
+    assert!(session.selection().channels().contains(&Channel::Rotation(joint)));
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(KeysEdit::PasteKeys);
-    assert_eq!(session.selected_keys(), [(Channel::Rotation(joint), 1.0)]);
+    assert_eq!(session.selection().keys(), [(Channel::Rotation(joint), 1.0)]);
     // Undo restores the joint indices and clears the selection: no wrong joint is selected.
     session.apply(TransactionAction::Undo);
     session.apply(TransactionAction::Undo);
-    assert_eq!((session.selected_keys(), session.selection()), (&[][..], &[][..]));
+    assert_eq!((session.selection().keys(), session.selection().joints()), (&[][..], &[][..]));
 }
 
 #[test]
@@ -581,7 +585,7 @@ fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
     let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     session.apply(opened.clone());
     assert_eq!(session.arm().twist, 1.0);
-    assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
+    assert_eq!(session.shell().dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
     session.apply(FileAction::Discard(Box::new(opened)));
     assert_eq!(session.document(), &Document::default());
 }
@@ -622,7 +626,7 @@ fn a_cancelled_drag_restores_the_unkeyed_edit_that_the_time_has_discarded() {
     session.apply(TransactionAction::Begin);
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(TransactionAction::Cancel);
-    assert_eq!((session.time(), session.arm().cursor_in_root()), (0.5, Vec3::Z * 50.0));
+    assert_eq!((session.playback().time(), session.arm().cursor_in_root()), (0.5, Vec3::Z * 50.0));
 }
 
 #[test]
@@ -654,7 +658,7 @@ fn playing_keeps_time_at_any_frame_rate_and_edits_nothing() {
         for tick in 0..=steps {
             session.apply(PlaybackAction::Advance(50.0 + f64::from(tick) * step));
         }
-        assert!((session.time() - 2.0).abs() < 1e-9, "{}", session.time());
+        assert!((session.playback().time() - 2.0).abs() < 1e-9, "{}", session.playback().time());
         assert_eq!(session.document(), &document);
     }
 }
@@ -669,7 +673,10 @@ fn playing_stops_at_the_end_or_loops() {
         for seconds in [1.0, 10.5] {
             session.apply(PlaybackAction::Advance(seconds));
         }
-        assert_eq!((session.time(), session.is_playing()), (expected, playing));
+        assert_eq!(
+            (session.playback().time(), session.playback().is_playing()),
+            (expected, playing)
+        );
     }
 }
 
@@ -685,7 +692,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
     let heavy = targets[0];
     let gap = |session: &mut Session| {
         (0..400).for_each(|_| drop(session.apply(SolverAction::Step)));
-        session.solver_run().expect("it steps").skeleton().tip(heavy.joint).distance(apart[0])
+        session.solvers().run().expect("it steps").skeleton().tip(heavy.joint).distance(apart[0])
     };
     let before = gap(&mut session);
     session.apply(TargetEdit::SetTarget(Target { home: apart[0], weight: 50.0, ..heavy }));
@@ -705,9 +712,14 @@ fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) < 1e-3, "{tip}");
     assert_eq!(session.skeleton(), before.skeleton());
-    assert_eq!(session.ring(target.joint, RotationAxis::X), None, "its angles pose nothing");
+    assert_eq!(
+        GripRing::of_joint(session.posed(), target.joint, RotationAxis::X),
+        None,
+        "its angles pose nothing"
+    );
     session.apply(TargetEdit::SetTarget(Target { influence: 0.5, ..target }));
-    let ring = session.ring(target.joint, RotationAxis::X).expect("a movable angle");
+    let ring = GripRing::of_joint(session.posed(), target.joint, RotationAxis::X)
+        .expect("a movable angle");
     assert_eq!(ring.centre, session.skeleton_pose().base(target.joint));
     assert_eq!(session.skeleton(), before.skeleton());
     session.apply(TransactionAction::Undo);
@@ -764,13 +776,13 @@ fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay()
     let mut session = halfway();
     session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(ArmEdit::SetHand(Vec3::X));
-    assert!(session.message().is_some_and(|it| it.starts_with("Unkeyed change")));
+    assert!(session.shell().message().is_some_and(|it| it.starts_with("Unkeyed change")));
     session.apply(PlaybackAction::SetTime(0.25));
     let discarded = "The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back";
-    assert_eq!(session.message(), Some(discarded));
+    assert_eq!(session.shell().message(), Some(discarded));
     session.apply(ShellAction::Report("Saved".to_owned()));
     session.apply(PlaybackAction::SetTime(0.3));
-    assert_eq!(session.message(), Some("Saved"));
+    assert_eq!(session.shell().message(), Some("Saved"));
 }
 
 #[test]
@@ -780,19 +792,22 @@ fn unsaved_changes_are_asked_about_only_once_the_other_file_was_read() {
     let (path, options) = (PathBuf::from("other.json"), OpenOptions::default());
     let effect = session.apply(FileAction::Open { path: path.clone(), options: options.clone() });
     assert_eq!(effect, Some(Effect::Open { path: path.clone(), options }));
-    assert_eq!(session.dialog(), None, "nothing is lost yet");
+    assert_eq!(session.shell().dialog(), None, "nothing is lost yet");
     session.apply(FileAction::NotOpened { path, why: "it is not there".to_owned() });
-    assert!(matches!(session.dialog(), Some(Dialog::Path(PathDialog::Open { .. }))));
+    assert!(matches!(session.shell().dialog(), Some(Dialog::Path(PathDialog::Open { .. }))));
     assert_eq!(session.arm().twist, 1.0);
 
     session.apply(ShellAction::CloseDialog);
     session.remark_when_opened(Some("Opened other.json".to_owned()));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     session.apply(opened.clone());
-    assert_eq!(session.dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
-    assert_ne!(session.message(), Some("Opened other.json"), "it is not open yet");
+    assert_eq!(session.shell().dialog(), Some(&Dialog::Unsaved { then: Box::new(opened.clone()) }));
+    assert_ne!(session.shell().message(), Some("Opened other.json"), "it is not open yet");
     session.apply(FileAction::Discard(Box::new(opened)));
-    assert_eq!((session.dialog(), session.message()), (None, Some("Opened other.json")));
+    assert_eq!(
+        (session.shell().dialog(), session.shell().message()),
+        (None, Some("Opened other.json"))
+    );
 }
 
 /// The contents of a file of another program with one skeleton and some animations.
@@ -839,9 +854,9 @@ fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about
     let contents = Some(contents("/models/Walk.glb", 2));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents };
     session.apply(opened.clone());
-    assert!(matches!(session.dialog(), Some(Dialog::Unsaved { .. })));
+    assert!(matches!(session.shell().dialog(), Some(Dialog::Unsaved { .. })));
     session.apply(FileAction::Discard(Box::new(opened)));
-    assert!(matches!(session.dialog(), Some(Dialog::ChooseContents(_))));
+    assert!(matches!(session.shell().dialog(), Some(Dialog::ChooseContents(_))));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use ik_arm::rig::{SkeletonRig, Target, TargetOutcome};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
     Action, ArmEdit, CameraMotion, Constraint, DisplayEdit, Drag, DragInput, FileAction, Grip,
-    JointEdit, KeysEdit, PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences,
+    GripRing, JointEdit, KeysEdit, PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences,
     SelectAction, Session, ShellAction, SolverAction, TargetEdit, TransactionAction, TurnDrag,
     ViewAction,
 };
@@ -67,12 +67,12 @@ fn a_frame_at_a_non_finite_time_changes_nothing() {
     session.apply(PlaybackAction::Play(true));
     for seconds in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         session.apply(PlaybackAction::Advance(seconds));
-        assert_eq!((session.camera(), session.time()), (&Camera::default(), 0.0));
+        assert_eq!((session.camera(), session.playback().time()), (&Camera::default(), 0.0));
     }
     for seconds in [2.0, 4.0] {
         session.apply(PlaybackAction::Advance(seconds));
     }
-    assert_eq!((session.camera(), session.time()), (&to, 2.0));
+    assert_eq!((session.camera(), session.playback().time()), (&to, 2.0));
 }
 
 #[test]
@@ -88,14 +88,14 @@ fn actions_on_a_fourth_axis_are_refused() {
             Grip::Tip(JointId::new(0), plane),
         ] {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
-            assert!(!session.is_editing(), "{grip:?} holds nothing");
+            assert!(!session.history().is_editing(), "{grip:?} holds nothing");
         }
         let grip = Grip::Hand(PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
             session.apply(TransactionAction::Constrain(Some(constraint)));
             session.apply(TransactionAction::TypeOffset("1".to_owned()));
-            assert_eq!(session.point_drag().and_then(PointDrag::constraint), None);
+            assert_eq!(session.history().point_drag().and_then(PointDrag::constraint), None);
         }
         session.apply(TransactionAction::Cancel);
         assert_eq!(session.document(), &before);
@@ -108,7 +108,7 @@ fn a_missing_joint_cannot_be_hovered() {
     for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
         let joint = JointId::new(joint);
         session.apply(SelectAction::Hover(Some(joint.into())));
-        assert_eq!(session.hovered(), is_there.then_some(joint));
+        assert_eq!(session.selection().hovered(), is_there.then_some(joint));
     }
 }
 
@@ -134,7 +134,7 @@ fn keys_made_while_others_move_stay() {
     let keys = vec![(Channel::Hand, 0.0)];
     session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
     session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
-    assert_eq!(session.selected_keys(), [(Channel::Hand, 2.0)]);
+    assert_eq!(session.selection().keys(), [(Channel::Hand, 2.0)]);
     session.apply(KeysEdit::Key(vec![Channel::Root]));
     session.apply(KeysEdit::MoveKeys {
         keys: vec![(Channel::Hand, 2.0)],
@@ -159,11 +159,11 @@ fn a_dragged_tip_is_released_when_the_joints_change() {
         session.apply(JointEdit::AddChild { parent: JointId::new(1), tip: None });
         let grip = Grip::Tip(JointId::new(1), PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
-        assert!(session.drag().is_some());
+        assert!(session.history().drag().is_some());
         session.apply(change);
         let joints = session.skeleton().joints().len();
         session.apply(TransactionAction::TypeOffset("0.1".to_owned()));
-        assert!(session.drag().is_none() && session.is_editing());
+        assert!(session.history().drag().is_none() && session.history().is_editing());
         assert_eq!(session.skeleton().joints().len(), joints);
     }
 }
@@ -207,9 +207,13 @@ fn a_ring_dragged_by_an_invalid_ray_does_not_turn() {
                     snap: false,
                 }));
                 assert!(
-                    session.drag().and_then(Drag::turn).is_some_and(|it| it.turned().is_finite())
+                    session
+                        .history()
+                        .drag()
+                        .and_then(Drag::turn)
+                        .is_some_and(|it| it.turned().is_finite())
                 );
-                assert!(session.message().is_none(), "{:?}", session.message());
+                assert!(session.shell().message().is_none(), "{:?}", session.shell().message());
             }
             session.apply(TransactionAction::Cancel);
             assert_eq!(session.document(), &before);
@@ -310,9 +314,9 @@ fn drags_and_snaps_that_overflow_are_clamped() {
         session.apply(TransactionAction::TypeOffset(typed.to_owned()));
         let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };
         session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap }));
-        assert!(session.point_drag().is_some_and(|drag| drag.moved().is_finite()));
-        assert!(session.arm().pole.is_finite(), "{:?}", session.message());
-        assert!(session.message().is_none(), "{:?}", session.message());
+        assert!(session.history().point_drag().is_some_and(|drag| drag.moved().is_finite()));
+        assert!(session.arm().pole.is_finite(), "{:?}", session.shell().message());
+        assert!(session.shell().message().is_none(), "{:?}", session.shell().message());
     }
 }
 
@@ -335,7 +339,9 @@ fn a_ring_snap_that_overflows_is_clamped() {
     for angle in [f32::MAX, f32::MIN] {
         let mut session = session();
         session.apply(JointEdit::SetRotation { joint: JointId::new(0), rotation: Vec3::X * angle });
-        let axis = session.ring(JointId::new(0), RotationAxis::X).expect("a ring").axis;
+        let axis = GripRing::of_joint(session.posed(), JointId::new(0), RotationAxis::X)
+            .expect("a ring")
+            .axis;
         let seen = |aside: Vec3| Ray { origin: axis * 5.0 + aside, direction: -axis };
         let (one, other) = axis.any_orthonormal_pair();
         let grip = Grip::Ring(JointId::new(0), RotationAxis::X);
@@ -346,9 +352,9 @@ fn a_ring_snap_that_overflows_is_clamped() {
                 precise,
                 snap: true,
             }));
-            let turned = session.drag().and_then(Drag::turn).map(TurnDrag::turned);
+            let turned = session.history().drag().and_then(Drag::turn).map(TurnDrag::turned);
             assert!(turned.is_some_and(f32::is_finite), "{turned:?}");
-            assert!(session.message().is_none(), "{:?}", session.message());
+            assert!(session.shell().message().is_none(), "{:?}", session.shell().message());
         }
         assert!(session.skeleton().joints()[0].rotation.is_finite());
     }
@@ -360,7 +366,7 @@ fn a_remedy_that_allows_no_iterations_is_refused() {
     let before = session.document().clone();
     let (target, remedy) = (JointId::new(0), Remedy::AllowIterations(0));
     session.apply(TargetEdit::ApplyRemedy { target, remedy });
-    assert_eq!(session.message(), Some("The solver's iterations must be above 0, got 0"));
+    assert_eq!(session.shell().message(), Some("The solver's iterations must be above 0, got 0"));
     assert_eq!(session.document(), &before);
 }
 
@@ -372,7 +378,7 @@ fn a_target_at_a_tip_that_overflows_is_refused() {
     session.apply(JointEdit::SetTranslation(Vec3::splat(f32::MAX)));
     let before = session.document().clone();
     session.apply(TargetEdit::AddTarget(JointId::new(1)));
-    let message = session.message().unwrap_or_default();
+    let message = session.shell().message().unwrap_or_default();
     assert!(message.starts_with("The position of a target must be finite, got"), "{message}");
     assert_eq!(session.document(), &before);
 }
@@ -425,7 +431,7 @@ fn the_work_of_each_pose_of_a_huge_star_is_bounded_while_it_is_dragged_played_an
             SolverAction::Compare.into(),
         ] {
             session.apply(action.clone());
-            let reports = &session.evaluated_skeleton().targets;
+            let reports = &session.posed().evaluated_skeleton().targets;
             for outcome in reports.iter().map(|report| &report.outcome) {
                 match outcome {
                     TargetOutcome::WholeBody(report) => assert!(is_bounded(report.iterations)),

@@ -37,7 +37,7 @@ fn past_the_shoulder(session: &mut Session) {
 
 fn persisting(session: &Session) -> Vec<Spike> {
     let persists = |spike: &Spike| spike.persists(session.arm());
-    session.pops().spikes().into_iter().filter(persists).collect()
+    session.evaluated().pops().spikes().into_iter().filter(persists).collect()
 }
 
 fn changes(session: &Session) -> Vec<InputChange> {
@@ -45,7 +45,7 @@ fn changes(session: &Session) -> Vec<InputChange> {
         PopSampleKind::Change(change) => Some(change),
         PopSampleKind::Step(_) => None,
     };
-    session.pops().samples().filter_map(|sample| change(sample.kind)).collect()
+    session.evaluated().pops().samples().filter_map(|sample| change(sample.kind)).collect()
 }
 
 /// Drags, applies the fix of the only pop, and checks that the same drag no longer pops. Returns
@@ -56,7 +56,7 @@ fn fix_pop(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     assert_eq!(spikes.len(), 1, "{spikes:?}");
     let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a fix");
     session.apply(pop_fix.action());
-    assert_eq!(session.message(), None);
+    assert_eq!(session.shell().message(), None);
     assert_eq!(PopFix::new(&spikes[0], session.arm()), None, "it is taken");
     drag(session);
     assert_eq!(persisting(session), []);
@@ -135,7 +135,8 @@ fn each_drag_and_each_playback_is_a_separate_run() {
     into_the_limit(&mut session);
     over_the_top(&mut session);
     let runs = |session: &Session| {
-        let mut runs: Vec<u32> = session.pops().samples().map(|sample| sample.run).collect();
+        let mut runs: Vec<u32> =
+            session.evaluated().pops().samples().map(|sample| sample.run).collect();
         let steps = runs.len();
         runs.dedup();
         (runs.len(), steps)
@@ -172,14 +173,14 @@ fn play(session: &mut Session, seconds: std::ops::Range<f64>) {
 #[test]
 fn playback_is_measured_and_a_loop_starts_a_new_run() {
     let mut session = keyed(&[Channel::Hand]);
-    let typed = session.pops().samples().count();
+    let typed = session.evaluated().pops().samples().count();
     play(&mut session, 10.0..11.9);
-    let samples: Vec<_> = session.pops().samples().skip(typed).collect();
+    let samples: Vec<_> = session.evaluated().pops().samples().skip(typed).collect();
     assert!(samples.len() > 30, "{}", samples.len());
     let mut runs: Vec<u32> = samples.iter().map(|sample| sample.run).collect();
     runs.dedup();
     assert_eq!(runs.len(), 2);
-    let spikes = session.pops().spikes();
+    let spikes = session.evaluated().pops().spikes();
     assert_eq!(spikes.len(), 2, "{spikes:?}");
     assert!(
         spikes.iter().all(|spike| matches!(spike.pop, PopCause::Singular { .. })),
@@ -193,7 +194,7 @@ fn a_played_twist_is_one_input_change_and_no_pop() {
     let before = changes(&session).len();
     play(&mut session, 10.0..10.9);
     assert_eq!(changes(&session)[before..], [InputChange::Twist]);
-    assert_eq!(session.pops().spikes(), []);
+    assert_eq!(session.evaluated().pops().spikes(), []);
 }
 
 #[test]
@@ -207,7 +208,7 @@ fn moving_the_root_is_an_input_change_only_with_a_pinned_hand() {
         }
         session.apply(TransactionAction::Commit);
         assert_eq!(changes(&session), marked);
-        assert_eq!(session.pops().samples().count(), marked.len());
+        assert_eq!(session.evaluated().pops().samples().count(), marked.len());
     }
 }
 
@@ -215,7 +216,7 @@ fn moving_the_root_is_an_input_change_only_with_a_pinned_hand() {
 fn a_slow_hand_adds_up_to_the_same_pop() {
     let mut session = Session::default();
     drag(&mut session, Vec3::new(40.0, 300.0, 4.0), Vec3::new(-40.0, 300.0, 4.0), 1600);
-    let count = session.pops().samples().count();
+    let count = session.evaluated().pops().samples().count();
     assert!((130..=160).contains(&count), "{count} of 80 units in steps of half a one or more");
     assert_eq!(persisting(&session).len(), 1);
 }
@@ -228,14 +229,14 @@ fn samples_are_bounded_and_cleared_with_the_document() {
         over_the_top(&mut session);
         drag(&mut session, Vec3::new(300.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 300.0), 200);
     }
-    assert_eq!(session.pops().samples().count(), 600);
+    assert_eq!(session.evaluated().pops().samples().count(), 600);
     let document = Box::new(Document::default());
     session.apply(FileAction::Discard(Box::new(FileAction::Opened {
         document,
         file: None,
         contents: None,
     })));
-    assert_eq!(session.pops().samples().count(), 0);
+    assert_eq!(session.evaluated().pops().samples().count(), 0);
 }
 
 #[test]
@@ -243,6 +244,7 @@ fn a_drag_straight_out_of_reach_does_not_move_the_elbow() {
     let mut session = Session::default();
     drag(&mut session, Vec3::new(600.0, 0.0, 0.0), Vec3::new(900.0, 0.0, 0.0), 10);
     let ratios: Vec<f32> = session
+        .evaluated()
         .pops()
         .samples()
         .map(|sample| match sample.kind {

@@ -246,7 +246,7 @@ fn auto_key_keys_a_dragged_head_alone() {
         session.apply(PlaybackAction::SetTime(f64::from(second)));
         let to = head + Vec3::new(0.5 + second as f32, 0.3 * second as f32, 0.0);
         drag(&mut session, &[to]);
-        ends.push(points(&session.evaluated_skeleton().solved));
+        ends.push(points(&session.posed().evaluated_skeleton().solved));
     }
     let keyed: Vec<Channel> =
         session.document().keys.tracks().map(|(channel, _)| channel).collect();
@@ -266,18 +266,18 @@ fn a_keyed_head_that_is_moved_without_a_key_draws_its_body_until_the_time_change
     let mut random = Random(1508);
     let mut session = Session::with_document(Preferences::default(), keyed_snake(&mut random));
     session.apply(PlaybackAction::SetTime(1.0));
-    let before = points(&session.evaluated_skeleton().solved);
+    let before = points(&session.posed().evaluated_skeleton().solved);
     session.apply(PlaybackAction::SetAutoKey(false));
     let to = before[0] + Vec3::new(0.3, 0.4, 0.0);
     session.apply(PathEdit::SetHead { root: HEAD, to });
-    let after = points(&session.evaluated_skeleton().solved);
+    let after = points(&session.posed().evaluated_skeleton().solved);
     assert!(after[0].distance(to) < 1e-5);
     let between: Vec<Vec3> =
         (0..=1000).map(|step| before[0].lerp(after[0], step as f32 / 1000.0)).collect();
     assert!(distance(&between, after[1]) < 1e-3, "the first bone is on the path to the mouse");
     session.apply(PlaybackAction::SetTime(0.5));
     session.apply(PlaybackAction::SetTime(1.0));
-    assert_eq!(points(&session.evaluated_skeleton().solved), before);
+    assert_eq!(points(&session.posed().evaluated_skeleton().solved), before);
 }
 
 #[test]
@@ -289,7 +289,7 @@ fn the_head_can_be_moved_by_numbers_and_refuses_what_is_not_finite() {
     let before = session.document().clone();
     session.apply(PathEdit::SetHead { root: HEAD, to: Vec3::new(f32::NAN, 0.0, 0.0) });
     assert_eq!(*session.document(), before);
-    let message = session.message().unwrap_or_default();
+    let message = session.shell().message().unwrap_or_default();
     assert!(message.starts_with("The position of the head must be finite, got"), "{message}");
 }
 
@@ -349,7 +349,7 @@ fn auto_key_lets_the_body_follow_before_its_head_has_keys() {
     let before = points(session.skeleton());
     let to = before[0] + Vec3::new(0.5, 0.4, 0.0);
     drag(&mut session, &[to]);
-    let after = points(&session.evaluated_skeleton().solved);
+    let after = points(&session.posed().evaluated_skeleton().solved);
     let line: Vec<Vec3> = [to].into_iter().chain(before).collect();
     for point in &after {
         assert!(distance(&line, *point) < 1e-4, "{point} is on the path");

@@ -85,7 +85,7 @@ fn bits(skeleton: &Skeleton) -> Vec<[u32; 6]> {
 
 /// The FK pose after some iterations of a new solver, with the error that it reports.
 fn fresh(session: &Session, options: &SolverOptions, iterations: u32) -> (Skeleton, f32) {
-    let (rig, time) = (session.skeleton_rig(), session.time());
+    let (rig, time) = (session.skeleton_rig(), session.playback().time());
     let mut skeleton = Skeleton::clone(&rig.fk_at(time));
     let mut solver =
         ChainSolver::new(&skeleton, &rig.targets_at(time), options).expect("it can be solved");
@@ -145,16 +145,16 @@ fn iterate_k_is_that_of_a_new_solver_after_k_steps() {
     for _ in 0..40 {
         let mut session = open(document(&mut random));
         step(&mut session, 25);
-        let run = session.solver_run().expect("it steps").clone();
+        let run = session.solvers().run().expect("it steps").clone();
         let options = session.skeleton_rig().solver;
         for iterate in run.iterates().iter() {
             session.apply(SolverAction::Show(iterate.iteration));
-            let run = session.solver_run().expect("it is shown");
+            let run = session.solvers().run().expect("it is shown");
             assert_eq!(run.shown(), iterate);
             assert_is_fresh(&session, run, &options);
         }
         let first = run.iterates().at(0).joints();
-        let fk = session.skeleton_rig().fk_at(session.time());
+        let fk = session.skeleton_rig().fk_at(session.playback().time());
         assert!(first.eq(fk.iter().map(|(_, joint)| (joint.rotation, joint.offset))));
     }
 }
@@ -169,7 +169,7 @@ fn a_run_and_a_comparison_always_solve_what_the_session_shows() {
             let action = change(&mut random, &session, &mut seconds);
             session.apply(action);
             let options = session.skeleton_rig().solver;
-            if let Some(run) = session.solver_run() {
+            if let Some(run) = session.solvers().run() {
                 assert_is_fresh(&session, run, &options);
             }
             for solver in session.solvers().comparison().into_iter().flat_map(Comparison::solvers) {
@@ -224,7 +224,7 @@ fn the_iterations_of_a_run_do_not_depend_on_the_times_that_were_shown_before() {
             detour.apply(PlaybackAction::SetTime(time));
         }
         direct.apply(PlaybackAction::SetTime(times[4]));
-        let [a, b] = [&direct, &detour].map(|session| session.solver_run().expect("it steps"));
+        let [a, b] = [&direct, &detour].map(|session| session.solvers().run().expect("it steps"));
         assert_eq!(a.iterates(), b.iterates());
         assert_eq!(bits(a.skeleton()), bits(b.skeleton()));
     }
@@ -237,10 +237,10 @@ fn a_run_that_has_ended_solves_a_moved_target_to_its_end() {
     let target = session.skeleton_rig().targets[0];
     for home in [target.home + Vec3::Y * 0.2, target.home + Vec3::X * 0.1, target.home] {
         session.apply(TargetEdit::SetTarget(Target { home, ..target }));
-        let run = session.solver_run().expect("it is looked at");
+        let run = session.solvers().run().expect("it is looked at");
         assert!(run.report().converged() && run.report().iterations > 0, "{:?}", run.report());
         let error = run.skeleton().tip(target.joint).distance(home);
-        assert!(error <= session.solver_tolerance() * 1.01, "{error}");
+        assert!(error <= session.skeleton_rig().tolerance() * 1.01, "{error}");
     }
 }
 
@@ -272,12 +272,12 @@ fn apply_pose_is_one_step_that_undo_takes_back_bit_for_bit() {
         let steps = 1 + random.below(6);
         step(&mut session, steps);
         session.apply(SolverAction::Show(1 + random.below(steps) as u32));
-        let posed = bits(session.solver_run().expect("it steps").skeleton());
+        let posed = bits(session.solvers().run().expect("it steps").skeleton());
         let is_still = posed == bits(session.skeleton());
         session.apply(SolverEdit::ApplyPose);
         assert_eq!(bits(session.skeleton()), posed);
         assert_eq!(bits(session.document().skeleton()), posed);
-        assert!(session.solver_run().is_none(), "the pose is in the document now");
+        assert!(session.solvers().run().is_none(), "the pose is in the document now");
         assert_eq!(session.history().undo_label(), (!is_still).then_some("Apply pose"));
         session.apply(TransactionAction::Undo);
         assert!(bytes(&session) == before);
@@ -310,13 +310,13 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
         session.apply(PlaybackAction::SetTime(1.0));
         session.apply(PlaybackAction::SetAutoKey(auto_key));
         step(&mut session, 3);
-        let posed = session.solver_run().expect("it steps").skeleton()[joint].rotation;
+        let posed = session.solvers().run().expect("it steps").skeleton()[joint].rotation;
         assert_ne!(posed, session.skeleton()[joint].rotation);
         session.apply(SolverEdit::ApplyPose);
         assert_eq!(session.skeleton()[joint].rotation, posed);
         let keys = session.document().keys.track(Channel::Rotation(joint)).expect("keyed");
         assert_eq!(keys.get(1.0), auto_key.then_some(posed));
-        assert_eq!(session.is_overridden(Channel::Rotation(joint)), !auto_key);
+        assert_eq!(session.history().is_overridden(Channel::Rotation(joint)), !auto_key);
         session.apply(TransactionAction::Undo);
         assert_ne!(session.skeleton()[joint].rotation, posed);
     }
@@ -339,10 +339,12 @@ fn a_run_ends_when_there_is_nothing_to_solve() {
         assert_eq!(session.overlays().ghosts.len(), session.solvers().runs().count());
         assert!(session.solvers().shown_iteration().is_some());
         session.apply(end);
-        assert!(session.solver_run().is_none() && session.solvers().comparison().is_none());
+        assert!(session.solvers().run().is_none() && session.solvers().comparison().is_none());
         assert!(session.overlays().ghosts.is_empty() && !session.is_moving());
         session.apply(begin);
-        assert!(session.solvers().shown_iteration().is_none() && session.message().is_some());
+        assert!(
+            session.solvers().shown_iteration().is_none() && session.shell().message().is_some()
+        );
     }
 }
 
@@ -354,8 +356,12 @@ fn a_run_ends_with_the_reason_if_its_solver_refuses_the_targets() {
     let two_bone = session.skeleton_rig().solver.with_method(Method::TwoBone);
     session.apply(JointEdit::SetLocked { joint: root, locked: true });
     session.apply(SolverEdit::SetSolver(two_bone));
-    assert!(session.solver_run().is_none());
-    assert!(session.message().expect("a reason").contains("locked"), "{:?}", session.message());
+    assert!(session.solvers().run().is_none());
+    assert!(
+        session.shell().message().expect("a reason").contains("locked"),
+        "{:?}",
+        session.shell().message()
+    );
 }
 
 #[test]
@@ -412,7 +418,7 @@ fn the_labels_in_the_view_tell_the_shown_iteration_and_its_gaps() {
         session.apply(SolverAction::Show(number));
         let texts = labels(&session);
         assert!(texts.contains(&format!("Iteration {number}")), "{texts:?}");
-        let run = session.solver_run().expect("it steps");
+        let run = session.solvers().run().expect("it steps");
         let gap = |it: &TipTarget| run.skeleton().tip(it.joint).distance(it.point);
         let gaps: Vec<f32> = run.targets().iter().map(gap).collect();
         let told: Vec<f32> = texts.iter().filter_map(|text| text.parse().ok()).collect();

@@ -69,7 +69,7 @@ fn beside_path(document: &Document, head: JointId, time: f64) -> Vec<f64> {
 #[test]
 fn tadpoles_play_when_opened_and_every_tail_is_on_the_path_of_its_head() {
     let session = tadpoles();
-    assert!(session.is_playing() && session.can_follow_mouse());
+    assert!(session.playback().is_playing() && session.can_follow_mouse());
     let document = session.document();
     let text = to_json(document).expect("JSON");
     let again = parse("a.json", &text, &OpenOptions::default()).expect("opens").document;
@@ -121,16 +121,16 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     let mut clock = 100.0;
     session.apply(PlaybackAction::Advance(clock));
     session.apply(TransactionAction::FollowMouse(true));
-    assert!(session.follows_mouse() && session.is_editing());
+    assert!(session.follows_mouse() && session.history().is_editing());
     let s_shape = |seconds: f64| {
         let (x, z) = (0.8 * seconds - 0.8, 0.5 * (3.0 * seconds).sin());
         Vec3::new(x as f32, 0.0, z as f32)
     };
     lead(&mut session, &mut clock, 120, s_shape);
-    let end = session.time();
+    let end = session.playback().time();
     lead(&mut session, &mut clock, 60, |_| s_shape(2.0));
     session.apply(TransactionAction::FollowMouse(false));
-    assert!(!session.follows_mouse() && !session.is_editing());
+    assert!(!session.follows_mouse() && !session.history().is_editing());
     assert_eq!(session.history().undo_label(), Some("Follow the mouse"));
 
     let recorded = session.document().clone();
@@ -167,7 +167,7 @@ fn a_recording_past_the_end_makes_the_timeline_longer_and_esc_restores_it() {
     session.apply(TransactionAction::FollowMouse(true));
     lead(&mut session, &mut clock, 90, |seconds| Vec3::X * seconds as f32);
     let end = session.document().timeline.end;
-    assert!(session.time() > before.timeline.end && end >= session.time());
+    assert!(session.playback().time() > before.timeline.end && end >= session.playback().time());
     let times = session.document().keys.times();
     let least = times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     assert!(least > 0.015 && times.len() < 60, "{} keys, {least} s apart", times.len());
@@ -202,6 +202,7 @@ fn each_root_has_a_path_of_its_own() {
     assert_eq!(session.document(), &before);
     assert!(
         session
+            .shell()
             .message()
             .is_some_and(|text| text.starts_with("The joint of a path must be a root"))
     );

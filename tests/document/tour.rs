@@ -172,8 +172,8 @@ fn the_own_document_comes_back_as_it_was_after_every_step() {
         assert_eq!(session.shown(), before.shown());
         assert_eq!(session.history().undo_label(), before.history().undo_label());
         assert_eq!(
-            (session.time(), session.files().file()),
-            (before.time(), before.files().file())
+            (session.playback().time(), session.files().file()),
+            (before.playback().time(), before.files().file())
         );
         assert_eq!(session.history().is_unsaved(), before.history().is_unsaved());
         assert_eq!(session.history().revision(), before.history().revision());
@@ -192,7 +192,7 @@ fn a_drag_that_was_under_way_is_kept_as_an_undo_step() {
     session.apply(TourAction::Enter(3));
     session.apply(TourAction::Leave);
     assert_eq!(session.arm().twist, 0.5);
-    assert!(!session.is_editing() && session.history().undo_label().is_some());
+    assert!(!session.history().is_editing() && session.history().undo_label().is_some());
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn opening_another_document_ends_the_tour_and_asks_for_unsaved_changes_of_the_ow
     let before = bytes(&session);
     session.apply(TourAction::Enter(4));
     session.apply(FileAction::OpenExample(example));
-    assert!(matches!(session.dialog(), Some(Dialog::Unsaved { .. })));
+    assert!(matches!(session.shell().dialog(), Some(Dialog::Unsaved { .. })));
     assert!(session.tour().is_none());
     assert_eq!(bytes(&session), before);
 

@@ -113,7 +113,7 @@ fn not_saved(path: &Path) -> (Session, String) {
     assert!(session.history().is_unsaved());
     assert_eq!(session.document(), &document);
     assert_eq!(session.files().file(), None);
-    let message = session.message().expect("it is said").to_owned();
+    let message = session.shell().message().expect("it is said").to_owned();
     (session, message)
 }
 

@@ -64,7 +64,7 @@ fn the_triangle_and_the_circle_of_two_bones() {
     let options = session.skeleton_rig().solver.with_method(Method::TwoBone);
     session.apply(SolverEdit::SetSolver(options));
     session.apply(SolverAction::Step);
-    let parts = session.solver_run().expect("a run").parts().len();
+    let parts = session.solvers().run().expect("a run").parts().len();
     session.apply(SolverAction::ShowPart { iteration: 1, part: Some(parts - 1) });
     check("inside_two_bones", &session);
 }

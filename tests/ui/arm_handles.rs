@@ -6,7 +6,7 @@ use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::HandSpace;
 use ik_arm::kinematics::skeleton::RotationAxis;
-use ik_arm::session::{ArmEdit, ArmJoint, Drag, Grip, PoseMode, TransactionAction};
+use ik_arm::session::{ArmEdit, ArmJoint, Drag, Grip, GripRing, PoseMode, TransactionAction};
 
 use crate::bench::{Bench, bits};
 
@@ -30,7 +30,7 @@ fn elbow_in_world(bench: &Bench) -> Vec3 {
 
 /// The point of the elbow's circle around the Pointer after a turn of the twist.
 fn elbow_turned_by(bench: &Bench, radians: f32) -> Pos2 {
-    let ring = bench.session().arm_ring(Grip::Twist).expect("a ring");
+    let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
     let turn = glam::Quat::from_axis_angle(ring.axis, radians);
     bench.on_screen(ring.centre + turn * (elbow_in_world(bench) - ring.centre))
 }
@@ -50,7 +50,7 @@ fn the_root_can_be_dragged_before_it_is_selected() {
     let at = bench.on_screen(before);
     let to = at + vec2(35.0, -20.0);
     bench.drag(LEFT, at, to);
-    assert_eq!(bench.session().drag().map(Drag::grip).map(is_root), Some(true));
+    assert_eq!(bench.session().history().drag().map(Drag::grip).map(is_root), Some(true));
     assert!(bench.says("Root freely"));
     bench.release(LEFT);
     assert!(bench.on_screen(root(&bench)).distance(to) < 0.5);
@@ -71,20 +71,20 @@ fn the_arrows_of_the_root_are_there_while_it_is_selected() {
     let arrow = x_arrow(&bench);
     bench.move_to(arrow);
     bench.press(LEFT);
-    assert!(bench.session().drag().is_none(), "the view is dragged instead");
+    assert!(bench.session().history().drag().is_none(), "the view is dragged instead");
     bench.release(LEFT);
     let at = bench.on_screen(root(&bench));
     bench.click_at(at);
-    assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Root));
+    assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Root));
     assert_eq!(bench.session().history().undo_label(), None, "a click changes nothing");
     bench.drag_and_drop(LEFT, arrow, arrow + vec2(40.0, 10.0));
     let moved = root(&bench);
     assert!(moved.x > 5.0 && (moved.y, moved.z) == (0.0, 0.0), "{moved}");
     bench.click_at(bench.empty_point());
-    assert_eq!(bench.session().selected_arm_joint(), None);
+    assert_eq!(bench.session().selection().arm_joint(), None);
     bench.move_to(x_arrow(&bench));
     bench.press(LEFT);
-    assert!(bench.session().drag().is_none());
+    assert!(bench.session().history().drag().is_none());
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn the_ring_of_the_selected_elbow_can_be_dragged_anywhere_on_its_near_half() {
     assert_eq!(twist(&bench), 0.0, "the ring is hidden");
     bench.apply([ik_arm::session::ViewAction::SetCamera(Default::default())]);
     bench.click_at(elbow);
-    assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Elbow));
+    assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Elbow));
     bench.drag_and_drop(LEFT, from, to);
     let turned = twist(&bench).to_degrees();
     let turned = turned.min(360.0 - turned);
@@ -141,7 +141,7 @@ fn the_ring_of_the_selected_elbow_can_be_dragged_anywhere_on_its_near_half() {
 }
 
 fn is_near(bench: &Bench, radians: f32) -> bool {
-    let ring = bench.session().arm_ring(Grip::Twist).expect("a ring");
+    let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
     let forward = bench.session().camera().projection(1.0).forward;
     let turn = glam::Quat::from_axis_angle(ring.axis, radians);
     (turn * (elbow_in_world(bench) - ring.centre)).dot(forward) < 0.0
@@ -180,7 +180,7 @@ fn there_is_no_ring_in_fk_nor_around_a_straight_arm() {
         let elbow = bench.on_screen(elbow_in_world(&bench));
         bench.move_to(elbow);
         bench.press(LEFT);
-        assert_ne!(bench.session().drag().map(Drag::grip), Some(Grip::Twist));
+        assert_ne!(bench.session().history().drag().map(Drag::grip), Some(Grip::Twist));
         bench.release(LEFT);
         assert_eq!(bench.session().arm().twist, before.twist);
     }
@@ -214,18 +214,22 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
                 ArmEdit::SetHandSpace(space),
             ]);
             let (grip, before) = (Grip::HandRing(axis), *bench.session().arm());
-            let ring = bench.session().arm_ring(grip).expect("a ring");
+            let ring = GripRing::of_arm(bench.session().posed(), grip).expect("a ring");
             let on_ring = bench.around(ring, RING);
             for at in on_ring.into_iter().step_by(7) {
                 bench.move_to(at);
                 bench.press(LEFT);
-                assert_ne!(bench.session().drag().map(Drag::grip), Some(grip), "it is hidden");
+                assert_ne!(
+                    bench.session().history().drag().map(Drag::grip),
+                    Some(grip),
+                    "it is hidden"
+                );
                 bench.key(Key::Escape);
                 bench.release(LEFT);
             }
             bench.apply([ik_arm::session::ViewAction::SetCamera(Default::default())]);
             bench.click_at(bench.cursor_on_screen());
-            assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Hand));
+            assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Hand));
             let turned = |bench: &Bench| {
                 let (arm, pose) = (bench.session().arm(), bench.session().pose());
                 arm.hand_rotation(pose)
@@ -246,9 +250,9 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
             assert_eq!(bench.session().history().undo_label(), Some("Turn hand"));
             bench.apply([TransactionAction::Undo]);
             assert_eq!(bench.session().arm().hand_orientation.angles, old);
-            assert_eq!(bench.session().selected_arm_joint(), Some(ArmJoint::Hand));
+            assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Hand));
             bench.click_at(bench.empty_point());
-            assert_eq!(bench.session().selected_arm_joint(), None);
+            assert_eq!(bench.session().selection().arm_joint(), None);
         }
     }
 }

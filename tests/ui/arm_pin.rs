@@ -42,7 +42,7 @@ fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
     go_to(&mut bench, 2.0);
     assert!(!is_at_key(&bench));
     bench.click(Role::CheckBox, PIN);
-    assert!(bench.session().is_overridden(Channel::Pinned), "until the time changes");
+    assert!(bench.session().history().is_overridden(Channel::Pinned), "until the time changes");
     bench.click(Role::Button, DIAMOND);
     assert_eq!(times(&bench, Channel::Pinned), [1.0, 2.0]);
     assert_eq!((times(&bench, Channel::Hand), times(&bench, Channel::Pin)), (vec![1.0], vec![2.0]));

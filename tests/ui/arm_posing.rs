@@ -8,7 +8,7 @@ use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, ArmEdit, Grip, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
+    Action, ArmEdit, Grip, GripRing, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, bits, snapshot_options};
@@ -97,7 +97,7 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
         Bench::after([ArmEdit::SwitchPoseMode(PoseMode::Angles), ArmEdit::SetShoulder(Vec3::ZERO)]);
     bench.apply([ArmEdit::SetBend(0.8)]);
     for grip in [Grip::Shoulder(RotationAxis::Y), Grip::Shoulder(RotationAxis::Z), Grip::Bend] {
-        let ring = bench.session().arm_ring(grip).expect("a ring");
+        let ring = GripRing::of_arm(bench.session().posed(), grip).expect("a ring");
         let centre = bench.on_screen(ring.centre);
         let before = *bench.session().arm();
         // The ring has a constant size on screen, so this distance from its centre is on it.
@@ -112,7 +112,7 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
         for at in held.step_by(53) {
             bench.move_to(at);
             bench.press(LEFT);
-            taken = bench.session().drag().is_some_and(|drag| drag.grip() == grip);
+            taken = bench.session().history().drag().is_some_and(|drag| drag.grip() == grip);
             if taken {
                 bench.move_to(at + vec2(9.0, 7.0));
                 bench.move_to(at + vec2(18.0, 14.0));

@@ -99,7 +99,7 @@ fn a_running_bake_shows_its_progress_and_its_keys_are_one_undo_step() {
     let message = format!("Baked: {} of {} keys left", baked.keys, baked.keys_at_frames);
     bench.tell(BakeAction::Ended(job, Ok(Box::new(baked))));
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert!(bench.says(&message), "{message}");
     let after = bench.session().document();
     assert_eq!(after.skeleton_rig.follow_paths, []);
@@ -139,6 +139,6 @@ fn a_bake_that_fails_says_why() {
     let (_, job) = started(&mut bench);
     bench.tell(BakeAction::Ended(job, Err("nothing to bake".to_owned())));
     bench.settle();
-    assert!(!matches!(bench.session().dialog(), Some(Dialog::Bake { .. })));
+    assert!(!matches!(bench.session().shell().dialog(), Some(Dialog::Bake { .. })));
     assert!(bench.says("Not baked: nothing to bake"));
 }

@@ -151,7 +151,7 @@ impl Bench {
         for action in std::mem::take(&mut app.actions) {
             match app.session.apply(action) {
                 // The system has no file dialog.
-                Some(Effect::ChoosePath(dialog)) if app.session.dialog().is_none() => {
+                Some(Effect::ChoosePath(dialog)) if app.session.shell().dialog().is_none() => {
                     app.session.apply(ShellAction::OpenDialog(dialog.into()));
                 }
                 effect => app.effects.extend(effect),
@@ -272,13 +272,13 @@ impl Bench {
     /// Presses at a place of a ring of the selection where that takes `grip`, and returns the place
     /// at which the mouse has turned the ring by an angle in radians. The button stays down.
     pub fn take_ring(&mut self, grip: Grip, ring: GripRing, radius: f32, by: f32) -> Pos2 {
-        let joints = SelectAction::Joints(self.session().selection().to_vec());
-        let selection = [joints, SelectAction::ArmJoint(self.session().selected_arm_joint())];
+        let joints = SelectAction::Joints(self.session().selection().joints().to_vec());
+        let selection = [joints, SelectAction::ArmJoint(self.session().selection().arm_joint())];
         for at in self.around(ring, radius) {
             let facing = self.ray(at).direction.normalize().dot(ring.axis).abs();
             self.move_to(at);
             self.press(PointerButton::Primary);
-            let is_taken = self.session().drag().is_some_and(|drag| drag.grip() == grip);
+            let is_taken = self.session().history().drag().is_some_and(|drag| drag.grip() == grip);
             if let Some(met) = self.ray(at).meets_plane(ring.centre, ring.axis)
                 && is_taken
                 && facing > 0.15
@@ -389,7 +389,7 @@ impl Bench {
     fn has_note(&self) -> bool {
         let session = self.session();
         let rig = session.skeleton_rig();
-        let selected = session.selected().filter(|_| session.rig() == RigKind::Skeleton);
+        let selected = session.selection().active().filter(|_| session.rig() == RigKind::Skeleton);
         selected.is_some_and(|joint| rig.target_of_end(joint).is_some())
     }
 
@@ -450,7 +450,7 @@ impl Bench {
             });
             let item = item.expect("in the menu").rect();
             self.click_at(item.center());
-            if !self.session().is_playing() {
+            if !self.session().playback().is_playing() {
                 self.settle();
             }
         }

@@ -23,7 +23,7 @@ fn about_tells_version_graphics_and_licence() {
     }
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert!(!bench.says("MIT or Apache"));
 }
 
@@ -32,13 +32,13 @@ fn f1_lists_the_keys_and_esc_closes_the_list() {
     let mut bench = Bench::new();
     bench.key(Key::F1);
     bench.settle();
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Shortcuts));
     for text in ["Ctrl+7", "Shift+arrows", "Lock to an axis", "Next number, after typing"] {
         assert!(bench.says(text), "{text}");
     }
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn f1_works_while_a_slider_has_the_keyboard() {
     let mut bench = Bench::new();
     bench.focus(Role::Slider, "Hand x");
     bench.key(Key::F1);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Shortcuts));
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_picture_is_saved_where_the_typed_path_says() {
         bench.type_text("out/a b.png");
         let path = "out/a b.png".to_owned();
         assert_eq!(
-            bench.session().dialog(),
+            bench.session().shell().dialog(),
             Some(&Dialog::Path(PathDialog::SavePicture { path: path.clone() }))
         );
         if by_enter {
@@ -69,7 +69,7 @@ fn a_picture_is_saved_where_the_typed_path_says() {
         }
         bench.settle();
         assert_eq!(bench.effects(), [Effect::SavePicture(path)]);
-        assert_eq!(bench.session().dialog(), None);
+        assert_eq!(bench.session().shell().dialog(), None);
         assert!(bench.says("Saving out/a b.png"));
     }
 }
@@ -96,7 +96,7 @@ fn without_a_path_nothing_can_be_saved() {
         bench.key(Key::Enter);
         bench.settle();
         assert_eq!(bench.effects(), []);
-        assert!(bench.session().dialog().is_some());
+        assert!(bench.session().shell().dialog().is_some());
     }
 }
 
@@ -111,12 +111,12 @@ fn the_picture_dialog_asks_the_system_for_a_path_and_closes() {
         [Effect::ChoosePath(PathDialog::SavePicture { path: "ik-arm.png".to_owned() })]
     );
     bench.click(Role::Button, "Cancel");
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     bench.key_with(CTRL, Key::P);
     bench.settle();
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert_eq!(bench.effects(), []);
 }
 

@@ -50,7 +50,7 @@ fn a_format_sets_the_extension_of_the_path_and_enter_exports() {
         bench.key(Key::Enter);
         let export = exported(&mut bench);
         assert_eq!(export, Export { path: path.into(), frame_rate: 30.0, size: (1280, 800) });
-        assert_eq!(bench.session().dialog(), None);
+        assert_eq!(bench.session().shell().dialog(), None);
     }
 }
 

@@ -35,7 +35,7 @@ const ROWS: [(&str, ArmFigure); 18] = [
 fn hover(bench: &mut Bench, at: Pos2) -> Option<ArmFigure> {
     bench.move_to(at);
     bench.settle();
-    bench.session().figure()
+    bench.session().selection().figure()
 }
 
 /// Scrolls to the row of a name on the right side of the window, and returns the name's rectangle.
@@ -92,7 +92,7 @@ fn the_sides_of_the_triangle_light_up_the_limbs() {
             let part = vec2(column as f32, row as f32) / vec2(columns as f32, rows as f32);
             bench.move_to(panel.lerp_inside(part));
             bench.frame([]);
-            if let Some(figure) = bench.session().figure()
+            if let Some(figure) = bench.session().selection().figure()
                 && !seen.contains(&figure)
             {
                 seen.push(figure);
@@ -134,7 +134,7 @@ fn both_right_triangles_light_up_level_yaw_and_pitch() {
             bench.move_to(drawing.lerp_inside(part));
             bench.frame([]);
             let half = usize::from(2 * column >= columns);
-            seen[half].extend(bench.session().figure());
+            seen[half].extend(bench.session().selection().figure());
         }
     }
     for (half, figures) in [
@@ -156,11 +156,11 @@ fn another_page_and_a_closed_panel_light_nothing_up() {
     let at = row(&mut bench, "Root").center();
     assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
     bench.show_tab(PanelTab::Reach);
-    assert_eq!(bench.session().figure(), None);
+    assert_eq!(bench.session().selection().figure(), None);
     bench.show_tab(PanelTab::Triangle);
     assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
     bench.choose(&["View", "Explain panel"]);
-    assert_eq!(bench.session().figure(), None);
+    assert_eq!(bench.session().selection().figure(), None);
 }
 
 #[test]

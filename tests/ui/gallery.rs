@@ -12,6 +12,6 @@ fn every_hard_case_opens_from_its_menu_and_says_what_it_shows() {
         let opened = example.open().expect("it opens").document;
         assert_eq!(bench.session().document(), &opened, "{}", example.title);
         assert!(bench.says(example.sentence), "{}", example.sentence);
-        assert!(bench.session().has_motion(), "Space plays {}", example.title);
+        assert!(bench.session().document().is_moving(), "Space plays {}", example.title);
     }
 }

@@ -76,10 +76,10 @@ fn the_glossary_lists_every_term_with_its_meaning_and_its_step() {
         bench.click(Role::Link, "Show me: Cursor");
         assert_eq!(bench.session().tour().map(|tour| tour.number() + 1), Some(6));
         bench.click(Role::Button, "Leave");
-        assert_eq!(bench.session().dialog(), None, "the glossary does not come back");
+        assert_eq!(bench.session().shell().dialog(), None, "the glossary does not come back");
         bench.choose(&["Help", "Glossary"]);
         bench.click(Role::Button, "Close");
-        assert_eq!(bench.session().dialog(), None);
+        assert_eq!(bench.session().shell().dialog(), None);
     }
 }
 

@@ -6,8 +6,8 @@ use ik_arm::document::{Overlay, RigKind, Target};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    ArmEdit, DisplayEdit, Drag, FileAction, Grip, PoseMode, SelectAction, SkinEdit, TargetEdit,
-    TransactionAction,
+    ArmEdit, DisplayEdit, Drag, FileAction, Grip, GripRing, PoseMode, SelectAction, SkinEdit,
+    TargetEdit, TransactionAction,
 };
 
 use crate::bench::{Bench, bits};
@@ -74,10 +74,10 @@ fn press_everywhere(bench: &mut Bench, step: f32) -> usize {
     let mut count = 0;
     for at in grid(bench, step) {
         bench.move_to(at);
-        let is_lit = bench.session().hovered().is_some();
+        let is_lit = bench.session().selection().hovered().is_some();
         let is_offered = icon(bench) == CursorIcon::Grab;
         bench.press(LEFT);
-        let drag = bench.session().drag().map(Drag::grip);
+        let drag = bench.session().history().drag().map(Drag::grip);
         assert_eq!(is_offered, drag.is_some(), "{at}: {drag:?}");
         assert!(!is_lit || drag.is_some(), "{at} is lit and orbits");
         assert_ne!(drag.is_some(), bench.session().view().drag().is_some(), "{at}: {drag:?}");
@@ -112,10 +112,10 @@ fn every_lit_part_of_a_figure_follows_its_drag() {
     let mut bench = human();
     for at in grid(&bench, 29.0) {
         bench.move_to(at);
-        if bench.session().hovered().is_none() {
+        if bench.session().selection().hovered().is_none() {
             continue;
         }
-        let lit = name(&bench, bench.session().hovered().expect("lit"));
+        let lit = name(&bench, bench.session().selection().hovered().expect("lit"));
         let before = bench.session().skeleton_pose().clone();
         bench.drag(LEFT, at, at + vec2(24.0, -30.0));
         let pose = bench.session().skeleton_pose();
@@ -138,7 +138,7 @@ fn the_pelvis_is_called_pelvis_and_moves_by_its_skin_its_point_and_its_arrows() 
         let (pelvis, before) = (joint(&bench, "pelvis"), tip(&bench, "pelvis"));
         let at = bench.on_screen(before);
         bench.move_to(at);
-        assert_eq!(bench.session().hovered(), Some(pelvis), "skin {skin}");
+        assert_eq!(bench.session().selection().hovered(), Some(pelvis), "skin {skin}");
         assert!(bench.says("left drag: drag pelvis"));
         let toes = tip(&bench, "left_foot");
         bench.drag(LEFT, at, at + vec2(6.0, 14.0));
@@ -150,7 +150,7 @@ fn the_pelvis_is_called_pelvis_and_moves_by_its_skin_its_point_and_its_arrows() 
         bench.apply([TransactionAction::Undo]);
 
         bench.click_at(at);
-        assert_eq!(bench.session().selection(), [pelvis]);
+        assert_eq!(bench.session().selection().joints(), [pelvis]);
         let up = at - vec2(0.0, 70.0);
         bench.drag_and_drop(LEFT, up, up + vec2(3.0, 25.0));
         let moved = tip(&bench, "pelvis");
@@ -165,7 +165,7 @@ fn hands_and_feet_drag_their_targets_by_the_skin() {
         let mut bench = human();
         let (at, before) = (middle(&bench, end), home(&bench, lower));
         bench.move_to(at);
-        assert_eq!(bench.session().hovered(), Some(joint(&bench, end)));
+        assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, end)));
         assert!(bench.says(&format!("left drag: drag the target of {end}")));
         let start = bench.on_screen(before);
         let by = vec2(-18.0, -26.0);
@@ -183,7 +183,7 @@ fn both_bones_of_a_limb_with_a_target_turn_its_elbow_and_the_hand_stays() {
         let (at, wrist) = (middle(&bench, bone), tip(&bench, "right_forearm"));
         let elbow = tip(&bench, "right_upper_arm");
         bench.move_to(at);
-        assert_eq!(bench.session().hovered(), Some(joint(&bench, bone)));
+        assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, bone)));
         assert!(bench.says("left drag: drag the limb of right_hand"));
         bench.drag_and_drop(LEFT, at, at + vec2(-6.0, -34.0));
         assert!(tip(&bench, "right_upper_arm").distance(elbow) > 0.03, "{bone}");
@@ -199,7 +199,7 @@ fn a_segment_without_a_target_poses_the_joints_above_it() {
     let (at, before) = (middle(&bench, "chest"), tip(&bench, "chest"));
     let wrist = tip(&bench, "right_forearm");
     bench.move_to(at);
-    assert_eq!(bench.session().hovered(), Some(joint(&bench, "chest")));
+    assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, "chest")));
     bench.drag_and_drop(LEFT, at, at + vec2(30.0, 0.0));
     let by = bench.on_screen(tip(&bench, "chest")) - bench.on_screen(before);
     assert!(by.x > 15.0, "{by}");
@@ -217,7 +217,7 @@ fn bones_that_a_target_poses_alone_drag_the_target() {
     let at = middle(&bench, &bone);
     bench.move_to(at);
     bench.press(LEFT);
-    let grip = bench.session().drag().map(Drag::grip);
+    let grip = bench.session().history().drag().map(Drag::grip);
     assert!(matches!(grip, Some(Grip::Target(joint, _)) if joint == target), "{bone}: {grip:?}");
     bench.release(LEFT);
 }
@@ -237,9 +237,13 @@ fn hidden_points_of_joints_take_no_press_from_the_skin() {
             }
             let seen = bench.session().joint_on_skin(bench.ray(at));
             bench.move_to(at);
-            assert_eq!(bench.session().hovered(), seen, "beside the tip of {joint}");
+            assert_eq!(bench.session().selection().hovered(), seen, "beside the tip of {joint}");
             bench.press(LEFT);
-            assert_eq!(bench.session().drag().is_some(), seen.is_some(), "{joint} at {at}");
+            assert_eq!(
+                bench.session().history().drag().is_some(),
+                seen.is_some(),
+                "{joint} at {at}"
+            );
             bench.release(LEFT);
             // The click has selected the joint, whose handles are shown. The next press is no
             // double click.
@@ -270,7 +274,7 @@ fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
             bench.hold(modifiers);
             bench.press(button);
             assert!(bench.session().view().drag().is_some(), "{rig:?} {button:?}");
-            assert!(bench.session().drag().is_none());
+            assert!(bench.session().history().drag().is_none());
             bench.release(button);
             bench.hold(Modifiers::NONE);
         }
@@ -322,7 +326,7 @@ fn a_limb_of_the_arm_turns_the_elbow_about_the_pointer_under_the_mouse() {
             let mut bench = Bench::new();
             let from = limb_point(&bench, limb, part);
             let hand = bench.session().pose().hand;
-            let ring = bench.session().arm_ring(Grip::Twist).expect("a ring");
+            let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
             let turn = glam::Quat::from_axis_angle(ring.axis, radians);
             let to = bench.on_screen(turn * from);
             let from = bench.on_screen(from);
@@ -399,10 +403,10 @@ fn the_light_goes_out_when_the_mouse_leaves_the_view() {
     let mut bench = human();
     let at = middle(&bench, "chest");
     bench.move_to(at);
-    assert!(bench.session().hovered().is_some());
+    assert!(bench.session().selection().hovered().is_some());
     bench.move_to(pos2(6.0, 794.0));
     bench.settle();
-    assert_eq!(bench.session().hovered(), None);
+    assert_eq!(bench.session().selection().hovered(), None);
 }
 
 #[test]
@@ -411,6 +415,6 @@ fn without_its_hand_the_arm_is_still_dragged_by_its_wrist() {
     let at = fingers(&bench);
     bench.move_to(at);
     bench.press(LEFT);
-    assert!(bench.session().drag().is_none(), "there are no fingers to take");
+    assert!(bench.session().history().drag().is_none(), "there are no fingers to take");
     bench.release(LEFT);
 }

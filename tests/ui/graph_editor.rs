@@ -100,12 +100,12 @@ fn shift_keeps_a_drag_to_one_direction_and_esc_cancels_it() {
 fn a_click_selects_and_shift_adds_and_removes() {
     let mut bench = graph();
     bench.click_at(place(&bench, 3.0, 60.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)]);
     bench.hold(Modifiers::SHIFT);
     bench.click_at(place(&bench, 5.0, 0.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0), (Channel::Twist, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0), (Channel::Twist, 5.0)]);
     bench.click_at(place(&bench, 5.0, 0.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)]);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
         bench.press(RIGHT);
         bench.release(RIGHT);
         bench.settle();
-        assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 3.0)], "selects it");
+        assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)], "selects it");
         bench.click(Role::Button, interpolation.title());
         assert_eq!(keys(&bench)[1].interpolation, interpolation);
         bench.apply([PlaybackAction::SetTime(4.0)]);
@@ -291,10 +291,10 @@ fn a_figure_shows_the_curves_of_the_selected_joints_and_of_all_without_a_selecti
 fn names_of_joints_and_channels_are_clicked_and_clicked_again() {
     let (mut bench, [one, other]) = figure();
     bench.click(Role::Button, &format!("Curves of joint {one}"));
-    assert_eq!(bench.session().selection(), [JointId::new(0)]);
+    assert_eq!(bench.session().selection().joints(), [JointId::new(0)]);
     assert!(bench.shows(Role::Image, &format!("Curves of {one} · rotation")));
     bench.click(Role::Button, &format!("Curves of joint {one}"));
-    assert_eq!(bench.session().selection(), []);
+    assert_eq!(bench.session().selection().joints(), []);
     bench.click(Role::Button, &format!("Curve of {other} · offset"));
     assert!(bench.shows(Role::Image, &format!("Curves of {other} · offset")));
     assert!(bench.shows(Role::Button, &format!("Curve of {one} · rotation")), "it stays listed");
@@ -307,7 +307,7 @@ fn names_of_joints_and_channels_are_clicked_and_clicked_again() {
         bench.click(Role::Button, &format!("Curve of {name}"));
         bench.hold(Modifiers::NONE);
     }
-    assert!(bench.session().selected_channels().is_empty());
+    assert!(bench.session().selection().channels().is_empty());
 }
 
 #[test]
@@ -377,5 +377,5 @@ fn the_wheel_alone_zooms_the_time_and_keeps_the_values() {
     let low = place(&bench, 5.0, 0.0).y;
     assert!(plot.contains(pos2(far.x, low)), "on screen");
     bench.click_at(pos2(far.x, low));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Twist, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 5.0)]);
 }

@@ -118,7 +118,7 @@ fn a_value_that_is_not_understood_is_refused_with_a_reason() {
 fn a_double_click_in_the_tree_renames() {
     let mut bench = human(LARGE);
     bench.double_click_at(bench.rect(Role::Button, "Joint chest").center());
-    assert!(matches!(bench.session().dialog(), Some(Dialog::Rename { .. })));
+    assert!(matches!(bench.session().shell().dialog(), Some(Dialog::Rename { .. })));
     bench.key_with(Modifiers::COMMAND, Key::A);
     bench.type_text("torso");
     bench.key(Key::Enter);
@@ -157,7 +157,7 @@ fn new_opens_the_arm_and_asks_before_changes_are_lost() {
     bench.apply([ArmEdit::SetTwist(1.0)]);
     bench.key_with(Modifiers::COMMAND, Key::N);
     bench.settle();
-    assert!(matches!(bench.session().dialog(), Some(Dialog::Unsaved { .. })));
+    assert!(matches!(bench.session().shell().dialog(), Some(Dialog::Unsaved { .. })));
     bench.click(Role::Button, "Don't save");
     assert_eq!(bench.session().arm(), &Arm::default());
     assert!(!bench.session().history().is_unsaved());
@@ -250,15 +250,15 @@ fn undoing_an_added_joint_selects_its_parent_again() {
     let chest = bench.session().skeleton().find("chest").unwrap();
     bench.apply([SelectAction::Joints(vec![chest])]);
     bench.apply([JointEdit::AddJoint { tip: None }]);
-    assert_ne!(bench.session().selection(), [chest]);
+    assert_ne!(bench.session().selection().joints(), [chest]);
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(bench.session().selection(), [chest]);
+    assert_eq!(bench.session().selection().joints(), [chest]);
 
     bench.apply([JointEdit::AddJoint { tip: None }]);
     let head = bench.session().skeleton().find("head").unwrap();
     bench.apply([SelectAction::Joints(vec![head])]);
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(bench.session().selection(), [head], "another selection stays");
+    assert_eq!(bench.session().selection().joints(), [head], "another selection stays");
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn undoing_a_deletion_in_the_middle_forgets_a_selection_whose_indices_have_chang
     bench.apply([JointEdit::DissolveJoints(vec![spine])]);
     bench.apply([SelectAction::Joints(vec![JointId::new(3)])]);
     bench.apply([TransactionAction::Undo]);
-    assert!(!bench.session().selection().contains(&head));
+    assert!(!bench.session().selection().joints().contains(&head));
 }
 
 #[test]
@@ -304,10 +304,10 @@ fn a_message_goes_when_its_time_is_over_and_an_error_stays_longer() {
     bench.skip(9.0);
     assert!(bench.says("Another message"), "each has its own time");
     bench.skip(5.0);
-    assert_eq!(bench.session().message(), None);
+    assert_eq!(bench.session().shell().message(), None);
     bench.apply([ShellAction::Fail("an error".to_owned())]);
     bench.skip(20.0);
     assert!(bench.says("An error"));
     bench.skip(12.0);
-    assert_eq!(bench.session().message(), None);
+    assert_eq!(bench.session().shell().message(), None);
 }

@@ -72,7 +72,7 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
         assert_eq!(reaches[0], Reach::Reached);
         assert!(reaches.contains(&Reach::TooFar), "{reaches:?}");
         bench.release(LEFT);
-        assert!(!bench.session().is_editing());
+        assert!(!bench.session().history().is_editing());
         let left = bench.hand();
         bench.move_to(start);
         assert_eq!(bench.hand(), left, "what is let go stays");
@@ -97,7 +97,7 @@ fn a_click_on_the_hand_changes_no_bit() {
     let cursor = bench.cursor_on_screen();
     bench.click_at(cursor);
     assert_eq!(bits(bench.hand()), bits(before.cursor_in_root()));
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn a_press_and_its_release_in_one_frame_grab_nothing() {
     bench.move_to(cursor);
     let events = [true, false].map(|down| bench.button(LEFT, down));
     bench.frame(events);
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
     bench.move_to(cursor + vec2(100.0, 0.0));
     assert_eq!(bench.hand(), Vec3::new(250.0, 120.0, 60.0));
     bench.move_to(bench.empty_point());
@@ -125,7 +125,7 @@ fn a_press_and_a_move_in_one_frame_grab_the_pressed_handle_and_drag_it_at_once()
     bench.move_to(cursor);
     let to = cursor + vec2(90.0, -100.0);
     bench.frame([bench.button(LEFT, true), egui::Event::PointerMoved(to)]);
-    assert!(bench.session().point_drag().is_some());
+    assert!(bench.session().history().point_drag().is_some());
     assert!(bench.cursor_on_screen().distance(to) < 0.05);
 }
 
@@ -162,7 +162,7 @@ fn esc_and_the_right_button_cancel_a_drag() {
             bench.press(PointerButton::Secondary);
         }
         assert_eq!(bench.session().arm(), &before, "by key: {by_key}");
-        assert!(!bench.session().is_editing());
+        assert!(!bench.session().history().is_editing());
         assert!(bench.says("Cancelled"));
         bench.move_to(start - vec2(50.0, 0.0));
         if !by_key {
@@ -197,7 +197,7 @@ fn an_arrow_moves_its_coordinate_and_no_other_bit() {
         assert_eq!(bench.harness.output().platform_output.cursor_icon, CursorIcon::Grab);
         bench.press(LEFT);
         assert_eq!(
-            bench.session().point_drag().map(PointDrag::handle),
+            bench.session().history().point_drag().map(PointDrag::handle),
             Some(PointHandle::Axis(axis))
         );
         let step = along(&bench, axis);
@@ -223,7 +223,7 @@ fn a_square_keeps_its_coordinate_bit_for_bit_and_moves_the_others() {
         let start = bench.cursor_on_screen();
         grab(&mut bench, grabbed);
         assert_eq!(
-            bench.session().point_drag().map(PointDrag::handle),
+            bench.session().history().point_drag().map(PointDrag::handle),
             Some(PointHandle::Plane(axis))
         );
         for offset in [vec2(2.0, 1.0), vec2(25.0, -10.0), vec2(-20.0, 15.0)] {
@@ -245,7 +245,9 @@ fn an_arrow_along_the_view_cannot_be_grabbed() {
     let cursor = bench.cursor_on_screen();
     bench.move_to(cursor + vec2(17.0, 12.0));
     bench.press(LEFT);
-    assert!(bench.session().point_drag().is_none_or(|d| d.handle() != PointHandle::Axis(2)));
+    assert!(
+        bench.session().history().point_drag().is_none_or(|d| d.handle() != PointHandle::Axis(2))
+    );
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
             bench.key_with(modifiers, key);
             let expected = if plane { Constraint::Plane(axis) } else { Constraint::Axis(axis) };
             assert_eq!(
-                bench.session().point_drag().and_then(PointDrag::constraint),
+                bench.session().history().point_drag().and_then(PointDrag::constraint),
                 Some(expected)
             );
             bench.move_to(start + vec2(60.0, 35.0));
@@ -33,7 +33,10 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
             let name = ["x", "y", "z"][axis];
             assert!(plane || bench.says(&format!("Move along {name}")), "the status line says so");
             bench.key_with(modifiers, key);
-            assert_eq!(bench.session().point_drag().and_then(PointDrag::constraint), None);
+            assert_eq!(
+                bench.session().history().point_drag().and_then(PointDrag::constraint),
+                None
+            );
             bench.move_to(start + vec2(61.0, 35.0));
             assert!(bench.cursor_on_screen().distance(start + vec2(61.0, 35.0)) < 0.05);
         }
@@ -86,7 +89,7 @@ fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
         bench.key(Key::Y);
         bench.type_text("-12.58");
         bench.key(Key::Backspace);
-        assert_eq!(bench.session().point_drag().map(PointDrag::typed), Some("-12.5"));
+        assert_eq!(bench.session().history().point_drag().map(PointDrag::typed), Some("-12.5"));
         assert_eq!(bits(bench.hand()), bits(before + Vec3::new(0.0, -12.5, 0.0)));
         assert!(bench.says("typed -12.5"));
         bench.move_to(start + vec2(200.0, 0.0));
@@ -94,7 +97,7 @@ fn a_typed_offset_holds_until_it_is_accepted_or_cancelled() {
         bench.key(if accept { Key::Enter } else { Key::Escape });
         let expected = if accept { before - Vec3::new(0.0, 12.5, 0.0) } else { before };
         assert_eq!(bits(bench.hand()), bits(expected));
-        assert!(!bench.session().is_editing());
+        assert!(!bench.session().history().is_editing());
         bench.move_to(start);
         bench.release(LEFT);
         assert_eq!(bits(bench.hand()), bits(expected));
@@ -118,7 +121,7 @@ fn the_status_line_shows_the_keys_and_the_change_while_the_hand_is_dragged() {
     let mut bench = Bench::new();
     let start = bench.cursor_on_screen();
     bench.drag(LEFT, start, start + vec2(30.0, 0.0));
-    let moved = bench.session().point_drag().expect("held").moved();
+    let moved = bench.session().history().point_drag().expect("held").moved();
     let change = format!("Move freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);
     assert!(bench.says(&change), "{change}");
     for keys in ["Shift", "Ctrl", "X Y Z", "Enter", "Esc"] {

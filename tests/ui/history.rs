@@ -85,7 +85,7 @@ fn undo_during_a_drag_cancels_the_drag() {
     assert_ne!(bench.session().arm(), &Document::default().arm);
     bench.key_with(CTRL, Key::Z);
     assert_eq!(bench.session().document(), &ik_arm::io::new_document());
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -140,9 +140,9 @@ fn the_view_and_the_selection_are_no_steps() {
         Action::from(JointEdit::SetLocked { joint: JointId::new(3), locked: true }),
         TransactionAction::Undo.into(),
     ]);
-    assert_eq!(bench.session().selection(), [3].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [3].map(JointId::new));
     assert_eq!(*bench.session().camera(), camera.orbited(1.0, 0.1));
-    assert_eq!(bench.session().time(), 2.0);
+    assert_eq!(bench.session().playback().time(), 2.0);
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn losing_unsaved_changes_needs_confirmation() {
         assert_eq!(bench.effects(), []);
         bench.click(Role::Button, "Cancel");
         assert_eq!(bench.session().document(), &document);
-        assert_eq!(bench.session().dialog(), None);
+        assert_eq!(bench.session().shell().dialog(), None);
 
         bench.apply([leaving.clone()]);
         bench.click(Role::Button, "Don't save");
@@ -185,7 +185,7 @@ fn a_file_action_continues_after_saving_first() {
     bench.apply([FileAction::Quit]);
     bench.click(Role::Button, "Save");
     assert!(
-        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        matches!(bench.session().shell().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
         "it has no file yet"
     );
     bench.settle();
@@ -220,7 +220,7 @@ fn a_cancelled_save_does_not_end_the_program_later() {
     bench.settle();
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert_eq!(bench.tell(FileAction::Saved("x.json".into())), None);
 }
 

@@ -26,7 +26,7 @@ fn example(name: &str) -> Bench {
 }
 
 fn run(bench: &Bench) -> &SolverRun {
-    bench.session().solver_run().expect("a run")
+    bench.session().solvers().run().expect("a run")
 }
 
 /// Number of the shown iteration and index of the shown part.

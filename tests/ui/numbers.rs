@@ -123,7 +123,7 @@ fn an_invalid_length_is_refused_with_a_message() {
             bench.enter(slider, typed);
             assert_eq!(bench.session().arm(), &Arm::default(), "{slider} {typed}");
             let message = format!("The {bone} length must be finite and above 0, got {typed}");
-            assert_eq!(bench.session().message(), Some(message.as_str()));
+            assert_eq!(bench.session().shell().message(), Some(message.as_str()));
             assert!(bench.shows(Role::Alert, &message), "the status line says it");
             assert_eq!(
                 bench.node(Role::SpinButton, &format!("{slider} value")).value(),

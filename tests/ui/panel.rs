@@ -188,10 +188,10 @@ fn the_menus_do_what_they_say() {
         bench.settle();
     }
     bench.choose(&["Help", "About"]);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::About));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::About));
     bench.key(Key::Escape);
     bench.choose(&["Help", "Shortcuts"]);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Shortcuts));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Shortcuts));
     bench.key(Key::Escape);
     bench.choose(&["File", "Quit"]);
     assert_eq!(bench.effects(), [Effect::Quit]);

@@ -9,8 +9,8 @@ use ik_arm::document::{Camera, Overlay, RigKind, Target, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
     Action, ArmEdit, Dialog, DisplayEdit, DragInput, Edit, Effect, ExportJob, FileAction, Grip,
-    JointEdit, PathDialog, SelectAction, ShellAction, SolverAction, SolverState, TargetEdit,
-    TransactionAction, ViewAction,
+    GripRing, JointEdit, PathDialog, SelectAction, ShellAction, SolverAction, SolverState,
+    TargetEdit, TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -53,7 +53,7 @@ fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selec
         assert_eq!(bench.session().document(), before.document(), "{prompt}");
         bench.key(Key::Escape);
         bench.settle();
-        assert_eq!(bench.session().dialog(), None, "{prompt}");
+        assert_eq!(bench.session().shell().dialog(), None, "{prompt}");
     }
 }
 
@@ -65,7 +65,7 @@ fn a_joint_is_named_after_a_click_on_it() {
     let base = bench.session().skeleton_pose().base(JointId::new(joint.index()));
     bench.click_at(bench.on_screen(base.lerp(tip, 0.5)));
     bench.settle();
-    assert_eq!(bench.session().selected(), Some(joint));
+    assert_eq!(bench.session().selection().active(), Some(joint));
     let joints = bench.session().skeleton_pose().len();
     bench.key(Key::F2);
     bench.settle();
@@ -94,7 +94,7 @@ fn letters_that_arrive_in_the_frame_of_the_key_that_opens_a_dialog_are_typed_int
     bench.frame([press(Key::F2), press(Key::A), text("a"), press(Key::T), text("t")]);
     bench.settle();
     assert_eq!(
-        bench.session().dialog(),
+        bench.session().shell().dialog(),
         Some(&Dialog::Rename { joint: JointId::new(3), name: "at".to_owned() })
     );
 }
@@ -106,7 +106,7 @@ fn nothing_behind_an_open_dialog_reacts() {
     bench.click_at(bench.empty_point());
     bench.key_with(CTRL, Key::Q);
     bench.settle();
-    assert!(matches!(bench.session().dialog(), Some(Dialog::Unsaved { .. })));
+    assert!(matches!(bench.session().shell().dialog(), Some(Dialog::Unsaved { .. })));
     let before = bench.session().clone();
     for key in [Key::A, Key::R, Key::S, Key::T, Key::Num1, Key::Num5, Key::F, Key::K, Key::F1] {
         bench.key(key);
@@ -126,13 +126,13 @@ fn nothing_behind_an_open_dialog_reacts() {
 
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None, "Esc cancels");
+    assert_eq!(bench.session().shell().dialog(), None, "Esc cancels");
     bench.key_with(CTRL, Key::Q);
     bench.settle();
     bench.key(Key::Enter);
     bench.settle();
     assert!(
-        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        matches!(bench.session().shell().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
         "Enter saves"
     );
 }
@@ -198,7 +198,7 @@ fn view_changes_are_not_unsaved_changes() {
         bench.apply_moving([look.clone()]);
         assert!(!bench.session().history().is_unsaved(), "{look:?}");
         bench.apply_moving([FileAction::Quit]);
-        assert_eq!(bench.session().dialog(), None, "{look:?}");
+        assert_eq!(bench.session().shell().dialog(), None, "{look:?}");
     }
 }
 
@@ -235,11 +235,11 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
         RotationAxis::ALL.into_iter().filter(|axis| !limits.is_fixed(*axis)).collect();
     let [axis] = free[..] else { panic!("a knee has one free axis: {limits:?}") };
     let limit = limits.range(axis).expect("limited");
-    let ring =
-        bench.session().ring(JointId::new(joint.index()), axis).expect("the free axis has a ring");
+    let ring = GripRing::of_joint(bench.session().posed(), JointId::new(joint.index()), axis)
+        .expect("the free axis has a ring");
     for fixed in RotationAxis::ALL.into_iter().filter(|other| *other != axis) {
         assert_eq!(
-            bench.session().ring(JointId::new(joint.index()), fixed),
+            GripRing::of_joint(bench.session().posed(), JointId::new(joint.index()), fixed),
             None,
             "a fixed axis has none"
         );
@@ -267,7 +267,7 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
     let tip_to_target = |bench: &Bench| {
         let session = bench.session();
         let target = session.skeleton_rig().targets[0];
-        session.skeleton_pose().tip(target.joint).distance(target.at(session.time()))
+        session.skeleton_pose().tip(target.joint).distance(target.at(session.playback().time()))
     };
     assert_eq!(status(&bench).state, SolverState::NotReached);
     assert!(bench.shows(Role::Label, "not reached") && bench.shows(Role::Label, "evaluated pose"));
@@ -364,7 +364,7 @@ fn an_export_over_a_file_asks_and_the_folder_is_remembered() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(bench.effects(), [], "Enter twice overwrites nothing");
-    let Some(Dialog::Path(PathDialog::Export(export))) = bench.session().dialog() else {
+    let Some(Dialog::Path(PathDialog::Export(export))) = bench.session().shell().dialog() else {
         panic!("it is kept")
     };
     assert_eq!(export.path, there, "with its path");
@@ -430,14 +430,14 @@ fn saving_over_a_file_that_another_program_has_changed_asks() {
     assert!(bench.says("Another program has changed shared.json"));
     bench.click(Role::Button, "Cancel");
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert_eq!(bench.effects(), []);
 
     bench.key_with(CTRL, Key::S);
     bench.settle();
     bench.key(Key::Enter);
     bench.settle();
-    let save_as = bench.session().dialog().cloned();
+    let save_as = bench.session().shell().dialog().cloned();
     assert!(matches!(save_as, Some(Dialog::Path(PathDialog::SaveAs { .. }))), "{save_as:?}");
     bench.click(Role::Button, "Save");
     bench.settle();
@@ -497,7 +497,7 @@ fn quitting_during_an_export_asks() {
     assert_eq!(bench.effects(), []);
     bench.key(Key::Enter);
     bench.wait(0.2);
-    assert_eq!(bench.session().dialog(), None, "Enter lets it go on");
+    assert_eq!(bench.session().shell().dialog(), None, "Enter lets it go on");
     assert!(!job.progress.is_cancelled());
     bench.key_with(CTRL, Key::Q);
     bench.wait(0.2);
@@ -549,7 +549,7 @@ fn enter_in_the_frame_of_the_key_that_opens_a_question_answers_it() {
     ]);
     bench.settle();
     assert!(
-        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        matches!(bench.session().shell().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
         "Enter saves"
     );
 }
@@ -568,7 +568,7 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     bench.type_text("2");
     bench.key(Key::Enter);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     joint_named(&bench, "neck2");
 }
 

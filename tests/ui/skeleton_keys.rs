@@ -44,9 +44,11 @@ fn enter_field(bench: &mut Bench, name: &str, text: &str, key: Key) {
 fn escape_in_a_number_leaves_it_and_the_selection_alone() {
     for field in ["Length", "Bone x", "Weight", "Maximum iterations", "Rotation x value"] {
         let mut bench = tree();
-        let before = (bench.session().document().clone(), bench.session().selection().to_vec());
+        let before =
+            (bench.session().document().clone(), bench.session().selection().joints().to_vec());
         enter_field(&mut bench, field, "7", Key::Escape);
-        let after = (bench.session().document().clone(), bench.session().selection().to_vec());
+        let after =
+            (bench.session().document().clone(), bench.session().selection().joints().to_vec());
         assert_eq!(after, before, "{field}");
     }
 }
@@ -62,23 +64,26 @@ fn escape_in_a_number_lets_a_running_solver_run() {
     bench.frame([]);
     assert!(bench.session().solvers().is_running());
     bench.key(Key::Escape);
-    assert!(bench.session().solver_run().is_some(), "the key was the number's");
+    assert!(bench.session().solvers().run().is_some(), "the key was the number's");
 }
 
 #[test]
 fn escape_closes_a_list_and_leaves_the_selection() {
     for combo in ["Parent", "Motion", "Method"] {
         let mut bench = tree();
-        let before = bench.session().selection().to_vec();
+        let before = bench.session().selection().joints().to_vec();
         bench.node(Role::ComboBox, combo).scroll_to_me();
         bench.settle();
         bench.click(Role::ComboBox, combo);
         bench.key(Key::Escape);
         bench.settle();
-        assert_eq!(bench.session().selection(), before, "{combo}");
+        assert_eq!(bench.session().selection().joints(), before, "{combo}");
         bench.key(Key::Escape);
         bench.settle();
-        assert!(bench.session().selection().is_empty(), "{combo}: the next one is the skeleton's");
+        assert!(
+            bench.session().selection().joints().is_empty(),
+            "{combo}: the next one is the skeleton's"
+        );
     }
 }
 
@@ -89,13 +94,13 @@ fn escape_closes_a_menu_and_leaves_the_selection() {
     bench.key(Key::Escape);
     bench.settle();
     assert!(!bench.says("New skeleton"));
-    assert!(!bench.session().selection().is_empty());
+    assert!(!bench.session().selection().joints().is_empty());
 }
 
 #[test]
 fn focusing_a_number_field_changes_no_bit_of_its_value() {
     let mut bench = tree();
-    let joint = bench.session().selected().expect("one");
+    let joint = bench.session().selection().active().expect("one");
     let target = bench.session().skeleton_rig().targets[0];
     let solver = bench.session().skeleton_rig().solver;
     bench.apply([
@@ -139,7 +144,7 @@ fn focusing_a_number_field_changes_no_bit_of_its_value() {
         bench.settle();
         assert_eq!(bench.session().document(), &before, "{field}");
     }
-    assert_eq!(bench.session().message(), None, "nothing was refused");
+    assert_eq!(bench.session().shell().message(), None, "nothing was refused");
 }
 
 #[test]
@@ -147,7 +152,7 @@ fn a_number_can_be_typed_with_its_unit() {
     let mut bench = tree();
     bench.click(Role::CheckBox, "Limit x");
     enter_field(&mut bench, "x maximum", "30°", Key::Enter);
-    let joint = bench.session().selected().expect("one");
+    let joint = bench.session().selection().active().expect("one");
     let limit = bench.session().skeleton()[joint].limits.range(RotationAxis::X).expect("limited");
     assert!((limit.max.to_degrees() - 30.0).abs() < 1e-4, "{limit:?}");
 }
@@ -169,14 +174,14 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
     let mut bench = tree();
     let joints = bench.session().skeleton_pose().len();
     bench.click(Role::Button, "Joint left_2");
-    let clicked = bench.session().selection().to_vec();
+    let clicked = bench.session().selection().joints().to_vec();
     bench.key(Key::ArrowDown);
     bench.settle();
-    let next = bench.session().selected().expect("one");
+    let next = bench.session().selection().active().expect("one");
     assert_eq!(bench.session().skeleton().joints()[next.index()].name, "left_3");
     bench.key(Key::ArrowUp);
     bench.settle();
-    assert_eq!(bench.session().selection(), clicked);
+    assert_eq!(bench.session().selection().joints(), clicked);
     bench.key(Key::A);
     bench.settle();
     assert_eq!(bench.session().skeleton_pose().len(), joints + 1);
@@ -202,7 +207,7 @@ fn keys_do_nothing_without_joints() {
     bench.click(Role::Button, "Reset to bind pose");
     bench.apply([SolverAction::Compare]);
     assert!(bench.session().skeleton().joints().is_empty());
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
 }
 
 /// A file as a window hands it over.

@@ -83,7 +83,7 @@ fn a_new_skeleton_is_a_locked_root_and_a_chain_can_be_added_to_it() {
         assert!(skeleton.base(joint).distance(skeleton.tip(above)) < 1e-6);
     }
     assert_eq!(
-        bench.session().selection(),
+        bench.session().selection().joints(),
         [3].map(JointId::new),
         "the new one can be gone on from"
     );
@@ -126,7 +126,7 @@ fn a_joint_is_deleted_with_its_subtree_and_its_parent_is_selected() {
     bench.click(Role::Button, "Delete");
     bench.click(Role::Button, "Delete children too");
     assert_eq!(names(&bench), ["root", "joint"]);
-    assert_eq!(bench.session().selection(), [1].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [1].map(JointId::new));
     select(&mut bench, "root");
     bench.click(Role::Button, "Delete");
     bench.click(Role::Button, "Delete children too");
@@ -163,7 +163,7 @@ fn a_reparented_joint_stays_where_it_is() {
     assert_eq!(rig.skeleton.joints()[moved.index()].parent, Some(JointId::new(0)));
     let pose = bench.session().skeleton_pose();
     assert!(pose.base(moved).distance(base) < 1e-5 && pose.tip(moved).distance(tip) < 1e-5);
-    assert_eq!(bench.session().selected(), Some(moved));
+    assert_eq!(bench.session().selection().active(), Some(moved));
 }
 
 #[test]
@@ -225,7 +225,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         bench.click_at(bench.rect(Role::Button, "Run").center());
         assert!(bench.session().solvers().is_running());
         bench.wait(4.0);
-        let solver_run = bench.session().solver_run().expect("it ran");
+        let solver_run = bench.session().solvers().run().expect("it ran");
         assert!(!solver_run.is_running(), "it stops by itself");
         let report = solver_run.report();
         assert!(report.converged(), "{name}: {report:?}");
@@ -248,14 +248,14 @@ fn a_step_is_one_iteration_of_a_ghost_and_reset_removes_it() {
     let mut poses = Vec::new();
     for iterations in 1..=3 {
         bench.click(Role::Button, "Step");
-        let run = bench.session().solver_run().expect("it stepped");
+        let run = bench.session().solvers().run().expect("it stepped");
         assert_eq!(run.report().iterations, iterations);
         poses.extend(ghosts(&bench).into_iter().map(|ghost| ghost.pose));
     }
     assert!(poses.len() == 3 && poses[0] != poses[1] && poses[1] != poses[2]);
     assert_eq!(bench.session().document(), &before);
     bench.click(Role::Button, "Reset");
-    assert!(ghosts(&bench).is_empty() && bench.session().solver_run().is_none());
+    assert!(ghosts(&bench).is_empty() && bench.session().solvers().run().is_none());
     assert!(!is_enabled(&bench, Role::Button, "Reset"));
 }
 
@@ -264,7 +264,7 @@ fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
     let mut bench = example("two-targets");
     assert!(!bench.shows(Role::Slider, "Iteration"), "there is no run yet");
     (0..5).for_each(|_| bench.click(Role::Button, "Step"));
-    let run = bench.session().solver_run().expect("it stepped").clone();
+    let run = bench.session().solvers().run().expect("it stepped").clone();
     let iterates: Vec<Iterate> = run.iterates().iter().cloned().collect();
     bench.reveal(Role::Slider, "Iteration");
     bench.focus(Role::Slider, "Iteration");
@@ -272,10 +272,10 @@ fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
         bench.key(Key::ArrowLeft);
         bench.settle();
         let session = bench.session();
-        assert_eq!(session.solver_run().expect("a run").shown(), &iterates[number]);
+        assert_eq!(session.solvers().run().expect("a run").shown(), &iterates[number]);
         let ghost = &session.overlays().ghosts[0];
         assert_eq!(ghost.iteration as usize, number);
-        assert_eq!(ghost.pose, session.solver_run().expect("a run").skeleton().pose());
+        assert_eq!(ghost.pose, session.solvers().run().expect("a run").skeleton().pose());
         assert!(bench.says(&format!("at iteration {number} of 5")), "the plot's cursor");
         assert!(bench.shows(Role::Label, &format!("iteration {number} of 5")));
     }
@@ -324,11 +324,11 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
     bench.apply([SolverAction::Show(0)]);
     is_disabled_because(&mut bench, "Iteration 0 is the FK pose already");
     bench.apply([SolverAction::Show(2)]);
-    let posed = bench.session().solver_run().expect("a run").skeleton().clone();
+    let posed = bench.session().solvers().run().expect("a run").skeleton().clone();
     bench.click(Role::Button, "Apply pose");
     assert_eq!(bench.session().skeleton(), &posed);
     assert_eq!(bench.session().history().undo_label(), Some("Apply pose"));
-    assert!(bench.session().solver_run().is_none());
+    assert!(bench.session().solvers().run().is_none());
     bench.key_with(Modifiers::COMMAND, Key::Z);
     assert_eq!(bench.session().document(), &before);
     bench.apply([SolverAction::Compare]);
@@ -347,7 +347,7 @@ fn escape_ends_a_solver_run_and_a_race() {
     assert!(bench.session().solvers().is_running());
     bench.key(Key::Escape);
     bench.settle();
-    assert!(bench.session().solver_run().is_none());
+    assert!(bench.session().solvers().run().is_none());
     bench.apply_moving([SolverAction::Compare]);
     bench.key(Key::Escape);
     bench.settle();
@@ -414,9 +414,9 @@ fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
     bench.wait(0.1);
     let target = bench.session().skeleton_rig().targets[0];
     assert_eq!(target.motion.path, TargetPath::Circle);
-    assert!(bench.session().is_playing(), "it goes at once");
+    assert!(bench.session().playback().is_playing(), "it goes at once");
     bench.wait(1.0);
-    let time = bench.session().time();
+    let time = bench.session().playback().time();
     assert!(time > 0.8, "{time} s");
     let at = bench.session().skeleton_rig().targets[0].at(time);
     assert!(at.distance(target.home) > 0.1 * target.motion.radius);
@@ -424,7 +424,7 @@ fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
     assert!(tip.distance(at) < 1e-3, "{tip} follows {at}");
     bench.key(Key::Space);
     bench.wait(1.0);
-    assert!(!bench.session().is_playing());
+    assert!(!bench.session().playback().is_playing());
     bench.settle();
 }
 
@@ -461,20 +461,20 @@ fn a_snake_moves_when_it_is_played_and_its_joints_can_be_turned_only_at_its_firs
 fn the_tree_selects_one_more_or_none_and_follows_the_arrow_keys() {
     let mut bench = built();
     select(&mut bench, "joint");
-    assert_eq!(bench.session().selection(), [1].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [1].map(JointId::new));
     bench.hold(Modifiers::SHIFT);
     select(&mut bench, "joint_2");
-    assert_eq!(bench.session().selection(), [1, 3].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [1, 3].map(JointId::new));
     select(&mut bench, "joint");
-    assert_eq!(bench.session().selection(), [3].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [3].map(JointId::new));
     bench.hold(Modifiers::NONE);
     select(&mut bench, "joint");
     bench.focus(Role::Button, "Joint joint");
     bench.key(Key::ArrowDown);
-    assert_eq!(bench.session().selection(), [2].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [2].map(JointId::new));
     bench.key(Key::ArrowUp);
     bench.key(Key::ArrowUp);
-    assert_eq!(bench.session().selection(), [0].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [0].map(JointId::new));
 }
 
 #[test]
@@ -490,12 +490,12 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.key(Key::T);
     assert_eq!(bench.session().skeleton_rig().targets.len(), 1);
     bench.key(Key::S);
-    assert!(bench.session().solver_run().is_some());
+    assert!(bench.session().solvers().run().is_some());
     bench.key(Key::T);
     assert!(bench.session().skeleton_rig().targets.is_empty());
     bench.key(Key::F2);
     assert!(
-        matches!(bench.session().dialog(), Some(Dialog::Rename { joint, .. }) if joint.index() == 2)
+        matches!(bench.session().shell().dialog(), Some(Dialog::Rename { joint, .. }) if joint.index() == 2)
     );
     bench.frame([]);
     bench.type_text("a");
@@ -504,9 +504,9 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.settle();
     bench.apply([ShellAction::CloseDialog]);
     bench.key_with(Modifiers::COMMAND, Key::A);
-    assert_eq!(bench.session().selection(), [0, 1, 2].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [0, 1, 2].map(JointId::new));
     bench.key(Key::Escape);
-    assert!(bench.session().selection().is_empty());
+    assert!(bench.session().selection().joints().is_empty());
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.key(Key::Delete);
     bench.settle();
@@ -549,7 +549,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());
     bench.wait(4.0);
-    let report = bench.session().solver_run().expect("it ran").report();
+    let report = bench.session().solvers().run().expect("it ran").report();
     assert!(report.converged(), "{report:?}");
     bench.click(Role::Button, "Apply pose");
     assert!(bench.session().skeleton().joints()[0].offset.x > 15.0);
@@ -559,7 +559,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
 fn files_are_asked_for_opened_and_saved() {
     let mut bench = Bench::new();
     bench.key_with(Modifiers::COMMAND, Key::O);
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Path(PathDialog::open())));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Path(PathDialog::open())));
     bench.frame([]);
     bench.frame([egui::Event::Text("scene.js3d".to_owned())]);
     bench.key(Key::Enter);
@@ -569,7 +569,7 @@ fn files_are_asked_for_opened_and_saved() {
     bench.apply([FileAction::Opened { document, file: None, contents: None }]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     assert!(
-        matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
+        matches!(bench.session().shell().dialog(), Some(Dialog::Path(PathDialog::SaveAs { .. }))),
         "it has no file yet"
     );
     bench.settle();
@@ -611,7 +611,7 @@ fn of_several_skeletons_one_is_chosen() {
 fn of_several_animations_another_is_chosen_from_the_menu() {
     let mut bench = Bench::new();
     bench.choose(&["File", "Skeletons and animations…"]);
-    assert!(bench.session().dialog().is_none(), "there is nothing to choose");
+    assert!(bench.session().shell().dialog().is_none(), "there is nothing to choose");
     bench.key(Key::Escape);
     let opened = |contents| FileAction::Opened {
         document: Box::new(Example::find("human").expect("there").open().expect("opens").document),
@@ -678,7 +678,7 @@ fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
         (0..200).map(|parent| JointEdit::AddChild { parent: JointId::new(parent), tip: None }),
     );
     assert_eq!(names(&bench).len(), 201);
-    assert_eq!(bench.session().selected(), Some(JointId::new(200)));
+    assert_eq!(bench.session().selection().active(), Some(JointId::new(200)));
     bench.apply([
         Action::from(TargetEdit::AddTarget(JointId::new(200))),
         SelectAction::Joints((0..201).map(JointId::new).collect()).into(),

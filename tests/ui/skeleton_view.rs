@@ -7,7 +7,7 @@ use glam::Vec3;
 use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm::session::{
-    Action, Drag, FileAction, Grip, JointEdit, PlaybackAction, SelectAction, TargetEdit,
+    Action, Drag, FileAction, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit,
     TransactionAction, ViewAction,
 };
 
@@ -66,8 +66,8 @@ fn bone_place(bench: &Bench, name: &str) -> Pos2 {
 
 /// A point of a ring around the selected joint, so many radians along from where it starts.
 fn ring_place(bench: &Bench, axis: RotationAxis, radius: f32, angle: f32) -> Pos2 {
-    let selected = bench.session().selected().expect("one");
-    let ring = bench.session().ring(selected, axis).expect("a ring");
+    let selected = bench.session().selection().active().expect("one");
+    let ring = GripRing::of_joint(bench.session().posed(), selected, axis).expect("a ring");
     let (u, v) = ring.axis.any_orthonormal_pair();
     let v = v * u.cross(v).dot(ring.axis).signum();
     let rect = bench.viewport();
@@ -82,11 +82,11 @@ fn a_click_on_a_bone_selects_it_and_a_click_beside_all_selects_none() {
     for name in ["b", "d", "a", "c"] {
         let at = bone_place(&bench, name);
         bench.click_at(at);
-        assert_eq!(bench.session().selection(), [joint(&bench, name)]);
+        assert_eq!(bench.session().selection().joints(), [joint(&bench, name)]);
     }
     let empty = bench.empty_point();
     bench.click_at(empty);
-    assert!(bench.session().selection().is_empty());
+    assert!(bench.session().selection().joints().is_empty());
 }
 
 #[test]
@@ -97,9 +97,9 @@ fn shift_click_adds_a_bone_to_the_selection_or_removes_it() {
     bench.hold(Modifiers::SHIFT);
     bench.click_at(places[1]);
     bench.click_at(places[2]);
-    assert_eq!(bench.session().selection(), [1, 2, 3].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [1, 2, 3].map(JointId::new));
     bench.click_at(places[1]);
-    assert_eq!(bench.session().selection(), [1, 3].map(JointId::new));
+    assert_eq!(bench.session().selection().joints(), [1, 3].map(JointId::new));
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn orbiting_the_view_keeps_the_selection() {
     bench.click_at(at);
     let empty = bench.empty_point();
     bench.drag_and_drop(LEFT, empty, empty + vec2(120.0, 40.0));
-    assert_eq!(bench.session().selection(), [joint(&bench, "b")]);
+    assert_eq!(bench.session().selection().joints(), [joint(&bench, "b")]);
 }
 
 #[test]
@@ -117,10 +117,10 @@ fn the_bone_under_the_mouse_is_highlighted() {
     let mut bench = bench();
     let at = bone_place(&bench, "c");
     bench.move_to(at);
-    assert_eq!(bench.session().hovered(), Some(joint(&bench, "c")));
+    assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, "c")));
     let empty = bench.empty_point();
     bench.move_to(empty);
-    assert_eq!(bench.session().hovered(), None);
+    assert_eq!(bench.session().selection().hovered(), None);
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
         let length = pose.base(JointId::new(index)).distance(pose.tip(JointId::new(index)));
         assert!((length - joint.axis.length()).abs() < 1e-4);
     }
-    assert!(bench.session().selection().is_empty(), "a drag selects nothing");
+    assert!(bench.session().selection().joints().is_empty(), "a drag selects nothing");
     assert_eq!(bench.session().skeleton_rig().targets, [], "the target was only for the drag");
 }
 
@@ -197,7 +197,7 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
             let at = ring_place(bench, axis, 56.0, from);
             bench.move_to(at);
             bench.press(LEFT);
-            let drag = bench.session().drag().map(Drag::grip);
+            let drag = bench.session().history().drag().map(Drag::grip);
             if drag != Some(Grip::Ring(JointId::new(b.index()), axis)) {
                 bench.key(Key::Escape);
                 bench.release(LEFT);
@@ -240,7 +240,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
         let at = ring_place(&bench, RotationAxis::Y, RADIUS, *angle);
         bench.move_to(at);
         bench.press(LEFT);
-        let grip = bench.session().drag().map(Drag::grip);
+        let grip = bench.session().history().drag().map(Drag::grip);
         bench.key(Key::Escape);
         bench.release(LEFT);
         bench.apply([SelectAction::Joints(vec![b])]);
@@ -253,7 +253,8 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     let on_ring = ring_place(&bench, RotationAxis::Y, RADIUS, angle);
     let rect = bench.viewport();
     let projection = bench.session().camera().projection(rect.aspect_ratio());
-    let centre = bench.session().ring(b, RotationAxis::Y).expect("a ring").centre;
+    let centre =
+        GripRing::of_joint(bench.session().posed(), b, RotationAxis::Y).expect("a ring").centre;
     // Outwards from the ring's curve, on screen.
     let along = ring_place(&bench, RotationAxis::Y, RADIUS, angle + 0.02) - on_ring;
     let outwards = along.rot90().normalized();
@@ -262,7 +263,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     let tip = bench.ray(at).meets_plane(centre, projection.forward);
     let parent = joint(&bench, "root");
     bench.apply([JointEdit::AddChild { parent, tip }]);
-    let added = bench.session().selected().expect("the new joint");
+    let added = bench.session().selection().active().expect("the new joint");
     bench.apply([Action::from(SelectAction::Joints(vec![b]))]);
     (bench, added, [at, on_ring])
 }
@@ -270,7 +271,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
 fn grip_at(bench: &mut Bench, at: Pos2) -> Option<Grip> {
     bench.move_to(at);
     bench.press(LEFT);
-    let grip = bench.session().drag().map(Drag::grip);
+    let grip = bench.session().history().drag().map(Drag::grip);
     bench.key(Key::Escape);
     bench.release(LEFT);
     grip
@@ -318,7 +319,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
             bench.move_to(start);
             bench.press(LEFT);
             assert!(matches!(
-                bench.session().drag().map(Drag::grip),
+                bench.session().history().drag().map(Drag::grip),
                 Some(Grip::Target(joint, _)) if joint == JointId::new(c.index())
             ));
         }
@@ -369,7 +370,7 @@ fn ctrl_click_adds_a_bone_from_the_selected_tip_to_the_mouse() {
     let (from, at) = (tip(&bench, "c"), tip_place(&bench, "c") + vec2(-20.0, 90.0));
     bench.hold(Modifiers::COMMAND);
     bench.click_at(at);
-    let added = bench.session().selected().expect("the new joint");
+    let added = bench.session().selection().active().expect("the new joint");
     let (pose, rig) = (bench.session().skeleton_pose(), bench.session().skeleton_rig());
     assert_eq!(rig.skeleton.joints()[added.index()].parent, Some(c));
     assert!(pose.base(added).distance(from) < 1e-5);

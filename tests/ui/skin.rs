@@ -118,7 +118,7 @@ fn a_click_on_the_skin_selects_the_joint_with_the_greatest_weight_there() {
     let at = bench.on_screen(middle);
     bench.apply([SelectAction::Joints(vec![])]);
     bench.click_at(at);
-    assert_eq!(bench.session().selection(), [joint]);
+    assert_eq!(bench.session().selection().joints(), [joint]);
 }
 
 #[test]
@@ -201,7 +201,10 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
         format!("the skin's file {} is missing: locate it, or remove the skin", old.display());
     assert!(bench.says(&missing));
     bench.click(Role::Button, "Locate…");
-    assert!(matches!(bench.session().dialog(), Some(Dialog::Path(PathDialog::LocateSkin { .. }))));
+    assert!(matches!(
+        bench.session().shell().dialog(),
+        Some(Dialog::Path(PathDialog::LocateSkin { .. }))
+    ));
     assert!(bench.says("File with the mesh: .glb, .gltf or .js3d"));
 
     // What the window does with the path of the dialog.
@@ -219,11 +222,11 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
     };
     locate(&mut bench, &old);
     assert!(matches!(
-        bench.session().dialog(),
+        bench.session().shell().dialog(),
         Some(Dialog::Path(PathDialog::LocateSkin { problem: Some(_), .. }))
     ));
     locate(&mut bench, &new);
-    assert!(bench.session().dialog().is_none());
+    assert!(bench.session().shell().dialog().is_none());
     assert!(skin(&bench).expect("a skin").mesh().is_ok());
     assert_eq!(bench.session().history().undo_label(), Some("Change skin"));
     bench.apply([TransactionAction::Undo]);

@@ -63,12 +63,12 @@ fn dragging_a_rail_moves_the_hand_in_the_same_frame() {
         last = bench.hand().y;
         let pose = bench.session().pose();
         assert!((pose.hand.y - last).abs() < 1e-3 || last > 400.0, "the arm follows: {pose:?}");
-        assert!(bench.session().is_editing());
+        assert!(bench.session().history().is_editing());
         let shown = bench.node(Role::SpinButton, "Hand y value").value();
         assert_eq!(shown, Some(format!("{last:.1}")), "the number is of this frame");
     }
     bench.release(PointerButton::Primary);
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
     assert_eq!(bench.hand().y, last);
 }
 
@@ -97,7 +97,7 @@ fn a_click_on_a_rail_goes_there() {
     bench.wait(1.0);
     bench.click_at(on_rail(&bench, "Root x", 1.0));
     assert_eq!(bench.session().arm().root, Vec3::new(500.0, 0.0, 0.0));
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn esc_cancels_the_drag_of_a_rail_and_further_movement_changes_nothing() {
     assert_ne!(bench.session().arm(), &before);
     bench.key(Key::Escape);
     assert_eq!(bench.session().arm(), &before);
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
     bench.move_to(on_rail(&bench, "Hand x", 0.2));
     bench.move_to(on_rail(&bench, "Hand x", 0.9));
     bench.release(PointerButton::Primary);
@@ -137,7 +137,7 @@ fn a_press_and_its_release_in_one_frame_are_a_click_on_the_rail() {
     bench.frame(events);
     bench.move_to(on_rail(&bench, "Root x", 0.3));
     assert_eq!(bench.session().arm().root.x, 500.0);
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn a_double_click_on_rail_or_label_resets() {
             let after = bench.session().arm();
             assert_eq!(value(after, slider), value(&Arm::default(), slider), "{slider}");
             assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
-            assert!(!bench.session().is_editing());
+            assert!(!bench.session().history().is_editing());
         }
     }
 }

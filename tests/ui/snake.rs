@@ -27,7 +27,7 @@ fn the_mouse_drags_the_head_and_the_body_follows_in_one_undo_step() {
     let before = bench.session().skeleton_pose().clone();
     let at = bench.on_screen(head(&bench));
     bench.drag(LEFT, at, at + vec2(60.0, -20.0));
-    let grip = bench.session().drag().expect("a drag").grip();
+    let grip = bench.session().history().drag().expect("a drag").grip();
     assert!(matches!(grip, Grip::Head(HEAD, _)));
     for step in 1..20 {
         bench.move_to(at + vec2(60.0 + 3.0 * step as f32, -20.0 - 4.0 * step as f32));

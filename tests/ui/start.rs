@@ -95,7 +95,7 @@ fn a_drag_along_the_slim_bar_scrubs() {
     let right = ruler.right_center() - vec2(16.0, 0.0);
     bench.drag_and_drop(PointerButton::Primary, left, left + (right - left) * 0.5);
     bench.settle();
-    let time = bench.session().time();
+    let time = bench.session().playback().time();
     assert!((time - 4.0).abs() < 0.05, "half way through 8 s: {time}");
 }
 

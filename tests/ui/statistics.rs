@@ -60,11 +60,11 @@ fn opened(size: Vec2, machine: Machine) -> Bench {
 #[test]
 fn the_help_menu_opens_the_statistics_and_esc_closes_them() {
     let mut bench = opened(LARGE, machine(3, true));
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Statistics));
     assert!(bench.says("Frame times: the last took 8.6 ms"));
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(bench.session().dialog(), None);
+    assert_eq!(bench.session().shell().dialog(), None);
     assert!(!bench.says("Frame times"));
 }
 
@@ -146,8 +146,8 @@ fn the_statistics_request_no_frame_and_do_not_block_the_window() {
         KeysEdit::Key(bench.session().all_channels()).into(),
     ]);
     bench.key(Key::Space);
-    assert!(bench.session().is_playing(), "Space plays");
-    assert_eq!(bench.session().dialog(), Some(&Dialog::Statistics));
+    assert!(bench.session().playback().is_playing(), "Space plays");
+    assert_eq!(bench.session().shell().dialog(), Some(&Dialog::Statistics));
 }
 
 #[test]

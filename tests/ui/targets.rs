@@ -11,7 +11,7 @@ use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
-    Action, FileAction, Grip, JointEdit, PlaybackAction, SelectAction, TargetEdit,
+    Action, FileAction, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit,
     TransactionAction,
 };
 
@@ -192,7 +192,7 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
     assert_eq!(target(&bench, "left_forearm").space, TargetSpace::Joint(chest));
     assert!(farthest(&before, &tips(&bench)) <= 1e-5);
     let on_chest = |bench: &Bench| {
-        let pose = &bench.session().evaluated_skeleton().solved;
+        let pose = &bench.session().posed().evaluated_skeleton().solved;
         pose.full_transform(chest).inverse().transform_point3(tip(bench, "left_forearm"))
     };
     let place = on_chest(&bench);
@@ -279,7 +279,7 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     bench.click(Role::RadioButton, "Keep orientation");
     let hand = joint(&bench, "left_hand");
     let turned =
-        |bench: &Bench| bench.session().evaluated_skeleton().solved.rotation_in_world(hand);
+        |bench: &Bench| bench.session().posed().evaluated_skeleton().solved.rotation_in_world(hand);
     let before = turned(&bench);
     let place = tip(&bench, "left_forearm") + Vec3::new(0.02, 0.06, 0.05);
     let moved = Target { home: place, ..*target(&bench, "left_forearm") };
@@ -361,10 +361,11 @@ fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
         let grip = Grip::Orientation(shin, axis);
         let (before, home) =
             (held(&bench, "left_shin").expect("held"), target(&bench, "left_shin").home);
-        let turned =
-            |bench: &Bench| bench.session().evaluated_skeleton().solved.rotation_in_world(foot);
+        let turned = |bench: &Bench| {
+            bench.session().posed().evaluated_skeleton().solved.rotation_in_world(foot)
+        };
         let was = turned(&bench);
-        let ring = bench.session().orientation_ring(shin, axis).expect("a ring");
+        let ring = GripRing::of_orientation(bench.session().posed(), shin, axis).expect("a ring");
         let to = bench.take_ring(grip, ring, RING, 0.1);
         bench.move_to(to);
         assert!(bench.says("Rotate about"));
@@ -398,7 +399,8 @@ fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
     let mut bench = human();
     select(&mut bench, "right_foot");
     let shin = joint(&bench, "right_shin");
-    let ring = bench.session().orientation_ring(shin, RotationAxis::Y).expect("a ring");
+    let ring =
+        GripRing::of_orientation(bench.session().posed(), shin, RotationAxis::Y).expect("a ring");
     bench.apply([PlaybackAction::SetAutoKey(true)]);
     let to = bench.take_ring(Grip::Orientation(shin, RotationAxis::Y), ring, RING, 0.2);
     bench.hold(Modifiers::COMMAND | Modifiers::CTRL);
@@ -417,9 +419,9 @@ fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     let mut bench = human();
     select(&mut bench, "left_hand");
     let (forearm, hand) = (joint(&bench, "left_forearm"), joint(&bench, "left_hand"));
-    assert_eq!(bench.session().orientation_ring(forearm, RotationAxis::X), None);
+    assert_eq!(GripRing::of_orientation(bench.session().posed(), forearm, RotationAxis::X), None);
     let before = bench.session().skeleton()[hand].rotation;
-    let ring = bench.session().ring(hand, RotationAxis::Z).expect("a ring");
+    let ring = GripRing::of_joint(bench.session().posed(), hand, RotationAxis::Z).expect("a ring");
     let to = bench.take_ring(Grip::Ring(hand, RotationAxis::Z), ring, RING, 0.2);
     bench.drag(LEFT, to, to);
     bench.release(LEFT);
@@ -429,6 +431,10 @@ fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
 
     bench.reveal(Role::RadioButton, "Keep orientation");
     bench.click(Role::RadioButton, "Keep orientation");
-    assert_eq!(bench.session().ring(hand, RotationAxis::Z), None, "the target turns the hand");
-    assert!(bench.session().orientation_ring(forearm, RotationAxis::Z).is_some());
+    assert_eq!(
+        GripRing::of_joint(bench.session().posed(), hand, RotationAxis::Z),
+        None,
+        "the target turns the hand"
+    );
+    assert!(GripRing::of_orientation(bench.session().posed(), forearm, RotationAxis::Z).is_some());
 }

@@ -83,18 +83,22 @@ fn the_playhead_follows_the_mouse_on_the_ruler_from_frame_to_frame() {
     let document = bench.session().document().clone();
     let (from, to) = (ruler_position(&bench, 1.01), ruler_position(&bench, 3.495));
     bench.drag(PointerButton::Primary, from, to);
-    assert_eq!(bench.session().time(), Timeline::default().snapped(3.495));
+    assert_eq!(bench.session().playback().time(), Timeline::default().snapped(3.495));
     bench.hold(Modifiers::COMMAND);
     bench.move_to(to);
-    assert!((bench.session().time() - 3.495).abs() < 2e-3, "{}", bench.session().time());
+    assert!(
+        (bench.session().playback().time() - 3.495).abs() < 2e-3,
+        "{}",
+        bench.session().playback().time()
+    );
     bench.hold(Modifiers::NONE);
     bench.move_to(pos2(5000.0, to.y));
-    assert_eq!(bench.session().time(), 8.0, "not past the end");
+    assert_eq!(bench.session().playback().time(), 8.0, "not past the end");
     bench.move_to(pos2(-5000.0, to.y));
-    assert_eq!(bench.session().time(), 0.0);
+    assert_eq!(bench.session().playback().time(), 0.0);
     bench.release(PointerButton::Primary);
     bench.move_to(ruler_position(&bench, 3.0));
-    assert_eq!(bench.session().time(), 0.0, "it is let go");
+    assert_eq!(bench.session().playback().time(), 0.0, "it is let go");
     assert_eq!(bench.session().document(), &document);
     assert_eq!(bench.session().history().undo_label(), Some("Key Socket twist"), "it is no step");
 }
@@ -104,12 +108,12 @@ fn esc_restores_the_time() {
     let mut bench = keyed();
     bench.apply([PlaybackAction::SetTime(0.5)]);
     bench.drag(PointerButton::Primary, ruler_position(&bench, 1.0), ruler_position(&bench, 4.0));
-    assert_eq!(bench.session().time(), 4.0);
+    assert_eq!(bench.session().playback().time(), 4.0);
     bench.key(Key::Escape);
-    assert_eq!(bench.session().time(), 0.5);
+    assert_eq!(bench.session().playback().time(), 0.5);
     bench.move_to(ruler_position(&bench, 2.0));
     bench.release(PointerButton::Primary);
-    assert_eq!(bench.session().time(), 0.5);
+    assert_eq!(bench.session().playback().time(), 0.5);
 }
 
 #[test]
@@ -125,7 +129,7 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0], "others stay");
     bench.release(PointerButton::Primary);
     bench.settle();
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, moved)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, moved)]);
     assert_eq!(bench.session().history().undo_label(), Some("Move keys"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
@@ -157,24 +161,24 @@ fn esc_cancels_a_drag_of_keys_and_they_stay_selected() {
     bench.move_to(from + vec2(-60.0, 0.0));
     bench.release(PointerButton::Primary);
     assert_eq!(bench.session().document(), &before);
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 2.0)]);
-    assert!(!bench.session().is_editing());
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 2.0)]);
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
 fn a_click_selects_a_key_and_shift_adds_another_or_removes_it() {
     let mut bench = keyed();
     bench.click_at(key_of_hand(&bench, 1.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 1.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 1.0)]);
     bench.hold(Modifiers::SHIFT);
     bench.click_at(key_of_hand(&bench, 5.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 1.0), (Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 1.0), (Channel::Hand, 5.0)]);
     bench.click_at(key_of_hand(&bench, 1.0));
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 5.0)]);
     bench.hold(Modifiers::NONE);
     bench.click_at(key_of_hand(&bench, 1.0) + vec2(60.0, 0.0));
-    assert!(bench.session().selected_keys().is_empty(), "a click beside all selects none");
-    assert!(!bench.session().is_editing());
+    assert!(bench.session().selection().keys().is_empty(), "a click beside all selects none");
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -183,7 +187,7 @@ fn the_diamonds_on_top_select_and_move_all_keys_at_their_time() {
     let at = bench.rect(Role::Button, "Keys at 1.00 s").center();
     bench.click_at(at);
     let both = [(Channel::Hand, 1.0), (Channel::Twist, 1.0)];
-    assert_eq!(bench.session().selected_keys(), both);
+    assert_eq!(bench.session().selection().keys(), both);
     bench.drag_and_drop(PointerButton::Primary, at, at - vec2(70.0, 0.0));
     bench.settle();
     let (hand, twist) = (times(&bench, Channel::Hand), times(&bench, Channel::Twist));
@@ -198,16 +202,16 @@ fn a_box_selects_what_is_in_it() {
     let (from, to) = (first - vec2(20.0, 8.0), last + vec2(20.0, 30.0));
     bench.drag_and_drop(PointerButton::Primary, from, to);
     let inside = [(Channel::Hand, 1.0), (Channel::Hand, 2.0), (Channel::Twist, 1.0)];
-    assert_eq!(bench.session().selected_keys(), inside);
+    assert_eq!(bench.session().selection().keys(), inside);
     bench.hold(Modifiers::SHIFT);
     let at = key_of_hand(&bench, 5.0);
     bench.drag_and_drop(PointerButton::Primary, at + vec2(20.0, 8.0), at - vec2(20.0, 8.0));
     bench.hold(Modifiers::NONE);
-    assert_eq!(bench.session().selected_keys().len(), 4);
+    assert_eq!(bench.session().selection().keys().len(), 4);
     bench.drag(PointerButton::Primary, from, to);
     bench.key(Key::Escape);
     bench.release(PointerButton::Primary);
-    assert!(bench.session().selected_keys().is_empty());
+    assert!(bench.session().selection().keys().is_empty());
 }
 
 #[test]
@@ -216,7 +220,7 @@ fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
     let at = pos2(ruler_position(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
     bench.double_click_at(at);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
-    assert_eq!(bench.session().time(), 3.0);
+    assert_eq!(bench.session().playback().time(), 3.0);
     let spline = spline();
     let key = bench.session().document().keys.track(Channel::Hand).and_then(|it| it.get(3.0));
     assert!(key.expect("there").distance(spline.at(3.0).expect("there")) < 1e-3);
@@ -232,19 +236,19 @@ fn the_hand_follows_the_spline_during_playback() {
     let mut bench = keyed();
     bench.apply([PlaybackAction::SetTime(1.2)]);
     bench.click_at(bench.rect(Role::Button, "Play").center());
-    assert!(bench.session().is_playing());
+    assert!(bench.session().playback().is_playing());
     bench.frame([]);
-    let begun = bench.session().time();
+    let begun = bench.session().playback().time();
     for frame in 1..=60 {
         bench.frame([]);
-        let time = bench.session().time();
+        let time = bench.session().playback().time();
         assert!((time - begun - f64::from(frame) * SECONDS_PER_FRAME).abs() < 1e-6, "{time}");
         let expected = spline().at(time).expect("keys");
         assert!(bench.hand().distance(expected) < 1e-3, "{time}: {} {expected}", bench.hand());
     }
     bench.click_at(bench.rect(Role::Button, "Pause").center());
     bench.settle();
-    let time = bench.session().time();
+    let time = bench.session().playback().time();
     assert_eq!(time, Timeline::default().snapped(time), "it is on a frame");
 }
 
@@ -258,9 +262,9 @@ fn at_half_speed_playback_goes_half_as_far() {
     bench.settle();
     assert_eq!(bench.session().playback().speed(), 0.5);
     bench.apply_moving([PlaybackAction::Play(true)]);
-    let begun = bench.session().time();
+    let begun = bench.session().playback().time();
     bench.wait(1.0);
-    assert!((bench.session().time() - begun - 0.5).abs() < 0.02);
+    assert!((bench.session().playback().time() - begun - 0.5).abs() < 0.02);
 }
 
 #[test]
@@ -268,16 +272,22 @@ fn at_its_end_playback_loops_or_stops() {
     let mut bench = keyed();
     bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
-    assert!(bench.session().is_playing() && bench.session().time() < 1.0);
+    assert!(bench.session().playback().is_playing() && bench.session().playback().time() < 1.0);
     bench.apply([PlaybackAction::Play(false)]);
     bench.click(Role::Button, "Loop");
     assert!(!bench.session().playback().is_looping());
     bench.apply_moving([PlaybackAction::SetTime(7.9), PlaybackAction::Play(true)]);
     bench.wait(0.5);
-    assert_eq!((bench.session().is_playing(), bench.session().time()), (false, 8.0));
+    assert_eq!(
+        (bench.session().playback().is_playing(), bench.session().playback().time()),
+        (false, 8.0)
+    );
     bench.click_at(bench.rect(Role::Button, "Play").center());
     bench.wait(0.2);
-    assert!(bench.session().is_playing() && bench.session().time() < 1.0, "from the start again");
+    assert!(
+        bench.session().playback().is_playing() && bench.session().playback().time() < 1.0,
+        "from the start again"
+    );
 }
 
 #[test]
@@ -293,7 +303,7 @@ fn buttons_go_to_the_ends_and_from_key_to_key() {
         ("To start", 0.0),
     ] {
         bench.click(Role::Button, name);
-        assert_eq!(bench.session().time(), time, "{name}");
+        assert_eq!(bench.session().playback().time(), time, "{name}");
     }
 }
 
@@ -330,7 +340,7 @@ fn the_frame_rate_can_be_chosen_and_an_unlisted_one_of_a_file_is_shown() {
         ruler_position(&bench, 1.0),
         ruler_position(&bench, 1.5),
     );
-    let frames = bench.session().time() * 24.0;
+    let frames = bench.session().playback().time() * 24.0;
     assert!((frames - frames.round()).abs() < 1e-9);
     let timeline = Timeline { frame_rate: 33.33, ..Timeline::default() };
     bench.apply([KeysEdit::SetTimeline(timeline)]);
@@ -361,9 +371,9 @@ fn start_and_end_can_be_typed_and_invalid_values_are_refused() {
         assert!(bench.says("A timeline must start before it ends"), "{field} {text}");
     }
     type_into(&mut bench, "Time", "0.1");
-    assert_eq!(bench.session().time(), 0.1);
+    assert_eq!(bench.session().playback().time(), 0.1);
     type_into(&mut bench, "Frame", "45");
-    assert_eq!(bench.session().time(), 1.5);
+    assert_eq!(bench.session().playback().time(), 1.5);
 }
 
 #[test]
@@ -373,9 +383,11 @@ fn the_time_is_dragged_in_its_number_from_frame_to_frame() {
     let at = bench.rect(Role::SpinButton, "Time").center();
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(40.0, 0.0));
     bench.settle();
-    let time = bench.session().time();
+    let time = bench.session().playback().time();
     assert!(time > 0.1 && time == Timeline::default().snapped(time), "{time}");
-    assert!(!bench.session().is_editing() && bench.session().history().undo_label() == undo);
+    assert!(
+        !bench.session().history().is_editing() && bench.session().history().undo_label() == undo
+    );
 }
 
 #[test]
@@ -406,7 +418,7 @@ fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
     let mut bench = keyed();
     bench.click(Role::Button, "Channel Hand");
     let selected =
-        |bench: &Bench| bench.session().selected_channels().iter().copied().collect::<Vec<_>>();
+        |bench: &Bench| bench.session().selection().channels().iter().copied().collect::<Vec<_>>();
     assert_eq!(selected(&bench), [Channel::Hand]);
     bench.hold(Modifiers::SHIFT);
     bench.click(Role::Button, "Channel Socket twist");
@@ -453,14 +465,14 @@ fn a_screen_reader_selects_keys_and_scrubs() {
     let mut bench = keyed();
     bench.node(Role::Button, "Key of Hand at 5.00 s").click_accesskit();
     bench.settle();
-    assert_eq!(bench.session().selected_keys(), [(Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 5.0)]);
     bench.node(Role::Slider, "Timeline ruler").increment_accesskit();
     bench.frame([]);
-    assert_eq!(bench.session().time(), 1.0 / 30.0);
+    assert_eq!(bench.session().playback().time(), 1.0 / 30.0);
     bench.node(Role::Slider, "Timeline ruler").set_value_accesskit(2.5);
     bench.frame([]);
     let value = bench.node(Role::Slider, "Timeline ruler").accesskit_node().numeric_value();
-    assert_eq!((bench.session().time(), value), (2.5, Some(2.5)));
+    assert_eq!((bench.session().playback().time(), value), (2.5, Some(2.5)));
 }
 
 #[test]
@@ -473,7 +485,7 @@ fn dragging_in_the_graph_editor_scrubs() {
     assert!(bench.session().preferences().curves);
     let middle = bench.rect(Role::Image, "Curves of Hand").center().y;
     bench.drag_and_drop(PointerButton::Primary, pos2(from.x, middle), pos2(to.x, middle));
-    assert_eq!(bench.session().time(), 4.0);
+    assert_eq!(bench.session().playback().time(), 4.0);
     bench.click(Role::Button, "Graph editor");
     assert!(bench.shows(Role::Button, "Channel Hand"));
 }

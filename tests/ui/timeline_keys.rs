@@ -66,23 +66,23 @@ fn k_keys_the_selected_joints() {
 fn space_plays_and_pauses_the_arm_too() {
     let mut bench = keyed();
     bench.key(Key::Space);
-    assert!(bench.session().is_playing());
+    assert!(bench.session().playback().is_playing());
     bench.key(Key::Space);
-    assert!(!bench.session().is_playing());
+    assert!(!bench.session().playback().is_playing());
     bench.click_at(bench.viewport().left_top() + egui::vec2(30.0, 30.0));
     bench.key(Key::Space);
-    assert!(bench.session().is_playing(), "from the viewport");
+    assert!(bench.session().playback().is_playing(), "from the viewport");
     bench.key(Key::Space);
     bench.focus(Role::Slider, "Hand x");
     bench.key(Key::Space);
-    assert!(bench.session().is_playing(), "from a slider");
+    assert!(bench.session().playback().is_playing(), "from a slider");
     bench.key(Key::Space);
     bench.focus(Role::CheckBox, "Pointer");
     bench.key(Key::Space);
-    assert!(!bench.session().is_playing(), "a checkbox has a use for it");
+    assert!(!bench.session().playback().is_playing(), "a checkbox has a use for it");
     let mut bench = Bench::with_timeline(LARGE);
     bench.key(Key::Space);
-    assert!(!bench.session().is_playing() && bench.says("Nothing to play"));
+    assert!(!bench.session().playback().is_playing() && bench.says("Nothing to play"));
 }
 
 #[test]
@@ -106,12 +106,12 @@ fn arrows_go_from_frame_to_frame_and_from_key_to_key_once_the_timeline_was_click
     ] {
         bench.key(key);
         bench.settle();
-        assert!((bench.session().time() - time).abs() < 1e-12, "{key:?} {time}");
+        assert!((bench.session().playback().time() - time).abs() < 1e-12, "{key:?} {time}");
     }
     assert_eq!(bench.session().camera(), &camera);
     bench.click_at(bench.viewport().left_top() + egui::vec2(30.0, 30.0));
     bench.key(Key::ArrowRight);
-    assert_eq!(bench.session().time(), 0.0);
+    assert_eq!(bench.session().playback().time(), 0.0);
     assert_ne!(bench.session().camera(), &camera, "in the viewport they turn the view");
 }
 
@@ -121,10 +121,10 @@ fn between_frames_the_arrows_go_to_the_next_frame() {
     bench.focus(Role::Slider, "Timeline ruler");
     bench.apply([PlaybackAction::SetTime(1.01)]);
     bench.key(Key::ArrowRight);
-    assert_eq!(bench.session().time(), 31.0 / 30.0);
+    assert_eq!(bench.session().playback().time(), 31.0 / 30.0);
     bench.apply([PlaybackAction::SetTime(1.01)]);
     bench.key(Key::ArrowLeft);
-    assert_eq!(bench.session().time(), 1.0);
+    assert_eq!(bench.session().playback().time(), 1.0);
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn delete_removes_the_selected_keys() {
         bench.key(key);
         bench.settle();
         assert_eq!(times(&bench, Channel::Hand), [1.0, 5.0], "{key:?}");
-        assert!(bench.session().selected_keys().is_empty());
+        assert!(bench.session().selection().keys().is_empty());
         bench.apply([TransactionAction::Undo]);
         assert_eq!(times(&bench, Channel::Hand), HAND.map(|it| it.0), "{key:?}");
     }
@@ -186,7 +186,7 @@ fn copied_keys_are_pasted_at_the_playhead() {
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0, 6.0, 7.0]);
     let track = bench.session().document().keys.track(Channel::Hand).expect("keys");
     assert_eq!((track.get(6.0), track.get(7.0)), (Some(HAND[0].1), Some(HAND[1].1)));
-    assert_eq!(bench.session().selected_keys().len(), 2, "they are selected");
+    assert_eq!(bench.session().selection().keys().len(), 2, "they are selected");
     bench.apply([TransactionAction::Undo]);
     assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
 }
@@ -205,10 +205,10 @@ fn ctrl_a_selects_all_keys_and_esc_none() {
     bench.focus(Role::Slider, "Timeline ruler");
     bench.key_with(Modifiers::COMMAND, Key::A);
     bench.settle();
-    assert_eq!(bench.session().selected_keys().len(), 5);
+    assert_eq!(bench.session().selection().keys().len(), 5);
     bench.key(Key::Escape);
     bench.settle();
-    assert!(bench.session().selected_keys().is_empty());
+    assert!(bench.session().selection().keys().is_empty());
 }
 
 #[test]
@@ -241,9 +241,9 @@ fn once_dragged_keys_are_dropped_the_status_line_says_what_was_done() {
     let mut bench = keyed();
     let at = key_of_hand(&bench, 1.0);
     bench.drag(PointerButton::Primary, at, at + egui::vec2(60.0, 0.0));
-    assert!(bench.session().message().is_some_and(|it| it.starts_with("Move 1 key: ")));
+    assert!(bench.session().shell().message().is_some_and(|it| it.starts_with("Move 1 key: ")));
     bench.release(PointerButton::Primary);
-    let said = bench.session().message().unwrap_or_default();
+    let said = bench.session().shell().message().unwrap_or_default();
     assert!(said.starts_with("Moved 1 key by +"), "{said}");
     assert!(!said.contains("cancel"), "{said}");
 }

@@ -73,7 +73,7 @@ fn the_button_of_the_note_applies_the_remedy_as_one_undo_step_and_says_what_it_d
     assert!(error(&bench) <= bench.session().skeleton_rig().tolerance());
     assert_eq!(labels(&bench, TOO_FAR), 0);
     let done = "Moved the target of left_hand within reach: left_hand is at its target now";
-    assert!(bench.says(done), "{:?}", bench.session().message());
+    assert!(bench.says(done), "{:?}", bench.session().shell().message());
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
 }
@@ -194,5 +194,9 @@ fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     bench.settle();
     assert!(missing_degrees(&bench) < 0.05);
     assert!(bench.session().why().is_empty());
-    assert!(bench.says("left_foot is at its target now"), "{:?}", bench.session().message());
+    assert!(
+        bench.says("left_foot is at its target now"),
+        "{:?}",
+        bench.session().shell().message()
+    );
 }

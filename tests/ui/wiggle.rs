@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use egui::{Event, Modifiers, Pos2};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
-use ik_arm::session::{FileAction, Preferences, SelectAction, Session, WiggleView};
+use ik_arm::session::{FileAction, GripRing, Preferences, SelectAction, Session, WiggleView};
 
 use crate::bench::Bench;
 
@@ -21,7 +21,7 @@ fn bench(joint: &str) -> (Bench, JointId) {
 
 /// Moves the mouse over a ring of the joint and holds Alt.
 fn hover(bench: &mut Bench, joint: JointId, axis: RotationAxis) -> Pos2 {
-    let ring = bench.session().ring(joint, axis).expect("a ring");
+    let ring = GripRing::of_joint(bench.session().posed(), joint, axis).expect("a ring");
     let (u, v) = ring.axis.any_orthonormal_pair();
     let centre = bench.on_screen(ring.centre);
     let places = (0..64).map(|step| {
@@ -60,7 +60,7 @@ fn alt_over_a_ring_lets_the_joint_swing_by_5_degrees_and_changes_nothing_else() 
     }
     assert!((-5.01..-4.8).contains(&least) && (4.8..5.01).contains(&most), "{least} {most}");
     assert_eq!(bench.session().document(), &before);
-    assert!(!bench.session().is_editing());
+    assert!(!bench.session().history().is_editing());
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn the_residual_is_that_of_the_tip_to_its_target_and_of_the_line() {
         let target = view.target.expect("a target");
         let tip = view.pose.tip(view.swing.tip);
         assert!((tip.distance(target.position) - target.now).abs() < 1e-5);
-        let skeleton = &bench.session().evaluated_skeleton().solved;
+        let skeleton = &bench.session().posed().evaluated_skeleton().solved;
         let line = view.swing.predicted_at(skeleton, view.by);
         assert!((line.distance(target.position) - target.predicted).abs() < 1e-5);
         assert!((target.now - target.predicted).abs() < 0.02);

@@ -36,6 +36,11 @@ pub struct Joint {
 }
 
 impl Joint {
+    /// True for a root without a bone, such as a pelvis.
+    pub fn is_root_point(&self) -> bool {
+        self.parent.is_none() && self.axis == Vec3::ZERO
+    }
+
     /// An unlimited joint at its parent's base, with a radius of a tenth of its bone's length.
     pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
         Self {

@@ -1,9 +1,8 @@
-use glam::{DMat3, DQuat, Mat3, Vec3};
+use glam::{DMat3, DQuat, Vec3};
 
 use super::edits::{self, ArmEdit};
-use crate::document::{Arm, HandSpace, Ray, TwistReferenceKind};
+use crate::document::{Arm, Ray, TwistReferenceKind};
 use crate::kinematics::euler;
-use crate::kinematics::fk::limb_rotations;
 use crate::kinematics::skeleton::RotationAxis;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
 use crate::session::drag::point::{PointDrag, PointHandle};
@@ -74,7 +73,7 @@ fn with_angle(mut angles: Vec3, axis: RotationAxis, angle: f32) -> Vec3 {
 }
 
 fn point_drag(session: &Session, grip: Grip, drag: PointDrag) -> Drag {
-    Drag::of_point(grip, drag.with_step(session.snap()))
+    Drag::of_point(grip, drag.with_step(session.shown().grid_cell() * PointDrag::SNAP_CELLS))
 }
 
 /// Begins to drag the Cursor. If the Cursor is out of reach and the mouse is nearer to the hand, a
@@ -108,7 +107,7 @@ fn grab_ring(session: &Session, grip: Grip, ray: Ray) -> Option<Drag> {
         Grip::HandRing(axis) => hand_orientation.angles[axis.index()],
         _ => fk.bend,
     };
-    Some(Drag::of_ring(grip, TurnDrag::new(session.arm_ring(grip)?, start, ray)))
+    Some(Drag::of_ring(grip, TurnDrag::new(GripRing::of_arm(session.posed(), grip)?, start, ray)))
 }
 
 /// Begins to turn the elbow about the Pointer, by the point of a limb at the mouse: it moves on a
@@ -118,8 +117,8 @@ fn grab_limb(session: &Session, ray: Ray) -> Option<Drag> {
     if !session.arm().uses_ik() {
         return None;
     }
-    let [shoulder, elbow, hand] = session.joints_in_world();
-    let limb = match session.arm_part_at(ray) {
+    let [shoulder, elbow, hand] = joints_in_world(session);
+    let limb = match BodyPart::of_arm_at(session.posed(), ray) {
         Some(BodyPart::UpperLimb) => [shoulder, elbow],
         _ => [elbow, hand],
     };
@@ -136,72 +135,17 @@ fn grab_upper_limb(session: &Session, ray: Ray, forward: Vec3) -> Option<Drag> {
     if session.arm().uses_ik() {
         return None;
     }
-    let [shoulder, elbow, _] = session.joints_in_world();
+    let [shoulder, elbow, _] = joints_in_world(session);
     let part = ray.nearest_on_segment([shoulder, elbow]).max(NEAREST);
     let start = session.pose().elbow * part;
     let drag = PointDrag::new(PointHandle::Free, start, shoulder, forward, ray);
     Some(point_drag(session, Grip::UpperLimb, drag))
 }
 
-/// Rings of the arm.
-impl Session {
-    /// Shoulder, elbow and hand in the world.
-    fn joints_in_world(&self) -> [Vec3; 3] {
-        let (root, pose) = (self.arm().root, self.pose());
-        [Vec3::ZERO, pose.elbow, pose.hand].map(|point| root + point)
-    }
-
-    /// The ring of a grip, in world space. With IK it is the ring of the Socket twist, around the
-    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with
-    /// both those of the hand's angles. `None` for other grips.
-    pub fn arm_ring(&self, grip: Grip) -> Option<GripRing> {
-        match (grip, self.arm().uses_ik()) {
-            (Grip::HandRing(axis), _) => Some(self.hand_ring(axis)),
-            (Grip::Twist, true) => Some(self.twist_ring()),
-            (_, false) => self.fk_ring(grip),
-            _ => None,
-        }
-    }
-
-    fn twist_ring(&self) -> GripRing {
-        let pose = self.pose();
-        let axis = pose.pointer.direction;
-        GripRing { centre: self.arm().root + axis * pose.along, axis }
-    }
-
-    fn fk_ring(&self, grip: Grip) -> Option<GripRing> {
-        let arm = self.arm();
-        let angles = arm.fk.shoulder;
-        let axis = match grip {
-            Grip::Shoulder(axis) => turned_axis(angles, axis),
-            // The lower limb turns clockwise about the hinge as the bend grows.
-            Grip::Bend => -euler::rotation(angles).z_axis.as_vec3(),
-            _ => return None,
-        };
-        let centre = if grip == Grip::Bend { arm.root + self.pose().elbow } else { arm.root };
-        Some(GripRing { centre, axis })
-    }
-
-    fn hand_ring(&self, axis: RotationAxis) -> GripRing {
-        let (arm, pose) = (self.arm(), self.pose());
-        let axis = turned_axis(arm.hand_orientation.angles, axis).as_dvec3();
-        let axis = match arm.hand_orientation.space {
-            HandSpace::LowerLimb => limb_rotations(pose).1 * axis,
-            HandSpace::World => axis,
-        };
-        GripRing { centre: arm.root + pose.hand, axis: axis.as_vec3() }
-    }
-}
-
-/// The axis about which the angle x, y or z of a ball joint of the arm turns, in the
-/// space of the angles: see [`euler`].
-fn turned_axis(angles: Vec3, axis: RotationAxis) -> Vec3 {
-    let yaw = Mat3::from_rotation_y(angles.y);
-    match axis {
-        RotationAxis::X => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
-        RotationAxis::Y => Vec3::Y,
-        RotationAxis::Z => yaw.z_axis,
-    }
+/// Shoulder, elbow and hand in the world.
+fn joints_in_world(session: &Session) -> [Vec3; 3] {
+    let (root, pose) = (session.arm().root, session.pose());
+    [Vec3::ZERO, pose.elbow, pose.hand].map(|point| root + point)
 }
 
 /// Angles of the shoulder after the least rotation that points the Upper limb at a point of Root

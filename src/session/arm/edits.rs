@@ -145,7 +145,7 @@ fn set_lengths(session: &Session, upper: f32, lower: f32) -> Outcome {
 /// Changes the twist reference of the arm and of all keys of the twist; the elbow does not move. If
 /// the converted keys give the shown twist at the playhead, there is no unkeyed edit.
 fn set_twist_reference(session: &Session, reference: TwistReferenceKind) -> Outcome {
-    let was_overridden = session.is_overridden(Channel::Twist);
+    let was_overridden = session.history().is_overridden(Channel::Twist);
     let forget = (!was_overridden).then_some(Consequence::ForgetTwistLikeKeys);
     Outcome::write(session.shown().with_twist_reference(reference)).and(forget)
 }

@@ -1,17 +1,19 @@
-use glam::Vec3;
+use glam::{Mat3, Quat, Vec3, Vec3A};
 
 use super::grip::Grip;
 use super::point::PointHandle;
-use crate::document::{Overlay, PathKind, Ray};
+use super::turn::GripRing;
+use crate::document::{HandSpace, Overlay, PathKind, Posed, Ray, SkeletonRig};
+use crate::kinematics::euler;
+use crate::kinematics::fk::limb_rotations;
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::JointId;
-use crate::rig::{ArmPart, ArmRig, TaperedCylinder, Target};
+use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+use crate::rig::{ArmPart, ArmRig, EvaluatedSkeleton, TaperedCylinder, Target};
 use crate::session::parts::BodyPart;
-use crate::session::session::Session;
 
-/// The parts of bodies under the mouse, and what dragging them does.
-impl Session {
-    /// What a press on a part of a body drags; `None` if it cannot be dragged.
+/// Drags of the parts of bodies.
+impl Grip {
+    /// The grip that a press on a part of a body drags; `None` if it cannot be dragged.
     ///
     /// | part | drag |
     /// | --- | --- |
@@ -24,37 +26,90 @@ impl Session {
     /// | bone of a target's limb | the elbow |
     /// | other bone that a target turns | the target |
     /// | other bone | the tip, by FK angles |
-    pub fn grip_of(&self, part: BodyPart) -> Option<Grip> {
-        let (free, is_led) = (PointHandle::Free, self.arm().uses_ik());
+    pub fn of_part(posed: &Posed, part: BodyPart) -> Option<Self> {
+        let rig = &posed.document().skeleton_rig;
+        let (free, is_led) = (PointHandle::Free, posed.arm().uses_ik());
         Some(match part {
-            BodyPart::Root => Grip::Root(free),
-            BodyPart::Hand if is_led => Grip::Hand(free),
-            BodyPart::UpperLimb | BodyPart::LowerLimb if is_led => match self.is_bent() {
-                true => Grip::Limb,
-                false => Grip::Hand(free),
-            },
-            BodyPart::UpperLimb => Grip::UpperLimb,
-            BodyPart::LowerLimb | BodyPart::Hand => Grip::Bend,
-            BodyPart::Joint(joint) if self.is_on_path(joint) => {
-                match self.skeleton_rig().path_kind(joint)? {
-                    PathKind::Head => Grip::Head(joint, free),
-                    PathKind::Target => Grip::Target(joint, free),
+            BodyPart::Root => Self::Root(free),
+            BodyPart::Hand if is_led => Self::Hand(free),
+            BodyPart::UpperLimb | BodyPart::LowerLimb if is_led => {
+                if is_bent(posed) {
+                    Self::Limb
+                } else {
+                    Self::Hand(free)
+                }
+            }
+            BodyPart::UpperLimb => Self::UpperLimb,
+            BodyPart::LowerLimb | BodyPart::Hand => Self::Bend,
+            BodyPart::Joint(joint) if rig.is_joint_on_path(joint, posed.time()) => {
+                match rig.path_kind(joint)? {
+                    PathKind::Head => Self::Head(joint, free),
+                    PathKind::Target => Self::Target(joint, free),
                     PathKind::Ring(_) => return None,
                 }
             }
-            BodyPart::Joint(joint) if self.is_root_point(joint) => Grip::Tip(joint, free),
-            BodyPart::Joint(joint) => match self.role_of(joint)? {
-                Role::End(target) | Role::Led(target) => Grip::Target(target, free),
-                Role::Elbow(upper) => Grip::Tip(upper, free),
-                Role::Free => Grip::Tip(joint, free),
-                Role::WithoutBone(parent) => self.grip_of(BodyPart::Joint(parent))?,
+            BodyPart::Joint(joint) if rig.skeleton.joint(joint)?.is_root_point() => {
+                Self::Tip(joint, free)
+            }
+            BodyPart::Joint(joint) => match role_of(posed, joint)? {
+                Role::End(target) | Role::Led(target) => Self::Target(target, free),
+                Role::Elbow(upper) => Self::Tip(upper, free),
+                Role::Free => Self::Tip(joint, free),
+                Role::WithoutBone(parent) => Self::of_part(posed, BodyPart::Joint(parent))?,
             },
         })
     }
 
+    /// The heads that can be dragged and whose chains follow.
+    pub fn draggable_heads(rig: &SkeletonRig) -> impl Iterator<Item = JointId> {
+        let heads = rig.follow_paths.iter().filter(|path| path.kind == PathKind::Head);
+        heads.map(|path| path.root)
+    }
+
+    /// True if a drag of the tip of `joint` changes the pose.
+    pub fn can_drag_tip(posed: &Posed, joint: JointId) -> bool {
+        let rig = &posed.document().skeleton_rig;
+        let Some(own) = rig.skeleton.joint(joint) else {
+            return false;
+        };
+        if rig.is_joint_on_path(joint, posed.time()) {
+            return false;
+        }
+        if own.axis == Vec3::ZERO {
+            return own.parent.is_none();
+        }
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        if posing.is_some_and(|it| it.joint == joint || is_elbow(&rig.skeleton, it, joint)) {
+            return true;
+        }
+        let influences = rig.influences();
+        let can_turn = |joint: &Joint| {
+            !joint.locked && RotationAxis::ALL.into_iter().any(|axis| !joint.limits.is_fixed(axis))
+        };
+        let mut above = rig.skeleton.ancestors(joint);
+        above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
+    }
+
+    /// True if a drag of the tip of `joint` turns the elbow of a limb that is bent.
+    pub fn turns_elbow(posed: &Posed, joint: JointId) -> bool {
+        // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
+        const LEAST: f32 = 0.02;
+        let (rig, pose) = (&posed.document().skeleton_rig, posed.skeleton());
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        let Some(target) = posing.filter(|it| is_elbow(&rig.skeleton, it, joint)) else {
+            return false;
+        };
+        let [base, elbow] = [joint, target.joint].map(|joint| pose.base(joint));
+        let tip = pose.tip(target.joint);
+        let out = (elbow - base).reject_from((tip - base).normalize_or_zero()).length();
+        out > LEAST * (base.distance(elbow) + elbow.distance(tip))
+    }
+}
+
+impl BodyPart {
     /// The part of the arm that a ray meets first; `None` if it meets none.
-    pub fn arm_part_at(&self, ray: Ray) -> Option<BodyPart> {
-        let (arm, pose) = (self.arm(), self.pose());
+    pub fn of_arm_at(posed: &Posed, ray: Ray) -> Option<Self> {
+        let (arm, pose) = (posed.arm(), posed.arm_pose());
         let rig = arm.rig(pose);
         let thickness = ArmRig::thickness(arm.bones);
         let [root, elbow, wrist] =
@@ -62,66 +117,28 @@ impl Session {
         let limb = |limb: TaperedCylinder| [limb.base_radius, limb.tip_radius];
         let ball = |radius: f32| [radius * thickness; 2];
         let forwards = arm.hand_rotation(pose).x_axis.as_vec3();
-        let has_hand = self.shown().display.shows(Overlay::Hand);
-        let reach = if has_hand { BodyPart::HAND - BodyPart::FINGERS } else { 0.0 };
+        let has_hand = posed.document().display.shows(Overlay::Hand);
+        let reach = if has_hand { Self::HAND - Self::FINGERS } else { 0.0 };
         let fingers = wrist + forwards * reach * thickness;
-        let palm = if has_hand { BodyPart::FINGERS } else { BodyPart::WRIST_BALL };
+        let palm = if has_hand { Self::FINGERS } else { Self::WRIST_BALL };
         let shapes = [
-            (BodyPart::Root, [root; 2], ball(BodyPart::JOINT_BALL)),
-            (BodyPart::UpperLimb, [root, elbow], limb(rig.upper())),
-            (BodyPart::LowerLimb, [elbow; 2], ball(BodyPart::JOINT_BALL)),
-            (BodyPart::LowerLimb, [elbow, wrist], limb(rig.lower())),
-            (BodyPart::Hand, [wrist, fingers], ball(palm)),
+            (Self::Root, [root; 2], ball(Self::JOINT_BALL)),
+            (Self::UpperLimb, [root, elbow], limb(rig.upper())),
+            (Self::LowerLimb, [elbow; 2], ball(Self::JOINT_BALL)),
+            (Self::LowerLimb, [elbow, wrist], limb(rig.lower())),
+            (Self::Hand, [wrist, fingers], ball(palm)),
         ];
         let hits = shapes.into_iter().filter_map(|(part, ends, radii)| {
             ray.enters_capsule(ends, radii).map(|distance| (distance, part))
         });
         hits.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, part)| part)
     }
+}
 
-    /// The heads that can be dragged and whose chains follow.
-    pub fn draggable_heads(&self) -> impl Iterator<Item = JointId> {
-        let paths = self.skeleton_rig().follow_paths.iter();
-        paths.filter(|path| path.kind == PathKind::Head).map(|path| path.root)
-    }
-
-    /// True if a path poses a joint at the playhead.
-    fn is_on_path(&self, joint: JointId) -> bool {
-        self.skeleton_rig().is_joint_on_path(joint, self.time())
-    }
-
-    /// True if a joint is a root without a bone, such as a pelvis.
-    pub fn is_root_point(&self, joint: JointId) -> bool {
-        let joint = self.skeleton().joint(joint);
-        joint.is_some_and(|joint| joint.parent.is_none() && joint.axis == Vec3::ZERO)
-    }
-
-    /// True if the elbow of the arm is so far from the Pointer that its circle can be seen.
-    fn is_bent(&self) -> bool {
-        const LEAST: f32 = 0.02;
-        self.pose().out > LEAST * self.arm().bones.outer_limit()
-    }
-
-    fn role_of(&self, joint: JointId) -> Option<Role> {
-        let rig = self.skeleton_rig();
-        let own = rig.skeleton.joint(joint)?;
-        let ends = |target: &&Target| target.is_posing() && rig.end_of(target) == joint;
-        if let Some(target) = rig.targets.iter().find(ends) {
-            return Some(Role::End(target.joint));
-        }
-        if own.axis == Vec3::ZERO {
-            return own.parent.map(Role::WithoutBone);
-        }
-        match rig.target_that_turns(joint) {
-            Some(target) => {
-                let limb =
-                    target.limb().and_then(|_| Limb::ending_at(&rig.skeleton, target.joint).ok());
-                let upper = limb.map(|limb| limb.upper).filter(|upper| self.turns_elbow(*upper));
-                Some(upper.map_or(Role::Led(target.joint), Role::Elbow))
-            }
-            None => self.can_drag_tip(joint).then_some(Role::Free),
-        }
-    }
+/// True if the elbow of the arm is so far from the Pointer that its circle can be seen.
+fn is_bent(posed: &Posed) -> bool {
+    const LEAST: f32 = 0.02;
+    posed.arm_pose().out > LEAST * posed.arm().bones.outer_limit()
 }
 
 /// What a joint is to the targets of its skeleton.
@@ -137,4 +154,123 @@ enum Role {
     Free,
     /// A joint without a bone, by its parent.
     WithoutBone(JointId),
+}
+
+fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
+    let rig = &posed.document().skeleton_rig;
+    let own = rig.skeleton.joint(joint)?;
+    let ends = |target: &&Target| target.is_posing() && rig.end_of(target) == joint;
+    if let Some(target) = rig.targets.iter().find(ends) {
+        return Some(Role::End(target.joint));
+    }
+    if own.axis == Vec3::ZERO {
+        return own.parent.map(Role::WithoutBone);
+    }
+    match rig.target_that_turns(joint) {
+        Some(target) => {
+            let limb =
+                target.limb().and_then(|_| Limb::ending_at(&rig.skeleton, target.joint).ok());
+            let upper =
+                limb.map(|limb| limb.upper).filter(|upper| Grip::turns_elbow(posed, *upper));
+            Some(upper.map_or(Role::Led(target.joint), Role::Elbow))
+        }
+        None => Grip::can_drag_tip(posed, joint).then_some(Role::Free),
+    }
+}
+
+/// True if the tip of `joint` is the elbow of a target's limb.
+pub(in crate::session) fn is_elbow(skeleton: &Skeleton, target: &Target, joint: JointId) -> bool {
+    target.limb().is_some()
+        && Limb::ending_at(skeleton, target.joint).is_ok_and(|limb| limb.upper == joint)
+        && skeleton[target.joint].parent == Some(joint)
+        && skeleton[target.joint].offset.distance(skeleton[joint].axis)
+            <= 1e-4 * skeleton[joint].axis.length()
+}
+
+/// Rings of a pose.
+impl GripRing {
+    /// The ring of a grip of the arm. With IK it is the ring of the Socket twist, around the Pointer
+    /// at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with both those of
+    /// the hand's angles. `None` for other grips.
+    pub fn of_arm(posed: &Posed, grip: Grip) -> Option<Self> {
+        let (arm, pose) = (posed.arm(), posed.arm_pose());
+        let (along, axis) = match (grip, arm.uses_ik()) {
+            (Grip::HandRing(axis), _) => {
+                let axis = turned_axis(arm.hand_orientation.angles, axis).as_dvec3();
+                let axis = match arm.hand_orientation.space {
+                    HandSpace::LowerLimb => limb_rotations(pose).1 * axis,
+                    HandSpace::World => axis,
+                };
+                (pose.hand, axis.as_vec3())
+            }
+            (Grip::Twist, true) => {
+                let axis = pose.pointer.direction;
+                (axis * pose.along, axis)
+            }
+            (Grip::Shoulder(axis), false) => (Vec3::ZERO, turned_axis(arm.fk.shoulder, axis)),
+            // The lower limb turns clockwise about the hinge as the bend grows.
+            (Grip::Bend, false) => (pose.elbow, -euler::rotation(arm.fk.shoulder).z_axis.as_vec3()),
+            _ => return None,
+        };
+        Some(Self { centre: arm.root + along, axis })
+    }
+
+    /// The ring, in world space, of a joint's FK angle about x, y or z. `None` if a limit fixes the
+    /// angle, if there is no such joint, or if a target alone poses the joint and the FK pose is
+    /// hidden.
+    pub fn of_joint(posed: &Posed, joint: JointId, axis: RotationAxis) -> Option<Self> {
+        let rig = &posed.document().skeleton_rig;
+        let own = rig.skeleton.joint(joint)?;
+        if own.limits.is_fixed(axis) {
+            return None;
+        }
+        let EvaluatedSkeleton { fk, solved, .. } = posed.evaluated_skeleton();
+        // A hand that follows the bone above it keeps its own angles.
+        let is_following = |target: &Target| {
+            let follows = target.limb().is_some_and(|limb| limb.orientation.is_none());
+            follows && target.joint != joint && rig.end_of(target) == joint
+        };
+        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
+        let pose = if posing.is_none_or(is_following) {
+            solved
+        } else if posed.document().display.shows(Overlay::FkPose) {
+            fk
+        } else {
+            return None;
+        };
+        let above = own.parent.map_or(pose.transform(), |parent| pose.full_transform(parent));
+        let local = own.rotation_axis(axis);
+        // A mirrored transform reverses every rotation.
+        let sign = above.matrix3.determinant().signum();
+        let axis = (Vec3::from(above.matrix3 * Vec3A::from(local)) * sign).try_normalize()?;
+        Some(Self { centre: pose.base(joint), axis })
+    }
+
+    /// The ring, at the target of a joint and in world space, of the angle about x, y or z of the
+    /// orientation that the target holds. `None` if it holds none, or if there is no hand or foot.
+    pub fn of_orientation(posed: &Posed, joint: JointId, axis: RotationAxis) -> Option<Self> {
+        let rig = &posed.document().skeleton_rig;
+        let index = rig.target(joint)?;
+        let angles = rig.targets[index].limb()?.orientation?;
+        Limb::ending_at(&rig.skeleton, joint).ok()?.hand?;
+        let turn = Quat::from_rotation_z(angles.z);
+        let local = match axis {
+            RotationAxis::X => turn * (Quat::from_rotation_y(angles.y) * Vec3::X),
+            RotationAxis::Y => turn * Vec3::Y,
+            RotationAxis::Z => Vec3::Z,
+        };
+        let axis = rig.targets[index].space.rotation(posed.skeleton()) * local;
+        Some(Self { centre: posed.targets().get(index)?.position, axis })
+    }
+}
+
+/// The axis about which the angle x, y or z of a ball joint of the arm turns, in the space of the
+/// angles: see [`euler`].
+fn turned_axis(angles: Vec3, axis: RotationAxis) -> Vec3 {
+    let yaw = Mat3::from_rotation_y(angles.y);
+    match axis {
+        RotationAxis::X => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
+        RotationAxis::Y => Vec3::Y,
+        RotationAxis::Z => yaw.z_axis,
+    }
 }

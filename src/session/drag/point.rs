@@ -87,6 +87,8 @@ impl PointDrag {
     /// Step of snapping for the default arm, in world units.
     const SNAP: f32 = 10.0;
     const PRECISE_SNAP: f32 = 0.1;
+    /// Step of snapping, in cells of the grid.
+    pub(in crate::session) const SNAP_CELLS: f32 = 0.1;
 
     /// Begins a drag of the point at `start`, relative to `origin` in world space. `forward` is the
     /// normal of the picture.

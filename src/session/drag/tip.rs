@@ -4,7 +4,8 @@ use crate::document::{Posed, Target, Track};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::session::drag::body::is_elbow;
 use crate::session::outcome::Outcome;
 use crate::session::session::Session;
 use crate::session::skeleton::targets;
@@ -25,12 +26,12 @@ pub(in crate::session) fn drag(
     to: Vec3,
     moved: Vec3,
 ) -> Outcome {
-    let start = session.posed_before();
+    let start = session.history().posed_before();
     let before = &start.document().skeleton_rig;
     let Some(dragged) = before.skeleton.joint(joint) else {
         return Outcome::default();
     };
-    if dragged.parent.is_none() && dragged.axis == Vec3::ZERO {
+    if dragged.is_root_point() {
         let moved = before.skeleton.transform().inverse().transform_vector3(moved);
         let offset = dragged.offset + moved;
         return Outcome::edit_joint(session.shown(), joint, |joint| joint.offset = offset);
@@ -75,7 +76,7 @@ fn drag_elbow(session: &Session, before: &Posed, mut target: Target, moved: Vec3
 
 /// Solves for the tip of `joint` and writes the angles of the joints that no target poses alone.
 fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Outcome {
-    let start = fk_start(session.track(), posed);
+    let start = fk_start(session.history().track(), posed);
     let before = &posed.document().skeleton_rig;
     let chain = before.skeleton.ancestors(joint);
     if chain.into_iter().all(|joint| start[joint].locked) {
@@ -102,48 +103,6 @@ fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Out
     })
 }
 
-/// Tips that can be dragged.
-impl Session {
-    /// True if a drag of the tip of `joint` changes the pose.
-    pub fn can_drag_tip(&self, joint: JointId) -> bool {
-        let rig = self.skeleton_rig();
-        let Some(own) = rig.skeleton.joint(joint) else {
-            return false;
-        };
-        if rig.is_joint_on_path(joint, self.time()) {
-            return false;
-        }
-        if own.axis == Vec3::ZERO {
-            return own.parent.is_none();
-        }
-        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
-        if posing.is_some_and(|it| it.joint == joint || is_elbow(&rig.skeleton, it, joint)) {
-            return true;
-        }
-        let influences = rig.influences();
-        let can_turn = |joint: &Joint| {
-            !joint.locked && RotationAxis::ALL.into_iter().any(|axis| !joint.limits.is_fixed(axis))
-        };
-        let mut above = rig.skeleton.ancestors(joint);
-        above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
-    }
-
-    /// True if a drag of the tip of `joint` turns the elbow of a limb that is bent.
-    pub fn turns_elbow(&self, joint: JointId) -> bool {
-        // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
-        const LEAST: f32 = 0.02;
-        let (rig, pose) = (self.skeleton_rig(), self.skeleton_pose());
-        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
-        let Some(target) = posing.filter(|it| is_elbow(&rig.skeleton, it, joint)) else {
-            return false;
-        };
-        let [base, elbow] = [joint, target.joint].map(|joint| pose.base(joint));
-        let tip = pose.tip(target.joint);
-        let out = (elbow - base).reject_from((tip - base).normalize_or_zero()).length();
-        out > LEAST * (base.distance(elbow) + elbow.distance(tip))
-    }
-}
-
 /// The pose from which a drag solves for FK angles: that of FK and of the targets with full influence,
 /// with the joints that such a target turns locked.
 fn fk_start(track: &Track, before: &Posed) -> Skeleton {
@@ -158,13 +117,4 @@ fn fk_start(track: &Track, before: &Posed) -> Skeleton {
         }
     }
     pose
-}
-
-/// True if the tip of `joint` is the elbow of a target's limb.
-fn is_elbow(skeleton: &Skeleton, target: &Target, joint: JointId) -> bool {
-    target.limb().is_some()
-        && Limb::ending_at(skeleton, target.joint).is_ok_and(|limb| limb.upper == joint)
-        && skeleton[target.joint].parent == Some(joint)
-        && skeleton[target.joint].offset.distance(skeleton[joint].axis)
-            <= 1e-4 * skeleton[joint].axis.length()
 }

@@ -4,6 +4,7 @@ use super::steps::{History, Overrides, Snapshot, TreeChange};
 use crate::document::{Arm, Camera, Channel, Document, PathKind, Posed, Track, TwistReferenceKind};
 use crate::kinematics::angle::wrapped;
 use crate::session::drag::grip::Drag;
+use crate::session::drag::point::PointDrag;
 use crate::session::playback::Playback;
 
 /// Label of a transaction without edits.
@@ -102,8 +103,18 @@ impl Editing {
         self.posed.document()
     }
 
-    pub(in crate::session) fn overrides(&self) -> &Overrides {
-        &self.overrides
+    /// True if the channel has an unkeyed edit.
+    pub fn is_overridden(&self, channel: Channel) -> bool {
+        self.overrides.contains_key(&channel)
+    }
+
+    pub(in crate::session) fn has_overrides(&self) -> bool {
+        !self.overrides.is_empty()
+    }
+
+    /// Channels with unkeyed edits.
+    pub(in crate::session) fn overridden_channels(&self) -> impl Iterator<Item = Channel> {
+        self.overrides.keys().copied()
     }
 
     /// Number of the document's state: equal numbers mean equal documents, except for their cameras.
@@ -117,7 +128,7 @@ impl Editing {
     }
 
     /// True if a transaction is open.
-    pub(in crate::session) fn is_open(&self) -> bool {
+    pub fn is_editing(&self) -> bool {
         self.transaction.is_some()
     }
 
@@ -140,8 +151,14 @@ impl Editing {
         }
     }
 
-    pub(in crate::session) fn drag(&self) -> Option<&Drag> {
+    /// The drag in the viewport; `None` if nothing is dragged.
+    pub fn drag(&self) -> Option<&Drag> {
         self.transaction.as_ref()?.drag.as_ref()
+    }
+
+    /// The drag of a point in the viewport; `None` if no point is dragged.
+    pub fn point_drag(&self) -> Option<&PointDrag> {
+        self.drag()?.point()
     }
 
     /// Labels the open transaction by its drag and returns that; `None` if nothing is dragged.
@@ -216,7 +233,7 @@ impl Editing {
         }
         let before = self.state(time);
         self.overrides.clear();
-        if !self.is_open() {
+        if !self.is_editing() {
             self.remember(DISCARD, before, now);
         }
         true
@@ -258,7 +275,7 @@ impl Editing {
             is_transported || after.keys.has(*channel)
         });
         after.skeleton_rig.head_tracks.clear();
-        if !self.is_open() {
+        if !self.is_editing() {
             after.skeleton_rig.refresh_skin();
         }
         self.document = after;

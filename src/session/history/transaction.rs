@@ -66,7 +66,7 @@ impl TransactionAction {
 }
 
 fn commit(session: &Session) -> Outcome {
-    let has_dragged_hand = session.drag().is_some_and(moves_hand);
+    let has_dragged_hand = session.history().drag().is_some_and(moves_hand);
     let known = Preferences { has_dragged_hand: true, ..*session.preferences() };
     Outcome::from(has_dragged_hand.then_some(Consequence::Prefer(known))).and(Consequence::Commit)
 }
@@ -95,7 +95,7 @@ fn grab(session: &mut Session, grip: Grip, ray: Ray, forward: Vec3) -> Outcome {
 fn drag(session: &mut Session, change: impl FnOnce(&mut Drag)) -> Outcome {
     let Some((grip, dragged)) = session.change_drag(change) else { return Outcome::default() };
     if grip.is_of_arm() {
-        let before = session.shown_before().arm;
+        let before = session.history().shown_before().arm;
         arm::drag::drag(session, grip, dragged, &before)
     } else {
         joints::drag(session, grip, dragged)

@@ -20,9 +20,9 @@ impl Session {
     pub fn write_overlays(&self, overlays: &mut Overlays) {
         overlays.crowd = self.crowd();
         overlays.selection.clear();
-        overlays.selection.extend_from_slice(self.selection());
-        overlays.hovered = self.hovered_part();
-        overlays.figure = self.figure();
+        overlays.selection.extend_from_slice(self.selection().joints());
+        overlays.hovered = self.selection().hovered_part();
+        overlays.figure = self.selection().figure();
         overlays.concerned.clear();
         if let (Some(found), true) = (self.known_why().first(), self.solvers().is_idle()) {
             // The sentence calls a limb's target by its hand.
@@ -31,17 +31,17 @@ impl Session {
         }
         overlays.inside = self.inside();
         overlays.wiggle = self.wiggle_view();
-        let transported = Some(self.transport_path().transported());
+        let transported = Some(self.evaluated().transport_path().transported());
         overlays.twist_references = twist_reference_poses(self.posed(), transported);
         overlays.trail.clear();
         overlays.trail.extend_from_slice(self.trail());
         write_ghosts(self.solvers().runs(), &mut overlays.ghosts);
-        write_onion_skins(self.track(), self.posed(), &mut overlays.onion_skins);
+        write_onion_skins(self.history().track(), self.posed(), &mut overlays.onion_skins);
     }
 
     /// The part of the shown iteration that is looked at.
     fn inside(&self) -> Option<InsideView> {
-        let run = self.solver_run()?;
+        let run = self.solvers().run()?;
         let shown = run.shown_part()?;
         let part = run.parts().get(shown)?.clone();
         let previous = shown.checked_sub(1).and_then(|before| run.parts().get(before)).cloned();
@@ -53,7 +53,8 @@ impl Session {
     /// trail is hidden.
     fn trail(&self) -> &[Vec3] {
         if has_trail(self.document(), self.shown()) {
-            self.evaluated().trail(|| sample_trail(self.track(), self.selected()))
+            self.evaluated()
+                .trail(|| sample_trail(self.history().track(), self.selection().active()))
         } else {
             &[]
         }

@@ -51,10 +51,10 @@ impl Session {
         if self.editing.label_transaction(label) {
             return change(self);
         }
-        let before = self.editing.state(self.time());
+        let before = self.editing.state(self.playback.time());
         change(self);
-        if !self.is_editing() {
-            self.editing.remember(label, before, self.time());
+        if !self.editing.is_editing() {
+            self.editing.remember(label, before, self.playback.time());
         }
     }
 
@@ -133,7 +133,7 @@ impl Session {
             Consequence::SetPlaying(playing) => self.playback.start(playing),
             Consequence::Play => return self.play(),
             Consequence::Advance(seconds) => self.advance(seconds),
-            Consequence::ForgetPause if self.is_playing() => {}
+            Consequence::ForgetPause if self.playback.is_playing() => {}
             Consequence::ForgetPause => self.playback.forget_last_frame(),
 
             Consequence::SetCamera(camera) => self.set_camera(camera),
@@ -184,7 +184,7 @@ impl Session {
         if self.solvers.is_idle() {
             return;
         }
-        let inputs = SolverInputs::of(self.shown(), self.time()).ok();
+        let inputs = SolverInputs::of(self.shown(), self.playback.time()).ok();
         if let Err(error) = self.solvers.follow(inputs) {
             self.act(Outcome::fail(error.to_string()));
         }
@@ -207,7 +207,7 @@ impl Session {
     }
 
     fn forget_twist_like_keys(&mut self) {
-        if self.editing.forget_twist_like_keys(self.time()) {
+        if self.editing.forget_twist_like_keys(self.playback.time()) {
             self.shell.set_message(None);
             self.refresh();
         }
@@ -224,7 +224,7 @@ impl Session {
 
     /// Restores a state. The playhead moves only to where unkeyed edits come back or go.
     fn restore(&mut self, state: &Snapshot) {
-        let has_overrides = !(state.overrides().is_empty() && self.editing.overrides().is_empty());
+        let has_overrides = !state.overrides().is_empty() || self.editing.has_overrides();
         if has_overrides && self.playback.set_time(state.time) {
             self.playback.start(false);
         }
@@ -244,14 +244,14 @@ impl Session {
     }
 
     pub(super) fn begin(&mut self, drag: Option<Drag>) {
-        if !self.is_editing() {
-            self.editing.begin(drag, self.time());
+        if !self.editing.is_editing() {
+            self.editing.begin(drag, self.playback.time());
         }
     }
 
     pub(super) fn commit(&mut self) {
         self.follow_mouse = None;
-        self.editing.commit(self.time());
+        self.editing.commit(self.playback.time());
     }
 
     fn cancel(&mut self) {
@@ -266,16 +266,16 @@ impl Session {
 
     /// Undoes a step; if a transaction is open, cancels it instead.
     fn undo(&mut self) {
-        if self.is_editing() {
+        if self.editing.is_editing() {
             return self.cancel();
         }
-        let undone = self.editing.undo(self.time());
+        let undone = self.editing.undo(self.playback.time());
         self.restore_step("Undid", "There is nothing to undo", undone);
     }
 
     fn redo(&mut self) {
         self.commit();
-        let redone = self.editing.redo(self.time());
+        let redone = self.editing.redo(self.playback.time());
         self.restore_step("Redid", "There is nothing to redo", redone);
     }
 
@@ -320,7 +320,7 @@ impl Session {
     fn press(&mut self, grip: Grip) {
         self.view.stop_glide();
         let is_hand = matches!(grip, Grip::Hand(_));
-        let kept = self.selected_arm_joint().filter(|joint| is_hand && *joint == ArmJoint::Hand);
+        let kept = self.selection.arm_joint().filter(|joint| is_hand && *joint == ArmJoint::Hand);
         self.selection.set_arm_joint(grip.arm_joint().or(kept));
     }
 
@@ -436,7 +436,7 @@ impl Session {
 
     /// Cancels a running bake and closes its dialog.
     fn cancel_bake(&mut self) {
-        if matches!(self.dialog(), Some(Dialog::Bake { .. })) {
+        if matches!(self.shell.dialog(), Some(Dialog::Bake { .. })) {
             self.close_dialog();
         }
     }

@@ -14,11 +14,11 @@ impl Session {
     }
 
     pub(super) fn set_time(&mut self, time: f64) {
-        let before = self.time();
+        let before = self.playback.time();
         if self.playback.set_time(time) {
             self.shell.leave_moment();
             self.with_camera_following(|session| {
-                if session.editing.discard_overrides(before, session.time()) {
+                if session.editing.discard_overrides(before, session.playback().time()) {
                     session.act(Outcome::say(format!(
                         "The unkeyed change at {before:.2} s is discarded: Ctrl+Z brings it back"
                     )));
@@ -44,7 +44,7 @@ impl Session {
     }
 
     fn advance_playhead(&mut self, passed: f64) {
-        if !self.is_playing() || passed == 0.0 {
+        if !self.playback.is_playing() || passed == 0.0 {
             return;
         }
         if self.follows_mouse() {
@@ -59,8 +59,8 @@ impl Session {
     /// last frame.
     fn advance_solvers(&mut self, passed: f64) {
         self.solvers.advance_walk(passed);
-        let plays = self.is_playing() && self.has_motion();
-        let is_dragged = self.drag().is_some();
+        let plays = self.playback.is_playing() && self.document().is_moving();
+        let is_dragged = self.editing.drag().is_some();
         self.solvers.advance(self.skeleton_rig().iterations_per_frame, plays || is_dragged);
     }
 
@@ -69,20 +69,20 @@ impl Session {
         if !follows && self.follows_mouse() {
             return self.commit();
         }
-        if !follows || self.is_editing() || !self.can_follow_mouse() {
+        if !follows || self.editing.is_editing() || !self.can_follow_mouse() {
             return;
         }
         self.begin(None);
         self.editing.label_transaction(FollowMouse::LABEL);
         self.follow_mouse = self.following_heads();
-        self.record_heads(self.time(), 0.0);
+        self.record_heads(self.playback.time(), 0.0);
         self.play();
         self.act(Outcome::say("Move the mouse over the view; a click ends it, Esc undoes it"));
     }
 
     pub(super) fn lead_heads(&mut self, ray: Ray) {
         let Some(mut follow) = self.follow_mouse.take() else { return };
-        let solved = &self.evaluated_skeleton().solved;
+        let solved = &self.posed().evaluated_skeleton().solved;
         follow.lead(ray, self.skeleton_rig(), solved, self.camera().distance);
         self.follow_mouse = Some(follow);
     }
@@ -90,10 +90,10 @@ impl Session {
     /// Plays on while heads follow the mouse: the timeline becomes longer instead of repeating. A dialog
     /// ends it.
     fn advance_following(&mut self, passed: f64) {
-        if self.dialog().is_some() {
+        if self.shell.dialog().is_some() {
             return self.commit();
         }
-        let before = self.time();
+        let before = self.playback.time();
         let time = (before + passed * self.playback.speed()).min(Timeline::MAX_TIME);
         self.set_time(time);
         self.record_heads(before, time - before);
@@ -102,8 +102,8 @@ impl Session {
     /// Keys the homes at the playhead, `passed` seconds after `before`, nearer to the mouse.
     fn record_heads(&mut self, before: f64, passed: f64) {
         let Some(follow) = &self.follow_mouse else { return };
-        let solved = &self.evaluated_skeleton().solved;
-        let after = follow.recorded(self.shown(), solved, before, passed, self.time());
+        let solved = &self.posed().evaluated_skeleton().solved;
+        let after = follow.recorded(self.shown(), solved, before, passed, self.playback.time());
         self.write(after);
         // The user sees keys being set.
         self.playback.has_auto_keyed();
@@ -134,7 +134,7 @@ impl Session {
     /// outside.
     pub(super) fn keep_in_view(&mut self) {
         const EDGE: f32 = 0.9;
-        let Some(joint) = self.selected() else { return };
+        let Some(joint) = self.selection.active() else { return };
         let projection = self.settled_camera().projection(ASPECT);
         let tip = projection.project(self.skeleton_pose().tip(joint));
         if tip.is_none_or(|tip| tip.abs().max_element() > EDGE) {

@@ -195,7 +195,7 @@ fn delete(
     };
     let parents = joints.iter().rev().filter_map(|joint| session.skeleton().joint(*joint)?.parent);
     let left = parents.into_iter().find_map(|parent| moved.get(parent));
-    let keys = session.selected_in_timeline();
+    let keys = session.selection().in_timeline();
     closed
         .and(written)
         .and(Consequence::RemapKeys(Box::new(moved), keys))
@@ -212,9 +212,11 @@ fn reparent(session: &Session, joint: JointId, parent: Option<JointId>) -> Outco
         Ok(changed) => changed,
         Err(refused) => return refused,
     };
-    let hovered = session.hovered().and_then(|joint| moved.get(joint)).map(BodyPart::Joint);
-    let selected = session.selection().iter().filter_map(|joint| moved.get(*joint)).collect();
-    let keys = session.selected_in_timeline();
+    let hovered =
+        session.selection().hovered().and_then(|joint| moved.get(joint)).map(BodyPart::Joint);
+    let selected =
+        session.selection().joints().iter().filter_map(|joint| moved.get(*joint)).collect();
+    let keys = session.selection().in_timeline();
     written
         .and(Consequence::RemapKeys(Box::new(moved), keys))
         .and(Consequence::Hover(hovered))
@@ -240,7 +242,7 @@ pub(in crate::session) fn bind_pose(session: &Session) -> Outcome {
 /// The next joint.
 impl Session {
     fn next_parent(&self) -> Option<JointId> {
-        self.selected().or(self.skeleton_pose().ids().next_back())
+        self.selection().active().or(self.skeleton_pose().ids().next_back())
     }
 
     /// Base of the next joint that would be added, in world space.

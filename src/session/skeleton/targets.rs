@@ -59,7 +59,7 @@ impl TargetEdit {
     }
 
     pub(in crate::session) fn apply(self, session: &mut Session) -> Outcome {
-        let (shown, time) = (session.shown(), session.time());
+        let (shown, time) = (session.shown(), session.playback().time());
         match self {
             Self::AddTarget(joint) => add(session, joint),
             Self::RemoveTarget(joint) => remove(shown, joint),
@@ -98,7 +98,7 @@ fn remedy_label(remedy: &Remedy) -> &'static str {
 
 /// Adds a target for a joint that has none.
 fn add(session: &Session, joint: JointId) -> Outcome {
-    let pose = &session.evaluated_skeleton().solved;
+    let pose = &session.posed().evaluated_skeleton().solved;
     let Some(target) = session.skeleton_rig().new_target(joint, pose) else {
         return Outcome::default();
     };
@@ -126,7 +126,7 @@ fn matched(
     let Some(index) = session.skeleton_rig().target(joint) else {
         return Outcome::default();
     };
-    let time = session.time();
+    let time = session.playback().time();
     Outcome::change(session.shown(), |document| matched(&mut document.skeleton_rig, index, time))
 }
 
@@ -162,7 +162,7 @@ fn fault(target: &Target) -> Option<String> {
 
 /// Applies a remedy for a target that is not reached, and says what it did.
 fn apply_remedy(session: &mut Session, target: JointId, remedy: &Remedy) -> Outcome {
-    let time = session.time();
+    let time = session.playback().time();
     let edited = Outcome::edit_with(session.shown(), |document| {
         document.skeleton_rig.apply_remedy(remedy, time)
     });
@@ -180,7 +180,7 @@ fn apply_remedy(session: &mut Session, target: JointId, remedy: &Remedy) -> Outc
 }
 
 fn describe_result(session: &Session, rig: &SkeletonRig, index: usize) -> String {
-    let Some(report) = session.evaluated_skeleton().targets.get(index) else {
+    let Some(report) = session.posed().evaluated_skeleton().targets.get(index) else {
         return String::new();
     };
     let name = &rig.skeleton[rig.end_of(&rig.targets[index])].name;
@@ -220,7 +220,8 @@ impl Session {
             return &[];
         }
         let targets = rig.targets.len();
-        self.evaluated().why(index, targets, || rig.diagnose_targets(&[index], self.time()))
+        self.evaluated()
+            .why(index, targets, || rig.diagnose_targets(&[index], self.playback().time()))
     }
 
     /// [`Session::why_target`] without finding it out.
@@ -229,8 +230,8 @@ impl Session {
     }
 
     fn can_examine(&self) -> bool {
-        let is_moving = self.is_editing() || self.is_playing();
-        let is_on_path = self.skeleton_rig().is_on_path(self.time());
+        let is_moving = self.history().is_editing() || self.playback().is_playing();
+        let is_on_path = self.skeleton_rig().is_on_path(self.playback().time());
         self.rig() == RigKind::Skeleton && !is_moving && !is_on_path
     }
 
@@ -239,12 +240,12 @@ impl Session {
     fn examined_target(&self) -> Option<usize> {
         let rig = self.skeleton_rig();
         let is_missed = |index: &usize| {
-            let report = self.evaluated_skeleton().targets.get(*index);
+            let report = self.posed().evaluated_skeleton().targets.get(*index);
             report.is_some_and(|report| !rig.is_reached(report))
         };
-        let selected = self.selected().and_then(|joint| rig.target_of_end(joint));
+        let selected = self.selection().active().and_then(|joint| rig.target_of_end(joint));
         let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
-        let errors = rig.targets.iter().zip(&self.evaluated_skeleton().targets).enumerate();
+        let errors = rig.targets.iter().zip(&self.posed().evaluated_skeleton().targets).enumerate();
         let posing = errors.filter(|(_, (target, _))| rig.is_solved_for(target));
         let missed = posing.filter(|(_, (_, report))| !rig.is_reached(report));
         let most = missed.max_by(|(_, (_, one)), (_, (_, other))| {

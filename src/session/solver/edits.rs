@@ -54,7 +54,7 @@ fn is_valid(solver: &SolverOptions) -> bool {
 
 /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the run.
 fn apply_pose(session: &Session) -> Outcome {
-    let Some(posed) = session.solver_run().map(SolverRun::skeleton) else {
+    let Some(posed) = session.solvers().run().map(SolverRun::skeleton) else {
         return Outcome::say("Run or step the solver first");
     };
     let written = Outcome::edit_rig(session.shown(), |rig| {

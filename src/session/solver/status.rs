@@ -65,15 +65,11 @@ impl SolverStatus {
 }
 
 impl Session {
-    /// Distance in world units within which a tip counts as at its target.
-    pub fn solver_tolerance(&self) -> f32 {
-        self.skeleton_rig().tolerance()
-    }
-
     /// The enabled target of the evaluated pose that is farthest from its tip: its index in
     /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets), and the distance in world units.
     pub fn farthest_target(&self) -> Option<(usize, f32)> {
-        let targets = self.skeleton_rig().targets.iter().zip(&self.evaluated_skeleton().targets);
+        let targets =
+            self.skeleton_rig().targets.iter().zip(&self.posed().evaluated_skeleton().targets);
         let enabled = targets.enumerate().filter(|(_, (target, _))| target.enabled);
         let distances = enabled.map(|(index, (_, TargetReport { error, .. }))| (index, *error));
         distances.max_by(|(_, one), (_, other)| one.total_cmp(other))
@@ -82,12 +78,12 @@ impl Session {
     /// State and residual of the shown iterate of the solver run, or of the evaluated pose; `None`
     /// without an enabled target.
     pub fn solver_status(&self) -> Option<SolverStatus> {
-        if let Some(run) = self.solver_run() {
+        if let Some(run) = self.solvers().run() {
             return Some(SolverStatus::of_run(run));
         }
         let (_, error) = self.farthest_target()?;
         let rig = self.skeleton_rig();
-        let mut targets = rig.targets.iter().zip(&self.evaluated_skeleton().targets);
+        let mut targets = rig.targets.iter().zip(&self.posed().evaluated_skeleton().targets);
         let state = match targets.all(|(target, it)| !target.enabled || rig.is_reached(it)) {
             true => SolverState::Reached,
             false => SolverState::NotReached,

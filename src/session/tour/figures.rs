@@ -31,7 +31,7 @@ const FIGURES: [(&str, Figure); 31] = [
     ("race", |session| Some(factor(race(&at_start(session)?)))),
     ("hard_race", |session| Some(factor(race(&hard(&at_start(session)?))))),
     ("soft_gap", |session| Some(length(session, gap(&at_start(session)?)))),
-    ("holonomy", |session| Some(degrees(session.transport_path().holonomy()))),
+    ("holonomy", |session| Some(degrees(session.evaluated().transport_path().holonomy()))),
     ("shoulder_moved", shoulder_moved),
     ("fk_bow", |session| bow(session, 0.0)),
     ("ik_bow", |session| bow(session, 1.0)),
@@ -93,12 +93,17 @@ fn whole(length: f32) -> String {
 
 /// The pop with the highest ratio of the elbow's move to the hand's.
 fn highest_spike(session: &Session) -> Option<Spike> {
-    session.pops().spikes().into_iter().max_by(|one, other| one.ratio.total_cmp(&other.ratio))
+    session
+        .evaluated()
+        .pops()
+        .spikes()
+        .into_iter()
+        .max_by(|one, other| one.ratio.total_cmp(&other.ratio))
 }
 
 /// Distance that the elbow moved in the highest pop.
 fn elbow_step(session: &Session) -> Option<f32> {
-    let sample = session.pops().samples().nth(highest_spike(session)?.at)?;
+    let sample = session.evaluated().pops().samples().nth(highest_spike(session)?.at)?;
     match sample.kind {
         PopSampleKind::Step(ElbowStep { turn, bend, swing, .. }) => {
             Some((turn + bend + swing).length())
@@ -208,6 +213,6 @@ fn missed(session: &Session) -> Option<(String, String)> {
     let (index, miss) = session.farthest_target()?;
     let rig = session.skeleton_rig();
     let end = rig.skeleton.joint(rig.end_of(&rig.targets[index]))?;
-    (miss > session.solver_tolerance())
+    (miss > session.skeleton_rig().tolerance())
         .then(|| (format!("the {}", end.name.replace('_', " ")), distance(session, miss)))
 }

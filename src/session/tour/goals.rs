@@ -174,7 +174,7 @@ fn move_the_shoulder_and_keep_the_hand(session: &Session) -> Vec<Action> {
 }
 
 fn plays_by_ik(session: &Session, _: &Document) -> bool {
-    session.is_playing() && session.arm().influence == 1.0
+    session.playback().is_playing() && session.arm().influence == 1.0
 }
 
 fn play_by_ik(_: &Session) -> Vec<Action> {

@@ -17,8 +17,10 @@ impl Session {
             RigKind::Arm => self.arm().bounds(self.pose()),
             RigKind::Skeleton => self
                 .skeleton_rig()
-                .bounds_of(self.skeleton_pose(), self.selection())
-                .unwrap_or_else(|| self.skeleton_rig().bounds(self.skeleton_pose(), self.time())),
+                .bounds_of(self.skeleton_pose(), self.selection().joints())
+                .unwrap_or_else(|| {
+                    self.skeleton_rig().bounds(self.skeleton_pose(), self.playback().time())
+                }),
         };
         self.settled_camera().framing(centre, radius, ASPECT)
     }
@@ -67,10 +69,10 @@ impl Session {
         };
         match self.rig() {
             RigKind::Arm => self.arm().root,
-            RigKind::Skeleton if self.selection().is_empty() => {
+            RigKind::Skeleton if self.selection().joints().is_empty() => {
                 bases(&pose.ids().collect::<Vec<_>>())
             }
-            RigKind::Skeleton => bases(self.selection()),
+            RigKind::Skeleton => bases(self.selection().joints()),
         }
     }
 }

@@ -24,8 +24,8 @@ pub(in crate::ui) fn ui(
     viewport: Rect,
     actions: &mut Actions,
 ) {
-    let is_new = is_new(ui, session.dialog());
-    let Some(dialog) = session.dialog() else { return };
+    let is_new = is_new(ui, session.shell().dialog());
+    let Some(dialog) = session.shell().dialog() else { return };
     if is_new && dialog.is_modal() {
         // Otherwise the focused widget would receive the dialog's first key.
         ui.memory_mut(egui::Memory::stop_text_input);

@@ -8,7 +8,7 @@ use super::screen::{ScreenProjection, bright};
 use super::translate::TranslateHandles;
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::kinematics::skeleton::RotationAxis;
-use crate::session::{ArmJoint, Grip, PointHandle, Session};
+use crate::session::{ArmJoint, Grip, GripRing, PointHandle, Session};
 use crate::ui::style;
 
 /// Screen positions of the arm's handles. Handles that are behind the eye, or that move nothing in
@@ -31,12 +31,15 @@ impl ArmGizmo {
         let is_led = arm.uses_ik();
         let has_pole = is_led && arm.twist_reference == TwistReferenceKind::Pole;
         let angles = RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]);
-        let ring = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, RADIUS);
-        let is_hand_selected = session.selected_arm_joint() == Some(ArmJoint::Hand)
+        let ring =
+            |grip| RotateRing::new(screen, grip, GripRing::of_arm(session.posed(), grip)?, RADIUS);
+        let is_hand_selected = session.selection().arm_joint() == Some(ArmJoint::Hand)
             && session.shown().display.shows(Overlay::Hand);
         let of_hand = RotationAxis::ALL.into_iter().map(Grip::HandRing);
         let of_hand = of_hand.filter(|_| is_hand_selected);
-        let outer = |grip| RotateRing::new(screen, grip, session.arm_ring(grip)?, OUTER_RADIUS);
+        let outer = |grip| {
+            RotateRing::new(screen, grip, GripRing::of_arm(session.posed(), grip)?, OUTER_RADIUS)
+        };
         Self {
             hand: is_led
                 .then(|| TranslateHandles::new(screen, arm.cursor_in_world(), hand))
@@ -45,7 +48,7 @@ impl ArmGizmo {
                 .then(|| TranslateHandles::new(screen, arm.root + arm.pole, None))
                 .flatten(),
             root: TranslateHandles::new(screen, arm.root, None),
-            is_root_selected: session.selected_arm_joint() == Some(ArmJoint::Root),
+            is_root_selected: session.selection().arm_joint() == Some(ArmJoint::Root),
             twist: TwistRing::new(screen, session),
             rings: angles.filter_map(ring).chain(of_hand.filter_map(outer)).collect(),
         }
@@ -156,7 +159,7 @@ impl TwistRing {
     /// The ring of the shown arm. `None` in FK, if a part of the ring is behind the eye, or if the
     /// arm is so straight or folded that the ring is smaller on screen than the handle.
     pub fn new(screen: &ScreenProjection, session: &Session) -> Option<Self> {
-        let ring = session.arm_ring(Grip::Twist)?;
+        let ring = GripRing::of_arm(session.posed(), Grip::Twist)?;
         let elbow = session.arm().root + session.pose().elbow;
         if session.pose().out < ELBOW * screen.units_per_point(ring.centre) {
             return None;
@@ -164,7 +167,7 @@ impl TwistRing {
         Some(Self {
             ring: RotateRing::through(screen, Grip::Twist, ring, elbow)?,
             elbow: screen.place(elbow)?,
-            is_selected: session.selected_arm_joint() == Some(ArmJoint::Elbow),
+            is_selected: session.selection().arm_joint() == Some(ArmJoint::Elbow),
         })
     }
 

@@ -77,7 +77,7 @@ pub(in crate::ui) fn locked_axis(
     screen: &ScreenProjection,
     session: &Session,
 ) {
-    let Some(drag) = session.drag().and_then(Drag::point) else { return };
+    let Some(drag) = session.history().drag().and_then(Drag::point) else { return };
     let Some(constraint) = drag.constraint() else { return };
     let is_free = |axis: usize| match constraint {
         Constraint::Axis(free) => axis == free,

@@ -8,9 +8,9 @@ use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::screen::{ScreenProjection, bright, to_segment};
 use super::translate::TranslateHandles;
 use crate::document::Target;
-use crate::kinematics::skeleton::{JointId, RotationAxis};
+use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};
 use crate::rig::TargetReport;
-use crate::session::{Grip, PointHandle, Session};
+use crate::session::{Grip, GripRing, PointHandle, Session};
 use crate::ui::style;
 
 /// Radius in points of the circle around a bone's tip.
@@ -184,15 +184,15 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let hides_bones = session.hides_bones();
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
-        let has_tip = session.is_root_point(joint) || rig.skeleton[joint].axis != Vec3::ZERO;
-        let is_selected = session.selection().contains(&joint);
+        let has_tip = rig.skeleton[joint].is_root_point() || rig.skeleton[joint].axis != Vec3::ZERO;
+        let is_selected = session.selection().joints().contains(&joint);
         let nowhere = Pos2::new(f32::INFINITY, f32::INFINITY);
         ScreenBone {
             base: screen.place(base).unwrap_or(nowhere),
             tip: screen.place(tip).unwrap_or(nowhere),
             depth: screen.depth(base.midpoint(tip)),
             has_circle: has_tip
-                && !rig.is_joint_on_path(joint, session.time())
+                && !rig.is_joint_on_path(joint, session.playback().time())
                 && (is_selected || !hides_bones),
             is_selected,
         }
@@ -201,7 +201,7 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
-    let reports = &session.evaluated_skeleton().targets;
+    let reports = &session.posed().evaluated_skeleton().targets;
     let mark = |(target, report): (&Target, &TargetReport)| {
         let at = screen.place(report.position)?;
         let grip = Grip::Target(target.joint, PointHandle::Free);
@@ -213,24 +213,24 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
 /// The circles of heads that can be dragged.
 fn heads(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     let mark = |head: JointId| {
-        let at = screen.place(session.evaluated_skeleton().fk.base(head))?;
+        let at = screen.place(session.posed().evaluated_skeleton().fk.base(head))?;
         Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
     };
-    session.draggable_heads().filter_map(mark).collect()
+    Grip::draggable_heads(session.skeleton_rig()).filter_map(mark).collect()
 }
 
 fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let rig = session.skeleton_rig();
-    let Some(selected) = session.selected() else { return Vec::new() };
+    let Some(selected) = session.selection().active() else { return Vec::new() };
     let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
     let report = target.and_then(|joint| session.target_report(joint));
-    let head = session.draggable_heads().find(|head| *head == selected);
+    let head = Grip::draggable_heads(session.skeleton_rig()).find(|head| *head == selected);
     let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
     let points: [(JointId, GripOfJoint, Option<Vec3>); 4] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
         (selected, Grip::Tip, root),
-        (selected, Grip::Head, head.map(|head| session.evaluated_skeleton().fk.base(head))),
+        (selected, Grip::Head, head.map(|head| session.posed().evaluated_skeleton().fk.base(head))),
     ];
     let handles = |(joint, grip, point): (JointId, GripOfJoint, Option<Vec3>)| {
         let handles = TranslateHandles::new(screen, point?, None)?;
@@ -242,25 +242,26 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
 /// True if a joint is a root without a bone that can be dragged; it has arrows while it is
 /// selected.
 fn is_dragged_root(session: &Session, joint: JointId) -> bool {
-    session.is_root_point(joint) && session.can_drag_tip(joint)
+    session.skeleton().joint(joint).is_some_and(Joint::is_root_point)
+        && Grip::can_drag_tip(session.posed(), joint)
 }
 
 /// The rings of the selected joint, and those of the orientation that its target holds; empty if no
 /// joint is selected. A joint on a path has none.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let Some(joint) = session.selected() else { return Vec::new() };
+    let Some(joint) = session.selection().active() else { return Vec::new() };
     let rig = session.skeleton_rig();
     let target = rig.target_of_end(joint).map(|index| rig.targets[index].joint);
     let has_arrows = is_dragged_root(session, joint) || target.is_some_and(|it| it != joint);
     let radius = if has_arrows { OUTER_RADIUS } else { RADIUS };
-    let is_on_path = rig.is_joint_on_path(joint, session.time());
+    let is_on_path = rig.is_joint_on_path(joint, session.playback().time());
     let own = |axis| {
-        let ring = session.ring(joint, axis).filter(|_| !is_on_path)?;
+        let ring = GripRing::of_joint(session.posed(), joint, axis).filter(|_| !is_on_path)?;
         RotateRing::new(screen, Grip::Ring(joint, axis), ring, radius)
     };
     let of_target = |axis| {
         let target = target?;
-        let ring = session.orientation_ring(target, axis)?;
+        let ring = GripRing::of_orientation(session.posed(), target, axis)?;
         RotateRing::new(screen, Grip::Orientation(target, axis), ring, OUTER_RADIUS)
     };
     let all = RotationAxis::ALL.into_iter();

@@ -64,21 +64,21 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
     }
     if ui.input(|input| input.key_pressed(Key::Escape)) {
-        if timeline::holds(ui) && !session.is_editing() {
+        if timeline::holds(ui) && !session.history().is_editing() {
             // The timeline cancels its own drag.
-        } else if session.is_editing() {
+        } else if session.history().is_editing() {
             actions.push(TransactionAction::Cancel);
         } else if session.view().drag().is_some() {
             actions.push(ViewAction::Cancel);
-        } else if session.dialog().is_some() {
+        } else if session.shell().dialog().is_some() {
             actions.push(ShellAction::CloseDialog);
         } else if focus::was_typing(ui) || egui::Popup::is_any_open(ui.ctx()) {
             // egui leaves the text field or closes the popup.
         } else if session.solvers().shown_iteration().is_some() {
             actions.push(SolverAction::Reset);
-        } else if !session.selection().is_empty() {
+        } else if !session.selection().joints().is_empty() {
             actions.push(SelectAction::Joints(Vec::new()));
-        } else if !session.selected_keys().is_empty() {
+        } else if !session.selection().keys().is_empty() {
             actions.push(SelectAction::Keys(Vec::new()));
         }
     }

@@ -16,7 +16,7 @@ pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions)
     if session.shell().is_asking() {
         return;
     }
-    if session.drag().is_some() {
+    if session.history().drag().is_some() {
         drag(ui, session, actions);
     } else {
         view(ui, session, actions);
@@ -28,7 +28,7 @@ pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions)
 
 fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
     let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
-    let selected = session.selected();
+    let selected = session.selection().active();
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
         actions.push(SelectAction::Joints(session.skeleton_pose().ids().collect()));
     }
@@ -123,13 +123,13 @@ pub(in crate::ui) fn turn(ui: &Ui, session: &Session, aspect: f32, actions: &mut
         };
         if nearer == 0.0 { view } else { view.zoomed(ZOOM.powf(-nearer), Vec2::ZERO, aspect) }
     });
-    if moved != camera && session.drag().is_none() {
+    if moved != camera && session.history().drag().is_none() {
         actions.push(ViewAction::SetCamera(moved));
     }
 }
 
 fn drag(ui: &Ui, session: &Session, actions: &mut Actions) {
-    let Some(drag) = session.drag() else {
+    let Some(drag) = session.history().drag() else {
         return;
     };
     let mut typed = drag.typed().to_owned();

@@ -44,7 +44,7 @@ pub(in crate::ui) fn of_rows(
             ui.close();
         }
         of_keys(ui, session, actions);
-        let nothing = (!session.can_paste()).then_some("Copy keys first");
+        let nothing = (!session.selection().can_paste()).then_some("Copy keys first");
         if widgets::button(ui, "Paste here", "Paste the copied keys from this time on", nothing) {
             actions.push(PlaybackAction::SetTime(time));
             actions.push(KeysEdit::PasteKeys);
@@ -79,7 +79,7 @@ pub(in crate::ui) fn of_curves(area: &Response, session: &Session, actions: &mut
 
 /// Shows the items that choose the curve after the selected keys and their tangents.
 fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let keys = session.selected_keys();
+    let keys = session.selection().keys();
     let none = keys.is_empty().then_some("Select keys first: click or draw a box");
     let document = session.document();
     let chosen = |interpolation| {
@@ -115,7 +115,7 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     shape(ui, session, actions);
-    let keys = session.selected_keys();
+    let keys = session.selection().keys();
     let none = keys.is_empty().then_some("Select keys first: click or draw a box");
     if widgets::button(ui, "Copy keys", "Copy the selected keys (Ctrl+C)", none) {
         actions.push(SelectAction::CopyKeys);

@@ -142,8 +142,8 @@ pub(in crate::ui) fn follow_playhead(
 
 /// Starts a drag of the playhead and pauses playback.
 pub(in crate::ui) fn grab_playhead(ui: &Ui, session: &Session, actions: &mut Actions) {
-    set(ui, TimelineDrag::Playhead { before: session.time() });
-    if session.is_playing() {
+    set(ui, TimelineDrag::Playhead { before: session.playback().time() });
+    if session.playback().is_playing() {
         actions.push(PlaybackAction::Play(false));
     }
 }

@@ -10,7 +10,7 @@ use crate::ui::keyboard::{focus, viewport};
 /// and while a text field, a modal dialog or a popup is in use.
 pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Actions) {
     let is_busy = ui.text_edit_focused()
-        || session.drag().is_some()
+        || session.history().drag().is_some()
         || session.shell().is_asking()
         || egui::Popup::is_any_open(ui.ctx());
     if is_busy {
@@ -25,8 +25,8 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
         actions.push(KeysEdit::Key(session.channels_to_key()));
     }
     if focus::leaves_letters(ui) && pressed(Key::Space) && modifiers.is_none() {
-        if session.is_playing() || session.has_motion() {
-            actions.push(PlaybackAction::Play(!session.is_playing()));
+        if session.playback().is_playing() || session.document().is_moving() {
+            actions.push(PlaybackAction::Play(!session.playback().is_playing()));
         } else {
             actions.push(ShellAction::Report(
                 "Nothing to play: press K at two times to add keys".to_owned(),
@@ -37,13 +37,13 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
         let is_paste = |event: &Event| matches!(event, Event::Paste(_));
         input.events.iter().any(is_paste)
     });
-    if session.can_paste() && (pasted || consumed(Modifiers::COMMAND, Key::V)) {
+    if session.selection().can_paste() && (pasted || consumed(Modifiers::COMMAND, Key::V)) {
         actions.push(KeysEdit::PasteKeys);
     }
     if has_the_word(ui, session) {
         let delete = consumed(Modifiers::NONE, Key::Delete);
         if delete || consumed(Modifiers::NONE, Key::Backspace) {
-            actions.push(KeysEdit::DeleteKeys(session.selected_keys().to_vec()));
+            actions.push(KeysEdit::DeleteKeys(session.selection().keys().to_vec()));
         }
     }
 }
@@ -52,7 +52,7 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
 /// focus or no joint is selected.
 pub(in crate::ui) fn has_the_word(ui: &Ui, session: &Session) -> bool {
     let is_used = ui.memory(|memory| memory.has_focus(ruler::id()));
-    !session.selected_keys().is_empty() && (is_used || session.selection().is_empty())
+    !session.selection().keys().is_empty() && (is_used || session.selection().joints().is_empty())
 }
 
 /// True if a drag in the timeline is in progress, which Esc cancels.
@@ -109,16 +109,18 @@ fn next_frame(session: &Session, by: f64) -> f64 {
     /// Distance from a frame, in frames, below which a time counts as on the frame.
     const ROUNDING: f64 = 1e-6;
     let timeline = session.document().timeline;
-    let frame = timeline.number(session.time());
+    let frame = timeline.number(session.playback().time());
     let next =
         if by > 0.0 { (frame + ROUNDING).floor() + 1.0 } else { (frame - ROUNDING).ceil() - 1.0 };
     let (first, last) = time_scale::span(session);
-    timeline.time_of_number(next).clamp(first.min(session.time()), last.max(session.time()))
+    timeline
+        .time_of_number(next)
+        .clamp(first.min(session.playback().time()), last.max(session.playback().time()))
 }
 
 /// Time in seconds of the last key before the playhead; `None` if there is no key.
 pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
-    let time = session.time();
+    let time = session.playback().time();
     let tracks = session.document().keys.tracks();
     let before = tracks.filter_map(|(_, track)| {
         let index = track.knots().partition_point(|knot| knot.time < time);
@@ -129,7 +131,7 @@ pub(in crate::ui) fn key_before(session: &Session) -> Option<f64> {
 
 /// Time in seconds of the first key after the playhead; `None` if there is no key.
 pub(in crate::ui) fn key_after(session: &Session) -> Option<f64> {
-    let time = session.time();
+    let time = session.playback().time();
     let tracks = session.document().keys.tracks();
     let after = tracks.filter_map(|(_, track)| {
         let index = track.knots().partition_point(|knot| knot.time <= time);

@@ -31,7 +31,7 @@ pub(in crate::ui) fn ui(
     actions: &mut Actions,
 ) -> Response {
     let response = ui.interact(rect, id(), Sense::click_and_drag());
-    let time = session.time();
+    let time = session.playback().time();
     response.widget_info(|| WidgetInfo::slider(true, time, "Timeline ruler"));
     let timeline = session.document().timeline;
     ui.ctx().accesskit_node_builder(response.id, |node| {
@@ -79,7 +79,7 @@ fn step_by_accesskit(ui: &Ui, session: &Session, actions: &mut Actions) {
         count(accesskit::Action::Increment) - count(accesskit::Action::Decrement)
     });
     if frames != 0.0 {
-        let time = timeline.snapped(session.time()) + frames / timeline.frame_rate;
+        let time = timeline.snapped(session.playback().time()) + frames / timeline.frame_rate;
         actions.push(PlaybackAction::SetTime(timeline.snapped(time)));
     }
     let values: Vec<f64> = ui.input(|input| {
@@ -140,7 +140,7 @@ pub(in crate::ui) fn playhead(
 ) {
     let whole = Rect::from_min_max(ruler.min, pos2(ruler.right(), bottom));
     let painter = ui.painter().with_clip_rect(whole);
-    let (x, accent) = (scale.x(session.time()), style::accent(ui));
+    let (x, accent) = (scale.x(session.playback().time()), style::accent(ui));
     painter.vline(x, ruler.bottom() - 8.0..=bottom, Stroke::new(1.5, accent));
     let place = |dx: f32, dy: f32| pos2(x + dx, ruler.bottom() + dy);
     let points = [(-5.0, -11.0), (5.0, -11.0), (5.0, -5.0), (0.0, 0.0), (-5.0, -5.0)]
@@ -163,7 +163,7 @@ pub(in crate::ui) fn auto_key_note(
     if !session.playback().is_auto_key_news() {
         return;
     }
-    let x = scale.x(session.time()).clamp(ruler.left(), ruler.right());
+    let x = scale.x(session.playback().time()).clamp(ruler.left(), ruler.right());
     let area = Area::new(Id::unique("auto-key is on")).order(Order::Middle);
     let area = area.pivot(Align2::CENTER_BOTTOM).fixed_pos(pos2(x, ruler.top() - GAP));
     area.constrain_to(ui.ctx().content_rect()).show(ui.ctx(), |ui| {

@@ -113,8 +113,8 @@ impl TimeScale {
         is_panning: bool,
     ) {
         let before = *self;
-        if session.is_playing() {
-            self.reveal(session.time());
+        if session.playback().is_playing() {
+            self.reveal(session.playback().time());
         }
         let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
             self.keep_if_other(ui, before, session);

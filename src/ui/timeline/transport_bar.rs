@@ -130,11 +130,11 @@ fn repeat(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let playing = session.is_playing();
+    let playing = session.playback().is_playing();
     let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let tooltip = "Play or pause (Space)";
     let nothing = "Nothing to play: add keys at two times (K) or move a target";
-    let disabled = (!playing && !session.has_motion()).then_some(nothing);
+    let disabled = (!playing && !session.document().is_moving()).then_some(nothing);
     if (IconButton { icon, name, tooltip, on: None, disabled }).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
     }
@@ -193,7 +193,7 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
     let frame = TimeField {
         name: "Frame",
         label: "Frame",
-        value: timeline.number(session.time()).round() + 0.0,
+        value: timeline.number(session.playback().time()).round() + 0.0,
         unit: " f",
         speed: 0.25,
         width: 74.0,
@@ -213,7 +213,7 @@ fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let seconds = TimeField {
         name: "Time",
         label: "",
-        value: session.time(),
+        value: session.playback().time(),
         unit: " s",
         speed: 0.25 / rate as f32,
         width: 70.0,
@@ -305,7 +305,7 @@ fn ends(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         digits: 2,
         tooltip,
     };
-    let is_editing = session.is_editing();
+    let is_editing = session.history().is_editing();
     let start = field("Start", timeline.start, "Set the start of the timeline");
     start.show(ui, roomy, is_editing, actions, |start| {
         KeysEdit::SetTimeline(Timeline { start, ..timeline })

@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     let screen = ScreenProjection::new(rect, session.camera());
     let gizmo = Gizmo::new(&screen, session);
     let mouse = ui.input(|input| input.pointer.latest_pos());
-    let held_grip = session.drag().map(Drag::grip);
+    let held_grip = session.history().drag().map(Drag::grip);
 
     let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
     let over = response.contains_pointer() && !on_view_axes;
@@ -84,7 +84,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         actions.push(SelectAction::ArmJoint(Some(ArmJoint::Hand)));
     }
     let is_beside = pointed.is_none() && held_grip.is_none();
-    if response.clicked() && is_beside && session.selected_arm_joint().is_some() {
+    if response.clicked() && is_beside && session.selection().arm_joint().is_some() {
         actions.push(SelectAction::ArmJoint(None));
     }
     if response.double_clicked() && !on_view_axes {
@@ -110,9 +110,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
 /// Tooltip of a handle or part of the arm that shows more when it is clicked; `None` for others,
 /// while its joint is selected, and during a drag.
 fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
-    let selected = session.selected_arm_joint();
+    let selected = session.selection().arm_joint();
     match grip {
-        _ if session.is_editing() => None,
+        _ if session.history().is_editing() => None,
         Grip::Root(_) if selected != Some(ArmJoint::Root) => {
             Some("Move the Root; click to show its arrows")
         }
@@ -150,7 +150,7 @@ struct Pointed {
 /// The handle at the mouse, or else the part of a body there that can be dragged.
 fn pointed_at(session: &Session, screen: &ScreenProjection, gizmo: &Gizmo, mouse: Pos2) -> Pointed {
     let can_drag = |grip: &Grip| match grip {
-        Grip::Tip(joint, _) => session.can_drag_tip(*joint),
+        Grip::Tip(joint, _) => Grip::can_drag_tip(session.posed(), *joint),
         _ => true,
     };
     if let Some(grip) = gizmo.at(mouse).filter(can_drag) {
@@ -158,10 +158,10 @@ fn pointed_at(session: &Session, screen: &ScreenProjection, gizmo: &Gizmo, mouse
     }
     let part = match session.rig() {
         _ if session.crowd().is_some() => None,
-        RigKind::Arm => session.arm_part_at(screen.ray(mouse)),
+        RigKind::Arm => BodyPart::of_arm_at(session.posed(), screen.ray(mouse)),
         RigKind::Skeleton => joint_at(session, screen, gizmo, mouse).map(BodyPart::Joint),
     };
-    let grip = part.and_then(|part| session.grip_of(part));
+    let grip = part.and_then(|part| Grip::of_part(session.posed(), part));
     Pointed { grip, lit: part.filter(|_| grip.is_some()) }
 }
 
@@ -202,7 +202,7 @@ fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actio
 /// the outliner lights up joints, too.
 fn light_up(ui: &Ui, session: &Session, lit: Option<BodyPart>, actions: &mut Actions) {
     let id = Id::unique("part lit in the viewport");
-    let hovered = session.hovered_part();
+    let hovered = session.selection().hovered_part();
     let before = ui.data(|data| data.get_temp::<Option<BodyPart>>(id)).flatten();
     let own = lit.or(before.filter(|before| hovered == Some(*before)));
     if own.is_some() && hovered != lit {
@@ -235,7 +235,8 @@ fn select(
         actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
         return;
     }
-    let mut selection = if modifiers.shift { session.selection().to_vec() } else { Vec::new() };
+    let mut selection =
+        if modifiers.shift { session.selection().joints().to_vec() } else { Vec::new() };
     if let Some(joint) = joint {
         let was_selected = selection.contains(&joint);
         selection.retain(|other| *other != joint);
@@ -243,7 +244,7 @@ fn select(
             selection.push(joint);
         }
     }
-    if selection != session.selection() {
+    if selection != session.selection().joints() {
         actions.push(SelectAction::Joints(selection));
     }
 }
@@ -294,7 +295,7 @@ fn press(
     gizmo: &Gizmo,
     actions: &mut Actions,
 ) -> ViewportDrag {
-    let mut drag = match (session.drag(), session.view().drag()) {
+    let mut drag = match (session.history().drag(), session.view().drag()) {
         (Some(_), _) => ViewportDrag::Grip,
         (None, Some(_)) => ViewportDrag::View,
         (None, None) => ViewportDrag::Nothing,
@@ -303,7 +304,7 @@ fn press(
         let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
             continue;
         };
-        if button == PointerButton::Secondary && session.is_editing() {
+        if button == PointerButton::Secondary && session.history().is_editing() {
             // The right button cancels a drag anywhere in the window.
             actions.push(TransactionAction::Cancel);
         }
@@ -314,7 +315,7 @@ fn press(
         if session.follows_mouse() && button == PointerButton::Primary {
             actions.push(TransactionAction::FollowMouse(false));
         }
-        if session.is_editing() || !matches!(drag, ViewportDrag::Nothing) {
+        if session.history().is_editing() || !matches!(drag, ViewportDrag::Nothing) {
             continue;
         }
         let on_view_axes = view_axes::covers(screen.rect, pos);
@@ -370,7 +371,7 @@ fn follow(
 /// has the keyboard focus.
 fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) {
     let free = ui.memory(|memory| memory.focused().is_none()) || response.has_focus();
-    if free || session.drag().is_some() {
+    if free || session.history().drag().is_some() {
         keyboard::viewport::viewport(ui, session, actions);
     } else if focus::leaves_letters(ui) && !session.shell().is_asking() {
         keyboard::viewport::axis_views(ui, session, actions);

@@ -86,7 +86,7 @@ fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
 }
 
 pub(super) fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
-    let icon = match (session.drag(), session.view().drag(), grip) {
+    let icon = match (session.history().drag(), session.view().drag(), grip) {
         (Some(_), _, _) => CursorIcon::Grabbing,
         (_, Some(drag), _) => match drag.motion {
             CameraMotion::Orbit => CursorIcon::Grabbing,

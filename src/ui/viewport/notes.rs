@@ -79,7 +79,7 @@ pub(in crate::ui) fn drag_the_hand(ui: &Ui, session: &Session, screen: &ScreenPr
     let is_arm = session.rig() == RigKind::Arm && session.crowd().is_none();
     let is_needed =
         session.tour().is_none() && is_arm && arm.uses_ik() && !preferences.has_dragged_hand;
-    if !is_needed || session.drag().is_some() {
+    if !is_needed || session.history().drag().is_some() {
         return;
     }
     if let Some(hand) = screen.place(arm.cursor_in_world()).filter(|at| screen.rect.contains(*at)) {

@@ -155,7 +155,7 @@ impl KeyButton {
 
     /// Shows the button, named after the value that it keys.
     pub fn show(self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Actions) {
-        let (channel, time) = (self.channel, session.time());
+        let (channel, time) = (self.channel, session.playback().time());
         let track = session.document().keys.track(channel);
         let is_at_key = track.is_some_and(|track| track.get(time).is_some());
         let response = self.button(ui, session, name, is_at_key, track.is_some());
@@ -184,7 +184,7 @@ impl KeyButton {
         let (rect, response) = ui.allocate_exact_size(vec2(Self::WIDTH, 18.0), Sense::click());
         let name = format!("Key {name}");
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_at_key, &name));
-        let is_changed = session.is_overridden(self.channel);
+        let is_changed = session.history().is_overridden(self.channel);
         let stands_out = response.hovered() || response.has_focus();
         let visuals = ui.visuals();
         let colour = match (is_at_key || is_changed, is_keyed || stands_out) {

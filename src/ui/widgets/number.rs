@@ -163,7 +163,7 @@ impl NumberField<'_> {
     ) -> Response {
         let Self { name, value, unit, .. } = self;
         let number = DragNumber { name, value, unit, speed: self.step, width: FIELD_WIDTH, format };
-        let response = number.show(ui, session.is_editing(), actions, set);
+        let response = number.show(ui, session.history().is_editing(), actions, set);
         hover_text(response, self.tooltip)
     }
 }

@@ -299,5 +299,5 @@ fn spoken_values(ui: &Ui, rail: &Response) -> Vec<f32> {
 
 /// True if a transaction is open that is not a drag in the viewport, such as the drag of a slider.
 fn is_sliding(session: &Session) -> bool {
-    session.is_editing() && session.drag().is_none()
+    session.history().is_editing() && session.history().drag().is_none()
 }

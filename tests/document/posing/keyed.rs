@@ -36,7 +36,7 @@ fn k_keys_an_edit_that_would_be_lost_when_the_time_changes() {
     session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(ArmEdit::SetInfluence(1.0));
-    assert!(session.message().is_some_and(|message| message.contains("press K")));
+    assert!(session.shell().message().is_some_and(|message| message.contains("press K")));
     session.apply(KeysEdit::Key(session.channels_to_key()));
     session.apply(PlaybackAction::SetTime(0.0));
     session.apply(PlaybackAction::SetTime(1.0));
@@ -139,7 +139,9 @@ fn another_edit_leaves_a_keyed_transported_twist_at_its_keys() {
     }
     session.apply(PlaybackAction::SetTime(0.7));
     session.apply(ArmEdit::SetUpper(210.0));
-    assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
+    assert!(
+        !session.history().is_overridden(Channel::Twist) && session.shell().message().is_none()
+    );
 }
 
 #[test]
@@ -189,5 +191,7 @@ fn changing_the_reference_at_a_key_makes_no_unkeyed_edit() {
     let mut session = session([ArmEdit::SetTwist(1.0)]);
     session.apply(KeysEdit::Key(vec![Channel::Hand, Channel::Twist]));
     session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
-    assert!(!session.is_overridden(Channel::Twist) && session.message().is_none());
+    assert!(
+        !session.history().is_overridden(Channel::Twist) && session.shell().message().is_none()
+    );
 }

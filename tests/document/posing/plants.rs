@@ -272,7 +272,10 @@ fn pinning_without_auto_key_is_undone_when_the_time_changes() {
     let document = animator.session.document().clone();
     animator.go_to(1.5);
     animator.session.apply(ArmEdit::PinHand(true));
-    assert!(animator.session.is_overridden(Channel::Pinned) && animator.session.arm().is_pinned());
+    assert!(
+        animator.session.history().is_overridden(Channel::Pinned)
+            && animator.session.arm().is_pinned()
+    );
     assert_eq!(animator.session.document(), &document);
     animator.go_to(1.6);
     assert!(!animator.session.arm().is_pinned());

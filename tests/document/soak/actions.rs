@@ -92,7 +92,7 @@ impl Actions {
         if self.made.is_multiple_of(TURN) {
             return &KINDS[self.made / TURN % KINDS.len()];
         }
-        let (sort, is_dragging) = (self.sort, session.drag().is_some());
+        let (sort, is_dragging) = (self.sort, session.history().drag().is_some());
         let weight = |kind: &Kind| {
             let is_meant = kind.sort == sort || is_dragging && kind.sort == Sort::Drag;
             kind.weight * if is_meant { OFTEN } else { 1 }

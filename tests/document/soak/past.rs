@@ -115,7 +115,7 @@ fn walk_there_and_back(
     loop {
         let state = (session.document().clone(), session.shown().clone());
         session.apply(there.clone());
-        if session.message().is_none_or(|message| message.starts_with("There is nothing")) {
+        if session.shell().message().is_none_or(|message| message.starts_with("There is nothing")) {
             hold!(is_same(session.document(), &state.0), "nothing to {there:?} changes nothing");
             break;
         }
@@ -125,7 +125,7 @@ fn walk_there_and_back(
     let steps = passed.len();
     for (step, (document, shown)) in passed.into_iter().enumerate().rev() {
         session.apply(back.clone());
-        let name = session.message().unwrap_or_default().to_owned();
+        let name = session.shell().message().unwrap_or_default().to_owned();
         let same = is_same(session.document(), &document);
         hold!(
             same,

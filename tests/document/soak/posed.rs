@@ -14,7 +14,7 @@ const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
     arm(session.arm(), session.pose())?;
-    let skeleton = session.skeleton_rig().skeleton_at(session.time());
+    let skeleton = session.skeleton_rig().skeleton_at(session.playback().time());
     joints(&skeleton, session.skeleton_pose())?;
     places(session)
 }
@@ -109,30 +109,34 @@ fn joints(skeleton: &Skeleton, pose: &SkeletonPose) -> Result<(), Broken> {
 fn places(session: &Session) -> Result<(), Broken> {
     let joints = session.skeleton().joints().len();
     hold!(
-        session.selection().iter().all(|joint| *joint < JointId::new(joints)),
+        session.selection().joints().iter().all(|joint| *joint < JointId::new(joints)),
         "selected joints are there"
     );
     hold!(
-        session.hovered().is_none_or(|joint| joint < JointId::new(joints)),
+        session.selection().hovered().is_none_or(|joint| joint < JointId::new(joints)),
         "the joint pointed at is there"
     );
     let document = session.document();
-    for (channel, time) in session.selected_keys() {
+    for (channel, time) in session.selection().keys() {
         let key = document.keys.track(*channel).and_then(|track| track.get(*time));
         hold!(key.is_some(), "the selected key {channel:?} at {time} is there");
     }
-    for channel in session.selected_channels() {
+    for channel in session.selection().channels() {
         hold!(channel.value(document).is_some(), "the selected channel {channel:?} is there");
     }
-    hold!(session.time().is_finite(), "the time is finite: {}", session.time());
+    hold!(
+        session.playback().time().is_finite(),
+        "the time is finite: {}",
+        session.playback().time()
+    );
     let (slowest, fastest) = Playback::SPEEDS;
     hold!(
         (slowest..=fastest).contains(&session.playback().speed()),
         "the speed is one: {}",
         session.playback().speed()
     );
-    let held = session.point_drag().map_or(Vec3::ZERO, PointDrag::moved);
-    let turned = session.drag().and_then(Drag::turn).map_or(0.0, TurnDrag::turned);
+    let held = session.history().point_drag().map_or(Vec3::ZERO, PointDrag::moved);
+    let turned = session.history().drag().and_then(Drag::turn).map_or(0.0, TurnDrag::turned);
     hold!(held.is_finite() && turned.is_finite(), "what is held is somewhere: {held} {turned}");
     session.solvers().runs().try_for_each(solver_run)
 }

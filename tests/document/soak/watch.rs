@@ -102,8 +102,9 @@ impl Watch {
             _ => None,
         };
         let waits = waits.as_ref();
-        let is_done =
-            waits.is_none() || self.session.dialog() != waits || before.dialog.as_ref() == waits;
+        let is_done = waits.is_none()
+            || self.session.shell().dialog() != waits
+            || before.dialog.as_ref() == waits;
         let is_replaced = self.follow(action, &before);
         sound::document(self.session.document())?;
         sound::shown(&self.session)?;
@@ -164,7 +165,7 @@ impl Watch {
         let is_replaced = can_replace
             && is_fresh
             && session.history().revision() != before.revision
-            && !session.is_editing();
+            && !session.history().is_editing();
         if let Action::File(FileAction::Saved(_)) = action {
             self.expected.saved = Some(before.document.clone());
         }
@@ -207,8 +208,11 @@ impl Watch {
             hold!(same, "a cancelled transaction leaves no trace in a file");
         }
         let pressed = self.expected.before_edit.take();
-        self.expected.before_edit =
-            self.session.is_editing().then(|| pressed.unwrap_or_else(|| before.document.clone()));
+        self.expected.before_edit = self
+            .session
+            .history()
+            .is_editing()
+            .then(|| pressed.unwrap_or_else(|| before.document.clone()));
         Ok(())
     }
 
@@ -229,7 +233,7 @@ impl Watch {
 
     /// Checks that equal revisions have equal documents.
     fn check_revision(&mut self) -> Result<(), Broken> {
-        if self.session.is_editing() {
+        if self.session.history().is_editing() {
             return Ok(());
         }
         let mut hasher = DefaultHasher::new();
@@ -244,7 +248,7 @@ impl Watch {
     fn check_step(&self, action: &Action, before: &Before) -> Result<(), Broken> {
         let Some(was) = before.session.as_deref() else { return Ok(()) };
         let session = &self.session;
-        let is_whole = !was.is_editing() && !session.is_editing();
+        let is_whole = !was.history().is_editing() && !session.history().is_editing();
         if !is_whole || is_same(session.document(), was.document()) {
             return Ok(());
         }
@@ -255,7 +259,7 @@ impl Watch {
         hold!(is_same(copy.document(), was.document()), "one {back:?} leads to before the action");
         let same = past::saved(copy.document())? == past::saved(was.document())?;
         hold!(same, "one {back:?} leads to what was saved before the action");
-        let is_same_time = session.time() == was.time();
+        let is_same_time = session.playback().time() == was.playback().time();
         let same = is_same(copy.shown(), was.shown());
         hold!(!is_same_time || same, "one {back:?} shows what was shown before the action");
         if matches!(
@@ -287,7 +291,7 @@ impl Watch {
         self.expected.steps = Some(steps);
         let Some(last) = last.filter(|_| !is_replaced) else { return Ok(()) };
         // Unkeyed edits of keyed channels are no steps at another time.
-        let is_elsewhen = before.time != self.session.time();
+        let is_elsewhen = before.time != self.session.playback().time();
         let moves = matches!(
             action,
             Action::Transaction(TransactionAction::Undo)
@@ -313,9 +317,9 @@ impl Before {
         Self {
             document: session.document().clone(),
             session: whole.then(|| Box::new(session.clone())),
-            dialog: session.dialog().cloned(),
+            dialog: session.shell().dialog().cloned(),
             revision: session.history().revision(),
-            time: session.time(),
+            time: session.playback().time(),
             follows_mouse: session.follows_mouse(),
         }
     }

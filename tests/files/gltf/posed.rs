@@ -104,7 +104,7 @@ fn key(random: &mut Random, document: &mut Document, reach: f32) {
 }
 
 fn bits(session: &Session) -> Vec<u32> {
-    let solved = &session.evaluated_skeleton().solved;
+    let solved = &session.posed().evaluated_skeleton().solved;
     let vectors = solved.iter().flat_map(|(_, it)| [it.rotation, it.offset, it.axis]);
     vectors.flat_map(|vector| vector.to_array()).map(f32::to_bits).collect()
 }

@@ -27,7 +27,7 @@ pub(super) struct FigureLine {
 
 impl Lit {
     pub fn new(session: &Session) -> Self {
-        Self { shown: session.figure(), pointed: None }
+        Self { shown: session.selection().figure(), pointed: None }
     }
 
     /// The figure that the mouse points at.

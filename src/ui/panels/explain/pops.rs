@@ -22,13 +22,13 @@ const LISTED: usize = 3;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let is_step = |sample: &PopSample| matches!(sample.kind, PopSampleKind::Step(_));
-    if !session.pops().samples().any(is_step) {
+    if !session.evaluated().pops().samples().any(is_step) {
         ui.label("Drag the hand, or play the timeline: this page then shows where the elbow jumped, and why.");
         return;
     }
-    let spikes = session.pops().spikes();
+    let spikes = session.evaluated().pops().spikes();
     ui.weak("Up: elbow speed / Cursor speed · across: steps");
-    show(ui, session.pops(), &spikes);
+    show(ui, session.evaluated().pops(), &spikes);
     if spikes.is_empty() {
         ui.label("No pops: the elbow moves smoothly.");
     }
@@ -36,7 +36,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for spike in spikes.iter().rev().take(LISTED) {
         list(ui, session.arm(), spike, &mut offered, actions);
     }
-    let changes = InputChange::ALL.into_iter().filter(|change| is_marked(session.pops(), *change));
+    let changes = InputChange::ALL
+        .into_iter()
+        .filter(|change| is_marked(session.evaluated().pops(), *change));
     let changes: Vec<_> = changes.map(InputChange::name).collect();
     if !changes.is_empty() {
         ui.weak(format!("Dotted lines, not pops: {} changed", changes.join(", ")));

@@ -54,7 +54,7 @@ fn legend(ui: &mut Ui) {
 
 fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (arm, own) = (session.arm(), session.posed().arm_solution().pose);
-    let transported = session.transport_path().transported();
+    let transported = session.evaluated().transport_path().transported();
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         glossary::term_label(ui, "Twist reference", "Twist reference", actions);
@@ -89,7 +89,7 @@ fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::term_pair(ui, "Holonomy", "Holonomy", actions, |ui, actions| {
         widgets::at_right(ui, |ui| {
-            let turned = turn_in_words(session.transport_path().holonomy());
+            let turned = turn_in_words(session.evaluated().transport_path().holonomy());
             ui.label(RichText::new(turned).monospace()).on_hover_text(
                 "Elbow rotation after the hand's path so far: its solid angle about the shoulder",
             );

@@ -28,7 +28,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// root.
 fn shown_root(session: &Session) -> Option<JointId> {
     let rig = session.skeleton_rig();
-    let selected = session.selected().and_then(|joint| rig.root_of(joint));
+    let selected = session.selection().active().and_then(|joint| rig.root_of(joint));
     let with_path = rig.follow_paths.first().map(|path| path.root);
     selected.or(with_path).or_else(|| rig.skeleton.ids().next())
 }

@@ -17,8 +17,8 @@ const STIFF: &str = "The limits leave one angle only";
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions: &mut Actions) {
     let Some(joint) = session.skeleton().joint(index) else { return };
-    if session.selection().len() > 1 {
-        let count = session.selection().len();
+    if session.selection().joints().len() > 1 {
+        let count = session.selection().joints().len();
         ui.weak(format!("{count} joints selected; this is the last one."));
     }
     rotation(ui, session, index, joint, actions);
@@ -36,7 +36,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     let colours = style::palette(ui).axes;
     let follows_path = labels::why_on_path(session, index);
     let shown = match follows_path {
-        Some(_) => session.evaluated_skeleton().fk[index].rotation,
+        Some(_) => session.posed().evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,
     };
     if let Some(target) = session.skeleton_rig().target_that_turns(index)

@@ -17,7 +17,7 @@ use crate::ui::widgets::{self, AXES, PointSliders};
 
 /// The target of the selected joint, of which the panel has a note; `None` without one.
 pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
-    let selected = session.selected().filter(|_| session.rig() == RigKind::Skeleton)?;
+    let selected = session.selection().active().filter(|_| session.rig() == RigKind::Skeleton)?;
     let rig = session.skeleton_rig();
     rig.target_of_end(selected).map(|index| rig.targets[index])
 }
@@ -31,7 +31,7 @@ pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: Target, action
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
-    if let Some(selected) = session.selected()
+    if let Some(selected) = session.selection().active()
         && let Some(joint) = rig.skeleton.joint(selected)
     {
         let title = format!("Joint: {}", joint.name);

@@ -58,7 +58,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
     let said = ui.make_persistent_id("pointed in the tree");
     let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
-    if pointed.is_some() && pointed != session.hovered() || was && pointed.is_none() {
+    if pointed.is_some() && pointed != session.selection().hovered() || was && pointed.is_none() {
         actions.push(SelectAction::Hover(pointed.map(BodyPart::Joint)));
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
@@ -98,7 +98,7 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
 fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     let rig = session.skeleton_rig();
     let joint = &rig.skeleton[row.joint];
-    let selected = session.selection().contains(&row.joint);
+    let selected = session.selection().joints().contains(&row.joint);
     let indent = INDENT * row.depth.min(12) as f32;
     let font = TextStyle::Body.resolve(ui.style());
     let width = ui.fonts_mut(|fonts| {
@@ -119,7 +119,7 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
     let painter = ui.painter();
     if selected {
         painter.rect_filled(rect, 4.0, visuals.selection.bg_fill);
-    } else if response.hovered() || session.hovered() == Some(row.joint) {
+    } else if response.hovered() || session.selection().hovered() == Some(row.joint) {
         painter.rect_filled(rect, 4.0, visuals.widgets.hovered.weak_bg_fill);
     }
     if response.has_focus() {
@@ -198,7 +198,7 @@ fn legend(ui: &mut Ui) {
 /// the tree has the focus.
 fn reveal(ui: &Ui, session: &Session, row: &OutlinerRow, response: &Response) {
     let seen = response.id.with("selected");
-    let is_new = session.selected() == Some(row.joint);
+    let is_new = session.selection().active() == Some(row.joint);
     let was = ui.data(|data| data.get_temp::<bool>(seen)).unwrap_or(false);
     if is_new && !was {
         ui.scroll_to_rect(response.rect.expand2(vec2(0.0, ROW)), None);
@@ -227,7 +227,7 @@ fn respond(
     } else if response.clicked() && !by_space {
         response.request_focus();
         let modifiers = ui.input(|input| input.modifiers);
-        let mut selection = session.selection().to_vec();
+        let mut selection = session.selection().joints().to_vec();
         let was_selected = selection.contains(&row.joint);
         if modifiers.shift || modifiers.command {
             selection.retain(|joint| *joint != row.joint);
@@ -248,7 +248,7 @@ fn respond(
     viewport::viewport(ui, session, actions);
     let presses = |key| ui.input(|input| input.num_presses(key)) as isize;
     let by = presses(Key::ArrowDown) - presses(Key::ArrowUp);
-    let from = session.selected().unwrap_or(row.joint);
+    let from = session.selection().active().unwrap_or(row.joint);
     let here = rows.iter().position(|row| row.joint == from).unwrap_or(0);
     if by != 0 {
         let to = here.saturating_add_signed(by).min(rows.len() - 1);
@@ -257,7 +257,7 @@ fn respond(
 }
 
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let selected = session.selected();
+    let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
@@ -282,7 +282,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let selected = session.selected();
+    let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
     let has_target =
         selected.is_some_and(|joint| session.skeleton_rig().target_of_end(joint).is_some());

@@ -54,7 +54,11 @@ fn details(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let why_not = (!is_shown).then_some("Show the skin first");
     widgets::check_boxes(ui, session, 2, &all, why_not, actions);
     if is_shown && session.shown().display.shows(Overlay::SkinWeights) {
-        match session.selected().and_then(|joint| session.skeleton_rig().skeleton.joint(joint)) {
+        match session
+            .selection()
+            .active()
+            .and_then(|joint| session.skeleton_rig().skeleton.joint(joint))
+        {
             Some(joint) => legend(ui, &joint.name),
             None => {
                 ui.weak("Select a joint to see its weights.");
@@ -162,7 +166,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Skin colour"));
         if response.changed() {
             // The picker is dragged: one undo step from the first change to the release.
-            if !session.is_editing() {
+            if !session.history().is_editing() {
                 actions.push(TransactionAction::Begin);
             }
             let colour = colour.map(|channel| f32::from(channel) / 255.0);
@@ -177,7 +181,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
 /// True if the open transaction, if any, changes the skin.
 fn is_change_open(session: &Session) -> bool {
     let label = SkinEdit::SetSkin(session.skeleton_rig().skin.clone()).label();
-    session.is_editing() && session.history().undo_label() == Some(label)
+    session.history().is_editing() && session.history().undo_label() == Some(label)
 }
 
 fn summary(ui: &mut Ui, session: &Session, skin: &Skin) {

@@ -20,7 +20,7 @@ const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session) {
     let least = f64::from(LEAST * session.skeleton_rig().reach());
-    let tolerance = f64::from(session.solver_tolerance());
+    let tolerance = f64::from(session.skeleton_rig().tolerance());
     let curves: Vec<Curve> = session.solvers().runs().map(|run| Curve::new(run, least)).collect();
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let last = all().map(|point| point[0]).fold(10.0, f64::max);
@@ -75,7 +75,7 @@ fn describe(session: &Session) -> String {
     let Some(ShownIteration { number, latest, .. }) = session.solvers().shown_iteration() else {
         return "Convergence: no solver run yet".to_owned();
     };
-    match session.solver_run() {
+    match session.solvers().run() {
         Some(run) => {
             let error = format::short(run.shown().error);
             format!("Convergence: error {error} at iteration {number} of {latest}")

@@ -15,7 +15,7 @@ use crate::ui::widgets::{self, format};
 use crate::ui::{commands, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let Some(run) = session.solver_run() else { return };
+    let Some(run) = session.solvers().run() else { return };
     switch(ui, run, actions);
     let Some(shown) = run.shown_part() else { return };
     let parts = run.parts();
@@ -242,7 +242,7 @@ fn numbers(ui: &mut Ui, session: &Session, run: &SolverRun, shown: usize) {
 
 /// The lengths of the columns, and the axes of the ellipsoid.
 fn jacobian(ui: &mut Ui, session: &Session, gradient: &Gradient) {
-    let selection = session.selection();
+    let selection = session.selection().joints();
     let any = gradient.columns.iter().any(|column| selection.contains(&column.joint));
     let shown = gradient.columns.iter().filter(|it| !any || selection.contains(&it.joint));
     let mut rows: Vec<[String; 2]> = shown

@@ -21,7 +21,7 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
     if session.solvers().comparison().is_none() {
         report(ui, session, actions);
     }
-    if session.solver_run().is_some() {
+    if session.solvers().run().is_some() {
         widgets::section(ui, "Inside the iteration", |ui| inside::ui(ui, session, actions));
     }
     widgets::section(ui, "Convergence", |ui| {
@@ -159,7 +159,7 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let options = session.skeleton_rig().solver;
     widgets::term_pair(ui, "Tolerance", "Tolerance", actions, |ui, actions| {
-        let auto = session.solver_tolerance();
+        let auto = session.skeleton_rig().tolerance();
         widgets::at_right(ui, |ui| {
             let mut is_auto = options.tolerance.is_none();
             let tooltip = "Use 1/10,000 of the chain length";
@@ -203,7 +203,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         if wide(step, "Step", "Make one iteration (S)", disabled) {
             actions.push(SolverAction::Step);
         }
-        let nothing = session.solver_run().is_none().then_some("The solver has not run yet");
+        let nothing = session.solvers().run().is_none().then_some("The solver has not run yet");
         if wide(reset, "Reset", "End the run and remove its ghost (Esc)", nothing) {
             actions.push(SolverAction::Reset);
         }

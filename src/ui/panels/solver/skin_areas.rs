@@ -39,7 +39,7 @@ fn curves(ui: &mut Ui, session: &Session, areas: &SkinAreas) {
         .y_grid_spacer(|_| plot::marks(&[0.0, 0.5, 1.0]))
         .show(ui, |shown| {
             plot::show(shown, bounds);
-            let playhead = VLine::new("playhead", session.time());
+            let playhead = VLine::new("playhead", session.playback().time());
             shown.vline(playhead.stroke(Stroke::new(1.5, weak)));
             for (skinning, areas_of) in Skinning::ALL.into_iter().zip(&areas.areas) {
                 let points = areas.times.iter().zip(areas_of);
@@ -50,14 +50,14 @@ fn curves(ui: &mut Ui, session: &Session, areas: &SkinAreas) {
             }
         })
         .response;
-    let said = describe(areas, session.time());
+    let said = describe(areas, session.playback().time());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &said));
 }
 
 /// Shows each way of blending with its colour and the area now.
 fn values(ui: &mut Ui, session: &Session, areas: &SkinAreas) {
     let palette = style::palette(ui);
-    for (skinning, area) in Skinning::ALL.into_iter().zip(areas.at(session.time())) {
+    for (skinning, area) in Skinning::ALL.into_iter().zip(areas.at(session.playback().time())) {
         let colour = style::colour(palette.skinning(skinning));
         widgets::pair(ui, skinning.title(), |ui| {
             ui.colored_label(colour, format!("{:.0} %", 100.0 * area));

@@ -107,7 +107,7 @@ impl DopeSheet<'_> {
         }
         self.keys(ui, row, keys, actions);
         if let DopeSheetRow::Channel(channel) = row
-            && self.session.is_overridden(channel)
+            && self.session.history().is_overridden(channel)
         {
             self.overridden(ui, channel, keys);
         }
@@ -117,7 +117,7 @@ impl DopeSheet<'_> {
     /// the selection or removes it.
     fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
         let session = self.session;
-        let selected = session.selected_channels().contains(&channel);
+        let selected = session.selection().channels().contains(&channel);
         let shown = labels::channel(session, channel);
         let id = Id::unique(("timeline channel", channel));
         let response = ui.interact(rect, id, Sense::click());
@@ -211,7 +211,7 @@ impl DopeSheet<'_> {
 
     /// Draws the mark of an unkeyed change of the channel at the playhead, with a tooltip.
     fn overridden(&self, ui: &Ui, channel: Channel, rect: Rect) {
-        let at = pos2(self.scale.x(self.session.time()), rect.center().y);
+        let at = pos2(self.scale.x(self.session.playback().time()), rect.center().y);
         let id = Id::unique(("timeline override", channel));
         let size = vec2(4.0 * SIZE, ROW);
         let response =

@@ -87,7 +87,7 @@ pub(in crate::ui) fn press(
         let Event::PointerButton { pos, button, pressed: true, modifiers } = event else {
             continue;
         };
-        if sheet.session.is_editing() || drag::get(ui).is_some() {
+        if sheet.session.history().is_editing() || drag::get(ui).is_some() {
             continue;
         }
         match button {
@@ -136,7 +136,7 @@ fn press_key(
 ) {
     let session = sheet.session;
     let pointed = row.keys(session, time);
-    let selected = session.selected_keys();
+    let selected = session.selection().keys();
     let picked = |of: &[Key]| {
         let of = SelectedKeys::of(of);
         move |key: &&Key| of.has(DopeSheetRow::Channel(key.0), key.1)
@@ -164,7 +164,7 @@ fn press_key(
 }
 
 fn press_background(ui: &Ui, sheet: &DopeSheetView<'_>, at: Pos2, adds: bool) {
-    let base = if adds { sheet.session.selected_keys().to_vec() } else { Vec::new() };
+    let base = if adds { sheet.session.selection().keys().to_vec() } else { Vec::new() };
     let drag = BoxDrag { time: sheet.scale.time(at.x), y: sheet.content_y(at), base };
     drag::set(ui, TimelineDrag::Box(drag));
 }
@@ -191,7 +191,7 @@ fn move_keys(
 ) {
     let session = sheet.session;
     let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !session.is_editing() {
+    if cancelled || drag.moved && !session.history().is_editing() {
         actions.push(SelectAction::Keys(drag.keys));
         drag::clear(ui);
         return;
@@ -240,7 +240,7 @@ fn draw_box(
             inside.into_iter().filter(|(it, at)| !picked.has(DopeSheetRow::Channel(*it), *at)),
         );
     }
-    if keys != sheet.session.selected_keys() {
+    if keys != sheet.session.selection().keys() {
         actions.push(SelectAction::Keys(keys));
     }
     if drag::is_released(ui) {

@@ -75,7 +75,7 @@ fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
 /// The selection after a click on the name of a channel: the channel alone, or none if it was alone
 /// before; with Shift or Ctrl it is added or removed.
 pub(in crate::ui) fn clicked(ui: &Ui, session: &Session, channel: Channel) -> SelectAction {
-    let selected = session.selected_channels();
+    let selected = session.selection().channels();
     let is_selected = selected.contains(&channel);
     let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
     let goes = is_selected && (several || selected.len() == 1);
@@ -91,7 +91,7 @@ pub(in crate::ui) struct SelectedKeys {
 
 impl SelectedKeys {
     pub fn new(session: &Session) -> Self {
-        Self::of(session.selected_keys())
+        Self::of(session.selection().keys())
     }
 
     pub fn of(keys: &[Key]) -> Self {

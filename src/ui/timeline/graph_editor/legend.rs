@@ -64,7 +64,7 @@ fn joint_name(
 ) {
     let rig = session.skeleton_rig();
     let name = rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
-    let selected = session.selection();
+    let selected = session.selection().joints();
     let is_selected = selected.contains(&joint);
     let (rect, response) =
         item(ui, ("timeline joint", joint), is_selected, &format!("Curves of joint {name}"));
@@ -94,7 +94,7 @@ fn channel_name(
 ) {
     let LegendEntry { channel, colours, is_drawn } = entry;
     let full = labels::channel(session, *channel);
-    let is_selected = session.selected_channels().contains(channel);
+    let is_selected = session.selection().channels().contains(channel);
     let id = ("timeline curve", *channel);
     let (rect, response) = item(ui, id, is_selected, &format!("Curve of {full}"));
     let indent = if labels::joint_of_channel(session, *channel).is_some() { 18.0 } else { 10.0 };

@@ -95,7 +95,7 @@ pub(super) fn width_at_right(session: &Session) -> f32 {
 /// The channels with keys that can be shown: of the arm all, of a figure those of the selected
 /// joints or, if none is selected, all.
 fn listed(session: &Session) -> Vec<Channel> {
-    let selected = session.selection();
+    let selected = session.selection().joints();
     let is_listed = |channel: &Channel| {
         let own = channel.joint().into_iter().chain(labels::joint_of_channel(session, *channel));
         let is_selected = selected.is_empty() || own.into_iter().any(|it| selected.contains(&it));
@@ -111,7 +111,7 @@ fn listed(session: &Session) -> Vec<Channel> {
 /// The channels whose curves are shown: of those listed the selected ones, or all if none is
 /// selected.
 fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
-    let selected = session.selected_channels();
+    let selected = session.selection().channels();
     let chosen = listed.iter().copied().filter(|channel| selected.contains(channel));
     let chosen: Vec<Channel> = chosen.collect();
     if chosen.is_empty() { listed.iter().copied().take(MOST_DRAWN).collect() } else { chosen }
@@ -119,7 +119,7 @@ fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
 
 fn hint(session: &Session) -> &'static str {
     match session.rig() {
-        RigKind::Skeleton if !session.selection().is_empty() => {
+        RigKind::Skeleton if !session.selection().joints().is_empty() => {
             "No curves of the selected joints. Press K to key them, or select no joint to see all"
         }
         RigKind::Skeleton | RigKind::Arm => "No curves. Pose the rig and press K to add keys",

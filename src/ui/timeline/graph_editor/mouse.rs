@@ -66,7 +66,7 @@ impl GraphView<'_> {
 
     /// The key nearest to a screen position, within `REACH`. Selected keys come first.
     fn key_at(&self, mouse: Pos2) -> Option<(&ChannelCurve, Key)> {
-        let selected = self.session.selected_keys();
+        let selected = self.session.selection().keys();
         let all = self.curves.iter().flat_map(|curve| {
             self.keys(curve).map(move |(knot, at)| (curve, (curve.channel, knot.time), at))
         });
@@ -82,7 +82,7 @@ impl GraphView<'_> {
     /// The handles of the selected keys: one before each key with a cubic curve before it, and one
     /// after each key with a cubic curve after it.
     fn handles(&self) -> Vec<Handle<'_>> {
-        let selected = self.session.selected_keys();
+        let selected = self.session.selection().keys();
         let has_tangents = |curve: &&ChannelCurve| curve.channel.quantity() != Quantity::Switch;
         let of_curve = |curve| {
             let keys = self.keys(curve);
@@ -142,7 +142,7 @@ pub(in crate::ui::timeline) fn paint(ui: &Ui, graph: &GraphView<'_>) {
         painter.line_segment([handle.from, handle.at], Stroke::new(1.0, accent));
         painter.circle(handle.at, 3.5, ui.visuals().panel_fill, Stroke::new(1.5, accent));
     }
-    let selected = graph.session.selected_keys();
+    let selected = graph.session.selection().keys();
     for curve in graph.curves {
         for (knot, at) in graph.keys(curve) {
             if selected.contains(&(curve.channel, knot.time)) {
@@ -159,7 +159,7 @@ pub(in crate::ui::timeline) fn press(
     area: &Response,
     actions: &mut Actions,
 ) {
-    if !area.contains_pointer() || graph.session.is_editing() || drag::get(ui).is_some() {
+    if !area.contains_pointer() || graph.session.history().is_editing() || drag::get(ui).is_some() {
         return;
     }
     for event in ui.input(|input| input.events.clone()) {
@@ -175,7 +175,7 @@ pub(in crate::ui::timeline) fn press(
             }
             PointerButton::Secondary => {
                 if let Some((_, key)) = graph.key_at(pos)
-                    && !graph.session.selected_keys().contains(&key)
+                    && !graph.session.selection().keys().contains(&key)
                 {
                     actions.push(SelectAction::Keys(vec![key]));
                 }
@@ -201,7 +201,7 @@ fn press_handle(ui: &Ui, graph: &GraphView<'_>, at: Pos2) -> bool {
 
 fn press_key(ui: &Ui, graph: &GraphView<'_>, pressed: Pos2, adds: bool, actions: &mut Actions) {
     let Some((curve, key)) = graph.key_at(pressed) else { return };
-    let selected = graph.session.selected_keys();
+    let selected = graph.session.selection().keys();
     let is_selected = selected.contains(&key);
     let others = || selected.iter().copied().filter(|other| *other != key);
     let with_key = || others().chain([key]).collect::<Vec<_>>();
@@ -239,7 +239,7 @@ fn move_keys(
 ) {
     let session = graph.session;
     let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !session.is_editing() {
+    if cancelled || drag.moved && !session.history().is_editing() {
         actions.push(SelectAction::Keys(drag.keys));
         return drag::clear(ui);
     }
@@ -288,7 +288,7 @@ fn turn_tangent(
     actions: &mut Actions,
 ) {
     let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !graph.session.is_editing() {
+    if cancelled || drag.moved && !graph.session.history().is_editing() {
         return drag::clear(ui);
     }
     if !drag.moved {

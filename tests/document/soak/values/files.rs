@@ -42,7 +42,7 @@ impl Values<'_> {
 
     /// The job of the bake dialog, or another one.
     pub fn bake_job(&mut self) -> BakeJob {
-        match self.session.dialog() {
+        match self.session.shell().dialog() {
             Some(Dialog::Bake { job: Some(job), .. }) => job.clone(),
             _ => BakeJob { progress: Arc::new(Progress::default()) },
         }

@@ -27,7 +27,7 @@ impl Values<'_> {
         if joints == 0 || self.chance(0.03) {
             return self.one_of(&[joints, joints + 1, 99, u32::MAX as usize, usize::MAX]).into();
         }
-        match self.session.selected() {
+        match self.session.selection().active() {
             Some(joint) if self.chance(0.3) => joint,
             _ => self.random.below(joints).into(),
         }

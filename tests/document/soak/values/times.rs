@@ -74,7 +74,7 @@ impl Values<'_> {
 
     pub fn keys(&mut self) -> Vec<Key> {
         match self.random.below(6) {
-            0 => self.session.selected_keys().to_vec(),
+            0 => self.session.selection().keys().to_vec(),
             count => (0..count).map(|_| self.key()).collect(),
         }
     }

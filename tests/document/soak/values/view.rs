@@ -108,7 +108,7 @@ impl Values<'_> {
         }
         let projection = self.session.camera().projection(1.6);
         if self.chance(0.3)
-            && let Some(held) = self.session.point_drag().map(PointDrag::moved)
+            && let Some(held) = self.session.history().point_drag().map(PointDrag::moved)
             && let Some(at) = projection.project(held)
         {
             return projection.ray(at);

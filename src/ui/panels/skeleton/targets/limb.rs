@@ -107,7 +107,7 @@ fn reference(
 
 /// A pole in front of the elbow as it is posed, in the pole's space.
 fn new_pole(session: &Session, target: &Target, settings: LimbSettings) -> Vec3 {
-    let pose = &session.evaluated_skeleton().solved;
+    let pose = &session.posed().evaluated_skeleton().solved;
     let Ok(limb) = Limb::ending_at(pose, target.joint) else { return target.home };
     let (base, elbow, tip) = (pose.base(limb.upper), pose.base(limb.lower), pose.tip(limb.lower));
     let line = (tip - base).normalize_or_zero();
@@ -151,7 +151,7 @@ fn hand(
     actions: &mut Actions,
     set: &impl Fn(LimbSettings) -> TargetEdit,
 ) {
-    let pose = &session.evaluated_skeleton().solved;
+    let pose = &session.posed().evaluated_skeleton().solved;
     let hand = Limb::ending_at(pose, target.joint).ok().and_then(|limb| limb.hand);
     let row = ui.add_enabled_ui(hand.is_some(), |ui| {
         ui.horizontal(|ui| {

@@ -23,7 +23,7 @@ pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions)
     if rig.targets.is_empty() {
         ui.weak("No targets. Select a joint and press T.");
     }
-    for (target, report) in rig.targets.iter().zip(&session.evaluated_skeleton().targets) {
+    for (target, report) in rig.targets.iter().zip(&session.posed().evaluated_skeleton().targets) {
         row(ui, session, target, report, actions);
     }
 }
@@ -46,7 +46,7 @@ fn row(
             if check.changed() {
                 actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
             }
-            let selected = session.selected();
+            let selected = session.selection().active();
             let is_selected = selected == Some(end) || selected == Some(target.joint);
             let label = egui::Button::selectable(is_selected, end_name).truncate();
             if ui.add(label).on_hover_text("Select the joint of this target").clicked() {
@@ -121,13 +121,13 @@ fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actio
 }
 
 fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
-    let pose = &session.evaluated_skeleton().solved;
+    let pose = &session.posed().evaluated_skeleton().solved;
     let tip = pose.tip(target.joint);
     let place = PointSliders {
         name: "Target",
         labels: AXES,
         value: target.home,
-        default: target.placed(pose, session.time(), tip).home,
+        default: target.placed(pose, session.playback().time(), tip).home,
         range: 1.5 * session.skeleton_rig().reach(),
         step,
         tooltip: match target.space.joint() {

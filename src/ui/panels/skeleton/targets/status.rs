@@ -22,7 +22,8 @@ pub(in crate::ui) fn height(panel: f32) -> f32 {
 /// Shows the note on a target at constant height.
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let Some(report) = session.target_report(target.joint) else { return };
-    let (rig, is_held) = (session.skeleton_rig(), why::is_held(ui) || session.is_editing());
+    let (rig, is_held) =
+        (session.skeleton_rig(), why::is_held(ui) || session.history().is_editing());
     let index = rig.target(target.joint);
     let why = index.map_or(&[][..], |index| {
         if is_held { session.known_why_target(index) } else { session.why_target(index) }
@@ -63,7 +64,7 @@ fn explain(
     actions: &mut Actions,
 ) {
     let text = match missing_rotation(report) {
-        Some(missing) if report.error <= session.solver_tolerance() => missing,
+        Some(missing) if report.error <= session.skeleton_rig().tolerance() => missing,
         _ => format!("{} away", format::short(report.error)),
     };
     let heading = RichText::new(format!("{end} not reached: {text}"));
