@@ -5,11 +5,9 @@ mod dialogs;
 mod frame_times;
 mod gizmo;
 mod glossary;
-mod input_parts;
 mod keyboard;
 mod labels;
 mod menu_bar;
-mod mouse_hints;
 mod panels;
 mod pose_summary;
 mod status_bar;
@@ -17,11 +15,10 @@ pub mod style;
 mod timeline;
 mod tour;
 mod viewport;
-mod why;
 mod widgets;
 
 pub use frame_times::{FrameTime, FrameTimes, Machine, TimeSpread};
-pub use input_parts::{hold_typed, strokes};
+pub use keyboard::{hold_typed, strokes};
 
 use egui::{CentralPanel, Panel, Rect, Ui, UiBuilder};
 

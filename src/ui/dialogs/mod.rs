@@ -1,11 +1,10 @@
 //! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
-mod bake;
 mod export;
 mod files;
-mod joints;
 mod path;
 mod shortcuts;
+mod skeleton;
 
 use std::mem::discriminant;
 
@@ -87,12 +86,12 @@ pub(in crate::ui) fn ui(
         }
         Dialog::ChooseContents(of_file) => files::choose(ui, of_file, actions),
         Dialog::Rename { joint, name } => {
-            joints::rename(ui, session, *joint, name, is_new, actions);
+            skeleton::rename(ui, session, *joint, name, is_new, actions);
         }
         Dialog::Bake { settings, job } => {
-            bake::ui(ui, session, settings, job.as_ref(), actions);
+            skeleton::bake(ui, session, settings, job.as_ref(), actions);
         }
-        Dialog::DeleteJoints { joints } => joints::delete_joints(ui, session, joints, actions),
+        Dialog::DeleteJoints { joints } => skeleton::delete_joints(ui, session, joints, actions),
         Dialog::Statistics => {}
     });
 }

@@ -3,9 +3,9 @@
 
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 
-use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
+use super::handles::TranslateHandles;
+use super::handles::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::screen::{ScreenProjection, bright};
-use super::translate::TranslateHandles;
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::kinematics::skeleton::RotationAxis;
 use crate::session::{ArmJoint, Grip, GripRing, PointHandle, Session};

@@ -1,11 +1,9 @@
 //! Handles in the viewport: their positions on screen, hit tests and painting.
 
 mod arm;
-mod rotate;
+mod handles;
 pub(in crate::ui) mod screen;
 mod skeleton;
-mod translate;
-pub(in crate::ui) mod view_axes;
 
 pub(in crate::ui) use screen::locked_axis;
 

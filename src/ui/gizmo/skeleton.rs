@@ -4,9 +4,9 @@
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
-use super::rotate::{OUTER_RADIUS, RADIUS, RotateRing};
+use super::handles::TranslateHandles;
+use super::handles::{OUTER_RADIUS, RADIUS, RotateRing};
 use super::screen::{ScreenProjection, bright, to_segment};
-use super::translate::TranslateHandles;
 use crate::document::Target;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};
 use crate::rig::TargetReport;

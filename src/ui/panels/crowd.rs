@@ -5,7 +5,7 @@ use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 use crate::rig::{Crowd, Processor};
 use crate::session::{Actions, Session, ViewAction};
 use crate::ui::frame_times::Machine;
-use crate::ui::widgets::format::grouped;
+use crate::ui::widgets::text::grouped;
 
 const WIDTH: f32 = 232.0;
 

@@ -42,7 +42,7 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.add_space(8.0);
     });
     if let Some(target) = note {
-        skeleton::note(ui, session, target, actions);
+        skeleton::note(ui, session, &target, actions);
     }
 }
 
@@ -118,7 +118,7 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
             (RigKind::Arm, PanelTab::Pops) => explain::pops(ui, session, actions),
             (RigKind::Arm, _) => figure = explain::triangle(ui, session, actions),
             (RigKind::Skeleton, PanelTab::Race) => solver::race(ui, session, actions),
-            (RigKind::Skeleton, PanelTab::Skin) => solver::skin(ui, session),
+            (RigKind::Skeleton, PanelTab::Skin) => skeleton::skin_areas(ui, session),
             (RigKind::Skeleton, _) => solver::solver(ui, session, actions),
         }
         ui.add_space(8.0);

@@ -8,8 +8,8 @@ use egui_plot::{AxisHints, HLine, Line, PlotBounds, PlotPoints};
 use crate::scene::Palette;
 use crate::ui::frame_times::{FrameTime, FrameTimes, Machine};
 use crate::ui::style;
-use crate::ui::widgets::format::grouped;
 use crate::ui::widgets::plot;
+use crate::ui::widgets::text::grouped;
 
 pub(in crate::ui) const WIDTH: f32 = 272.0;
 const HEIGHT: f32 = 96.0;

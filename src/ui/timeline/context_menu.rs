@@ -3,8 +3,8 @@
 use egui::{Button, Id, Response, Ui};
 
 use super::dope_sheet::mouse::DopeSheetView;
-use super::dope_sheet::row::DopeSheetRow;
 use super::drag;
+use super::rows::DopeSheetRow;
 use crate::document::Channel;
 use crate::kinematics::spline::Interpolation;
 use crate::session::{Actions, KeysEdit, PlaybackAction, SelectAction, Session};

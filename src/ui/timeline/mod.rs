@@ -1,11 +1,11 @@
 //! The transport bar, and above it the timeline: ruler, and dope sheet or graph editor.
 
-mod areas;
 mod context_menu;
 mod dope_sheet;
 mod drag;
 mod graph_editor;
 mod keyboard;
+mod rows;
 mod ruler;
 mod time_scale;
 mod transport_bar;
@@ -17,8 +17,8 @@ pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 use egui::{Rect, Ui};
 
 use crate::session::{Actions, Session};
-use areas::TimelineAreas;
 use drag::TimelineDrag;
+use rows::TimelineAreas;
 use time_scale::TimeScale;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.

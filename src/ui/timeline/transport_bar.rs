@@ -4,11 +4,11 @@
 use egui::{ComboBox, Rect, RichText, Ui, vec2};
 
 use super::time_scale::TimeScale;
-use super::{areas, keyboard, ruler};
+use super::{keyboard, rows, ruler};
 use crate::document::Timeline;
 use crate::session::{Action, Actions, KeysEdit, PlaybackAction, Session, ViewAction};
 use crate::ui::style;
-use crate::ui::widgets::{self, DragNumber, Icon, IconButton, format};
+use crate::ui::widgets::{self, DragNumber, Icon, IconButton, text};
 
 /// Width of the bar in points up to which numbers have no labels.
 const ROOMY: f32 = 1180.0;
@@ -32,7 +32,7 @@ pub(in crate::ui) fn slim(ui: &mut Ui, session: &Session, actions: &mut Actions)
         ui.add_space(GAP);
         seconds(ui, session, actions);
         ui.add_space(GAP);
-        let size = vec2((ui.available_width() - OPEN).max(0.0), areas::RULER);
+        let size = vec2((ui.available_width() - OPEN).max(0.0), rows::RULER);
         let (_, rect) = ui.allocate_space(size);
         rail(ui, session, rect, actions);
         let tooltip = "Show keys over time";
@@ -166,7 +166,7 @@ impl TimeField<'_> {
             ui.add(egui::Label::new(RichText::new(self.label).weak()).selectable(false));
         }
         let Self { name, value, unit, speed, width, digits, .. } = self;
-        let format = &|value| format::fixed(value, digits);
+        let format = &|value| text::fixed(value, digits);
         let number = DragNumber { name, value, unit, speed, width, format };
         number.show(ui, is_editing, actions, set).on_hover_text(self.tooltip);
     }

@@ -9,16 +9,16 @@ use egui::{
 };
 
 use super::gizmo::screen::ScreenProjection;
-use super::gizmo::{Gizmo, locked_axis, view_axes};
+use super::gizmo::{Gizmo, locked_axis};
 use super::keyboard::{self, focus};
-use super::{commands, mouse_hints, pose_summary, why};
+use super::{commands, pose_summary, status_bar};
 use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, Grip, JointEdit,
     PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
 };
-use navigation::{motion, show_cursor, wheel};
+use navigation::{covers_view_axes, motion, show_cursor, view_axes, wheel};
 
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside
 /// it.
@@ -26,7 +26,7 @@ const PANEL_EDGE: f32 = 4.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Rect {
     // What follows, and the status bar, say what is found here.
-    why::found(ui, session);
+    pose_summary::found(ui, session);
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
     // The edges are those of the resizable panels beside the view.
     let inside = rect.shrink(PANEL_EDGE);
@@ -42,21 +42,21 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     let mouse = ui.input(|input| input.pointer.latest_pos());
     let held_grip = session.history().drag().map(Drag::grip);
 
-    let on_view_axes = mouse.is_some_and(|at| view_axes::covers(rect, at));
+    let on_view_axes = mouse.is_some_and(|at| covers_view_axes(rect, at));
     let over = response.contains_pointer() && !on_view_axes;
     let is_held = (held_grip.is_some() || session.view().drag().is_some())
         && !ui.input(|input| input.pointer.any_released());
     let pointed = mouse.filter(|_| over && !is_held);
     let pointed = pointed.map(|at| pointed_at(session, &screen, &gizmo, at));
     let Pointed { grip: pointed, lit } = pointed.unwrap_or_default();
-    mouse_hints::set_pointed(ui, pointed);
+    status_bar::set_pointed(ui, pointed);
     if held_grip.is_none() && session.view().drag().is_none() {
         light_up(ui, session, lit, actions);
     }
     notes::drag_the_hand(ui, session, &screen);
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
-    view_axes::ui(ui, rect, session, actions);
+    view_axes(ui, rect, session, actions);
     notes::why_not_reached(ui, session, &screen, actions);
     notes::follow_mouse(ui, session, rect, actions);
     if has_joints(session) && !session.skeleton_rig().has_bones() {
@@ -318,7 +318,7 @@ fn press(
         if session.history().is_editing() || !matches!(drag, ViewportDrag::Nothing) {
             continue;
         }
-        let on_view_axes = view_axes::covers(screen.rect, pos);
+        let on_view_axes = covers_view_axes(screen.rect, pos);
         let can_take = button == PointerButton::Primary && !modifiers.alt && !on_view_axes;
         // Ctrl and Shift clicks select and add joints.
         let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);

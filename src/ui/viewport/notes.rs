@@ -9,7 +9,7 @@ use egui::{
 use crate::document::RigKind;
 use crate::session::{Actions, Session, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
-use crate::ui::{style, why};
+use crate::ui::{pose_summary, style};
 
 /// Width of the text, in points.
 const WIDTH: f32 = 232.0;
@@ -29,7 +29,7 @@ pub(in crate::ui) fn why_not_reached(
     let is_shown = session.rig() == RigKind::Skeleton
         && session.crowd().is_none()
         && session.solvers().runs().next().is_none();
-    let Some(found) = why::found(ui, session).first().filter(|_| is_shown) else { return };
+    let Some(found) = pose_summary::found(ui, session).first().filter(|_| is_shown) else { return };
     let Some(report) = session.target_report(found.target) else { return };
     let Some(target) = screen.place(report.position) else { return };
     let id = Id::unique("why not reached");
@@ -45,8 +45,8 @@ pub(in crate::ui) fn why_not_reached(
     Area::new(id).order(Order::Middle).fixed_pos(at.min).constrain_to(room).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
             ui.set_width(WIDTH);
-            why::cause(ui, session, found);
-            why::remedies(ui, session, found, 1, actions);
+            pose_summary::cause(ui, session, found);
+            pose_summary::remedies(ui, session, found, 1, actions);
         });
     });
 }

@@ -2,18 +2,14 @@
 
 mod buttons;
 mod choices;
-mod error_label;
-pub(in crate::ui) mod format;
 mod number;
 pub(in crate::ui) mod plot;
 mod section;
 mod slider;
-mod sliders;
-pub(in crate::ui) mod symbol;
+pub(in crate::ui) mod text;
 
 pub(in crate::ui) use buttons::{Icon, IconButton, KeyButton, button, diamond, primary_button};
 pub(in crate::ui) use choices::{Choice, Segment, Tab, check_boxes, segments, tabs};
-pub(in crate::ui) use error_label::error_label;
 pub(in crate::ui) use number::{DragNumber, NumberField, frame_rate};
 pub(in crate::ui) use plot::colour_bar;
 pub(in crate::ui) use section::{
@@ -21,6 +17,7 @@ pub(in crate::ui) use section::{
     section_with, term_pair,
 };
 pub(in crate::ui) use slider::Slider;
-pub(in crate::ui) use sliders::{
+pub(in crate::ui) use slider::{
     AXES, PointSliders, angle_slider, euler_sliders, soft_reach_sliders,
 };
+pub(in crate::ui) use text::error_label;

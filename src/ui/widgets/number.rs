@@ -5,7 +5,7 @@ use std::cell::Cell;
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
-use super::format;
+use super::text;
 use crate::document::Timeline;
 use crate::session::{Action, Actions, Session, ShellAction, TransactionAction};
 use crate::ui::keyboard::focus;
@@ -148,7 +148,7 @@ impl NumberField<'_> {
         set: impl Fn(f32) -> A,
     ) -> Response {
         let digits = self.digits;
-        let format = |value| format::fixed(value, digits);
+        let format = |value| text::fixed(value, digits);
         self.show_as(ui, session, actions, &format, set)
     }
 

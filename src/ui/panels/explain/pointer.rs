@@ -6,8 +6,8 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::drawing::{FigureLine, Labels, Lit, around, beside};
-use super::formulas::{FormulaRow, degrees, length, table};
+use super::figures::{FigureLabels, FigureLine, Lit, arc, around, beside};
+use super::figures::{FormulaRow, degrees, length, table};
 use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
 use crate::ui::style;
@@ -98,15 +98,14 @@ impl RightTriangle {
     }
 
     fn lines(&self, shoulder: Pos2, corner: Pos2, cursor: Pos2) -> [FigureLine; 4] {
-        const STEPS: u8 = 24;
-        let arc = (0..=STEPS).map(|step| {
-            let part = f32::from(step) / f32::from(STEPS);
-            shoulder + ARC * Vec2::angled(part * self.angle)
-        });
-        let points =
-            [vec![shoulder, corner], vec![corner, cursor], vec![shoulder, cursor], arc.collect()];
-        let mut points = points.into_iter();
-        self.figures.map(|figure| FigureLine { figure, points: points.next().unwrap_or_default() })
+        let [first, second, hypotenuse, angle] = self.figures;
+        [
+            (first, vec![shoulder, corner]),
+            (second, vec![corner, cursor]),
+            (hypotenuse, vec![shoulder, cursor]),
+            (angle, arc(shoulder, ARC, 0.0, self.angle)),
+        ]
+        .map(|(figure, points)| FigureLine { figure, points })
     }
 
     fn paint(&self, painter: &Painter, ui: &Ui, lines: &[FigureLine; 4]) {
@@ -133,7 +132,7 @@ impl RightTriangle {
         let [text, weak, accent] = colours(ui);
         let sides = [(shoulder, corner), (corner, cursor), (shoulder, cursor)];
         let lines = sides.map(|(from, to)| [from, to]).to_vec();
-        let mut labels = Labels::new(painter, ui, lines);
+        let mut labels = FigureLabels::new(painter, ui, lines);
         for (nth, colour) in [(2, text), (0, weak), (1, weak)] {
             let (from, to) = sides[nth];
             let both = [beside(from, to), beside(to, from)].concat();
@@ -147,8 +146,7 @@ impl RightTriangle {
 
 /// Colours of the text, of what is quieter, and of angles.
 fn colours(ui: &Ui) -> [Color32; 3] {
-    let accent = style::colour(style::palette(ui).accent);
-    [ui.visuals().text_color(), ui.visuals().weak_text_color(), accent]
+    [ui.visuals().text_color(), ui.visuals().weak_text_color(), style::accent(ui)]
 }
 
 fn rows(session: &Session) -> [FormulaRow; 4] {
@@ -160,7 +158,6 @@ fn rows(session: &Session) -> [FormulaRow; 4] {
             formula: "atan2(z_c, x_c)",
             value: degrees(pose.yaw()),
             meaning: "Angle of the Pointer about the vertical, from x towards z",
-            colour: None,
             figure: Some(ArmFigure::Yaw),
         },
         FormulaRow {
@@ -168,7 +165,6 @@ fn rows(session: &Session) -> [FormulaRow; 4] {
             formula: "hypot(x_c, z_c)",
             value: length(arm, cursor.x.hypot(cursor.z)),
             meaning: "Horizontal distance from the Root to the Cursor (x_c, y_c, z_c)",
-            colour: None,
             figure: Some(ArmFigure::Level),
         },
         FormulaRow {
@@ -176,7 +172,6 @@ fn rows(session: &Session) -> [FormulaRow; 4] {
             formula: "atan2(y_c, h_c)",
             value: degrees(pose.pitch()),
             meaning: "Angle of the Pointer above the xz-plane",
-            colour: None,
             figure: Some(ArmFigure::Pitch),
         },
         FormulaRow {
@@ -184,7 +179,6 @@ fn rows(session: &Session) -> [FormulaRow; 4] {
             formula: if arm.soft_reach.is_hard() { "|c|, limited" } else { "|c|, softened" },
             value: length(arm, pose.distance),
             meaning: "Distance from shoulder to hand: the Cursor's, within the limits",
-            colour: None,
             figure: Some(ArmFigure::Distance),
         },
     ]

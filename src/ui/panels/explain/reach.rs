@@ -15,7 +15,7 @@ use crate::kinematics::soft_reach::{HandDistance, ReachLimits, SoftReach};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::session::Session;
 use crate::ui::style;
-use crate::ui::widgets::{format, plot};
+use crate::ui::widgets::{plot, text};
 
 /// Draws the inner limit, the reachable range and the Cursor along a bar from the shoulder.
 pub(in crate::ui) fn meter(ui: &mut Ui, session: &Session) {
@@ -24,7 +24,7 @@ pub(in crate::ui) fn meter(ui: &mut Ui, session: &Session) {
     const BEYOND: f32 = 1.25;
     let arm = session.arm();
     let ReachLimits { inner, outer } = arm.reach_limits();
-    let decimals = format::decimals_of_cell(arm.grid_cell());
+    let decimals = text::decimals_of_cell(arm.grid_cell());
     let shown = |length: f32| ShownLength { length, decimals }.to_string();
     let (what, distance) = if arm.uses_ik() {
         ("Cursor", arm.cursor_in_root().length())
@@ -152,7 +152,7 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
     // Capped so that the limits stay readable.
     let most = f64::from(longest.min(4.0)) + 0.2;
-    let decimals = format::decimals_of_cell(arm.grid_cell());
+    let decimals = text::decimals_of_cell(arm.grid_cell());
     let length =
         move |part: f64| ShownLength { length: (part * outer) as f32, decimals }.to_string();
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };

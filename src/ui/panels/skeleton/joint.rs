@@ -10,7 +10,7 @@ use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
 use crate::session::{Actions, Edit, JointEdit, Session};
 use crate::ui::widgets::Choice;
-use crate::ui::widgets::{self, AXES, NumberField, Slider, format};
+use crate::ui::widgets::{self, AXES, NumberField, Slider, text};
 use crate::ui::{labels, style};
 
 const STIFF: &str = "The limits leave one angle only";
@@ -133,7 +133,7 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
                     value,
                     unit: "",
                     step,
-                    digits: format::decimals(step),
+                    digits: text::decimals(step),
                     tooltip,
                 }
                 .show(ui, session, actions, |value| {
@@ -152,7 +152,7 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
             value: length,
             unit: "",
             step,
-            digits: format::decimals(step),
+            digits: text::decimals(step),
             tooltip,
         }
         .show(ui, session, actions, |length| {

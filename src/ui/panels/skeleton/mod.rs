@@ -1,31 +1,27 @@
-//! The joints, targets and path of the skeleton.
+//! The joints, targets, skin and path of the skeleton. A path is a wavy ring, or the path of the
+//! chain's head or of the head's target.
 
-mod follow_path;
 mod joint;
 mod outliner;
 mod skin;
 mod targets;
 
-pub(in crate::ui) use targets::note_height;
-
 use egui::Ui;
 use glam::Vec3;
 
-use crate::document::{Channel, RigKind, Target};
-use crate::session::{Actions, JointEdit, Session};
-use crate::ui::widgets::{self, AXES, PointSliders};
+use crate::document::{Channel, PathKind, RigKind, Target, WavyRing};
+use crate::kinematics::skeleton::JointId;
+use crate::session::{Actions, JointEdit, PathEdit, Session};
+use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
+
+pub(super) use skin::areas as skin_areas;
+pub(super) use targets::{note, note_height};
 
 /// The target of the selected joint, of which the panel has a note; `None` without one.
 pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
     let selected = session.selection().active().filter(|_| session.rig() == RigKind::Skeleton)?;
     let rig = session.skeleton_rig();
     rig.target_of_end(selected).map(|index| rig.targets[index])
-}
-
-/// Shows whether a target is reached and, if not, why, with what helps. It stands at the foot of
-/// the panel, always as high, so that no row moves under the mouse when a slider is let go.
-pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    targets::note(ui, session, &target, actions);
 }
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -48,7 +44,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
     widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
     widgets::section(ui, "Translation", |ui| place(ui, session, actions));
-    widgets::section(ui, "Path", |ui| follow_path::ui(ui, session, actions));
+    widgets::section(ui, "Path", |ui| path(ui, session, actions));
 }
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -65,4 +61,117 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         channel: Some(Channel::Translation),
     };
     place.show(ui, session, actions, JointEdit::SetTranslation);
+}
+
+/// Shows the path that the chain of a root follows.
+fn path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let Some(root) = shown_root(session) else { return };
+    choice(ui, session, root, actions);
+    match rig.path_kind(root) {
+        Some(PathKind::Ring(ring)) => sliders(ui, session, root, ring, actions),
+        Some(PathKind::Head) => head(ui, session, root, actions),
+        Some(PathKind::Target) if rig.target(root).is_none() => {
+            ui.weak("Add a target to the head: the body follows its path.");
+        }
+        Some(PathKind::Target) | None => {}
+    }
+}
+
+/// The root above the selected joint; without a selection the first with a path, else the first
+/// root.
+fn shown_root(session: &Session) -> Option<JointId> {
+    let rig = session.skeleton_rig();
+    let selected = session.selection().active().and_then(|joint| rig.root_of(joint));
+    let with_path = rig.follow_paths.first().map(|path| path.root);
+    selected.or(with_path).or_else(|| rig.skeleton.ids().next())
+}
+
+fn choice(ui: &mut Ui, session: &Session, root: JointId, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let now = rig.path_kind(root);
+    let is_ring = matches!(now, Some(PathKind::Ring(_)));
+    let ring = PathKind::Ring(default_ring(rig.reach()));
+    let by_head = "Drag and key the head; the body follows its path";
+    let by_target = "Move the head's target; the body follows its path";
+    let choices = [
+        (now.is_none(), "None", "Pose all joints by their own angles", None),
+        (now == Some(PathKind::Head), "Head", by_head, Some(PathKind::Head)),
+        (now == Some(PathKind::Target), "Target", by_target, Some(PathKind::Target)),
+        (is_ring, "Wavy ring", "Move along a wavy ring without keys", Some(ring)),
+    ];
+    let shown = choices.iter().find(|(is_now, ..)| *is_now).map_or("", |(_, name, ..)| name);
+    let name = &rig.skeleton[root].name;
+    let tooltip = &format!("Let the chain of {name} follow a path, like a snake");
+    Choice { label: "Follow", name: "Follow path", tooltip, shown }.show(ui, |list| {
+        for (is_now, name, tooltip, kind) in choices {
+            if list.item(is_now, name, tooltip, None) {
+                actions.push(PathEdit::SetFollowPath { root, kind });
+            }
+        }
+    });
+}
+
+/// Default ring of a skeleton with this reach.
+fn default_ring(reach: f32) -> WavyRing {
+    WavyRing { radius: 0.6 * reach, amplitude: 0.1 * reach, waves: 5, period: 20.0 }
+}
+
+fn head(ui: &mut Ui, session: &Session, head: JointId, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let place = PointSliders {
+        name: "Head",
+        labels: AXES,
+        value: rig.skeleton[head].offset,
+        default: Vec3::ZERO,
+        range: 2.0 * rig.reach(),
+        step: session.shown().grid_cell() * 0.1,
+        tooltip: "Move the head in skeleton space; the body follows",
+        disabled: None,
+        channel: Some(Channel::Offset(head)),
+    };
+    place.show(ui, session, actions, |to| PathEdit::SetHead { root: head, to });
+    if !rig.head_tracks.contains_key(&head) {
+        ui.weak("Drag the circle at the head, or key the head: the body follows.");
+    }
+}
+
+fn sliders(ui: &mut Ui, session: &Session, root: JointId, ring: WavyRing, actions: &mut Actions) {
+    let reach = session.skeleton_rig().reach();
+    let default = default_ring(reach);
+    let step = session.shown().grid_cell() * 0.1;
+    let set = |ring| PathEdit::SetFollowPath { root, kind: Some(PathKind::Ring(ring)) };
+    let slider = |name, tooltip, value, range, default| Slider {
+        name,
+        label: name,
+        tooltip,
+        value,
+        range,
+        default,
+        step,
+        ..Slider::default()
+    };
+    let (tooltip, range) = ("Set the radius of the ring", (0.0, 2.0 * reach));
+    slider("Radius", tooltip, ring.radius, range, default.radius).show(
+        ui,
+        session,
+        actions,
+        |radius| set(WavyRing { radius, ..ring }),
+    );
+    let (tooltip, range) = ("Set the height of the waves", (0.0, 0.5 * reach));
+    slider("Amplitude", tooltip, ring.amplitude, range, default.amplitude).show(
+        ui,
+        session,
+        actions,
+        |amplitude| set(WavyRing { amplitude, ..ring }),
+    );
+    let (tooltip, range) = ("Set the number of waves around the ring", (0.0, 16.0));
+    let waves = slider("Waves", tooltip, ring.waves as f32, range, default.waves as f32);
+    Slider { step: 1.0, ..waves }.show(ui, session, actions, |waves| {
+        set(WavyRing { waves: waves.round().clamp(0.0, 1000.0) as u32, ..ring })
+    });
+    let (tooltip, range) = ("Set the time for one revolution", (1.0, 60.0));
+    let period = slider("Period", tooltip, ring.period, range, default.period);
+    Slider { step: 1.0, unit: " s", ..period }
+        .show(ui, session, actions, |period| set(WavyRing { period, ..ring }));
 }

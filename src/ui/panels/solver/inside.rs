@@ -11,7 +11,7 @@ use crate::session::{
     Actions, InsideLayer, Session, SolverAction, SolverEdit, SolverRun, ViewAction,
 };
 use crate::ui::keyboard::focus;
-use crate::ui::widgets::{self, format};
+use crate::ui::widgets::{self, text};
 use crate::ui::{commands, style};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -236,7 +236,7 @@ fn numbers(ui: &mut Ui, session: &Session, run: &SolverRun, shown: usize) {
     pairs(
         ui,
         "error",
-        &[("Error before", format::short(before)), ("Error after", format::short(part.error))],
+        &[("Error before", text::short(before)), ("Error after", text::short(part.error))],
     );
 }
 
@@ -250,7 +250,7 @@ fn jacobian(ui: &mut Ui, session: &Session, gradient: &Gradient) {
             let name = format!("{} {}", name(session, column.joint), column.axis);
             (column.by.length(), name)
         })
-        .map(|(speed, name)| [name, format::short(speed)])
+        .map(|(speed, name)| [name, text::short(speed)])
         .collect();
     rows.truncate(MOST);
     table(ui, "columns", ["Angle", "Column, per radian"], &rows);
@@ -265,10 +265,10 @@ fn singular_values(ui: &mut Ui, ellipsoid: &Ellipsoid, damping: f32) {
         .values
         .iter()
         .zip(gains)
-        .map(|(value, gain)| [format::short(*value), format!("{:.0} %", 100.0 * gain)])
+        .map(|(value, gain)| [text::short(*value), format!("{:.0} %", 100.0 * gain)])
         .collect();
     table(ui, "ellipsoid", ["Singular value σ", "Kept: σ²/(σ² + λ²)"], &rows);
-    pairs(ui, "damping", &[("Damping λ, as a length", format::short(damping))]);
+    pairs(ui, "damping", &[("Damping λ, as a length", text::short(damping))]);
 }
 
 /// Gradient and change of the angles that turn most, and the length of the step.
@@ -282,14 +282,14 @@ fn angles(ui: &mut Ui, session: &Session, step: &StepTaken) {
             let limit = if change.is_at_limit { " limit" } else { "" };
             [
                 format!("{} {}{limit}", name(session, change.joint), change.axis),
-                format::short(change.gradient),
+                text::short(change.gradient),
                 format!("{:+.2}°", change.by.to_degrees()),
             ]
         })
         .collect();
     table(ui, "angles", ["Angle", "Gradient", "Δθ"], &rows);
-    let length = step.length.map(|length| ("Step length τ", format::short(length)));
-    let damping = step.damping.map(|damping| ("Damping λ, as a length", format::short(damping)));
+    let length = step.length.map(|length| ("Step length τ", text::short(length)));
+    let damping = step.damping.map(|damping| ("Damping λ, as a length", text::short(damping)));
     let refused = (step.refused > 0).then(|| ("Refused before", step.refused.to_string()));
     let rows: Vec<_> = [length, damping, refused].into_iter().flatten().collect();
     pairs(ui, "step", &rows);

@@ -1,16 +1,14 @@
 //! The solver of the skeleton: method, settings, status, convergence and comparison.
 
-mod comparison;
-mod convergence;
 mod inside;
-mod skin_areas;
+mod runs;
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, Session, ShownIteration, SolverAction, SolverEdit};
-use crate::ui::widgets::{self, NumberField, format};
-use comparison::why_not;
+use crate::ui::widgets::{self, NumberField, text};
+use runs::why_not;
 
 /// The method and its settings, a run of it, and the iterations of that run.
 pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -36,16 +34,11 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
 
 /// All solvers on the same targets.
 pub(in crate::ui) fn race(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    comparison::ui(ui, session, actions);
+    runs::race(ui, session, actions);
     let empty =
         "The race runs every solver from the same pose, each as a thin figure in its colour.";
     ui.add_space(4.0);
     iterations(ui, session, empty, actions);
-}
-
-/// The cross-section of the skin for each way of blending joints.
-pub(in crate::ui) fn skin(ui: &mut Ui, session: &Session) {
-    skin_areas::ui(ui, session);
 }
 
 /// Shows the errors of the shown runs and the slider through their iterations; without a run,
@@ -59,8 +52,8 @@ fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions
         return;
     };
     ui.weak("Up: error · across: iterations · dashed: tolerance");
-    convergence::ui(ui, session);
-    convergence::iteration(ui, session, shown, actions);
+    runs::convergence(ui, session);
+    runs::iteration(ui, session, shown, actions);
 }
 
 fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -170,7 +163,7 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             if let Some(tolerance) = options.tolerance {
                 let tooltip = "Set the distance at which a tip has converged";
                 let step = 0.05 * tolerance;
-                let short = |value: f64| format::short(value as f32);
+                let short = |value: f64| text::short(value as f32);
                 NumberField {
                     name: "Tolerance",
                     value: tolerance,
@@ -231,7 +224,7 @@ fn report(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.label(shown).on_hover_text("The pose that error and status describe")
     });
     widgets::term_pair(ui, "Error", "Error", actions, |ui, _| {
-        value(ui, status.map_or_else(none, |status| format::short(status.error)))
+        value(ui, status.map_or_else(none, |status| text::short(status.error)))
             .on_hover_text("Largest distance from a tip to its target")
     });
     widgets::pair(ui, "Status", |ui| {

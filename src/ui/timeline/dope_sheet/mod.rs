@@ -1,7 +1,6 @@
 //! The dope sheet: a row for all keys and one for every keyed channel.
 
 pub(super) mod mouse;
-pub(super) mod row;
 
 use egui::containers::scroll_area::{DragScroll, ScrollSource};
 use egui::{
@@ -9,15 +8,14 @@ use egui::{
     accesskit, pos2, vec2,
 };
 
-use super::areas::{self, ROW, TimelineAreas};
 use super::context_menu;
+use super::rows::{self, DopeSheetRow, ROW, SelectedKeys, TimelineAreas, channels};
 use super::time_scale::TimeScale;
 use crate::document::Channel;
 use crate::session::{Actions, SelectAction, Session};
 use crate::ui::widgets::diamond;
 use crate::ui::{labels, style};
 use mouse::DopeSheetView;
-use row::{DopeSheetRow, SelectedKeys, channels};
 
 /// Distance in points from the centre of a key's diamond to a corner.
 const SIZE: f32 = 5.0;
@@ -37,7 +35,7 @@ pub(in crate::ui) fn ui(
     let channels = channels(session);
     if channels.is_empty() {
         let sentence = "No keys. Pose the rig and press K to add keys at the playhead";
-        areas::hint(ui, areas, sentence);
+        rows::hint(ui, areas, sentence);
         return;
     }
     let body = ui.interact(areas.keys, Id::unique("timeline rows"), Sense::click_and_drag());
@@ -101,7 +99,7 @@ impl DopeSheet<'_> {
         ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, line));
         match row {
             DopeSheetRow::All => {
-                areas::line(ui, name, "All", ui.visuals().strong_text_color());
+                rows::line(ui, name, "All", ui.visuals().strong_text_color());
             }
             DopeSheetRow::Channel(channel) => self.name(ui, channel, name, actions),
         }
@@ -124,7 +122,7 @@ impl DopeSheet<'_> {
         response.widget_info(|| {
             WidgetInfo::selected(Role::Button, true, selected, format!("Channel {shown}"))
         });
-        areas::paint_state(ui, rect, selected, &response);
+        rows::paint_state(ui, rect, selected, &response);
         let visuals = ui.visuals();
         let is_of_rig = channel.rig().is_none_or(|rig| rig == session.rig());
         let colour = match (selected || response.hovered(), is_of_rig) {
@@ -132,10 +130,10 @@ impl DopeSheet<'_> {
             (false, true) => visuals.text_color(),
             (false, false) => visuals.weak_text_color(),
         };
-        areas::line(ui, rect, &shown, colour);
+        rows::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();
-            actions.push(row::clicked(ui, session, channel));
+            actions.push(rows::clicked(ui, session, channel));
         }
         context_menu::of_channel(&response, session, channel, actions);
         response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));

@@ -3,13 +3,13 @@
 use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
 use glam::Vec3;
 
-use super::row::{DopeSheetRow, SelectedKeys};
 use crate::document::Channel;
 use crate::session::{
     Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
 };
-use crate::ui::timeline::areas::{ROW, take_keyboard};
 use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
+use crate::ui::timeline::rows::{DopeSheetRow, SelectedKeys};
+use crate::ui::timeline::rows::{ROW, take_keyboard};
 use crate::ui::timeline::time_scale::TimeScale;
 use crate::ui::{labels, style};
 

@@ -10,9 +10,8 @@ use crate::document::Channel;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, SelectAction, Session};
 use crate::ui::labels;
-use crate::ui::timeline::areas::{self, ROW, TimelineAreas, VALUES};
 use crate::ui::timeline::context_menu;
-use crate::ui::timeline::dope_sheet::row;
+use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
 
 /// Width in points of one colour beside a name.
 const SWATCH: f32 = 6.0;
@@ -68,7 +67,7 @@ fn joint_name(
     let is_selected = selected.contains(&joint);
     let (rect, response) =
         item(ui, ("timeline joint", joint), is_selected, &format!("Curves of joint {name}"));
-    areas::line(ui, rect, name, ui.visuals().strong_text_color());
+    rows::line(ui, rect, name, ui.visuals().strong_text_color());
     if response.clicked() {
         ruler.request_focus();
         let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
@@ -111,10 +110,10 @@ fn channel_name(
         (false, true) => ui.visuals().text_color(),
         (false, false) => ui.visuals().weak_text_color(),
     };
-    areas::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
+    rows::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
     if response.clicked() {
         ruler.request_focus();
-        actions.push(row::clicked(ui, session, *channel));
+        actions.push(rows::clicked(ui, session, *channel));
     }
     context_menu::of_channel(&response, session, *channel, actions);
     let axes = if colours.len() == 3 { ", x, y and z in axis colours" } else { "" };
@@ -133,6 +132,6 @@ fn item(
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let response = ui.interact(rect, Id::unique(id), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, said.to_owned()));
-    areas::paint_state(ui, rect, is_selected, &response);
+    rows::paint_state(ui, rect, is_selected, &response);
     (rect, response)
 }

@@ -1,23 +1,20 @@
 //! The graph editor: keyed values over time.
 
-mod axes;
 mod legend;
 mod mouse;
 
 use egui::{Color32, Id, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo};
 use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
 
-use super::areas::{self, TimelineAreas, VALUES, take_keyboard};
-use super::dope_sheet::row;
 use super::drag::{self, TimelineDrag};
+use super::rows::{self, TimelineAreas, VALUES, take_keyboard};
 use super::time_scale::TimeScale;
-use super::value_scale::{ChannelCurve, ValueKind, ValueScales};
+use super::value_scale::{self, AxisSides, ChannelCurve, ValueKind, ValueScales};
 use super::{context_menu, ruler};
 use crate::document::{Channel, RigKind};
 use crate::session::{Actions, Session};
 use crate::ui::widgets::plot;
 use crate::ui::{labels, style};
-use axes::AxisSides;
 use legend::LegendEntry;
 use mouse::GraphView;
 
@@ -38,7 +35,7 @@ pub(in crate::ui) fn ui(
 ) {
     let listed = listed(session);
     if listed.is_empty() {
-        areas::hint(ui, areas, hint(session));
+        rows::hint(ui, areas, hint(session));
         return;
     }
     let drawn = drawn(session, &listed);
@@ -57,7 +54,7 @@ pub(in crate::ui) fn ui(
     legend::ui(ui, session, areas, &entries, ruler, actions);
     let scales = scales(ui, areas, &drawn, &curves);
     let metres = session.document().metres_per_unit();
-    axes::ui(ui, scales, sides(&drawn), areas.keys, metres);
+    value_scale::axes(ui, scales, sides(&drawn), areas.keys, metres);
     plot(ui, scale, areas, &curves, scales);
     let graph = GraphView { session, scale, area: areas.keys, scales, curves: &curves };
     mouse::paint(ui, &graph);
@@ -101,7 +98,7 @@ fn listed(session: &Session) -> Vec<Channel> {
         let is_selected = selected.is_empty() || own.into_iter().any(|it| selected.contains(&it));
         channel.rig() == Some(session.rig()) && (session.rig() == RigKind::Arm || is_selected)
     };
-    let mut listed: Vec<Channel> = row::channels(session).into_iter().filter(is_listed).collect();
+    let mut listed: Vec<Channel> = rows::channels(session).into_iter().filter(is_listed).collect();
     // Channels of one joint stand together.
     listed.sort_by_key(|channel| labels::joint_of_channel(session, *channel));
     listed.truncate(MOST);

@@ -1,19 +1,19 @@
-//! The list of targets with their distances, and the target of the selected joint.
+//! The list of targets with their distances; the target of the selected joint, and a note on whether
+//! it is reached and, if not, why, with what helps.
 
 mod limb;
-mod status;
 
-pub(in crate::ui) use status::{height as note_height, ui as note};
-
-use egui::{RichText, Role, Ui, WidgetInfo};
+use egui::{RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
+use crate::kinematics::chain_ik::Status;
+use crate::kinematics::diagnosis::Diagnosis;
+use crate::kinematics::limb_ik::LimbReach;
 use crate::kinematics::skeleton::JointId;
-use crate::rig::{TargetKind, TargetReport};
+use crate::rig::{TargetKind, TargetOutcome, TargetReport};
 use crate::session::{Actions, PlaybackAction, SelectAction, Session, TargetEdit};
-use crate::ui::labels;
-use crate::ui::widgets::Choice;
-use crate::ui::widgets::{self, AXES, NumberField, PointSliders, Slider, format};
+use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, Slider, text};
+use crate::ui::{labels, pose_summary, style};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
@@ -59,12 +59,12 @@ fn row(
 /// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if
 /// nothing is.
 fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
-    let distance = format::short(report.error);
+    let distance = text::short(report.error);
     if report.error > tolerance {
         let missing = ui.label(RichText::new(distance).monospace());
         missing.on_hover_text("Distance from tip to target");
     } else if let Some(angle) = report.rotation_error.filter(|_| report.misses_rotation()) {
-        let missing = ui.label(RichText::new(format::degrees(angle)).monospace());
+        let missing = ui.label(RichText::new(text::degrees(angle)).monospace());
         missing.on_hover_text("Rotation that is missing");
     } else {
         let tick = ui.label(RichText::new("✓").color(ui.visuals().weak_text_color()));
@@ -213,7 +213,7 @@ fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &m
             value: target.motion.radius,
             unit: "",
             step,
-            digits: format::decimals(step),
+            digits: text::decimals(step),
             tooltip: "Set the radius of the path",
         };
         radius.show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
@@ -229,4 +229,109 @@ fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &m
         };
         period.show(ui, session, actions, |period| set(TargetMotion { period, ..target.motion }));
     });
+}
+
+/// Height with the line above, in points, in a panel of a height: a fifth of it, but enough for a
+/// cause and a remedy.
+pub(in crate::ui) fn note_height(panel: f32) -> f32 {
+    const RANGE: (f32, f32) = (116.0, 150.0);
+    (0.2 * panel).clamp(RANGE.0, RANGE.1).round()
+}
+
+/// Shows the note on a target at constant height.
+pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+    let Some(report) = session.target_report(target.joint) else { return };
+    let (rig, is_held) =
+        (session.skeleton_rig(), pose_summary::is_held(ui) || session.history().is_editing());
+    let index = rig.target(target.joint);
+    let why = index.map_or(&[][..], |index| {
+        if is_held { session.known_why_target(index) } else { session.why_target(index) }
+    });
+    ui.separator();
+    ScrollArea::vertical().id_salt("note").auto_shrink(false).show(ui, |ui| {
+        let end = end(rig, target).map_or("", |end| end.1);
+        ui.spacing_mut().item_spacing.y = 3.0;
+        if why.is_empty() {
+            ui.strong(format!("Target of {end}"));
+            status(ui, session, target, report);
+        } else {
+            explain(ui, session, (end, report), why, actions);
+        }
+    });
+}
+
+fn status(ui: &mut Ui, session: &Session, target: &Target, report: &TargetReport) {
+    let text = text(session, target, report);
+    let is_reached = match &report.outcome {
+        TargetOutcome::Off | TargetOutcome::Leads => true,
+        _ if target.influence < 1.0 => true,
+        _ if report.misses_rotation() => false,
+        TargetOutcome::WholeBody(report) => report.converged(),
+        TargetOutcome::Limb(limb) => limb.reach == LimbReach::Reached,
+        TargetOutcome::Refused(_) | TargetOutcome::NoLimb(_) => false,
+    };
+    let colour = if is_reached { ui.visuals().weak_text_color() } else { style::accent(ui) };
+    ui.label(RichText::new(text).color(colour));
+}
+
+/// Shows how far a target is from being reached, each cause and its remedies.
+fn explain(
+    ui: &mut Ui,
+    session: &Session,
+    (end, report): (&str, &TargetReport),
+    causes: &[Diagnosis],
+    actions: &mut Actions,
+) {
+    let text = match missing_rotation(report) {
+        Some(missing) if report.error <= session.skeleton_rig().tolerance() => missing,
+        _ => format!("{} away", text::short(report.error)),
+    };
+    let heading = RichText::new(format!("{end} not reached: {text}"));
+    ui.label(heading.color(style::accent(ui)));
+    for found in causes {
+        pose_summary::cause(ui, session, found);
+        ui.horizontal_wrapped(|ui| pose_summary::remedies(ui, session, found, usize::MAX, actions));
+    }
+}
+
+fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
+    let gap = text::short(report.error);
+    let is_blended = target.influence < 1.0;
+    match &report.outcome {
+        TargetOutcome::Off if !target.enabled => "Disabled: the joint angles alone pose it".into(),
+        TargetOutcome::Off => "Influence 0: the joint angles alone pose it".into(),
+        TargetOutcome::Leads => "Leads the head: the body follows its path".into(),
+        TargetOutcome::WholeBody(_) | TargetOutcome::Limb(_) if is_blended => {
+            format!("Blended with the FK pose, {gap} from the target")
+        }
+        TargetOutcome::WholeBody(report) => match report.status {
+            Status::Converged => format!("Reached after {} iterations", report.iterations),
+            Status::Iterating | Status::Stalled | Status::OutOfIterations | Status::Bounded => {
+                format!("Not reached: {gap} away, {}", report.status)
+            }
+        },
+        TargetOutcome::Limb(limb) => match limb.reach {
+            LimbReach::Reached if let Some(missing) = missing_rotation(report) => {
+                format!("Not reached: {missing}")
+            }
+            LimbReach::Reached if limb.stretch > 1.0 => {
+                format!("Reached, stretched to {:.0} %", 100.0 * limb.stretch)
+            }
+            LimbReach::Reached => "Reached".into(),
+            LimbReach::TooFar => format!("Too far away by {gap}"),
+            LimbReach::TooClose => format!("Too close by {gap}"),
+            LimbReach::Limited(joint) => {
+                let name = session.skeleton().joint(joint).map_or("", |joint| &joint.name);
+                format!("Not reached: {gap} away, at the limits of {name}")
+            }
+        },
+        TargetOutcome::Refused(error) => format!("Not solved: {error}"),
+        TargetOutcome::NoLimb(error) => format!("No limb: {error}"),
+    }
+}
+
+/// The rotation that is missing, in words; `None` for a hand that is turned as its target asks.
+fn missing_rotation(report: &TargetReport) -> Option<String> {
+    let angle = report.rotation_error.filter(|_| report.misses_rotation())?;
+    Some(format!("{} of its rotation missing", text::degrees(angle)))
 }

@@ -1,14 +1,20 @@
-//! Parts of the drawings: lines that light up, here and in the view, and labels beside the lines,
-//! where they cover nothing.
+//! Figures of the arm that light up, here and in the view: lines of drawings with labels beside
+//! them, where they cover nothing, and rows of quantities with symbol, formula and value.
 
 use core::f32::consts::PI;
 use std::sync::Arc;
 
-use egui::{Color32, Galley, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, vec2};
+use egui::{
+    Align, Color32, Galley, Grid, Layout, Painter, Pos2, Rect, Response, RichText, Shape, Stroke,
+    Ui, Vec2, vec2,
+};
+use glam::Vec3;
 
+use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
+use crate::ui::gizmo::screen::to_segment;
 use crate::ui::style;
-use crate::ui::widgets::symbol;
+use crate::ui::widgets::text;
 
 /// Distance from the mouse to a line that it points at, in points.
 const NEAR: f32 = 7.0;
@@ -42,7 +48,7 @@ impl Lit {
     /// Shows a row of the figure, with a lit background while it is lit up.
     pub fn row(&mut self, ui: &mut Ui, figure: ArmFigure, contents: impl FnOnce(&mut Ui) -> Rect) {
         let behind = ui.painter().add(Shape::Noop);
-        let rect = contents(ui).expand2(egui::vec2(4.0, 0.5 * ui.spacing().item_spacing.y));
+        let rect = contents(ui).expand2(vec2(4.0, 0.5 * ui.spacing().item_spacing.y));
         if ui.rect_contains_pointer(rect) {
             self.pointed = Some(figure);
         }
@@ -77,20 +83,15 @@ impl Lit {
 impl FigureLine {
     fn distance(&self, mouse: Pos2) -> f32 {
         let segments = self.points.windows(2);
-        let distances = segments.map(|ends| {
-            let (way, to_mouse) = (ends[1] - ends[0], mouse - ends[0]);
-            let part = (to_mouse.dot(way) / way.length_sq().max(1e-6)).clamp(0.0, 1.0);
-            (to_mouse - part * way).length()
-        });
-        distances.fold(f32::INFINITY, f32::min)
+        segments.map(|ends| to_segment(mouse, ends[0], ends[1])).fold(f32::INFINITY, f32::min)
     }
 }
 
-fn fill(ui: &Ui) -> egui::Color32 {
-    style::colour(style::palette(ui).accent).gamma_multiply(0.3)
+fn fill(ui: &Ui) -> Color32 {
+    style::accent(ui).gamma_multiply(0.3)
 }
 
-const SIZE: f32 = 13.0;
+const LABEL_SIZE: f32 = 13.0;
 
 /// A place for a label: beside a point, on the side in the direction `away`; centred on it for 0.
 #[derive(Clone, Copy)]
@@ -128,8 +129,15 @@ pub(super) fn around(corner: Pos2, arc: f32, middle: f32) -> Vec<Place> {
     [inside.concat(), behind.concat()].concat()
 }
 
+/// Points of an arc around a point. Angles are in radians, clockwise from the right.
+pub(super) fn arc(centre: Pos2, radius: f32, start: f32, turn: f32) -> Vec<Pos2> {
+    const STEPS: u8 = 24;
+    let part = |step: u8| f32::from(step) / f32::from(STEPS);
+    (0..=STEPS).map(|step| centre + radius * Vec2::angled(start + part(step) * turn)).collect()
+}
+
 /// Labels of a drawing, beside its lines.
-pub(super) struct Labels<'a> {
+pub(super) struct FigureLabels<'a> {
     painter: &'a Painter,
     ui: &'a Ui,
     /// The rectangle that labels stay in.
@@ -138,7 +146,7 @@ pub(super) struct Labels<'a> {
     written: Vec<(Rect, ArmFigure)>,
 }
 
-impl<'a> Labels<'a> {
+impl<'a> FigureLabels<'a> {
     pub fn new(painter: &'a Painter, ui: &'a Ui, lines: Vec<[Pos2; 2]>) -> Self {
         Self { painter, ui, room: painter.clip_rect().shrink(3.0), lines, written: Vec::new() }
     }
@@ -178,7 +186,7 @@ impl<'a> Labels<'a> {
     }
 
     fn galley(&self, text: &str, colour: Color32) -> Arc<Galley> {
-        self.ui.fonts_mut(|fonts| fonts.layout_job(symbol::layout(text, SIZE, colour)))
+        self.ui.fonts_mut(|fonts| fonts.layout_job(text::layout(text, LABEL_SIZE, colour)))
     }
 
     fn paint(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32, figure: ArmFigure) {
@@ -197,4 +205,119 @@ impl<'a> Labels<'a> {
             && !self.lines.iter().any(is_crossed)
             && !self.written.iter().any(|(other, _)| other.expand2(vec2(6.0, 0.0)).intersects(rect))
     }
+}
+
+const FORMULA_SIZE: f32 = 13.5;
+
+/// A quantity with symbol, formula, value and meaning.
+pub(super) struct FormulaRow {
+    pub symbol: &'static str,
+    /// Empty for a quantity that is given.
+    pub formula: &'static str,
+    pub value: String,
+    pub meaning: &'static str,
+    /// Lights up while the mouse is over the row.
+    pub figure: Option<ArmFigure>,
+}
+
+pub(super) fn table(ui: &mut Ui, id: &str, rows: &[FormulaRow], lit: &mut Lit) {
+    let right = ui.available_rect_before_wrap().right();
+    Grid::new(id).num_columns(3).min_col_width(24.0).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+        for row in rows {
+            match row.figure {
+                Some(figure) => {
+                    let is_lit = lit.shows(figure);
+                    lit.row(ui, figure, |ui| show(ui, row, is_lit, right));
+                }
+                None => {
+                    show(ui, row, false, right);
+                }
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// The colour of a figure's name: that of its limb, or else of text.
+pub(super) fn figure_colour(ui: &Ui, figure: Option<ArmFigure>) -> Color32 {
+    let palette = style::palette(ui);
+    match figure {
+        Some(ArmFigure::Upper) => style::colour(palette.upper),
+        Some(ArmFigure::Lower) => style::colour(palette.lower),
+        _ => ui.visuals().text_color(),
+    }
+}
+
+/// Shows a row that ends at `right`, and returns its rectangle.
+fn show(ui: &mut Ui, row: &FormulaRow, is_lit: bool, right: f32) -> Rect {
+    let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+    let symbol = explained(ui, row.symbol, figure_colour(ui, row.figure), row.meaning);
+    if row.formula.is_empty() {
+        ui.label("");
+    } else {
+        explained(ui, row.formula, if is_lit { text } else { weak }, row.meaning);
+    }
+    let value = ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.label(RichText::new(&row.value).monospace())
+    });
+    let mut rect = symbol.rect.union(value.inner.rect);
+    rect.max.x = rect.max.x.min(right);
+    rect
+}
+
+/// Shows a name or formula with a tooltip; both may have symbols.
+fn explained(ui: &mut Ui, text: &str, colour: Color32, meaning: &str) -> Response {
+    let shown = text::label(ui, text, FORMULA_SIZE, colour);
+    shown.on_hover_ui(|ui| {
+        let colour = ui.visuals().text_color();
+        text::label(ui, meaning, FORMULA_SIZE, colour);
+    })
+}
+
+/// Shows the name and the value of a quantity that has no formula.
+pub(super) fn pair(
+    ui: &mut Ui,
+    lit: &mut Lit,
+    figure: ArmFigure,
+    [name, meaning]: [&str; 2],
+    value: String,
+) {
+    let colour = ui.visuals().text_color();
+    lit.row(ui, figure, |ui| {
+        let row = ui.horizontal(|ui| {
+            explained(ui, name, colour, meaning);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(value).monospace());
+            });
+        });
+        row.response.rect
+    });
+}
+
+/// Writes a formula on a line of its own.
+pub(super) fn formula(ui: &mut Ui, text: &str) {
+    let colour = ui.visuals().text_color();
+    text::label(ui, text, FORMULA_SIZE, colour);
+}
+
+pub(super) fn degrees(radians: f32) -> String {
+    format!("{:.1}°", tidy(radians.to_degrees()))
+}
+
+/// Formats a length of the arm; a length that rounds to 0 is shown without a sign.
+pub(super) fn length(arm: &Arm, length: f32) -> String {
+    let nothing = 0.0005 * arm.grid_cell();
+    arm.format_length(if length.abs() < nothing { 0.0 } else { length })
+}
+
+/// Formats a point of the arm.
+pub(super) fn point(arm: &Arm, point: Vec3) -> String {
+    let [x, y, z] = point.to_array().map(|coordinate| length(arm, coordinate));
+    format!("({x}, {y}, {z})")
+}
+
+/// Returns 0 for a value that rounds to 0 at one decimal, so that 0 has no sign; otherwise the
+/// value.
+fn tidy(value: f32) -> f32 {
+    if value.abs() < 0.05 { 0.0 } else { value }
 }
