@@ -20,18 +20,18 @@ use core::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
+use super::angle;
 use super::ik::{length, reach};
-use super::saturate::{saturate, saturate_vector};
 use super::soft_reach::{ReachLimits, SoftReach};
 use super::twist::angle_from_limb;
 use super::two_bone::{Pointer, Reach, TwoBone, TwoBonePose};
-use super::{angle, euler};
+use super::vector::{saturate, saturate_vector};
 
 /// Joint angles of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fk {
-    /// Shoulder angles about x, y and z in radians, not wrapped to one turn: see [`euler`].
+    /// Shoulder angles about x, y and z in radians, not wrapped to one turn: see [`angle`].
     pub shoulder: Vec3,
     /// Elbow bend β in radians, not wrapped to one turn; 0 for a straight arm.
     pub bend: f32,
@@ -51,7 +51,7 @@ impl Fk {
     #[must_use]
     pub fn matching(pose: &TwoBonePose, last: Self) -> Self {
         let turned = ArmRotations::of_pose(pose);
-        let last_bend = euler::few_turns(f64::from(last.bend));
+        let last_bend = angle::few_turns(f64::from(last.bend));
         // A negative bend stays negative.
         let is_back = (last_bend / TAU).round() * TAU > last_bend;
         let (upper, bend) = if is_back && turned.bend > 0.0 {
@@ -60,7 +60,7 @@ impl Fk {
             (turned.upper, turned.bend)
         };
         Self {
-            shoulder: euler::angles(DMat3::from_quat(upper), last.shoulder),
+            shoulder: angle::euler_angles(DMat3::from_quat(upper), last.shoulder),
             bend: angle::nearest_f64(bend, last_bend) as f32,
             stretch: pose.stretch,
         }
@@ -146,7 +146,7 @@ struct ArmRotations {
 impl ArmRotations {
     fn of_fk(fk: Fk) -> Self {
         let bend = angle::nearest_f64(f64::from(fk.bend) % TAU, 0.0);
-        let upper = DQuat::from_mat3(&euler::rotation(fk.shoulder));
+        let upper = DQuat::from_mat3(&angle::euler_rotation(fk.shoulder));
         let upper = if bend < 0.0 { upper * DQuat::from_rotation_x(PI) } else { upper };
         Self { upper, bend: bend.abs(), stretch: f64::from(fk.stretch) }
     }

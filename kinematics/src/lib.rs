@@ -20,13 +20,13 @@
 //!
 //! | modules | contents |
 //! | --- | --- |
-//! | [`angle`], [`euler`], [`follow`], [`spline`], `normalize`, `rotation_between`, `saturate`, `shared` | angles, rotations, curves, points along a path |
+//! | [`angle`], [`follow`], [`spline`], `shared`, `vector` | angles, rotations, curves, points along a path |
 //! | [`two_bone`] | the closed form of two bones |
 //! | [`batch`], [`soft_reach`], [`twist`] | many arms at once; a hand that slows down before the arm is straight; twist references |
 //! | [`fk`], [`ik`], [`job`], [`pop`] | the arm by its joint angles and by its hand; correcting a limb of another program's skeleton; why an elbow jumped |
 //! | [`skeleton`] | trees of joints and their forward kinematics |
 //! | [`limb_ik`], [`skin`] | limbs of skeletons in closed form; skins and how they follow the joints |
-//! | [`chain_ik`], [`diagnosis`], [`swing`] | iterative solvers, seen from inside; why a target is not reached and what would help |
+//! | [`chain_ik`], [`diagnosis`] | iterative solvers, seen from inside; why a target is not reached and what would help |
 //! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets and skin, crowds of arms |
 //!
 //! # Conventions
@@ -44,30 +44,25 @@ pub mod angle;
 pub mod batch;
 pub mod chain_ik;
 pub mod diagnosis;
-pub mod euler;
 pub mod fk;
 pub mod follow;
 pub mod ik;
 pub mod job;
 pub mod limb_ik;
-mod normalize;
 pub mod pop;
 pub mod rig;
-mod rotation_between;
-mod saturate;
 mod shared;
 pub mod skeleton;
 pub mod skin;
 pub mod soft_reach;
 pub mod spline;
-pub mod swing;
 pub mod twist;
 pub mod two_bone;
+mod vector;
 
 pub use shared::Shared;
 
-pub(crate) use normalize::normalize;
-pub(crate) use rotation_between::rotation_between;
+pub(crate) use vector::{normalize, rotation_between};
 
 /// Compiles the code in README.md.
 #[cfg(doctest)]

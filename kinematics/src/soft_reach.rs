@@ -36,8 +36,8 @@ use core::fmt;
 
 use thiserror::Error;
 
-use super::saturate::saturate;
 use super::two_bone::TwoBone;
+use super::vector::saturate;
 
 /// Behaviour of the hand near its limits; hard limits by default.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@ use core::fmt;
 use glam::{DMat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::kinematics::euler;
+use crate::kinematics::angle;
 use crate::kinematics::fk::{Fk, blended_limits, limb_rotations};
 use crate::kinematics::ik::IkState;
 use crate::kinematics::soft_reach::{ReachLimits, SoftReach};
@@ -246,7 +246,7 @@ impl Default for Arm {
 pub struct HandOrientation {
     /// Space in which the angles are measured.
     pub space: HandSpace,
-    /// Angles about x, y and z in radians: see [`euler`].
+    /// Angles about x, y and z in radians: see [`angle`].
     pub angles: Vec3,
     /// Roll τ of the forearm in the previous pose, in radians, whole turns included. With
     /// [`HandSpace::World`] the next roll is the equivalent angle nearest to this one.
@@ -268,7 +268,7 @@ impl HandOrientation {
     /// Rotation of the hand in the world: +x points out of the lower limb, +y out of the back of
     /// the hand.
     pub fn rotation(&self, pose: &TwoBonePose) -> DMat3 {
-        let own = euler::rotation(self.angles);
+        let own = angle::euler_rotation(self.angles);
         match self.space {
             HandSpace::LowerLimb => limb_rotations(pose).1 * own,
             HandSpace::World => own,
@@ -278,11 +278,11 @@ impl HandOrientation {
     /// Replaces the stored roll by the roll of the forearm in `pose`.
     #[must_use]
     pub fn with_roll_in(self, pose: &TwoBonePose) -> Self {
-        let own = euler::rotation(self.angles);
+        let own = angle::euler_rotation(self.angles);
         let roll = match self.space {
             // The angle about x already includes the whole turns.
-            HandSpace::LowerLimb => euler::roll(own, self.angles.x),
-            HandSpace::World => euler::roll(limb_rotations(pose).1.transpose() * own, self.roll),
+            HandSpace::LowerLimb => angle::roll(own, self.angles.x),
+            HandSpace::World => angle::roll(limb_rotations(pose).1.transpose() * own, self.roll),
         };
         Self { roll, ..self }
     }
@@ -303,6 +303,6 @@ impl HandOrientation {
             HandSpace::LowerLimb => limb_rotations(pose).1.transpose() * rotation,
             HandSpace::World => rotation,
         };
-        Self { space, angles: euler::angles(own, near), ..self }.with_roll_in(pose)
+        Self { space, angles: angle::euler_angles(own, near), ..self }.with_roll_in(pose)
     }
 }

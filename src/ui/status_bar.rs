@@ -13,7 +13,7 @@ use super::widgets::{self, text};
 use super::{labels, pose_summary};
 use crate::document::RigKind;
 use crate::kinematics::skeleton::Joint;
-use crate::kinematics::swing::Swing;
+use crate::kinematics::chain_ik::Swing;
 use crate::session::{
     Actions, Drag, ExportJob, FileAction, Grip, JointEdit, Navigation, PointDrag, Session,
     ShellAction, TurnDrag, WiggleTarget, WiggleView,

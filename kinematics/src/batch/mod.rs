@@ -58,7 +58,7 @@ mod cores;
 mod kernel;
 
 pub use arm_batch::ArmBatch;
-pub use array::{BatchArray, BatchError};
-pub use array::{BatchBones, BatchTwist};
-pub use array::{BatchPositions, BatchRotations};
-pub use array::{Points, PointsMut, QuaternionsMut};
+pub use array::{
+    BatchArray, BatchBones, BatchError, BatchPositions, BatchRotations, BatchTwist, Points,
+    PointsMut, QuaternionsMut,
+};

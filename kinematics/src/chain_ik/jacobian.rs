@@ -5,6 +5,10 @@
 //! ((p − b) × F) along that angle. Summing forces and moments from tips to roots gives this
 //! component for all joints in one pass.
 //!
+//! A turn of the angle moves the tip on a circle; the column is the velocity on it, so that circle
+//! and the line along the column part by about r φ²/2 after a turn by φ at the distance r from the
+//! axis. A [`Swing`] shows both.
+//!
 //! # Source
 //!
 //! S. Buss, *Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and Damped
@@ -14,7 +18,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::{Configuration, Coordinates};
 use super::problem::Problem;
-use crate::skeleton::{JointAngles, JointId, Skeleton};
+use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton};
 
 /// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
 /// space and per radian; zero for joints other than the joint and its ancestors.
@@ -34,6 +38,47 @@ pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
             [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
     }
     columns
+}
+
+/// A turn of one angle of a joint, seen at the tip of a joint below it: its path against the line
+/// that the Jacobian predicts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Swing {
+    /// The joint that turns.
+    pub joint: JointId,
+    /// The axis of its angle.
+    pub axis: RotationAxis,
+    /// The joint whose tip is looked at: the joint itself or one below it.
+    pub tip: JointId,
+}
+
+impl Swing {
+    /// The skeleton with the angle changed by `by`, in radians, whatever its limits are.
+    pub fn posed(&self, skeleton: &Skeleton, by: f32) -> Skeleton {
+        let mut posed = skeleton.clone();
+        posed.write_local(self.joint, |joint| joint.rotation[self.axis.index()] += by);
+        posed
+    }
+
+    /// Position of the tip in the world with the angle changed by `by`, in radians.
+    ///
+    /// # Panics
+    ///
+    /// If the skeleton has no such joints.
+    pub fn tip_at(&self, skeleton: &Skeleton, by: f32) -> Vec3 {
+        self.posed(skeleton, by).tip(self.tip)
+    }
+
+    /// Position of the tip in the world that the Jacobian predicts for a change of the angle by
+    /// `by`, in radians.
+    ///
+    /// # Panics
+    ///
+    /// If the skeleton has no such joints.
+    pub fn predicted_at(&self, skeleton: &Skeleton, by: f32) -> Vec3 {
+        let column = jacobian(skeleton, self.tip)[self.joint.index()][self.axis.index()];
+        skeleton.tip(self.tip) + by * skeleton.transform().transform_vector3(column)
+    }
 }
 
 /// Force and moment (about the tree's origin) on each link, from all end effectors at the link and

@@ -55,7 +55,7 @@ pub use diagnose::{diagnose, diagnose_targets};
 pub use inside::{
     AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
 };
-pub use jacobian::jacobian;
+pub use jacobian::{Swing, jacobian};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
 pub use problem::TipTarget;

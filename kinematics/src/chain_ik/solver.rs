@@ -6,8 +6,8 @@ use super::method::{Method, MethodInputs, MethodState};
 use super::problem::{self, Problem};
 use super::stall::{Escape, StallDetector};
 use super::{SolveError, SolverOptions, TipTarget, perturb};
-use crate::saturate::saturate;
 use crate::skeleton::Skeleton;
+use crate::vector::saturate;
 
 /// An iterative solver that moves the bone tips of a skeleton to targets.
 ///

@@ -3,7 +3,7 @@ use core::fmt;
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
-use crate::saturate::saturate;
+use crate::vector::saturate;
 
 /// An invalid [`TwoBoneJob`](super::TwoBoneJob).
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

@@ -145,10 +145,8 @@ pub mod batch;
 mod chain;
 mod error;
 mod fast_path;
-mod half_angle;
 mod stages;
 mod two_bone_job;
 
 pub use error::{JobError, JobField};
-pub use two_bone_job::TwoBoneCorrection;
-pub use two_bone_job::TwoBoneJob;
+pub use two_bone_job::{TwoBoneCorrection, TwoBoneJob};

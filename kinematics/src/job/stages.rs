@@ -4,11 +4,10 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::chain::LimbBones;
 use super::fast_path;
-use super::fast_path::{IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, side};
-use super::half_angle::HalfAngle;
-use crate::saturate::saturate;
+use super::fast_path::{HalfAngle, IN_LINE, NEAR_HALF_TURN, ON_LINE, OPPOSITE, side};
 use crate::soft_reach::SoftReach;
 use crate::two_bone::TwoBone;
+use crate::vector::saturate;
 
 /// The limb after the middle joint is turned.
 pub(super) struct BentLimb {
@@ -62,9 +61,10 @@ pub(super) fn middle_joint(
         None => {
             let axis_ss = bending_axis(limb.upper_ss, hinge_ss, pole_ss);
             let is_straight = limb.upper_ss.dot(limb.lower_ss) > 0.0;
-            let (flat_ss, now) = match is_straight {
-                true => (limb.upper_ss, HalfAngle { sin: 1.0, cos: 0.0 }),
-                false => (-limb.upper_ss, HalfAngle { sin: 0.0, cos: 1.0 }),
+            let (flat_ss, now) = if is_straight {
+                (limb.upper_ss, HalfAngle { sin: 1.0, cos: 0.0 })
+            } else {
+                (-limb.upper_ss, HalfAngle { sin: 0.0, cos: 1.0 })
             };
             let turn = bend.inner_angle.minus(now).about(axis_ss);
             (axis_ss, turn * least_rotation(limb.lower_ss, flat_ss))

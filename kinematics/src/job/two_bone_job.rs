@@ -5,9 +5,9 @@ use super::chain::JointChain;
 use super::error::{JobError, JobField};
 use super::fast_path::{AT_LIMIT, FastPathJob, NEAR, Solved};
 use super::stages;
-use crate::saturate::saturate;
 use crate::soft_reach::SoftReach;
 use crate::two_bone::Reach;
+use crate::vector::saturate;
 
 /// Three joints of a skeleton, a target for the end joint, and options for reaching it.
 /// [`Self::run`] returns a [`TwoBoneCorrection`].
@@ -117,10 +117,8 @@ impl TwoBoneJob {
 
         let distance = stages::soften(&limb, target, soft_reach);
         let bend = stages::middle_joint(&limb, distance, hinge_ss, pole_ss);
-        let towards_ss = match target > 0.0 {
-            true => Some(target_ss / target),
-            false => limb.hand_ss.try_normalize(),
-        };
+        let towards_ss =
+            if target > 0.0 { Some(target_ss / target) } else { limb.hand_ss.try_normalize() };
         let turn = bend.turn_ss;
         let middle = chain.axis_in_middle(turn.xyz());
         Some(FullCorrection {

@@ -1,13 +1,12 @@
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-use super::aim::Aim;
-use super::bend::Bend;
-use super::limb::{JointSpace, Limb};
-use crate::saturate::saturate;
+use super::elbow::{Aim, Bend};
+use super::{JointSpace, Limb};
 use crate::skeleton::{AnglesWithin, Joint, JointId, RotationAxis, Skeleton};
 use crate::soft_reach::SoftReach;
 use crate::twist::Stereographic;
 use crate::two_bone::opposite_side;
+use crate::vector::saturate;
 
 /// A target for the tip of a limb's lower bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,9 +136,10 @@ impl<'a> LocalTarget<'a> {
             _ => DVec3::ZERO,
         };
         let is_fk_tip = is_rounded([fk.tip(), fk.base].map(in_world), target.point);
-        let point = match is_fk_tip {
-            true => fk.tip(),
-            false => to_skeleton.transform_point3(target.point.as_dvec3()),
+        let point = if is_fk_tip {
+            fk.tip()
+        } else {
+            to_skeleton.transform_point3(target.point.as_dvec3())
         };
         let hand = target.hand.map(|hand| {
             let (_, turned, _) = transform.to_scale_rotation_translation();

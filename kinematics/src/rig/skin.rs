@@ -2,8 +2,7 @@ use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
-use super::attached_mesh::AttachedMesh;
-use super::mesh_skin::{MeshSkin, SkinFile, SkinFileError};
+use super::mesh_skin::{AttachedMesh, MeshSkin, SkinFile, SkinFileError};
 use crate::Shared;
 use crate::skeleton::{Joint, JointRemap, Skeleton};
 use crate::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning};

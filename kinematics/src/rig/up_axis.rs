@@ -72,11 +72,7 @@ impl UpAxis {
     /// The axis along which a length is more than twice that along the other.
     fn along(y: f32, z: f32) -> Option<Self> {
         const CLEAR: f32 = 2.0;
-        match () {
-            () if y > CLEAR * z.abs() => Some(Self::Y),
-            () if z > CLEAR * y.abs() => Some(Self::Z),
-            () => None,
-        }
+        if y > CLEAR * z.abs() { Some(Self::Y) } else { (z > CLEAR * y.abs()).then_some(Self::Z) }
     }
 }
 

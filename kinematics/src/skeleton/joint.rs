@@ -1,9 +1,69 @@
+use core::fmt;
+
 use glam::{Affine3A, DMat3, DQuat, DVec3, EulerRot, Mat3, Mat3A, Vec3};
+use thiserror::Error;
 
 use super::{
-    JointAngles, JointField, JointId, JointLimits, Limit, RotationAxis, SkeletonError,
-    angle_triples, nearest_angles,
+    JointAngles, JointLimits, Limit, RotationAxis, angle_triples, equivalent_triples,
+    nearest_angles,
 };
+
+/// Maximum number of joints of a skeleton.
+pub(super) const MOST_JOINTS: usize = 10_000;
+
+/// The index of a joint in its skeleton.
+///
+/// An index is valid only for its own skeleton, and only until an edit moves joints; such an edit
+/// returns a [`JointRemap`]. For an index that a skeleton does not have,
+///
+/// - lookups return `None`, and tree queries find nothing,
+/// - edits and solvers return an error and change nothing,
+/// - indexing and transforms panic, as indexing a slice does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
+pub struct JointId(usize);
+
+impl JointId {
+    /// The joint at a position of [`Skeleton::joints`](super::Skeleton::joints).
+    pub const fn new(index: usize) -> Self {
+        Self(index)
+    }
+
+    /// The position in [`Skeleton::joints`](super::Skeleton::joints).
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl From<usize> for JointId {
+    fn from(index: usize) -> Self {
+        Self(index)
+    }
+}
+
+impl From<JointId> for usize {
+    fn from(joint: JointId) -> Self {
+        joint.0
+    }
+}
+
+/// Writes the index as a plain number.
+impl fmt::Display for JointId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// New indices of joints after an edit, by old index.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JointRemap(pub(super) Vec<Option<JointId>>);
+
+impl JointRemap {
+    /// The new index of `joint`; `None` if it was removed.
+    pub fn get(&self, joint: JointId) -> Option<JointId> {
+        self.0.get(joint.index()).copied().flatten()
+    }
+}
 
 /// A ball joint and its bone.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +170,7 @@ impl Joint {
     /// Of all angles equivalent to `angles` and within the limits, those nearest to `near`. Without
     /// any, `angles`.
     pub fn equivalent_angles(&self, angles: Vec3, near: Vec3) -> Vec3 {
-        let triples = super::equivalent_triples(angles, near);
+        let triples = equivalent_triples(angles, near);
         triples.into_iter().find(|triple| self.limits.contains(*triple)).unwrap_or(angles)
     }
 
@@ -208,5 +268,104 @@ impl Joint {
         }
         let [from, to] = [self.rotation, angles].map(|it| DQuat::from_mat3(&self.rotation_f64(it)));
         self.angles_within(DMat3::from_quat(from.slerp(to, f64::from(fraction)))).angles
+    }
+}
+
+/// An invalid skeleton, or an invalid edit of one.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SkeletonError {
+    /// The skeleton has no joint with this index.
+    #[error("there is no joint {0}")]
+    NoJoint(JointId),
+    /// The parent does not precede the joint.
+    #[error("the parent of joint {joint} must precede it, got {parent}")]
+    Parent {
+        /// The joint.
+        joint: JointId,
+        /// Its parent.
+        parent: JointId,
+    },
+    /// The parent is the joint or one of its descendants.
+    #[error("the parent of joint {joint} must not be one of its descendants, got {parent}")]
+    Cycle {
+        /// The joint.
+        joint: JointId,
+        /// Its parent.
+        parent: JointId,
+    },
+    /// The name is empty.
+    #[error("the name of a joint must not be empty")]
+    NoName,
+    /// The name is already taken by another joint.
+    #[error("names of joints must be unique, got {0:?} twice")]
+    Name(String),
+    /// A vector is not finite.
+    #[error("the {field} of joint {joint} must be finite, got {value}")]
+    NotFinite {
+        /// The joint.
+        joint: JointId,
+        /// The field that holds the vector.
+        field: JointField,
+        /// The vector.
+        value: Vec3,
+    },
+    /// The radius is negative or not finite.
+    #[error("the radius of joint {joint} must be finite and 0 or more, got {value}")]
+    Radius {
+        /// The joint.
+        joint: JointId,
+        /// Its radius.
+        value: f32,
+    },
+    /// The frame is not a right-handed orthonormal basis.
+    #[error("the frame of joint {joint} must be a right-handed orthonormal basis")]
+    Frame {
+        /// The joint.
+        joint: JointId,
+    },
+    /// A limit is not finite, or its bounds are swapped.
+    #[error(
+        "the limit of joint {joint} about {axis} must be finite, the lower bound first, got {min} \
+         to {max}"
+    )]
+    Limit {
+        /// The joint.
+        joint: JointId,
+        /// The axis of the limited angle.
+        axis: RotationAxis,
+        /// The lower bound, in radians.
+        min: f32,
+        /// The upper bound, in radians.
+        max: f32,
+    },
+    /// There are more than [`Skeleton::MOST_JOINTS`](super::Skeleton::MOST_JOINTS) joints.
+    #[error("a skeleton must have at most {MOST_JOINTS} joints")]
+    TooMany,
+    /// The transform is not finite.
+    #[error("the skeleton's transform must be finite")]
+    Transform,
+}
+
+/// A vector field of a [`Joint`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum JointField {
+    /// [`Joint::offset`]
+    Offset,
+    /// [`Joint::axis`]
+    Axis,
+    /// [`Joint::rotation`]
+    Rotation,
+}
+
+/// The field's name: "offset", "axis" or "rotation".
+impl fmt::Display for JointField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Offset => "offset",
+            Self::Axis => "axis",
+            Self::Rotation => "rotation",
+        })
     }
 }

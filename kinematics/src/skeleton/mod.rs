@@ -41,22 +41,15 @@
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2a.
 
 mod edit;
-mod error;
 pub mod exact_angles;
 mod joint;
 mod joint_angles;
-mod joint_id;
 mod limits;
 mod pose;
-#[cfg(feature = "serde")]
-mod serialize;
 mod tree;
 
-pub use error::{JointField, SkeletonError};
-pub use joint::Joint;
+pub use joint::{Joint, JointField, JointId, JointRemap, SkeletonError};
 pub use joint_angles::nearest_angles;
-pub use joint_id::JointId;
-pub use joint_id::JointRemap;
 pub use limits::{JointLimits, Limit, RotationAxis};
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;

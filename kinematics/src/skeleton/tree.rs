@@ -2,7 +2,7 @@ use core::ops::Index;
 
 use glam::{Affine3A, DMat3, DQuat, Vec3};
 
-use super::joint_id::MOST_JOINTS;
+use super::joint::MOST_JOINTS;
 use super::{Joint, JointId, SkeletonError, SkeletonPose};
 use crate::Shared;
 
@@ -244,5 +244,40 @@ impl Skeleton {
     /// Transforms of all joints in the bind pose, in skeleton space.
     pub fn bind_pose_in_skeleton(&self) -> SkeletonPose {
         SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local_in_bind_pose())
+    }
+}
+
+#[cfg(feature = "serde")]
+mod serialization {
+    use glam::Affine3A;
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::Skeleton;
+    use crate::skeleton::Joint;
+
+    /// A skeleton as it is serialized; unchecked when it is deserialized.
+    #[derive(Serialize, Deserialize)]
+    struct UncheckedSkeleton {
+        joints: Vec<Joint>,
+        transform: Affine3A,
+    }
+
+    /// Serializes the fields `joints` and `transform`.
+    impl Serialize for Skeleton {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let joints = self.joints().iter().map(|joint| Joint::clone(joint)).collect();
+            UncheckedSkeleton { joints, transform: self.transform() }.serialize(serializer)
+        }
+    }
+
+    /// Refuses an invalid skeleton.
+    impl<'de> Deserialize<'de> for Skeleton {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let UncheckedSkeleton { joints, transform } = Deserialize::deserialize(deserializer)?;
+            let mut skeleton = Self::from_joints(joints).map_err(D::Error::custom)?;
+            skeleton.set_transform(transform).map_err(D::Error::custom)?;
+            Ok(skeleton)
+        }
     }
 }

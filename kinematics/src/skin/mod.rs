@@ -34,10 +34,7 @@ mod triangle_mesh;
 mod vertex_weights;
 
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
-pub use skin_pose::{JointDeform, SkinPose};
-pub use skin_pose::{Skinning, UnknownSkinning};
-pub use skinned_mesh::SkinError;
-pub use skinned_mesh::SkinnedMesh;
-pub use triangle_mesh::MeshSection;
-pub use triangle_mesh::{MeshHit, TriangleMesh};
+pub use skin_pose::{JointDeform, SkinPose, Skinning, UnknownSkinning};
+pub use skinned_mesh::{SkinError, SkinnedMesh};
+pub use triangle_mesh::{MeshHit, MeshSection, TriangleMesh};
 pub use vertex_weights::VertexWeights;

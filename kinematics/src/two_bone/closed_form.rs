@@ -9,9 +9,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::bones::TwoBone;
-use super::pose::{Pointer, Reach, TwoBonePose};
-use crate::normalize::power_of_two_near;
+use super::{Pointer, Reach, TwoBone, TwoBonePose};
+use crate::vector::power_of_two_near;
 
 /// Distance of the hand, as a fraction of the arm length, below which the bones must be equal and
 /// the hand is at the shoulder.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
-use ik_arm_kinematics::euler;
+use ik_arm_kinematics::angle;
 use ik_arm_kinematics::fk::{Fk, blended, blended_limits};
 use ik_arm_kinematics::ik::{Ik, IkState};
 use ik_arm_kinematics::soft_reach::{ReachLimits, SoftReach};
@@ -265,7 +265,7 @@ fn a_straight_arm_keeps_the_side_that_its_hinge_bends_to() {
             let solved = ik
                 .solve(cursor * 0.999, twist, IkState { pointer: pose.pointer, transported: None })
                 .pose;
-            let hinge = DQuat::from_mat3(&euler::rotation(fk.shoulder)) * DVec3::Z;
+            let hinge = DQuat::from_mat3(&angle::euler_rotation(fk.shoulder)) * DVec3::Z;
             let found = solved.pointer.direction.cross(solved.outward()).as_dvec3();
             assert!(hinge.distance(-found).min(hinge.distance(found)) < 1e-3);
             if bend == 0.0 {
@@ -295,10 +295,10 @@ proptest! {
 
 #[test]
 fn straight_up_the_last_yaw_is_kept() {
-    let up = euler::rotation(Vec3::new(0.4, 0.0, core::f32::consts::FRAC_PI_2));
-    let angles = euler::angles(up, Vec3::new(0.0, 1.1, 1.0));
+    let up = angle::euler_rotation(Vec3::new(0.4, 0.0, core::f32::consts::FRAC_PI_2));
+    let angles = angle::euler_angles(up, Vec3::new(0.0, 1.1, 1.0));
     assert!((angles.y - 1.1).abs() < 1e-6, "{angles}");
-    let again = euler::rotation(angles);
+    let again = angle::euler_rotation(angles);
     assert!((again * DVec3::Y).distance(up * DVec3::Y) < 1e-6);
 }
 
@@ -309,7 +309,7 @@ fn a_roll_is_the_part_of_a_rotation_about_x_and_continues_past_half_a_turn() {
     for step in 0..=40 {
         let roll = f64::from(step) * 0.25;
         let rotation = DMat3::from_quat(swing * DQuat::from_axis_angle(DVec3::X, roll));
-        last = euler::roll(rotation, last);
+        last = angle::roll(rotation, last);
         assert!((f64::from(last) - roll).abs() < 1e-5, "{last} is not {roll}");
     }
 }
@@ -317,5 +317,5 @@ fn a_roll_is_the_part_of_a_rotation_about_x_and_continues_past_half_a_turn() {
 #[test]
 fn a_hand_that_faces_backwards_keeps_its_last_roll() {
     let around = DMat3::from_rotation_y(PI);
-    assert_eq!(euler::roll(around, 0.7), 0.7);
+    assert_eq!(angle::roll(around, 0.7), 0.7);
 }

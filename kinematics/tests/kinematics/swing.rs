@@ -1,8 +1,8 @@
 //! A swing of one angle: the path of the tip and the line that the Jacobian predicts.
 
 use glam::DVec3;
+use ik_arm_kinematics::chain_ik::Swing;
 use ik_arm_kinematics::skeleton::{JointId, RotationAxis, Skeleton};
-use ik_arm_kinematics::swing::Swing;
 
 use crate::common::Random;
 use crate::common::skeletons::{forest, space_f64, transform};

@@ -2,7 +2,7 @@ use glam::{DMat3, DQuat, Vec3};
 
 use super::edits::{self, ArmEdit};
 use crate::document::{Arm, Ray, TwistReferenceKind};
-use crate::kinematics::euler;
+use crate::kinematics::angle;
 use crate::kinematics::skeleton::RotationAxis;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
 use crate::session::drag::point::{PointDrag, PointHandle};
@@ -151,10 +151,10 @@ fn joints_in_world(session: &Session) -> [Vec3; 3] {
 /// Angles of the shoulder after the least rotation that points the Upper limb at a point of Root
 /// space. They do not change for a point at the shoulder.
 fn aimed(angles: Vec3, point: Vec3) -> Vec3 {
-    let before = euler::rotation(angles);
+    let before = angle::euler_rotation(angles);
     let Some(to) = point.as_dvec3().try_normalize() else {
         return angles;
     };
     let turn = DQuat::from_rotation_arc(before.x_axis, to);
-    euler::angles(DMat3::from_quat(turn) * before, angles)
+    angle::euler_angles(DMat3::from_quat(turn) * before, angles)
 }

@@ -4,7 +4,7 @@ use super::grip::Grip;
 use super::point::PointHandle;
 use super::turn::GripRing;
 use crate::document::{HandSpace, Overlay, PathKind, Posed, Ray, SkeletonRig};
-use crate::kinematics::euler;
+use crate::kinematics::angle;
 use crate::kinematics::fk::limb_rotations;
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
@@ -209,7 +209,7 @@ impl GripRing {
             }
             (Grip::Shoulder(axis), false) => (Vec3::ZERO, turned_axis(arm.fk.shoulder, axis)),
             // The lower limb turns clockwise about the hinge as the bend grows.
-            (Grip::Bend, false) => (pose.elbow, -euler::rotation(arm.fk.shoulder).z_axis.as_vec3()),
+            (Grip::Bend, false) => (pose.elbow, -angle::euler_rotation(arm.fk.shoulder).z_axis.as_vec3()),
             _ => return None,
         };
         Some(Self { centre: arm.root + along, axis })
@@ -265,7 +265,7 @@ impl GripRing {
 }
 
 /// The axis about which the angle x, y or z of a ball joint of the arm turns, in the space of the
-/// angles: see [`euler`].
+/// angles: see [`angle`].
 fn turned_axis(angles: Vec3, axis: RotationAxis) -> Vec3 {
     let yaw = Mat3::from_rotation_y(angles.y);
     match axis {

@@ -2,8 +2,8 @@ use core::f64::consts::TAU;
 
 use glam::Vec3;
 
+use crate::kinematics::chain_ik::Swing;
 use crate::kinematics::skeleton::{JointId, RotationAxis, SkeletonPose};
-use crate::kinematics::swing::Swing;
 use crate::rig::{EvaluatedSkeleton, SkeletonRig};
 
 /// An angle that swings to and fro in the view, to show what the Jacobian is; the document does not

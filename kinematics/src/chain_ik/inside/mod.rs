@@ -7,8 +7,7 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
 
-pub(super) use recorder::sub_steps;
-pub(super) use recorder::{Event, LinkSegment, Recorder};
+pub(super) use recorder::{Event, LinkSegment, Recorder, sub_steps};
 
 /// A part of an iteration. Positions and lengths are in the world.
 #[derive(Clone, Debug, PartialEq)]

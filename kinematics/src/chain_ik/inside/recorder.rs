@@ -5,8 +5,8 @@ use super::{
 };
 use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::problem::Problem;
-use crate::saturate::{saturate, saturate_vector};
 use crate::skeleton::{RotationAxis, Skeleton};
+use crate::vector::{saturate, saturate_vector};
 
 /// Keeps what a method computes in an iteration, in the problem's units; nothing if it is off.
 pub(in crate::chain_ik) struct Recorder(Option<Vec<Record>>);

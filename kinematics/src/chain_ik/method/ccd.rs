@@ -135,46 +135,6 @@ impl Ccd {
     }
 }
 
-/// A sweep after passes over points, which ignore limits on their way to the roots: made where the
-/// passes do not halve the cost. Passes that do not lower it are undone before the sweep.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::chain_ik) struct SweepAfterPasses {
-    /// The configuration before the passes.
-    before: Configuration,
-    ccd: Ccd,
-}
-
-impl SweepAfterPasses {
-    pub fn new(problem: &Problem) -> Self {
-        Self { before: Configuration::default(), ccd: Ccd::new(problem) }
-    }
-
-    /// Keeps the configuration before the passes.
-    pub fn start(&mut self, config: &Configuration) {
-        self.before.copy_from(config);
-    }
-
-    /// Makes the sweep after the passes, if it is needed.
-    pub fn finish(
-        &mut self,
-        problem: &Problem,
-        config: &mut Configuration,
-        recorder: &mut Recorder,
-    ) {
-        // Fraction of the cost that passes may leave without a sweep.
-        const ENOUGH: f64 = 0.5;
-        let left = config.cost(problem) / self.before.cost(problem);
-        if left <= ENOUGH {
-            return;
-        }
-        if left >= 1.0 {
-            config.copy_from(&self.before);
-            recorder.record(config, || Event::Undo);
-        }
-        self.ccd.iterate(problem, config, recorder);
-    }
-}
-
 /// Updates the positions of joints and tips from the links' orientations.
 fn update_points(problem: &Problem, config: &mut Configuration) {
     for (index, link) in problem.links.iter().enumerate() {

@@ -9,15 +9,14 @@
 //!
 //! The destination of a point that several children share is the weighted mean of the destinations
 //! of the children's bases. A link with several points takes the mean of the positions base' that
-//! its points give. [`LinkPoints`] makes the outward pass.
+//! its points give. The links are laid out as [`points`](super::points) says.
 //!
 //! The inward pass ignores limits and may set destinations that the limits forbid, so that the
-//! points oscillate or creep along a limit; [`SweepAfterPasses`] goes on from there. The straight
-//! leg of the example figure reaches 1000 of 1000 targets in this way; with a sweep only where the
-//! cost is not lowered, it reaches 992.
+//! points oscillate or creep along a limit; a sweep of CCD goes on from there. The straight leg of
+//! the example figure reaches 1000 of 1000 targets in this way; with a sweep only where the cost is
+//! not lowered, it reaches 992.
 //!
-//! A chain whose only target is out of reach is laid out straight towards the target. A tree whose
-//! root is free moves to where the inward pass brings its root.
+//! A tree whose root is free moves to where the inward pass brings its root.
 //!
 //! # Source
 //!
@@ -26,73 +25,45 @@
 
 use glam::Vec3A;
 
-use super::ccd::SweepAfterPasses;
-use super::link_points::LinkPoints;
+use super::points::{InwardPass, LinkPoints, PointMethod};
 use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::inside::{Event, LinkSegment};
 use crate::chain_ik::problem::Problem;
 use crate::normalize;
 
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::chain_ik) struct Fabrik {
-    points: LinkPoints,
-    sweep: SweepAfterPasses,
+pub(in crate::chain_ik) type Fabrik = PointMethod<ReachInward>;
+
+/// The inward pass.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::chain_ik) struct ReachInward;
+
+impl InwardPass for ReachInward {
+    const EVENTS: [fn(Vec<LinkSegment>) -> Event; 2] = [Event::Backward, Event::Forward];
+
+    fn new(_: &LinkPoints) -> Self {
+        Self
+    }
+
+    fn run(&mut self, points: &mut LinkPoints, problem: &Problem, config: &Configuration) {
+        for link in (0..problem.links.len()).rev() {
+            reach(points, problem, config, link);
+        }
+    }
 }
 
-impl Fabrik {
-    pub fn new(problem: &Problem) -> Self {
-        Self { points: LinkPoints::new(problem), sweep: SweepAfterPasses::new(problem) }
+/// Sets the destinations of a link's points and, from these, the destination of its joint.
+fn reach(points: &mut LinkPoints, problem: &Problem, config: &Configuration, link: usize) {
+    let base = config.bases[link];
+    let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
+    for index in points.of_link(link) {
+        let destination = points.destination_of(problem, index);
+        points.destinations[index] = destination;
+        let arm = points.posed_arm(config, link, index);
+        points.arms[index] = arm;
+        let back = normalize(base - destination).or_else(|| normalize(-arm));
+        let point = points.point(index);
+        sum += point.weight * (destination + point.radius * back.unwrap_or(Vec3A::ZERO));
+        weights += point.weight;
     }
-
-    pub fn points(&self) -> &LinkPoints {
-        &self.points
-    }
-
-    /// Makes the passes and returns `true`.
-    pub fn iterate(
-        &mut self,
-        problem: &Problem,
-        config: &mut Configuration,
-        recorder: &mut Recorder,
-    ) -> bool {
-        if self.points.are_limited() {
-            self.sweep.start(config);
-            self.reach(problem, config, recorder);
-            self.sweep.finish(problem, config, recorder);
-        } else {
-            self.reach(problem, config, recorder);
-        }
-        true
-    }
-
-    /// Makes the inward and the outward pass.
-    fn reach(&mut self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
-        if self.points.is_out_of_reach(problem, config) {
-            self.points.destinations.fill(problem.effectors[0].target);
-        } else {
-            for link in (0..problem.links.len()).rev() {
-                self.reach_inward(problem, config, link);
-            }
-            recorder.record(config, || Event::Backward(self.points.destination_segments()));
-        }
-        self.points.lay_out(problem, config);
-        recorder.record(config, || Event::Forward(self.points.segments(config)));
-    }
-
-    /// Sets the destinations of a link's points and, from these, the destination of its joint.
-    fn reach_inward(&mut self, problem: &Problem, config: &Configuration, link: usize) {
-        let base = config.bases[link];
-        let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
-        for index in self.points.of_link(link) {
-            let destination = self.points.destination_of(problem, index);
-            self.points.destinations[index] = destination;
-            let arm = self.points.posed_arm(config, link, index);
-            self.points.arms[index] = arm;
-            let back = normalize(base - destination).or_else(|| normalize(-arm));
-            let point = self.points.point(index);
-            sum += point.weight * (destination + point.radius * back.unwrap_or(Vec3A::ZERO));
-            weights += point.weight;
-        }
-        self.points.base_destinations[link] = sum / weights;
-    }
+    points.base_destinations[link] = sum / weights;
 }

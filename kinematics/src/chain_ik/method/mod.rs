@@ -3,7 +3,7 @@
 mod ccd;
 mod damped_least_squares;
 mod fabrik;
-mod link_points;
+mod points;
 mod relaxation;
 mod transpose;
 mod two_bone;
@@ -87,127 +87,106 @@ pub(super) struct MethodInputs<'a> {
     pub step: f32,
 }
 
+impl MethodRow {
+    /// A method on angles without parameters that is always stable.
+    const fn new(
+        method: Method,
+        name: &'static str,
+        budget: u32,
+        prepare: fn(&MethodInputs<'_>) -> Result<MethodState, TwoBonesRefused>,
+    ) -> Self {
+        Self {
+            method,
+            name,
+            title: name,
+            short_title: name,
+            summary: name,
+            budget,
+            patience: Patience::of_repeated_steps(20),
+            uses_damping: false,
+            uses_step: false,
+            is_closed_form: false,
+            uses_orientations: false,
+            stable_distance: f64::INFINITY,
+            work: visits,
+            prepare,
+        }
+    }
+}
+
 /// All methods, in the order in which lists show them.
 const METHODS: [MethodRow; 7] = [
     MethodRow {
-        method: Method::TransposeFixed,
-        name: "transpose-fixed",
         title: "Jacobian transpose, fixed step",
         short_title: "Fixed step",
         summary: "Descend the gradient with a fixed step: smooth but slow",
-        budget: 4_000,
         // The fixed step overshoots for longer before it settles.
         patience: Patience::of_repeated_steps(100),
-        uses_damping: false,
         uses_step: true,
-        is_closed_form: false,
-        uses_orientations: false,
         // Up to about twice the distance; the direction is all that counts of a target out of reach.
         stable_distance: 1.25,
-        work: visits,
-        prepare: |it| Ok(MethodState::TransposeFixed(TransposeFixed::new(it.problem, it.step))),
+        ..MethodRow::new(Method::TransposeFixed, "transpose-fixed", 4_000, |it| {
+            Ok(MethodState::TransposeFixed(TransposeFixed::new(it.problem, it.step)))
+        })
     },
     MethodRow {
-        method: Method::Transpose,
-        name: "transpose",
         title: "Jacobian transpose",
         short_title: "Transpose",
         summary: "Descend the gradient with steps that fit its curvature",
-        budget: 500,
-        patience: Patience::of_repeated_steps(20),
-        uses_damping: false,
-        uses_step: false,
-        is_closed_form: false,
-        uses_orientations: false,
-        stable_distance: f64::INFINITY,
-        work: visits,
-        prepare: |it| Ok(MethodState::Transpose(Transpose::new(it.problem))),
+        ..MethodRow::new(Method::Transpose, "transpose", 500, |it| {
+            Ok(MethodState::Transpose(Transpose::new(it.problem)))
+        })
     },
     MethodRow {
-        method: Method::DampedLeastSquares,
-        name: "dls",
         title: "Damped least squares",
         short_title: "Damped l. s.",
         summary: "Solve damped least squares: few iterations, handles limits and many targets",
-        budget: 500,
-        patience: Patience::of_repeated_steps(20),
         uses_damping: true,
-        uses_step: false,
-        is_closed_form: false,
-        uses_orientations: false,
-        stable_distance: f64::INFINITY,
         work: |problem| visits(problem) + damped_least_squares::work(problem),
-        prepare: |it| {
+        ..MethodRow::new(Method::DampedLeastSquares, "dls", 500, |it| {
             let damped = DampedLeastSquares::new(it.problem, it.damping);
             Ok(MethodState::DampedLeastSquares(damped))
-        },
+        })
     },
     MethodRow {
-        method: Method::Ccd,
-        name: "ccd",
         title: "Cyclic coordinate descent",
         short_title: "CCD",
         summary: "Rotate one joint at a time, tip to root: cheap, bends tips",
-        budget: 2_000,
         // In exact arithmetic no sweep increases the distance.
         patience: Patience::of_orientations(20, -(f32::EPSILON as f64)),
-        uses_damping: false,
-        uses_step: false,
-        is_closed_form: false,
         uses_orientations: true,
-        stable_distance: f64::INFINITY,
-        work: visits,
-        prepare: |it| Ok(MethodState::Ccd(Ccd::new(it.problem))),
+        ..MethodRow::new(Method::Ccd, "ccd", 2_000, |it| Ok(MethodState::Ccd(Ccd::new(it.problem))))
     },
     MethodRow {
-        method: Method::Fabrik,
-        name: "fabrik",
         title: "FABRIK",
         short_title: "FABRIK",
         summary: "Move joint positions along the chain: very cheap, may stall at limits",
-        budget: 2_000,
         // With conflicting targets, FABRIK converges near the minimum, not at it.
         patience: Patience::of_orientations(20, -1e-5),
-        uses_damping: false,
-        uses_step: false,
-        is_closed_form: false,
         uses_orientations: true,
-        stable_distance: f64::INFINITY,
-        work: visits,
-        prepare: |it| Ok(MethodState::Fabrik(Fabrik::new(it.problem))),
+        ..MethodRow::new(Method::Fabrik, "fabrik", 2_000, |it| {
+            Ok(MethodState::Fabrik(Fabrik::new(it.problem)))
+        })
     },
     MethodRow {
-        method: Method::Relaxation,
-        name: "relaxation",
         title: "Constraint relaxation",
         short_title: "Relaxation",
         summary: "Move both ends of each bone in turn: smooth, many iterations",
-        budget: 2_000,
         // The poses that points of relaxation give are not nearer after every pass.
         patience: Patience::of_orientations(100, f64::INFINITY),
-        uses_damping: false,
-        uses_step: false,
-        is_closed_form: false,
         uses_orientations: true,
-        stable_distance: f64::INFINITY,
-        work: visits,
-        prepare: |it| Ok(MethodState::Relaxation(Relaxation::new(it.problem))),
+        ..MethodRow::new(Method::Relaxation, "relaxation", 2_000, |it| {
+            Ok(MethodState::Relaxation(Relaxation::new(it.problem)))
+        })
     },
     MethodRow {
-        method: Method::TwoBone,
-        name: "two-bone",
         title: "Two-bone",
         short_title: "Two-bone",
         summary: "Solve the target's joint and its parent in closed form",
-        budget: 1,
-        patience: Patience::of_repeated_steps(20),
-        uses_damping: false,
-        uses_step: false,
         is_closed_form: true,
-        uses_orientations: false,
-        stable_distance: f64::INFINITY,
-        work: visits,
-        prepare: |it| Ok(MethodState::TwoBone(TwoBones::new(it.problem, it.skeleton)?)),
+        ..MethodRow::new(Method::TwoBone, "two-bone", 1, |it| {
+            Ok(MethodState::TwoBone(TwoBones::new(it.problem, it.skeleton)?))
+        })
     },
 ];
 
@@ -368,8 +347,8 @@ impl MethodState {
     /// Updates orientations that iterations leave behind the points that they move.
     pub fn update_orientations(&self, config: &mut Configuration) {
         match self {
-            Self::Fabrik(fabrik) => fabrik.points().update_orientations(config),
-            Self::Relaxation(relaxation) => relaxation.points().update_orientations(config),
+            Self::Fabrik(fabrik) => fabrik.update_orientations(config),
+            Self::Relaxation(relaxation) => relaxation.update_orientations(config),
             Self::TransposeFixed(_)
             | Self::Transpose(_)
             | Self::DampedLeastSquares(_)
@@ -384,7 +363,7 @@ impl MethodState {
         match self {
             Self::Transpose(descent) => descent.restart(),
             Self::DampedLeastSquares(damped) => damped.restart(),
-            Self::Relaxation(relaxation) => relaxation.restart(),
+            Self::Relaxation(relaxation) => relaxation.inward.restart(),
             Self::TransposeFixed(_) | Self::Ccd(_) | Self::Fabrik(_) | Self::TwoBone(_) => false,
         }
     }

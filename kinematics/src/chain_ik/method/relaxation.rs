@@ -11,14 +11,13 @@
 //! All joints have the same weight w, fixed roots and targets have the weight 0: the last bone
 //! moves its joint alone, so that its tip is at the target, and the first bone its end alone.
 //! Points stay where a pass has moved them; the next pass goes on from there. After each pass the
-//! links are laid out from the roots towards the points by [`LinkPoints`]: that is the pose.
+//! links are laid out from the roots towards the points: that is the pose.
 //!
 //! A point that several children share moves to the weighted mean of where their bones bring it. A
 //! link with several points is restored as a whole, at the rotation that fits them best.
 //!
-//! Passes ignore limits. If any link has limits, each pass starts from the pose, and
-//! [`SweepAfterPasses`] goes on where it does not help, as with FABRIK. A chain whose only target
-//! is out of reach is laid out straight towards the target.
+//! If any link has limits, each pass starts from the pose, and a sweep of CCD goes on where it does
+//! not help, as with FABRIK.
 //!
 //! # Source
 //!
@@ -26,140 +25,120 @@
 
 use glam::Vec3A;
 
-use super::ccd::SweepAfterPasses;
-use super::link_points::LinkPoints;
+use super::points::{InwardPass, LinkPoints, PointMethod};
 use crate::chain_ik::align::{PointPair, ROTATIONS, align};
 use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::inside::{Event, Recorder};
+use crate::chain_ik::inside::{Event, LinkSegment};
 use crate::chain_ik::problem::Problem;
 use crate::normalize;
 
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::chain_ik) struct Relaxation {
-    /// The destinations are the points as the last pass left them.
-    points: LinkPoints,
-    sweep: SweepAfterPasses,
+/// The destinations are the points as the last pass left them.
+pub(in crate::chain_ik) type Relaxation = PointMethod<RestoreLengths>;
+
+/// The pass that restores the length of each bone.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::chain_ik) struct RestoreLengths {
     pairs: Vec<PointPair>,
     /// True if the next pass goes on from the points of the last one, not from the pose.
     goes_on: bool,
 }
 
-impl Relaxation {
-    pub fn new(problem: &Problem) -> Self {
-        let points = LinkPoints::new(problem);
-        Self {
-            sweep: SweepAfterPasses::new(problem),
-            pairs: Vec::with_capacity(points.len()),
-            points,
-            goes_on: false,
+impl InwardPass for RestoreLengths {
+    const EVENTS: [fn(Vec<LinkSegment>) -> Event; 2] = [Event::Relaxed, Event::LaidOut];
+
+    fn new(points: &LinkPoints) -> Self {
+        Self { pairs: Vec::with_capacity(points.len()), goes_on: false }
+    }
+
+    fn run(&mut self, points: &mut LinkPoints, problem: &Problem, config: &Configuration) {
+        self.start_pass(points, problem, config);
+        for link in (0..problem.links.len()).rev() {
+            self.restore(points, problem, config, link);
         }
+        self.goes_on = !points.are_limited();
     }
+}
 
-    pub fn points(&self) -> &LinkPoints {
-        &self.points
-    }
-
+impl RestoreLengths {
     /// Makes the next pass start from the pose. Returns whether it would not have.
     pub fn restart(&mut self) -> bool {
         std::mem::take(&mut self.goes_on)
     }
 
-    /// Makes the passes and returns `true`.
-    pub fn iterate(
-        &mut self,
-        problem: &Problem,
-        config: &mut Configuration,
-        recorder: &mut Recorder,
-    ) -> bool {
-        if self.points.are_limited() {
-            self.sweep.start(config);
-            self.relax(problem, config, recorder);
-            self.sweep.finish(problem, config, recorder);
-        } else {
-            self.relax(problem, config, recorder);
-        }
-        true
-    }
-
-    /// Makes one pass over all bones, then lays the links out.
-    fn relax(&mut self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
-        if self.points.is_out_of_reach(problem, config) {
-            self.points.destinations.fill(problem.effectors[0].target);
-        } else {
-            self.start_pass(problem, config);
-            for link in (0..problem.links.len()).rev() {
-                self.restore(problem, config, link);
-            }
-            self.goes_on = !self.points.are_limited();
-            recorder.record(config, || Event::Relaxed(self.points.destination_segments()));
-        }
-        self.points.lay_out(problem, config);
-        recorder.record(config, || Event::LaidOut(self.points.segments(config)));
-    }
-
     /// Takes the joints from the pose: all of them, or those at fixed roots only.
-    fn start_pass(&mut self, problem: &Problem, config: &Configuration) {
+    fn start_pass(&self, points: &mut LinkPoints, problem: &Problem, config: &Configuration) {
         for link in 0..problem.links.len() {
             if !self.goes_on || is_fixed(problem, link) {
-                self.points.base_destinations[link] = config.bases[link];
+                points.base_destinations[link] = config.bases[link];
             }
         }
     }
 
     /// Restores the distances of a link's points from its joint.
-    fn restore(&mut self, problem: &Problem, config: &Configuration, link: usize) {
-        let base = self.points.base_destinations[link];
-        self.aim(problem, config, link);
+    fn restore(
+        &mut self,
+        points: &mut LinkPoints,
+        problem: &Problem,
+        config: &Configuration,
+        link: usize,
+    ) {
+        let base = points.base_destinations[link];
+        self.aim(points, problem, config, link);
         let is_fixed = is_fixed(problem, link);
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
-        for index in self.points.of_link(link) {
-            let error = self.points.destinations[index] - (base + self.points.arms[index]);
+        for index in points.of_link(link) {
+            let error = points.destinations[index] - (base + points.arms[index]);
             // Joints have even weights; fixed roots and targets have the weight 0.
-            let fraction = match (is_fixed, self.points.point(index).is_target()) {
+            let fraction = match (is_fixed, points.point(index).is_target()) {
                 (true, _) => 0.0,
                 (false, true) => 1.0,
                 (false, false) => 0.5,
             };
-            let weight = self.points.point(index).weight;
+            let weight = points.point(index).weight;
             sum += weight * fraction * error;
             weights += weight;
         }
         let base = base + sum / weights;
-        self.points.base_destinations[link] = base;
-        for index in self.points.of_link(link) {
-            if !self.points.point(index).is_target() {
-                self.points.move_point(index, base + self.points.arms[index]);
+        points.base_destinations[link] = base;
+        for index in points.of_link(link) {
+            if !points.point(index).is_target() {
+                points.move_point(index, base + points.arms[index]);
             }
         }
     }
 
     /// Points a link from its joint at its points: sets their destinations and the vectors to where
     /// the link has them.
-    fn aim(&mut self, problem: &Problem, config: &Configuration, link: usize) {
-        let base = self.points.base_destinations[link];
+    fn aim(
+        &mut self,
+        points: &mut LinkPoints,
+        problem: &Problem,
+        config: &Configuration,
+        link: usize,
+    ) {
+        let base = points.base_destinations[link];
         self.pairs.clear();
-        for index in self.points.of_link(link) {
-            let destination = self.points.destination_of(problem, index);
-            self.points.destinations[index] = destination;
+        for index in points.of_link(link) {
+            let destination = points.destination_of(problem, index);
+            points.destinations[index] = destination;
             self.pairs.push(PointPair {
-                from: self.points.posed_arm(config, link, index),
+                from: points.posed_arm(config, link, index),
                 to: destination - base,
-                weight: self.points.point(index).weight,
+                weight: points.point(index).weight,
             });
         }
         if let [pair] = self.pairs[..] {
-            let index = self.points.of_link(link).start;
+            let index = points.of_link(link).start;
             let along = normalize(pair.to).or_else(|| normalize(pair.from));
-            self.points.arms[index] =
-                self.points.point(index).radius * along.unwrap_or(Vec3A::ZERO);
+            points.arms[index] = points.point(index).radius * along.unwrap_or(Vec3A::ZERO);
             return;
         }
         for _ in 0..ROTATIONS {
             let rotation = align(&self.pairs);
             self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
         }
-        for (index, pair) in self.points.of_link(link).zip(&self.pairs) {
-            self.points.arms[index] = pair.from;
+        for (index, pair) in points.of_link(link).zip(&self.pairs) {
+            points.arms[index] = pair.from;
         }
     }
 }

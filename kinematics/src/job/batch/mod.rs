@@ -56,16 +56,73 @@
 //! Other limbs are solved alone. A twist adds about a third of the time, for its sine and cosine.
 //! `docs/performance.md` has the times.
 
-#[cfg(feature = "parallel")]
-mod cores;
-mod inputs;
+mod arrays;
 mod kernel;
-mod outputs;
-mod solve;
+
+use self::kernel::{BLOCK, FastPathJobs, Results, outcome};
+
+pub use arrays::{JobInputs, JobOutputs, Joints, LenError};
+
+/// Solves all limbs on this thread without allocating.
+///
+/// # Errors
+///
+/// [`LenError`] for arrays of different lengths; nothing is written then. The error of a single
+/// limb is in [`JobOutputs::reach`].
+pub fn solve(inputs: &JobInputs<'_>, mut outputs: JobOutputs<'_>) -> Result<(), LenError> {
+    inputs.check()?;
+    outputs.check(inputs.len())?;
+    solve_checked(inputs, &mut outputs);
+    Ok(())
+}
+
+/// As [`solve`], on the threads of [`rayon`]. Results are bit-identical.
+///
+/// # Errors
+///
+/// As [`solve`].
+#[cfg(feature = "parallel")]
+pub fn solve_on_all_cores(inputs: &JobInputs<'_>, outputs: JobOutputs<'_>) -> Result<(), LenError> {
+    inputs.check()?;
+    outputs.check(inputs.len())?;
+    solve_tasks(*inputs, outputs);
+    Ok(())
+}
+
+/// Solves limbs whose arrays have equal lengths.
+fn solve_checked(inputs: &JobInputs<'_>, outputs: &mut JobOutputs<'_>) {
+    let (mut jobs, mut results) = (FastPathJobs::ZERO, Results::ZERO);
+    for first in (0..inputs.len()).step_by(BLOCK) {
+        let limbs = inputs.len().min(first + BLOCK) - first;
+        let part = inputs.part(first..first + limbs);
+        part.copy_to(&mut jobs);
+        match part.pole {
+            Some(_) => kernel::solve::<true>(&jobs, &mut results),
+            None => kernel::solve::<false>(&jobs, &mut results),
+        }
+        outputs.copy_from(&results, first, limbs);
+        for limb in (0..limbs).filter(|limb| !is_done(&part, &results, *limb)) {
+            outputs.set(first + limb, part.job(limb).solve_any());
+        }
+    }
+}
+
+/// True if the results are those of the limb's job, because it fits the fast path.
+fn is_done(inputs: &JobInputs<'_>, results: &Results, limb: usize) -> bool {
+    let weight = inputs.weight.map_or(1.0, |weight| weight[limb]);
+    results.outcome[limb] != outcome::IRREGULAR && weight == 1.0 && inputs.softness == 0.0
+}
 
 #[cfg(feature = "parallel")]
-pub use cores::solve_on_all_cores;
-pub use inputs::LenError;
-pub use inputs::{JobInputs, Joints};
-pub use outputs::JobOutputs;
-pub use solve::solve;
+fn solve_tasks(inputs: JobInputs<'_>, mut outputs: JobOutputs<'_>) {
+    // Maximum number of limbs of a task, so that starting it costs little beside solving them.
+    const TASK: usize = 4 * BLOCK;
+    if inputs.len() <= TASK {
+        solve_checked(&inputs, &mut outputs);
+        return;
+    }
+    let middle = (inputs.len() / 2).next_multiple_of(BLOCK);
+    let (first, second) = (inputs.part(0..middle), inputs.part(middle..inputs.len()));
+    let (first_outputs, second_outputs) = outputs.split_at(middle);
+    rayon::join(|| solve_tasks(first, first_outputs), || solve_tasks(second, second_outputs));
+}

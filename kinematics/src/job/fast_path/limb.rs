@@ -1,8 +1,6 @@
 use glam::{DQuat, DVec3};
 
 use super::joint_axes::StartAxes;
-use super::rotation::{NEAR_HALF_TURN, OPPOSITE, least_rotation, rotation_between};
-use crate::job::half_angle::HalfAngle;
 
 /// Sine of the angle between pole and target up to which the pole gives no direction.
 pub const ON_LINE: f64 = 1e-6;
@@ -163,6 +161,76 @@ pub fn side(normal: DVec3, square: f64, hinge: DVec3) -> f64 {
 fn between(value: f64, least: f64, most: f64) -> f64 {
     let value = if value > least { value } else { least };
     if value < most { value } else { most }
+}
+
+/// 1 + the trace of a rotation up to which it is nearly half a turn.
+pub const NEAR_HALF_TURN: f64 = 1e-4;
+
+/// 1 + the cosine between two directions up to which they are nearly opposite.
+pub const OPPOSITE: f64 = 1e-6;
+
+/// Half of an angle.
+#[derive(Clone, Copy)]
+pub struct HalfAngle {
+    pub sin: f64,
+    pub cos: f64,
+}
+
+impl HalfAngle {
+    /// Half of the angle between −180° and 180° with this sine and cosine.
+    #[inline(always)]
+    pub fn of(sin: f64, cos: f64) -> Self {
+        let larger = (0.5 + 0.5 * cos.abs()).sqrt();
+        let smaller = 0.5 * sin / larger;
+        let is_sharp = cos >= 0.0;
+        // Beyond 90°, the half is between 45° and 90°, on the side of the angle.
+        Self {
+            sin: if is_sharp { smaller } else { larger.copysign(sin) },
+            cos: if is_sharp { larger } else { smaller.abs() },
+        }
+    }
+
+    #[inline(always)]
+    pub fn minus(self, other: Self) -> Self {
+        Self {
+            sin: self.sin * other.cos - self.cos * other.sin,
+            cos: self.cos * other.cos + self.sin * other.sin,
+        }
+    }
+
+    #[inline(always)]
+    pub fn times(self, factor: f64) -> Self {
+        Self { sin: self.sin * factor, cos: self.cos * factor }
+    }
+
+    /// The rotation by the whole angle about a unit axis.
+    #[inline(always)]
+    pub fn about(self, axis: DVec3) -> DQuat {
+        DQuat::from_vec4((axis * self.sin).extend(self.cos))
+    }
+}
+
+/// The rotation that maps the axes of one right-handed frame to those of another, and 1 + the trace
+/// of the rotation. The smaller this number is, the less precise the rotation; it is 0 for half a
+/// turn.
+#[inline(always)]
+pub fn rotation_between(from: [DVec3; 3], to: [DVec3; 3]) -> (DQuat, f64) {
+    let ([a, b, c], [x, y, z]) = (from, to);
+    // 1 + the trace is 4 cos²(θ/2); the sum of the cross products is 2 sin θ along the axis.
+    let trace_plus_one = 1.0 + a.dot(x) + b.dot(y) + c.dot(z);
+    let sin = a.cross(x) + b.cross(y) + c.cross(z);
+    let doubled = trace_plus_one.sqrt();
+    (DQuat::from_vec4((sin * (0.5 / doubled)).extend(0.5 * doubled)), trace_plus_one)
+}
+
+/// The rotation by the smallest angle from one unit vector to another, and 1 + the cosine of this
+/// angle. The smaller this number is, the less precise the rotation; it is 0 for half a turn.
+#[inline(always)]
+pub fn least_rotation(from: DVec3, to: DVec3) -> (DQuat, f64) {
+    // 2 cos²(θ/2); the cross product is sin θ along the axis.
+    let cos_plus_one = 1.0 + from.dot(to);
+    let cos = (0.5 * cos_plus_one).sqrt();
+    (DQuat::from_vec4((from.cross(to) * (0.5 / cos)).extend(cos)), cos_plus_one)
 }
 
 #[cfg(test)]

@@ -2,9 +2,11 @@
 
 use glam::Vec3;
 
-use super::rig_case::RigCase;
-use crate::diagnosis::{Angle, is_fixed, limited_angles, remove_limits, widen_to_contain};
-use crate::diagnosis::{Boundary, Cause, Diagnosis, Remedy, TriedRemedy};
+use super::RigCase;
+use crate::diagnosis::{
+    Angle, Boundary, Cause, Diagnosis, Remedy, TriedRemedy, is_fixed, limited_angles,
+    remove_limits, widen_to_contain,
+};
 use crate::limb_ik::{Limb, LimbReach};
 use crate::rig::evaluate::{TargetOutcome, TargetReport};
 use crate::rig::target::LimbSettings;
@@ -116,9 +118,10 @@ impl RigCase<'_> {
         if settings.soft_reach.is_hard() || !self.reaches(&remedy) {
             return None;
         }
-        let boundary = match settings.soft_reach.softness() > 0.0 {
-            true => Boundary::SoftLimit,
-            false => Boundary::ElbowAngle,
+        let boundary = if settings.soft_reach.softness() > 0.0 {
+            Boundary::SoftLimit
+        } else {
+            Boundary::ElbowAngle
         };
         let tried = Vec::from_iter(self.try_remedy(remedy));
         Some(self.diagnosis(span.cause(boundary), limb.joints().collect(), tried))

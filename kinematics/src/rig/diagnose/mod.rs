@@ -1,15 +1,16 @@
 //! Why the tips of a rig are not at their targets, and its hands not turned as these ask.
 
 mod limb;
-mod rig_case;
 
-use self::rig_case::RigCase;
-use super::evaluate::{EvaluatedSkeleton, TargetOutcome};
+use thiserror::Error;
+
+use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::chain_ik::{self, TipTarget};
-use crate::diagnosis::{Diagnosis, in_turn};
-use crate::skeleton::JointId;
+use crate::chain_ik::{self, SolveError, TipTarget};
+use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy, in_turn};
+use crate::skeleton::{JointId, SkeletonError};
+use crate::soft_reach::{SoftReach, SoftReachError};
 
 impl SkeletonRig {
     /// The causes for which the tips are not at their enabled targets at a time in seconds, or
@@ -96,5 +97,198 @@ impl SkeletonRig {
         let active = self.targets.iter().filter(|it| self.is_solved_for(it)).filter(is_whole_body);
         let tips: Vec<TipTarget> = active.map(|it| it.tip_target(&evaluated.fk, time)).collect();
         chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
+    }
+}
+
+/// Changed soft limits.
+type Changed = Result<SoftReach, SoftReachError>;
+
+/// A remedy that cannot be applied.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RemedyError {
+    /// It names a joint that the skeleton does not have, or changes an angle or a length to an invalid
+    /// one.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    /// It changes a target to an invalid one.
+    #[error(transparent)]
+    Target(#[from] SolveError),
+    /// It allows the solver no iterations.
+    #[error("the solver's iterations must be above 0, got 0")]
+    NoIterations,
+}
+
+impl SkeletonRig {
+    /// Applies a remedy at a time in seconds, at which a moved target is at its new position.
+    ///
+    /// # Errors
+    ///
+    /// See [`RemedyError`]. The rig may then be changed in part.
+    pub fn apply_remedy(&mut self, remedy: &Remedy, time: f64) -> Result<(), RemedyError> {
+        check(remedy)?;
+        if let Remedy::MoveTarget { joint, point } = remedy {
+            let pose = self.skeleton_at(time);
+            self.change_target(*joint, |target| {
+                let moved = target.placed(&pose, time, *point);
+                if moved.home.is_finite() {
+                    *target = moved;
+                }
+            });
+        }
+        remedy.change_skeleton(self.skeleton_mut())?;
+        remedy.change_options(&mut self.solver);
+        match *remedy {
+            Remedy::SwitchOff(joint) => self.change_target(joint, |it| it.enabled = false),
+            Remedy::SetWeight { joint, weight } => {
+                self.change_target(joint, |target| target.weight = weight);
+            }
+            Remedy::FullInfluence(joint) => self.change_target(joint, |it| it.influence = 1.0),
+            Remedy::Stretch { joint, max_stretch } => {
+                self.change_soft_reach(joint, |soft| {
+                    SoftReach::new(soft.softness(), max_stretch, soft.min_elbow_angle())
+                });
+            }
+            Remedy::HardLimits(joint) => {
+                self.change_soft_reach(joint, |soft| SoftReach::new(0.0, soft.max_stretch(), 0.0));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn change_target(&mut self, joint: JointId, change: impl FnOnce(&mut Target)) {
+        if let Some(target) = self.targets.iter_mut().find(|target| target.joint == joint) {
+            change(target);
+        }
+    }
+
+    /// Changes the soft limits of a limb's target, unless the new ones are invalid.
+    fn change_soft_reach(&mut self, joint: JointId, change: impl FnOnce(SoftReach) -> Changed) {
+        self.change_target(joint, |target| {
+            if let Some(limb) = target.limb_mut() {
+                limb.soft_reach = change(limb.soft_reach).unwrap_or(limb.soft_reach);
+            }
+        });
+    }
+}
+
+/// Checks the numbers of a remedy for a target or the solver.
+fn check(remedy: &Remedy) -> Result<(), RemedyError> {
+    match *remedy {
+        Remedy::MoveTarget { joint, point } if !point.is_finite() => {
+            Err(SolveError::Point { joint, point }.into())
+        }
+        Remedy::SetWeight { joint, weight } if !(weight.is_finite() && weight > 0.0) => {
+            Err(SolveError::Weight { joint, weight }.into())
+        }
+        Remedy::AllowIterations(0) => Err(RemedyError::NoIterations),
+        _ => Ok(()),
+    }
+}
+
+/// A target of a rig that is not reached.
+struct RigCase<'a> {
+    pub rig: &'a SkeletonRig,
+    /// The rig with full influence of all missed targets.
+    pub full: &'a SkeletonRig,
+    pub time: f64,
+    pub tolerance: f32,
+    pub target: &'a Target,
+    pub residual: f32,
+    /// Angle in radians that the hand's rotation misses; 0 for a target that asks for none.
+    pub rotation_residual: f32,
+}
+
+/// What a pose leaves between a target and what it moves.
+struct Left {
+    /// In the world.
+    distance: f32,
+    /// In radians.
+    angle: f32,
+}
+
+/// Fraction of a residual that a remedy may leave: one that is left nearly as it was is not worth
+/// an edit.
+const WORTH: f32 = 0.9;
+
+impl RigCase<'_> {
+    /// The mix with the FK pose.
+    pub fn influence(&self) -> Option<Diagnosis> {
+        let Target { joint, influence, .. } = *self.target;
+        if influence == 1.0 {
+            return None;
+        }
+        let full = Remedy::FullInfluence(joint);
+        let tried = self.try_remedy(full.clone()).or_else(|| self.try_rotation_remedy(full));
+        let remedies = Vec::from_iter(tried);
+        (!remedies.is_empty())
+            .then(|| self.diagnosis(Cause::Influence { influence }, vec![joint], remedies))
+    }
+
+    /// A diagnosis of the solver with the residuals that its remedies leave in the rig.
+    pub fn tried_again(&self, found: &Diagnosis) -> Diagnosis {
+        let remedies = found.remedies.iter().map(|tried| tried.remedy.clone());
+        let remedies = remedies.filter_map(|remedy| self.try_remedy(remedy)).collect();
+        self.diagnosis(found.cause, found.joints.clone(), remedies)
+    }
+
+    /// Tries a remedy; `None` if it does not bring the tip nearer.
+    pub fn try_remedy(&self, remedy: Remedy) -> Option<TriedRemedy> {
+        let left = self.left_by(self.rig, &remedy)?;
+        (left.distance <= WORTH * self.residual).then(|| left.by(remedy))
+    }
+
+    /// Tries a remedy; `None` if it does not bring the hand nearer to the rotation that its target
+    /// asks for, or takes the tip away from the target.
+    pub fn try_rotation_remedy(&self, remedy: Remedy) -> Option<TriedRemedy> {
+        let left = self.left_by(self.rig, &remedy)?;
+        let stays = left.distance <= self.residual.max(self.tolerance);
+        (stays && left.angle <= WORTH * self.rotation_residual).then(|| left.by(remedy))
+    }
+
+    /// True if a remedy brings the tip to its target at full influence.
+    pub fn reaches(&self, remedy: &Remedy) -> bool {
+        self.left_by(self.full, remedy).is_some_and(|left| self.is_reached(left.distance))
+    }
+
+    fn left_by(&self, rig: &SkeletonRig, remedy: &Remedy) -> Option<Left> {
+        let mut changed = rig.clone();
+        changed.apply_remedy(remedy, self.time).ok()?;
+        let index = changed.target(self.target.joint)?;
+        let TargetReport { error, rotation_error, .. } = changed.evaluate(self.time).targets[index];
+        Some(Left { distance: error, angle: rotation_error.unwrap_or_default() })
+    }
+
+    pub fn diagnosis(
+        &self,
+        cause: Cause,
+        joints: Vec<JointId>,
+        mut remedies: Vec<TriedRemedy>,
+    ) -> Diagnosis {
+        remedies.sort_by_key(|tried| !self.is_reached(tried.residual));
+        let target = self.target.joint;
+        Diagnosis { target, residual: self.residual, cause, joints, remedies }
+    }
+
+    /// Diagnoses whose remedy reaches the target, then those with the least residual left.
+    pub fn sorted(&self, mut found: Vec<Diagnosis>) -> Vec<Diagnosis> {
+        let left = |it: &Diagnosis| {
+            let residual = it.residual_with_remedy();
+            if self.is_reached(residual) { 0.0 } else { residual }
+        };
+        found.sort_by(|one, other| left(one).total_cmp(&left(other)));
+        found
+    }
+
+    fn is_reached(&self, residual: f32) -> bool {
+        // A solve from a rounded position ends at another point within the tolerance.
+        const ROUNDING: f32 = 1.01;
+        residual <= ROUNDING * self.tolerance
+    }
+}
+
+impl Left {
+    fn by(self, remedy: Remedy) -> TriedRemedy {
+        TriedRemedy { remedy, residual: self.distance, rotation_residual: self.angle }
     }
 }

@@ -1,11 +1,11 @@
 //! Cells of a grid that the surface of a field passes through.
 
+use core::ops::Range;
 use std::collections::HashMap;
 
 use glam::{DVec3, IVec3};
 
 use super::field::{Field, FieldScratch};
-use super::parallel;
 
 /// Distances at the corners of a cell; corner c has the coordinates of its bits: 1 for x, 2 for y, 4 for z.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,7 @@ impl Grid {
         };
         let mut grid =
             Self { lattice, cells: Vec::new(), index: HashMap::new(), blocks: Vec::new() };
-        for block in parallel::map(&branches, of_branch).into_iter().flatten() {
+        for block in map_in_order(&branches, of_branch).into_iter().flatten() {
             grid.add(block);
         }
         grid
@@ -184,4 +184,26 @@ impl BlockCorners {
 /// Coordinates of a corner of a cell of the size 1.
 pub fn corner_offset(corner: u8) -> IVec3 {
     IVec3::new(i32::from(corner & 1), i32::from(corner >> 1 & 1), i32::from(corner >> 2 & 1))
+}
+
+/// Maps items in their order; on all cores with the feature `parallel`.
+fn map_in_order<I: Sync, T: Send>(items: &[I], map: impl Fn(&I) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+        items.par_iter().map(map).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    items.iter().map(map).collect()
+}
+
+/// Maps ranges of the indices below `count`, each small beside the work of a core, to lists, and
+/// joins these in order; on all cores with the feature `parallel`.
+pub fn map_ranges<T: Send + Clone>(
+    count: usize,
+    map: impl Fn(Range<usize>) -> Vec<T> + Sync + Send,
+) -> Vec<T> {
+    const LENGTH: usize = 512;
+    let starts: Vec<usize> = (0..count).step_by(LENGTH).collect();
+    map_in_order(&starts, |start| map(*start..count.min(start + LENGTH))).concat()
 }

@@ -8,17 +8,11 @@
 mod body;
 mod field;
 mod grid;
-mod parallel;
-mod projection;
 mod round_cone;
-mod shape;
 mod surface_nets;
 mod weights;
 
-pub use shape::SkinShapeError;
-pub use shape::{Blob, SkinShape};
-
-use core::ops::Range;
+pub use body::{Blob, SkinShape, SkinShapeError};
 
 use glam::{DVec3, Vec3};
 
@@ -93,14 +87,11 @@ fn add(
     let (low, high) = bounds(body);
     let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
     let mut net = SurfaceNet::new(&grid);
-    let normals = projection::relax(&mut net, &grid, ROUNDS);
+    let normals = surface_nets::relax(&mut net, &grid, ROUNDS);
     let field = |vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
     let by_distance = Weights::new(body, skeleton);
-    let of_range = |range: &Range<usize>| {
-        let at = |vertex: usize| by_distance.at(net.vertices[vertex], field(vertex).parts());
-        range.clone().map(at).collect::<Vec<VertexWeights>>()
-    };
-    let mut own = parallel::map(&parallel::ranges(net.vertices.len()), of_range).concat();
+    let at = |vertex: usize| by_distance.at(net.vertices[vertex], field(vertex).parts());
+    let mut own = grid::map_ranges(net.vertices.len(), |range| range.map(at).collect());
     let triangles: Vec<[u32; 3]> =
         net.quads.iter().flat_map(|quad| halves(&net.vertices, *quad)).collect();
     weights::smooth(&mut own, &edges(&triangles));

@@ -3,9 +3,10 @@ use core::ops::Range;
 use glam::{Affine3A, Vec3};
 use thiserror::Error;
 
-use super::kernel::{BLOCK, FastPathJobs};
-use crate::batch::Points;
-use crate::job::TwoBoneJob;
+use super::kernel::{BLOCK, FastPathJobs, Results, outcome};
+use crate::batch::{Points, QuaternionsMut};
+use crate::job::{JobError, TwoBoneCorrection, TwoBoneJob};
+use crate::two_bone::Reach;
 
 /// Transforms of joints to model space, one joint for each limb.
 #[derive(Clone, Copy, Debug)]
@@ -160,10 +161,6 @@ impl JobInputs<'_> {
     }
 }
 
-pub(super) fn check(array: &'static str, len: usize, limbs: usize) -> Result<(), LenError> {
-    if len == limbs { Ok(()) } else { Err(LenError { array, len, limbs }) }
-}
-
 fn copy(Points { x, y, z }: Points<'_>, to: &mut [[f32; BLOCK]; 3]) {
     for (from, to) in [x, y, z].into_iter().zip(to) {
         to[..from.len()].copy_from_slice(from);
@@ -178,6 +175,91 @@ fn at(Points { x, y, z }: Points<'_>, limb: usize) -> Vec3 {
     Vec3::new(x[limb], y[limb], z[limb])
 }
 
+/// Arrays to which the fields of a [`TwoBoneCorrection`] are written, one number for each limb.
+#[derive(Debug)]
+pub struct JobOutputs<'a> {
+    /// Δ₁ of each limb.
+    pub start_correction: QuaternionsMut<'a>,
+    /// Δ₂ of each limb.
+    pub middle_correction: QuaternionsMut<'a>,
+    /// Distance from each corrected hand to its target in model space.
+    pub hand_error: &'a mut [f32],
+    /// Reach of each limb, or why its job is refused. A refused limb gets no correction (identity
+    /// rotations) and a hand error of NaN.
+    pub reach: &'a mut [Result<Reach, JobError>],
+}
+
+impl JobOutputs<'_> {
+    pub(super) fn check(&self, limbs: usize) -> Result<(), LenError> {
+        let QuaternionsMut { x, y, z, w } = &self.start_correction;
+        check("start_correction.x", x.len(), limbs)?;
+        check("start_correction.y", y.len(), limbs)?;
+        check("start_correction.z", z.len(), limbs)?;
+        check("start_correction.w", w.len(), limbs)?;
+        let QuaternionsMut { x, y, z, w } = &self.middle_correction;
+        check("middle_correction.x", x.len(), limbs)?;
+        check("middle_correction.y", y.len(), limbs)?;
+        check("middle_correction.z", z.len(), limbs)?;
+        check("middle_correction.w", w.len(), limbs)?;
+        check("hand_error", self.hand_error.len(), limbs)?;
+        check("reach", self.reach.len(), limbs)
+    }
+
+    /// Copies the results of the first `limbs` limbs of a block to the limbs after `first`.
+    pub(super) fn copy_from(&mut self, results: &Results, first: usize, limbs: usize) {
+        let to = first..first + limbs;
+        for (values, QuaternionsMut { x, y, z, w }) in [
+            (&results.start_correction, &mut self.start_correction),
+            (&results.middle_correction, &mut self.middle_correction),
+        ] {
+            for (values, array) in values.iter().zip([x, y, z, w]) {
+                array[to.clone()].copy_from_slice(&values[..limbs]);
+            }
+        }
+        self.hand_error[to.clone()].copy_from_slice(&results.hand_error[..limbs]);
+        for (reach, outcome) in self.reach[to].iter_mut().zip(results.outcome) {
+            *reach = Ok(if outcome == outcome::REACHED {
+                Reach::Reached
+            } else if outcome == outcome::TOO_CLOSE {
+                Reach::TooClose
+            } else {
+                Reach::TooFar
+            });
+        }
+    }
+
+    pub(super) fn set(&mut self, limb: usize, result: Result<TwoBoneCorrection, JobError>) {
+        let (start, middle, hand_error) = match result {
+            Ok(of) => (of.start_correction, of.middle_correction, of.hand_error),
+            Err(_) => (Default::default(), Default::default(), f32::NAN),
+        };
+        for (turn, QuaternionsMut { x, y, z, w }) in
+            [(start, &mut self.start_correction), (middle, &mut self.middle_correction)]
+        {
+            [x[limb], y[limb], z[limb], w[limb]] = turn.to_array();
+        }
+        self.hand_error[limb] = hand_error;
+        self.reach[limb] = result.map(|of| of.reach);
+    }
+
+    /// The outputs of the first `middle` limbs, and of the others.
+    #[cfg(feature = "parallel")]
+    pub(super) fn split_at(self, middle: usize) -> (Self, Self) {
+        let (start, second_start) = self.start_correction.split_at(middle);
+        let (turn, second_turn) = self.middle_correction.split_at(middle);
+        let (hand_error, second_hand_error) = self.hand_error.split_at_mut(middle);
+        let (reach, second_reach) = self.reach.split_at_mut(middle);
+        let first = Self { start_correction: start, middle_correction: turn, hand_error, reach };
+        let second = Self {
+            start_correction: second_start,
+            middle_correction: second_turn,
+            hand_error: second_hand_error,
+            reach: second_reach,
+        };
+        (first, second)
+    }
+}
+
 /// Arrays of a batch that differ in length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{array} has {len} numbers; target.x has {limbs}, and there must be as many")]
@@ -189,4 +271,8 @@ pub struct LenError {
     pub len: usize,
     /// Number of limbs, the length of `target.x`.
     pub limbs: usize,
+}
+
+pub(super) fn check(array: &'static str, len: usize, limbs: usize) -> Result<(), LenError> {
+    if len == limbs { Ok(()) } else { Err(LenError { array, len, limbs }) }
 }

@@ -1,6 +1,36 @@
-use glam::{Quat, Vec3A};
+//! Vectors of any length in f32: unit vectors and rotations between vectors whose squares underflow
+//! (below 1e-19) or overflow (above 1e19), and conversions from f64 that clamp overflow.
 
-use super::normalize::{normalize, scaled_near_1, squares_safely};
+use glam::{DVec3, Quat, Vec3, Vec3A};
+
+/// Unit vector in the direction of `v`; `None` if `v` is zero or not finite.
+pub(crate) fn normalize(v: Vec3A) -> Option<Vec3A> {
+    if squares_safely(v) { v.try_normalize() } else { scaled_near_1(v)?.try_normalize() }
+}
+
+/// True if the squared length, and the product of two such squares, neither overflows nor
+/// underflows.
+fn squares_safely(v: Vec3A) -> bool {
+    (1e-15..=1e15).contains(&v.length_squared())
+}
+
+/// The vector scaled by the power of two that brings its largest coordinate into 1 … 2, or as near
+/// to that range as f32 allows for subnormal vectors; `None` for a vector without a direction.
+fn scaled_near_1(v: Vec3A) -> Option<Vec3A> {
+    let largest = v.abs().max_element();
+    (largest > 0.0 && v.is_finite()).then(|| v * power_of_two_near(largest).1)
+}
+
+/// The power of two at or below `value` ≥ 0, and its reciprocal; clamped so that both are normal
+/// numbers. Scaling by either is exact.
+#[inline(always)]
+pub(crate) fn power_of_two_near(value: f32) -> (f32, f32) {
+    const EXPONENT: u32 = 0xff << 23;
+    const LEAST: u32 = 1 << 23;
+    const MOST: u32 = 253 << 23;
+    let power = (value.to_bits() & EXPONENT).clamp(LEAST, MOST);
+    (f32::from_bits(power), f32::from_bits(LEAST + MOST - power))
+}
 
 /// Rotation by the smallest angle that turns one direction to another, for vectors of any length.
 /// The identity if either has no direction; about any perpendicular axis if they are opposite.
@@ -24,9 +54,39 @@ pub(crate) fn rotation_between(from: Vec3A, to: Vec3A) -> Quat {
     Quat::from_xyzw(cross.x, cross.y, cross.z, both + dot).normalize()
 }
 
+/// Converts a number of at least −`f32::MAX` to f32; numbers above `f32::MAX` become `f32::MAX`.
+pub(crate) fn saturate(value: f64) -> f32 {
+    value.min(f64::from(f32::MAX)) as f32
+}
+
+/// Converts a vector to f32, with its coordinates clamped to ±`f32::MAX`.
+pub(crate) fn saturate_vector(v: DVec3) -> Vec3 {
+    v.clamp(Vec3::MIN.as_dvec3(), Vec3::MAX.as_dvec3()).as_vec3()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn vectors_of_every_length_are_normalized() {
+        let expected = Vec3A::new(2.0, -3.0, 6.0) / 7.0;
+        for exponent in -125..=125 {
+            let v = Vec3A::new(2.0, -3.0, 6.0) * 2_f32.powi(exponent);
+            let found = normalize(v).expect("a direction");
+            assert!(found.distance(expected) < 1e-6, "{found} for {v}");
+        }
+        let least = f32::from_bits(1);
+        assert_eq!(normalize(Vec3A::Y * least), Some(Vec3A::Y));
+        assert_eq!(normalize(Vec3A::NEG_Z * f32::MAX), Some(Vec3A::NEG_Z));
+    }
+
+    #[test]
+    fn vectors_without_a_direction_normalize_to_none() {
+        for v in [Vec3A::ZERO, Vec3A::NAN, Vec3A::INFINITY, Vec3A::new(f32::NAN, 1.0, 0.0)] {
+            assert_eq!(normalize(v), None, "{v}");
+        }
+    }
 
     fn directions() -> impl Iterator<Item = Vec3A> {
         let steps = || (-2..=2).map(|step| step as f32);

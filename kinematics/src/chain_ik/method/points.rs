@@ -1,24 +1,102 @@
-//! Points of links: what FABRIK and relaxation move instead of angles.
+//! Methods that move points of links instead of angles: FABRIK and relaxation.
 //!
-//! Both methods set a destination for each point, then lay the links out from the roots: each link
-//! keeps the distance of its points from its joint and points at their destinations. A link with
-//! several points (a bone with children away from its tip, or a locked fork) rotates as a whole, to
-//! the best fit. If any link has limits, every link rotates as a whole, and limited links angle by
-//! angle within their limits.
+//! A pass from the targets to the roots sets a destination for each point ([`InwardPass`]); then the
+//! links are laid out from the roots: each link keeps the distance of its points from its joint and
+//! points at their destinations. A link with several points (a bone with children away from its tip,
+//! or a locked fork) rotates as a whole, to the best fit. If any link has limits, every link rotates
+//! as a whole, and limited links angle by angle within their limits.
 //!
 //! Orientations of links with one point and no limits are computed on demand, by the smallest
 //! rotation.
+//!
+//! A chain whose only target is out of reach is laid out straight towards the target. The inward
+//! pass ignores limits. If any link has limits, a sweep of CCD follows where the passes do not halve
+//! the cost, after passes that do not lower it are undone.
 
 use core::ops::Range;
 
 use glam::{Mat3A, Quat, Vec3A};
 
+use super::ccd::Ccd;
 use crate::chain_ik::align::{PointPair, ROTATIONS, align, align_within};
 use crate::chain_ik::configuration::Configuration;
-use crate::chain_ik::inside::LinkSegment;
+use crate::chain_ik::inside::{Event, LinkSegment, Recorder};
 use crate::chain_ik::problem::Problem;
 use crate::skeleton::JointAngles;
 use crate::{normalize, rotation_between};
+
+/// The pass from the targets to the roots.
+pub(in crate::chain_ik) trait InwardPass {
+    /// The records of this pass and of the one back from the roots.
+    const EVENTS: [fn(Vec<LinkSegment>) -> Event; 2];
+
+    fn new(points: &LinkPoints) -> Self;
+
+    /// Sets the destinations of all points.
+    fn run(&mut self, points: &mut LinkPoints, problem: &Problem, config: &Configuration);
+}
+
+/// A method that moves points by an inward pass of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::chain_ik) struct PointMethod<P> {
+    pub inward: P,
+    points: LinkPoints,
+    /// The configuration before the passes.
+    before: Configuration,
+    sweep: Ccd,
+}
+
+impl<P: InwardPass> PointMethod<P> {
+    pub fn new(problem: &Problem) -> Self {
+        let points = LinkPoints::new(problem);
+        let (inward, sweep) = (P::new(&points), Ccd::new(problem));
+        Self { inward, points, before: Configuration::default(), sweep }
+    }
+
+    /// Makes the passes, and a sweep of CCD if they need one; returns `true`.
+    pub fn iterate(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        recorder: &mut Recorder,
+    ) -> bool {
+        // Fraction of the cost that passes may leave without a sweep.
+        const ENOUGH: f64 = 0.5;
+        if !self.points.limited {
+            self.pass(problem, config, recorder);
+            return true;
+        }
+        self.before.copy_from(config);
+        self.pass(problem, config, recorder);
+        let left = config.cost(problem) / self.before.cost(problem);
+        if left <= ENOUGH {
+            return true;
+        }
+        if left >= 1.0 {
+            config.copy_from(&self.before);
+            recorder.record(config, || Event::Undo);
+        }
+        self.sweep.iterate(problem, config, recorder)
+    }
+
+    /// Makes the inward pass and lays the links out.
+    fn pass(&mut self, problem: &Problem, config: &mut Configuration, recorder: &mut Recorder) {
+        let [inward, outward] = P::EVENTS;
+        if self.points.is_out_of_reach(problem, config) {
+            self.points.destinations.fill(problem.effectors[0].target);
+        } else {
+            self.inward.run(&mut self.points, problem, config);
+            recorder.record(config, || inward(self.points.destination_segments()));
+        }
+        self.points.lay_out(problem, config);
+        recorder.record(config, || outward(self.points.segments(config)));
+    }
+
+    /// Updates orientations that the passes leave behind the points that they move.
+    pub fn update_orientations(&self, config: &mut Configuration) {
+        self.points.update_orientations(config);
+    }
+}
 
 /// A point fixed to a link, with the child joints and tips that are at this point.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +213,7 @@ impl LinkPoints {
 
     /// True if the problem is a chain without limits, with a fixed root, whose one target is out of
     /// reach.
-    pub fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
+    fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
         let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
         else {
             return false;
@@ -175,7 +253,7 @@ impl LinkPoints {
     }
 
     /// Lays the links out from the roots towards the destinations of their points.
-    pub fn lay_out(&mut self, problem: &Problem, config: &mut Configuration) {
+    fn lay_out(&mut self, problem: &Problem, config: &mut Configuration) {
         if problem.free_roots {
             self.move_roots(problem, config);
         }
@@ -268,9 +346,9 @@ impl LinkPoints {
         }
     }
 
-    /// Updates the orientations of links with one point, which iterations move only: turns each, by
+    /// Updates the orientations of links with one point, which passes move only: turns each, by
     /// the smallest angle, until the link points at its point.
-    pub fn update_orientations(&self, config: &mut Configuration) {
+    fn update_orientations(&self, config: &mut Configuration) {
         if self.limited {
             return;
         }
@@ -285,7 +363,7 @@ impl LinkPoints {
     }
 
     /// Each link as the pairs of its joint and its points, where their destinations are.
-    pub fn destination_segments(&self) -> Vec<LinkSegment> {
+    fn destination_segments(&self) -> Vec<LinkSegment> {
         let links = self.ranges.iter().zip(&self.base_destinations).enumerate();
         let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
             let base = *base;
@@ -296,7 +374,7 @@ impl LinkPoints {
     }
 
     /// Each link as the pairs of its joint and its points.
-    pub fn segments(&self, config: &Configuration) -> Vec<LinkSegment> {
+    fn segments(&self, config: &Configuration) -> Vec<LinkSegment> {
         let links = self.ranges.iter().zip(&config.bases).enumerate();
         let segments = |(link, (range, base)): (usize, (&(usize, usize), &Vec3A))| {
             let ends = |point: &LinkPoint| [*base, point.position_in(config)];
