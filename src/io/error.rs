@@ -152,29 +152,43 @@ pub enum WriteError {
 fn list(names: &[String]) -> String {
     match names {
         [] => "it has one skeleton, without a name".to_owned(),
-        names => {
-            let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
-            format!("it has {}", quoted.join(", "))
-        }
+        names => format!("it has {}", quoted(names)),
     }
 }
 
+fn list_animations(names: &[String]) -> String {
+    let (first, more) = names.split_at(names.len().min(MOST_NAMES));
+    match (first.len(), more.len()) {
+        (0, _) => "it has none that can be chosen".to_owned(),
+        (_, 0) => format!("it has {}", quoted(first)),
+        (_, more) => format!("it has {} and {more} more", quoted(first)),
+    }
+}
+
+/// Maximum number of names that a message lists.
+pub const MOST_NAMES: usize = 20;
+
+/// Names in quotes.
+pub fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
+}
+
 /// The reason that the system gives for an error, without its number.
-pub(crate) fn system_reason(error: &io::Error) -> String {
+pub fn system_reason(error: &io::Error) -> String {
     let text = error.to_string();
     let number = error.raw_os_error().map(|number| format!(" (os error {number})"));
     number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
 }
 
 /// The text of a parser's error without the position at its end.
-pub(crate) fn without_position(error: &serde_json::Error) -> String {
+pub fn without_position(error: &serde_json::Error) -> String {
     let position = format!(" at line {} column {}", error.line(), error.column());
     let text = error.to_string();
     text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
 /// Replaces the middle of a long message by `…`.
-pub(crate) fn shortened(message: String) -> String {
+pub fn shortened(message: String) -> String {
     const START: usize = 260;
     const END: usize = 120;
     let count = message.chars().count();
@@ -184,15 +198,4 @@ pub(crate) fn shortened(message: String) -> String {
     let start = message.chars().take(START);
     let end = message.chars().skip(count - END);
     start.chain("…".chars()).chain(end).collect()
-}
-
-fn list_animations(names: &[String]) -> String {
-    /// Maximum number of names that are listed.
-    const MOST: usize = 20;
-    let quoted: Vec<_> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
-    match (names.len(), names.len().saturating_sub(MOST)) {
-        (0, _) => "it has none that can be chosen".to_owned(),
-        (_, 0) => format!("it has {}", quoted.join(", ")),
-        (_, more) => format!("it has {} and {more} more", quoted.join(", ")),
-    }
 }

@@ -11,7 +11,7 @@
 //! other code writes documents or exports.
 
 mod bones;
-pub(crate) mod error;
+mod error;
 mod examples;
 mod exported;
 mod foreign;

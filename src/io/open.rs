@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::error::{OpenError, Remark};
+use super::error::{MOST_NAMES, OpenError, Remark, quoted};
 use super::formats::Reader;
 use super::json::{FieldWarnings, JsonPath};
 use super::opened::{OpenOptions, Opened, Upwards};
@@ -75,13 +75,10 @@ fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenErr
 
 /// Remarks that a file has several skeletons, of which the first is read.
 fn one_of_several(names: &[String]) -> Option<Remark> {
-    /// Maximum number of names that are listed.
-    const MOST: usize = 20;
     let [first, _, ..] = names else { return None };
-    let quoted: Vec<_> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
-    let more = if names.len() > MOST { " …" } else { "" };
-    let (count, list) = (names.len(), quoted.join(", "));
-    let reason = format!("the skeleton {first:?} is read, one of {count}: {list}{more}");
+    let (count, listed) = (names.len(), quoted(&names[..names.len().min(MOST_NAMES)]));
+    let more = if count > MOST_NAMES { " …" } else { "" };
+    let reason = format!("the skeleton {first:?} is read, one of {count}: {listed}{more}");
     Some(Remark::new(reason))
 }
 

@@ -1,6 +1,6 @@
 //! Bytes in files: base64 (RFC 4648), read with or without its padding, lists of little-endian
-//! numbers of four bytes, and the container of a `.glb` file. Bytes after the last whole number of a
-//! list are left out.
+//! numbers of four bytes, and the container of a `.glb` file. Bytes after the last whole number of
+//! a list are left out.
 
 use core::ops::Range;
 
@@ -31,8 +31,8 @@ pub fn wholes(bytes: &[u8]) -> Vec<u32> {
     bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
 }
 
-/// The chunks of a `.glb` file: after a header of 12 bytes, each has a length, a type and its bytes.
-/// The first chunk is JSON, the second binary.
+/// The chunks of a `.glb` file: after a header of 12 bytes, each has a length, a type and its
+/// bytes. The first chunk is JSON, the second binary.
 pub struct GlbChunks {
     pub json: String,
     /// Content of the binary chunk; empty if the file has none.

@@ -41,8 +41,8 @@ pub fn solve_line(line: &[u8], previous: &mut Option<PreviousLine>) -> Result<An
         Some(PreviousLine(state)) if is_transported => *state,
         _ => IkState::default(),
     };
-    // Whole turns are removed in degrees, where the remainder is exact. In radians, the remainder of
-    // a large angle would be inexact.
+    // Whole turns are removed in degrees, where the remainder is exact. In radians, the remainder
+    // of a large angle would be inexact.
     let twist = (request.twist_deg.0 % 360.0).to_radians();
     let solved = ik.solve(request.hand.0, twist, carried);
     let answer = Answer::new(request.root.0, ik.reference, &solved.pose)?;
@@ -74,8 +74,8 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Returns the answer for an arm whose shoulder is at `root` in the world. Fails if the elbow or
-    /// the hand overflows there.
+    /// Returns the answer for an arm whose shoulder is at `root` in the world. Fails if the elbow
+    /// or the hand overflows there.
     fn new(root: Vec3, reference: TwistReference, pose: &TwoBonePose) -> Result<Self, LineError> {
         Ok(Self {
             reach: pose.reach,

@@ -1,3 +1,5 @@
+//! The content of a file that is opened, and regular files.
+
 use std::fs::{self, File, FileType};
 use std::io::{self, Read, Seek, Take};
 use std::path::{Path, PathBuf};
@@ -30,7 +32,7 @@ impl Source {
         let opened = open_regular(path).and_then(|file| {
             let length = file.limit();
             let mut file = file.into_inner();
-            Ok((most_bytes(&mut file, length)?, file.take(length)))
+            Ok((exceeded_limit(&mut file, length)?, file.take(length)))
         });
         match opened {
             Ok((Some(most), _)) => Err(too_large(&name, most)),
@@ -151,16 +153,18 @@ impl Source {
     /// Converts an error of the JSON parser. The result is at the position of the invalid value,
     /// or, for a text that is not JSON, where the parser stopped.
     pub fn parse_error(&self, field: &JsonPath, error: &serde_json::Error) -> OpenError {
-        let reason = without_position(error);
+        /// Message of serde_json for a number that overflows. Only this text identifies the error.
+        const OUT_OF_RANGE: &str = "number out of range";
+        let text = without_position(error);
         if self.text.trim_ascii().is_empty() {
             return self.error(&FieldError::new(JsonPath::root(), "the file is empty"));
         }
         let is_about_value =
-            error.is_data() && !reason.starts_with("duplicate") || reason == OUT_OF_RANGE;
-        let reason = match reason.as_str() {
+            error.is_data() && !text.starts_with("duplicate") || text == OUT_OF_RANGE;
+        let reason = match text.as_str() {
             OUT_OF_RANGE => "must be within ±3.4028235e38".to_owned(),
-            _ if error.is_data() => reason,
-            _ => format!("not JSON: {reason}"),
+            _ if error.is_data() => text,
+            _ => format!("not JSON: {text}"),
         };
         if is_about_value {
             return self.error(&FieldError::new(field.clone(), reason));
@@ -193,29 +197,30 @@ impl Source {
 
 /// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be
 /// read.
-fn most_bytes(file: &mut File, length: u64) -> io::Result<Option<u64>> {
+fn exceeded_limit(file: &mut File, length: u64) -> io::Result<Option<u64>> {
     if length <= OpenError::MAX_BYTES {
         return Ok(None);
     }
     let mut head = [0; 64];
     let read = file.read(&mut head)?;
     file.rewind()?;
-    let most =
-        if can_be_gltf(&head[..read]) { OpenError::MAX_GLTF_BYTES } else { OpenError::MAX_BYTES };
+    let most = most_bytes(&head[..read]);
     Ok((length > most).then_some(most))
 }
 
-/// Returns whether a file that begins with these bytes can be glTF, binary or text.
-fn can_be_gltf(bytes: &[u8]) -> bool {
-    bytes.starts_with(GlbChunks::MAGIC) || bytes.trim_ascii_start().starts_with(b"{")
+/// Maximum size of a file that begins with these bytes. A file that can be glTF, binary or text,
+/// may be larger than others.
+fn most_bytes(head: &[u8]) -> u64 {
+    let can_be_gltf =
+        head.starts_with(GlbChunks::MAGIC) || head.trim_ascii_start().starts_with(b"{");
+    if can_be_gltf { OpenError::MAX_GLTF_BYTES } else { OpenError::MAX_BYTES }
 }
 
 fn too_large(name: &str, most: u64) -> OpenError {
     OpenError::TooLarge { file: name.to_owned(), most_mb: most >> 20 }
 }
 
-/// Reads all bytes of a file, if there are not too many. A file that is longer than others may be
-/// is read on only if it can be glTF.
+/// Reads all bytes of a file, if there are not too many.
 fn read_limited(name: &str, input: impl Read) -> Result<Vec<u8>, OpenError> {
     let read_error = |source| OpenError::Read { file: name.to_owned(), source };
     let mut bytes = Vec::new();
@@ -224,19 +229,11 @@ fn read_limited(name: &str, input: impl Read) -> Result<Vec<u8>, OpenError> {
     if bytes.len() as u64 <= OpenError::MAX_BYTES {
         return Ok(bytes);
     }
-    if !can_be_gltf(&bytes) {
-        return Err(too_large(name, OpenError::MAX_BYTES));
-    }
-    input.set_limit(OpenError::MAX_GLTF_BYTES - OpenError::MAX_BYTES);
+    let most = most_bytes(&bytes);
+    input.set_limit(most - OpenError::MAX_BYTES);
     input.read_to_end(&mut bytes).map_err(read_error)?;
-    if bytes.len() as u64 > OpenError::MAX_GLTF_BYTES {
-        return Err(too_large(name, OpenError::MAX_GLTF_BYTES));
-    }
-    Ok(bytes)
+    if bytes.len() as u64 > most { Err(too_large(name, most)) } else { Ok(bytes) }
 }
-
-/// Message of serde_json for a number that overflows. Only this text identifies the error.
-const OUT_OF_RANGE: &str = "number out of range";
 
 /// The error of a binary file, without line, column and field.
 fn invalid_chunks(file: String, reason: String) -> OpenError {
@@ -259,10 +256,10 @@ fn not_utf8(file: String, bytes: &[u8]) -> OpenError {
 /// Fails if there is no such file, it is no regular file, or the system refuses to open it.
 pub fn open_regular(path: &Path) -> io::Result<Take<fs::File>> {
     // Before it is opened, because opening a pipe waits for a writer.
-    check(fs::metadata(path)?.file_type())?;
+    check_regular(fs::metadata(path)?.file_type())?;
     let file = fs::File::open(path)?;
     let metadata = file.metadata()?;
-    check(metadata.file_type())?;
+    check_regular(metadata.file_type())?;
     Ok(file.take(metadata.len()))
 }
 
@@ -278,38 +275,33 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-fn check(kind: FileType) -> io::Result<()> {
-    match kind_name(kind) {
-        None => Ok(()),
-        Some(name) => {
-            let reason = format!("it must be a regular file, got {name}");
-            Err(io::Error::new(io::ErrorKind::InvalidInput, reason))
-        }
+fn check_regular(kind: FileType) -> io::Result<()> {
+    if kind.is_file() {
+        return Ok(());
     }
+    let reason = format!("it must be a regular file, got {}", kind_name(kind));
+    Err(io::Error::new(io::ErrorKind::InvalidInput, reason))
 }
 
-/// Name of a kind of file that is not regular; `None` for a regular file.
-fn kind_name(kind: FileType) -> Option<&'static str> {
-    if kind.is_file() {
-        return None;
-    }
+/// Name of a kind of file that is not regular.
+fn kind_name(kind: FileType) -> &'static str {
     if kind.is_dir() {
-        return Some("a folder");
+        return "a folder";
     }
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt as _;
         if kind.is_fifo() {
-            return Some("a pipe (standard input is read with -)");
+            return "a pipe (standard input is read with -)";
         }
         if kind.is_char_device() || kind.is_block_device() {
-            return Some("a device");
+            return "a device";
         }
         if kind.is_socket() {
-            return Some("a socket");
+            return "a socket";
         }
     }
-    Some("something else")
+    "something else"
 }
 
 /// The size of a file and the time of its last change, by which a change of its content by another

@@ -45,7 +45,8 @@ impl TextureReader {
 /// Width and height of the largest image.
 const LONGEST: u32 = 16_384;
 
-/// The pixels of a texture, decoded at the first call. The error is the reason why that is impossible.
+/// The pixels of a texture, decoded at the first call. The error is the reason why that is
+/// impossible.
 pub fn texture_pixels(texture: &SkinTexture) -> Result<&[[u8; 4]], &str> {
     texture.pixels(|SkinTexture { file, size, .. }| {
         let mut reader = image_reader(file)?;
@@ -60,8 +61,8 @@ pub fn texture_pixels(texture: &SkinTexture) -> Result<&[[u8; 4]], &str> {
     })
 }
 
-/// Decodes the textures of the document's skin, before they are drawn. Returns a remark for each that
-/// cannot be decoded and is drawn as white.
+/// Decodes the textures of the document's skin, before they are drawn. Returns a remark for each
+/// that cannot be decoded and is drawn as white.
 pub fn undrawn_textures(document: &Document) -> Vec<Remark> {
     let Some(SkinSource::Mesh(skin)) = document.skeleton_rig.skin.as_ref().map(|skin| &skin.source)
     else {

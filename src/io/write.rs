@@ -72,7 +72,9 @@ pub struct FileBatch {
     folder: PathBuf,
     /// Temporary folder of the new files, with the subfolder [`REPLACED`] for the files that they
     /// replace. Deleted when the batch is dropped.
-    temporary: TemporaryFolder,
+    temporary: TempDir,
+    /// Locked as long as the temporary folder is used.
+    _lock: File,
     names: Mutex<Vec<OsString>>,
 }
 
@@ -84,8 +86,8 @@ impl FileBatch {
     /// Fails if the folder cannot be written to.
     pub fn beside(path: &Path) -> Result<Self, WriteError> {
         let folder = folder_of(path)?;
-        let temporary = TemporaryFolder::new(&folder).map_err(|source| failed(path, source))?;
-        Ok(Self { folder, temporary, names: Mutex::default() })
+        let (temporary, lock) = temporary_folder(&folder).map_err(|source| failed(path, source))?;
+        Ok(Self { folder, temporary, _lock: lock, names: Mutex::default() })
     }
 
     /// Adds a file. Its name must differ from the names of the other files in the batch. Several
@@ -143,11 +145,11 @@ impl FileBatch {
     }
 
     fn new_path(&self, name: &OsStr) -> PathBuf {
-        self.temporary.folder.path().join(name)
+        self.temporary.path().join(name)
     }
 
     fn backup_path(&self, name: &OsStr) -> PathBuf {
-        self.temporary.folder.path().join(REPLACED).join(name)
+        self.temporary.path().join(REPLACED).join(name)
     }
 }
 
@@ -249,25 +251,17 @@ fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
     }
 }
 
-/// A temporary folder with the subfolder [`REPLACED`].
-#[derive(Debug)]
-struct TemporaryFolder {
-    folder: TempDir,
-    /// Locked as long as the folder is used; `None` if the system cannot lock it.
-    _lock: File,
-}
-
-impl TemporaryFolder {
-    fn new(folder: &Path) -> io::Result<Self> {
-        remove_stale(folder);
-        loop {
-            let new = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?;
-            let lock_path = new.path().join(LOCK);
-            let Ok(lock) = File::create(&lock_path) else { continue };
-            if is_ours(&lock, &lock_path) {
-                fs::create_dir(new.path().join(REPLACED))?;
-                return Ok(Self { folder: new, _lock: lock });
-            }
+/// Creates a temporary folder with the subfolder [`REPLACED`], and the file in it that is locked as
+/// long as the folder is used.
+fn temporary_folder(folder: &Path) -> io::Result<(TempDir, File)> {
+    remove_stale(folder);
+    loop {
+        let new = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder)?;
+        let lock_path = new.path().join(LOCK);
+        let Ok(lock) = File::create(&lock_path) else { continue };
+        if is_ours(&lock, &lock_path) {
+            fs::create_dir(new.path().join(REPLACED))?;
+            return Ok((new, lock));
         }
     }
 }

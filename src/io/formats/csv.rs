@@ -8,8 +8,8 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
-/// Each row is a frame: the frame's number from 0, its time in seconds from the first frame, and
-/// world positions in units of the scene. A skeleton has the positions of all joints' bases, then
+/// Each row is a frame: the frame's number from 0, its time in seconds as in the document, and world
+/// positions in units of the scene. A skeleton has the positions of all joints' bases, then
 /// those of all leaf bones' tips. The arm has the positions of shoulder, elbow and hand.
 ///
 /// # Errors
@@ -31,7 +31,7 @@ pub fn to_csv(
         progress.step(frame, frames.count())?;
         let time = frames.time(frame);
         table.write_field(frame.to_string())?;
-        table.write_field(frames.time(frame).to_string())?;
+        table.write_field(time.to_string())?;
         for (name, point) in columns.names.iter().zip(columns.points(&track.at(time))) {
             if !is_within_numbers(point) {
                 return Err(MotionError::TooFar { joint: name.clone() });

@@ -40,8 +40,8 @@ pub fn to_obj(
     if !time.is_finite() {
         return Err(ObjError::Time(time));
     }
-    let skin = document.skeleton_rig.skin.as_ref();
-    let skin = skin.filter(|_| document.rig == RigKind::Skeleton).ok_or(ObjError::NoSkin)?;
+    let shown = document.skeleton_rig.skin.as_ref().filter(|_| document.rig == RigKind::Skeleton);
+    let skin = shown.ok_or(ObjError::NoSkin)?;
     let skinning = skinning.unwrap_or(skin.skinning);
     let mesh = &skin.mesh()?.mesh;
     let posed = mesh.posed(&mesh.pose(document.at(time).skeleton()), skinning);

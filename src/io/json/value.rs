@@ -1,5 +1,5 @@
-//! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected. A
-//! number with a rule is checked while it is read, where the parser knows the path of its field.
+//! Values in JSON files: objects, finite numbers, arrays of numbers. Errors say what was expected.
+//! A number with a rule is checked while it is read, where the parser knows the path of its field.
 
 use std::fmt;
 use std::io::{self, Write};

@@ -104,8 +104,8 @@ impl ArmFields {
         let bones = TwoBone::new(
             value_or(self.upper, default.bones.upper()),
             value_or(self.lower, default.bones.lower()),
-        );
-        let bones = bones.or_else(|LengthError { bone, value }| {
+        )
+        .or_else(|LengthError { bone, value }| {
             let reason = format!("must be finite and above 0, got {value}");
             Err(reason).at(bone.to_string().as_str())
         })?;

@@ -200,8 +200,7 @@ impl KeyFields {
     /// The fields of a key whose values have `width` components.
     pub fn new(knot: &Knot<Vec3>, width: usize) -> Self {
         let numbers = |value: Vec3| {
-            let numbers = value.to_array().into_iter().take(width);
-            numbers.map(JsonNumber).collect::<Vec<_>>()
+            value.to_array().into_iter().take(width).map(JsonNumber).collect::<Vec<_>>()
         };
         let is_smooth = knot.interpolation == Interpolation::Smooth;
         Self(ShapedKeyFields {

@@ -3,10 +3,11 @@
 //! serde parses the text to [fields](DocumentFields), where `None` stands for a field that the file
 //! leaves out. The fields are converted to a document: missing fields get defaults. Rules of single
 //! numbers are checked while these are read, all other rules by the conversions, whose callers
-//! [tell the path](AtField) of an error. Saving converts the document to fields, and serde writes the
-//! fields as text.
+//! [tell the path](AtField) of an error. Saving converts the document to fields, and serde writes
+//! the fields as text.
 
 mod arm;
+mod follow_path;
 mod keys;
 mod skeleton;
 mod skin;
@@ -26,11 +27,12 @@ use crate::io::source::Source;
 use crate::io::write::write;
 use crate::rig::{SkinFile, SkinSource};
 use arm::ArmFields;
+use follow_path::FollowPathList;
 pub use keys::KeyFields;
 use keys::{ChannelFields, TimelineFields, keys};
 use skeleton::SkeletonFields;
 use skin::SkinFields;
-use targets::{FollowPathList, SolverFields, TargetFields, add_targets};
+use targets::{SolverFields, TargetFields, add_targets};
 
 /// The key by which a file is recognized.
 pub const KEY: &str = "format";
@@ -101,8 +103,7 @@ fn with_relative_skin(document: &Document, folder: &Path) -> Document {
         let relative = |file: &SkinFile| -> Option<PathBuf> {
             pathdiff::diff_paths(file.path.canonicalize().ok()?, folder.canonicalize().ok()?)
         };
-        let relative = |file: &SkinFile| relative(file).unwrap_or_else(|| file.path.clone());
-        *skin = skin.with_path(relative);
+        *skin = skin.with_path(|file| relative(file).unwrap_or_else(|| file.path.clone()));
     }
     document
 }

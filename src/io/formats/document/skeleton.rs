@@ -61,8 +61,8 @@ impl SkeletonFields {
         for (index, JsonObject(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
             let joint = fields.joint(&joints);
             if !joint.limits.contains(joint.rotation) {
-                let joint = JsonPath::root().key("skeleton").key("joints").index(index);
-                warnings.push(joint.key("rotation"), "must be within the joint's limits; clamped");
+                let path = JsonPath::root().key("skeleton").key("joints").index(index);
+                warnings.push(path.key("rotation"), "must be within the joint's limits; clamped");
             }
             joints.push(joint);
         }
