@@ -1,4 +1,5 @@
-use super::{Gpu, pipeline};
+use super::Gpu;
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
 
 pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
@@ -17,21 +18,11 @@ impl Backdrop {
     pub const TRIANGLES: u32 = 1;
 
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
-        let pipeline = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: "backdrop",
-                shader: SHADER,
-                fragment: "fragment",
-                constants: &[],
-                layouts: &[view],
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: None,
-                depth: wgpu::CompareFunction::Always,
-                output: pipeline::Output::Opaque,
-            },
-        );
+        let pipeline = PipelineDescriptor {
+            depth: wgpu::CompareFunction::Always,
+            ..PipelineDescriptor::new("backdrop", SHADER, &[view], PipelineOutput::Opaque)
+        }
+        .build(gpu);
         Self { pipeline }
     }
 

@@ -1,7 +1,7 @@
 use image::RgbaImage;
-use thiserror::Error;
 
 use super::Gpu;
+use super::readback::{ReadError, fetch};
 
 /// Render target: an image, and multisampled colour and depth buffers.
 ///
@@ -33,24 +33,6 @@ struct SmallerPicture {
     size: (u32, u32),
     colour: wgpu::TextureView,
     samples: SampleBuffers,
-}
-
-/// Reasons why a buffer could not be read back from the device.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// The wait for the device failed.
-    #[error("the graphics device did not finish: {0}")]
-    Poll(#[from] wgpu::PollError),
-    /// The buffer could not be mapped.
-    #[error("cannot read from the graphics device: {0}")]
-    Map(#[from] wgpu::BufferAsyncError),
-    /// The mapped range is invalid.
-    #[error("cannot read from the graphics device: {0}")]
-    Range(#[from] wgpu::MapRangeError),
-    /// The data that was read does not have the size of the picture.
-    #[error("the graphics device returned a picture of the wrong size")]
-    Size,
 }
 
 impl Canvas {
@@ -127,12 +109,8 @@ impl Canvas {
         const PIXEL: u32 = 4;
         let row = self.width * PIXEL;
         let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("canvas read"),
-            size: u64::from(padded_row) * u64::from(self.height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let size = u64::from(padded_row) * u64::from(self.height);
+        let buffer = gpu.buffer("canvas read", size, wgpu::BufferUsages::MAP_READ);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(
             self.image.as_image_copy(),
@@ -198,16 +176,4 @@ fn texture(
         usage: TextureUsages::RENDER_ATTACHMENT | usage,
         view_formats: &[],
     })
-}
-
-/// Waits until the device has executed all commands, then maps a buffer and returns its contents.
-pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
-    let (sender, receiver) = std::sync::mpsc::channel();
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Sending fails only if the poll below has failed, which drops the receiver.
-        let _ = sender.send(result);
-    });
-    gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
-    receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
-    Ok(buffer.get_mapped_range(..)?)
 }

@@ -2,10 +2,10 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 use thiserror::Error;
 
-use super::compute::{self, BindingKind};
 use super::crowd_lod::{CrowdLod, CrowdLodData, DrawArguments};
+use super::pipeline::{self, BindingKind, PipelineDescriptor, PipelineOutput};
 use super::readback::Readback;
-use super::{Canvas, CrowdSolver, Gpu, pipeline};
+use super::{Canvas, CrowdSolver, Gpu};
 use crate::rig::{Crowd, CrowdArrays, CrowdTimes, Processor};
 use crate::scene::{Colour, Scene};
 
@@ -142,7 +142,7 @@ impl Crowds {
     pub fn cull(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup) {
         if let Some((renderer, crowd)) = self.uploaded() {
             let groups = [view, &renderer.buffers.cull];
-            compute::run_for_each(encoder, "crowd culling", &renderer.cull, &groups, crowd.arms);
+            pipeline::run_for_each(encoder, "crowd culling", &renderer.cull, &groups, crowd.arms);
             if renderer.drawn.is_free() {
                 renderer.drawn.copy(encoder, &renderer.arguments);
             }
@@ -180,39 +180,30 @@ impl CrowdRenderer {
             BindingKind::Write,
         ];
         let stages = wgpu::ShaderStages::COMPUTE;
-        let cull_layout = compute::layout(gpu, "crowd culling", stages, &kinds);
+        let cull_layout = pipeline::layout(gpu, "crowd culling", stages, &kinds);
         let stages = wgpu::ShaderStages::VERTEX;
         let kinds = [BindingKind::Uniform, BindingKind::Read, BindingKind::Read, BindingKind::Read];
-        let draw_layout = compute::layout(gpu, "crowd", stages, &kinds);
+        let draw_layout = pipeline::layout(gpu, "crowd", stages, &kinds);
+        let layouts = [view, &draw_layout];
         let draw = std::array::from_fn(|index| {
             let lod = CrowdLod::ALL[index];
-            pipeline::build(
-                gpu,
-                &pipeline::PipelineDescriptor {
-                    label: "crowd",
-                    shader: lod.shader,
-                    fragment: "fragment",
-                    constants: &[("LOD", index as f64)],
-                    layouts: &[view, &draw_layout],
-                    buffers: &[],
-                    topology: lod.topology,
-                    cull: None,
-                    depth: wgpu::CompareFunction::Greater,
-                    output: pipeline::Output::Opaque,
-                },
-            )
+            PipelineDescriptor {
+                constants: &[("LOD", index as f64)],
+                topology: lod.topology,
+                ..PipelineDescriptor::new("crowd", lod.shader, &layouts, PipelineOutput::Opaque)
+            }
+            .build(gpu)
         });
         let size = size_of::<CrowdData>() as u64;
-        let uniform = compute::buffer(gpu, "crowd", size, wgpu::BufferUsages::UNIFORM);
-        let arguments = compute::buffer(
-            gpu,
+        let uniform = gpu.buffer("crowd", size, wgpu::BufferUsages::UNIFORM);
+        let arguments = gpu.buffer(
             "crowd, indirect",
             ARGUMENT_BYTES,
             wgpu::BufferUsages::STORAGE
                 | wgpu::BufferUsages::INDIRECT
                 | wgpu::BufferUsages::COPY_SRC,
         );
-        let cull = compute::pipeline(gpu, "crowd culling", CULL, &[Some(view), Some(&cull_layout)]);
+        let cull = pipeline::compute(gpu, "crowd culling", CULL, &[Some(view), Some(&cull_layout)]);
         let layouts = [&cull_layout, &draw_layout];
         let buffers = CrowdBuffers::new(gpu, &solver, layouts, [&uniform, &arguments]);
         Ok(Self {
@@ -297,19 +288,22 @@ impl CrowdBuffers {
     fn new(
         gpu: &Gpu,
         solver: &CrowdSolver,
-        [cull, draw]: [&wgpu::BindGroupLayout; 2],
+        layouts: [&wgpu::BindGroupLayout; 2],
         [uniform, arguments]: [&wgpu::Buffer; 2],
     ) -> Self {
         let buffer = |label, arrays: u64| {
             let size = arrays * u64::from(solver.stride()) * size_of::<f32>() as u64;
-            compute::buffer(gpu, label, size, wgpu::BufferUsages::STORAGE)
+            gpu.buffer(label, size, wgpu::BufferUsages::STORAGE)
         };
         let shoulders = buffer("crowd shoulders", 2);
         let visible = buffer("crowd, visible arms", CrowdLod::words().into());
         let poses = solver.poses();
         let to_cull = [uniform, &shoulders, poses, &visible, arguments];
-        let cull = compute::group(gpu, "crowd culling", cull, &to_cull);
-        let draw = compute::group(gpu, "crowd", draw, &[uniform, &shoulders, poses, &visible]);
+        let to_draw = [uniform, &shoulders, poses, &visible];
+        let cull = to_cull.map(wgpu::Buffer::as_entire_binding);
+        let draw = to_draw.map(wgpu::Buffer::as_entire_binding);
+        let cull = pipeline::group(gpu, "crowd culling", layouts[0], cull);
+        let draw = pipeline::group(gpu, "crowd", layouts[1], draw);
         Self { cull, draw, shoulders }
     }
 }

@@ -2,8 +2,9 @@ use std::time::{Duration, Instant};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::compute::{self, BindingKind};
-use super::{Gpu, ReadError};
+use super::Gpu;
+use super::pipeline::{self, BindingKind};
+use super::readback::{ReadError, fetch};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{Crowd, CrowdArrays, Processor};
 
@@ -59,10 +60,10 @@ impl CrowdSolver {
             return None;
         }
         let kinds = [BindingKind::Uniform, BindingKind::Read, BindingKind::Write];
-        let layout = compute::layout(gpu, "crowd solver", wgpu::ShaderStages::COMPUTE, &kinds);
-        let pipeline = compute::pipeline(gpu, "crowd solver", SHADER, &[Some(&layout)]);
+        let layout = pipeline::layout(gpu, "crowd solver", wgpu::ShaderStages::COMPUTE, &kinds);
+        let pipeline = pipeline::compute(gpu, "crowd solver", SHADER, &[Some(&layout)]);
         let size = size_of::<CrowdSolverData>() as u64;
-        let uniform = compute::buffer(gpu, "crowd solver", size, wgpu::BufferUsages::UNIFORM);
+        let uniform = gpu.buffer("crowd solver", size, wgpu::BufferUsages::UNIFORM);
         let buffers = CrowdSolverBuffers::new(gpu, &layout, &uniform, 1);
         Some(Self { pipeline, layout, uniform, buffers, arms: 0 })
     }
@@ -143,7 +144,7 @@ impl CrowdSolver {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("crowd solver") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let groups = [&self.buffers.group];
-        compute::run_for_each(&mut encoder, "crowd solver", &self.pipeline, &groups, self.arms);
+        pipeline::run_for_each(&mut encoder, "crowd solver", &self.pipeline, &groups, self.arms);
         let commands = encoder.finish();
         let start = Instant::now();
         gpu.queue.submit([commands]);
@@ -169,11 +170,11 @@ impl CrowdSolver {
     pub fn read(&self, gpu: &Gpu) -> Result<[[Vec<f32>; 3]; 2], ReadError> {
         let size = POSE_ARRAYS * u64::from(self.buffers.stride) * FLOAT;
         let usage = wgpu::BufferUsages::MAP_READ;
-        let copy = compute::buffer(gpu, "crowd poses, read back", size, usage);
+        let copy = gpu.buffer("crowd poses, read back", size, usage);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.buffers.poses, 0, &copy, 0, size);
         gpu.queue.submit([encoder.finish()]);
-        let mapped = super::canvas::fetch(gpu, &copy)?;
+        let mapped = fetch(gpu, &copy)?;
         let floats: &[f32] = bytemuck::cast_slice(&mapped);
         let array = |index: usize| {
             let first = index * self.buffers.stride as usize;
@@ -187,11 +188,12 @@ impl CrowdSolverBuffers {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, uniform: &wgpu::Buffer, stride: u32) -> Self {
         let buffer = |label, arrays: u64| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-            compute::buffer(gpu, label, arrays * u64::from(stride) * FLOAT, usage)
+            gpu.buffer(label, arrays * u64::from(stride) * FLOAT, usage)
         };
         let targets = buffer("crowd targets", TARGET_ARRAYS);
         let poses = buffer("crowd poses", POSE_ARRAYS);
-        let group = compute::group(gpu, "crowd solver", layout, &[uniform, &targets, &poses]);
+        let resources = [uniform, &targets, &poses].map(wgpu::Buffer::as_entire_binding);
+        let group = pipeline::group(gpu, "crowd solver", layout, resources);
         Self { stride, targets, poses, group }
     }
 

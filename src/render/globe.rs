@@ -1,9 +1,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
-use super::sphere_order::SphereSide;
+use super::Gpu;
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
+use super::shell::SphereSide;
 use super::view::Uniforms;
-use super::{Gpu, pipeline};
 use crate::scene::{Colour, Globe, Palette, Scene};
 
 pub(super) const SHADER: &str = concat!(
@@ -41,21 +42,12 @@ pub(super) struct Globes {
 impl Globes {
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let uniforms = Uniforms::new(gpu, "globe");
-        let pipeline = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: "globe",
-                shader: SHADER,
-                fragment: "fragment",
-                constants: &[],
-                layouts: &[view, &uniforms.layout],
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                cull: None,
-                depth: wgpu::CompareFunction::Greater,
-                output: pipeline::Output::Blended,
-            },
-        );
+        let layouts = [view, &uniforms.layout];
+        let pipeline = PipelineDescriptor {
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..PipelineDescriptor::new("globe", SHADER, &layouts, PipelineOutput::Blended)
+        }
+        .build(gpu);
         Self { pipeline, uniforms, shown: false }
     }
 

@@ -1,6 +1,8 @@
 use std::sync::{Arc, OnceLock};
 
+use bytemuck::Pod;
 use thiserror::Error;
+use wgpu::util::DeviceExt as _;
 
 /// A graphics device with its queue, adapter and instance.
 #[derive(Clone, Debug)]
@@ -157,6 +159,52 @@ impl Gpu {
     /// Maximum width and height of a texture in pixels.
     pub fn longest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
+    }
+
+    /// Creates a buffer of `size` bytes that commands of the queue can write.
+    pub(super) fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Creates a buffer with these contents; one item of zeros if there are none.
+    pub(super) fn filled_buffer<T: Pod>(
+        &self,
+        label: &str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        let none = [T::zeroed()];
+        let contents = if contents.is_empty() { &none } else { contents };
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents: bytemuck::cast_slice(contents),
+            usage,
+        })
+    }
+
+    /// Creates a texture of a width and height in pixels, with one level and one sample per pixel.
+    pub fn texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        [width, height]: [u32; 2],
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
     }
 
     /// Runs `work`, which sends commands to the device, and returns the device's errors.

@@ -59,12 +59,11 @@ impl GpuTimer {
                 ty: wgpu::QueryType::Timestamp,
                 count: STAMPS * PASSES as u32,
             }),
-            resolved: gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timestamps"),
-                size: SIZE,
-                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
+            resolved: gpu.buffer(
+                "timestamps",
+                SIZE,
+                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            ),
             readbacks: std::array::from_fn(readback),
             passes: [false; PASSES],
             nanoseconds_per_tick: f64::from(gpu.queue.get_timestamp_period()),

@@ -2,8 +2,8 @@ use core::ops::Range;
 
 use bytemuck::Pod;
 
-use super::pipeline::Output;
-use super::{Gpu, pipeline};
+use super::Gpu;
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
 
 /// A list of instances on the device. It is refilled for every picture, and only the range that
 /// differs from the previous picture is sent.
@@ -43,12 +43,8 @@ impl<T: Pod + PartialEq> InstanceBuffer<T> {
         let needed = size_of_val(&items[..]) as u64;
         if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < needed) && needed > 0 {
             changed = 0..items.len();
-            self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(self.label),
-                size: needed.next_power_of_two(),
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
+            let (size, usage) = (needed.next_power_of_two(), wgpu::BufferUsages::VERTEX);
+            self.buffer = Some(gpu.buffer(self.label, size, usage));
         }
         let bytes: &[u8] = bytemuck::cast_slice(&items[changed.clone()]);
         if let (Some(buffer), false) = (&self.buffer, bytes.is_empty()) {
@@ -102,8 +98,7 @@ pub(super) struct QuadDescriptor<'a> {
     pub shader: &'static str,
     pub layouts: &'a [&'a wgpu::BindGroupLayout],
     pub attributes: &'a [wgpu::VertexAttribute],
-    pub depth: wgpu::CompareFunction,
-    pub output: Output,
+    pub output: PipelineOutput,
 }
 
 /// Draws one quad per instance, blended over the picture; the shader computes the corners.
@@ -115,26 +110,18 @@ pub(super) struct Quads<T> {
 
 impl<T: Pod + PartialEq> Quads<T> {
     pub fn new(gpu: &Gpu, descriptor: &QuadDescriptor<'_>) -> Self {
-        let pipeline = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: descriptor.label,
-                shader: descriptor.shader,
-                fragment: "fragment",
-                constants: &[],
-                layouts: descriptor.layouts,
-                buffers: &[wgpu::VertexBufferLayout {
-                    array_stride: size_of::<T>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: descriptor.attributes,
-                }],
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                cull: None,
-                depth: descriptor.depth,
-                output: descriptor.output,
-            },
-        );
-        Self { pipeline, instances: InstanceBuffer::new(descriptor.label) }
+        let QuadDescriptor { label, shader, layouts, attributes, output } = *descriptor;
+        let pipeline = PipelineDescriptor {
+            buffers: &[wgpu::VertexBufferLayout {
+                array_stride: size_of::<T>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes,
+            }],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..PipelineDescriptor::new(label, shader, layouts, output)
+        }
+        .build(gpu);
+        Self { pipeline, instances: InstanceBuffer::new(label) }
     }
 
     /// Sends the changes to the device and returns the number of bytes sent.

@@ -6,16 +6,16 @@ use egui::epaint::text::{
     Fonts, Galley, Glyph, GlyphBitmap, GlyphRasterizer, GlyphRasterizerRequest, LayoutJob,
     RasterizedGlyph, TextOptions, ViewportKey,
 };
-use egui::epaint::{ColorImage, FontColorTransferFunction, ImageData, ImageDelta};
+use egui::epaint::{ColorImage, FontColorTransferFunction};
 use egui::{Color32, FontDefinitions, FontFamily, FontId, vec2};
 use glam::Vec2;
 
 use super::Gpu;
 use super::instances::{QuadDescriptor, Quads};
 use super::label_places::{LINE_HEIGHT, LabelPlaces};
-use super::pipeline::Output;
+use super::pipeline::PipelineOutput;
 use super::system_fonts::system_fonts;
-use super::texture::TextureSampler;
+use super::texture::{PaintTexture, TextureSampler};
 use crate::scene::Scene;
 
 pub(super) const SHADER: &str = include_str!("../../shaders/label.wgsl");
@@ -50,8 +50,8 @@ pub(super) struct LabelPainter {
     sampler: TextureSampler,
     text: LabelText,
     places: LabelPlaces,
-    /// The atlas of the glyphs on the device, and its bind group; `None` before the first upload.
-    atlas: Option<(wgpu::Texture, wgpu::BindGroup)>,
+    /// The glyphs on the device; `None` before the first upload.
+    atlas: Option<PaintTexture>,
 }
 
 impl LabelPainter {
@@ -67,8 +67,7 @@ impl LabelPainter {
                 attributes: &wgpu::vertex_attr_array![
                     0 => Float32x4, 1 => Float32x4, 2 => Float32x4
                 ],
-                depth: wgpu::CompareFunction::Always,
-                output: Output::Overlay(format),
+                output: PipelineOutput::Overlay(format),
             },
         );
         let fonts = LabelText::fonts().with_font_providers(vec![system_fonts()]);
@@ -80,8 +79,13 @@ impl LabelPainter {
     /// picture's in pixels, `scale` the number of pixels per point.
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, size: (u32, u32), scale: f32) -> u64 {
         self.text.lay_out(scene.labels.iter().map(|label| scene.text(label)), scale);
-        let delta = self.text.fonts.font_image_delta();
-        let sent = delta.map_or(0, |delta| self.upload_atlas(gpu, &delta));
+        let mut sent = 0;
+        if let Some(delta) = self.text.fonts.font_image_delta() {
+            if delta.pos.is_none() {
+                self.atlas = Some(PaintTexture::new(gpu, &self.sampler, &delta));
+            }
+            sent += self.atlas.as_ref().map_or(0, |atlas| atlas.write(gpu, &delta));
+        }
         let (text, size) = (&self.text, Vec2::new(size.0 as f32, size.1 as f32));
         let labels = scene.labels.iter().zip(&text.galleys);
         let sized = labels.clone().map(|(label, galley)| (label, width(galley) * scale));
@@ -109,48 +113,10 @@ impl LabelPainter {
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if let Some((_, group)) = &self.atlas {
-            pass.set_bind_group(0, group, &[]);
+        if let Some(atlas) = &self.atlas {
+            pass.set_bind_group(0, &atlas.group, &[]);
             self.glyphs.draw(pass);
         }
-    }
-
-    /// Sends a change of the atlas to the device and returns the number of bytes sent.
-    fn upload_atlas(&mut self, gpu: &Gpu, delta: &ImageDelta) -> u64 {
-        let ImageData::Color(image) = &delta.image;
-        let [width, height] = image.size.map(|side| side as u32);
-        let [x, y] = delta.pos.unwrap_or_default().map(|side| side as u32);
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let known =
-            self.atlas.take().filter(|(texture, _)| delta.pos.is_some() || texture.size() == size);
-        let (texture, _) = self.atlas.insert(known.unwrap_or_else(|| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("glyphs"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            let group = self.sampler.group(gpu, &texture.create_view(&Default::default()));
-            (texture, group)
-        }));
-        gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x, y, z: 0 },
-                ..texture.as_image_copy()
-            },
-            image.as_raw(),
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(4 * width),
-                rows_per_image: None,
-            },
-            size,
-        );
-        image.as_raw().len() as u64
     }
 }
 

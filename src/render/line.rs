@@ -3,7 +3,7 @@ use glam::Vec3;
 
 use super::Gpu;
 use super::instances::{QuadDescriptor, Quads};
-use super::pipeline::Output;
+use super::pipeline::PipelineOutput;
 use crate::scene::{Line, Scene};
 
 pub(super) const SHADER: &str =
@@ -33,8 +33,7 @@ impl Lines {
                 shader: SHADER,
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32],
-                depth: wgpu::CompareFunction::Greater,
-                output: Output::Blended,
+                output: PipelineOutput::Blended,
             },
         ))
     }

@@ -2,7 +2,6 @@ use core::f32::consts::{PI, TAU};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
 
@@ -16,17 +15,9 @@ pub(super) struct MeshBuffers {
 
 impl MeshBuffers {
     pub fn new<V: Pod>(gpu: &Gpu, label: &str, vertices: &[V], indices: &[u16]) -> Self {
-        let buffer = |contents, usage| {
-            let label = Some(label);
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label,
-                contents,
-                usage,
-            })
-        };
         Self {
-            vertices: buffer(bytemuck::cast_slice(vertices), wgpu::BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX),
+            vertices: gpu.filled_buffer(label, vertices, wgpu::BufferUsages::VERTEX),
+            indices: gpu.filled_buffer(label, indices, wgpu::BufferUsages::INDEX),
             count: indices.len() as u32,
         }
     }

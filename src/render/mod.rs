@@ -6,7 +6,6 @@
 
 mod backdrop;
 mod canvas;
-mod compute;
 mod crowd;
 mod crowd_lod;
 mod crowd_solver;
@@ -28,23 +27,23 @@ mod skin;
 mod skin_deform;
 mod skin_material;
 mod solid;
-mod sphere_order;
 mod spheres;
 mod system_fonts;
 mod texture;
 mod triangle;
 mod view;
 
-pub use canvas::{Canvas, ReadError};
+pub use canvas::Canvas;
 pub use crowd::CrowdError;
 pub use crowd_solver::CrowdSolver;
 pub use gpu::{DeviceError, Gpu, GpuError};
 pub use gpu_timer::{GpuTimer, TimedPass};
 pub use picture::{DrawError, PictureRenderer, SavePictureError, Timings, save};
+pub use readback::ReadError;
 pub use renderer::{Counts, Renderer};
 pub use skin_deform::SkinDeformer;
 pub use system_fonts::system_fonts;
-pub use texture::TexturePainter;
+pub use texture::{PaintTexture, TexturePainter};
 pub use triangle::{Corner, TrianglePainter};
 
 /// Names and WGSL sources of all complete shaders.

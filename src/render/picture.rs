@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use image::RgbaImage;
 use thiserror::Error;
 
-use super::canvas::ReadError;
 use super::gpu::DeviceError;
+use super::readback::ReadError;
 use super::{Canvas, CrowdError, Gpu, Renderer};
 use crate::io::{self, WriteError};
 use crate::rig::CrowdTimes;

@@ -1,6 +1,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
+use thiserror::Error;
+
 use super::Gpu;
 
 const FREE: u8 = 0;
@@ -21,12 +23,7 @@ pub(super) struct Readback {
 impl Readback {
     /// Makes room for `size` bytes.
     pub fn new(gpu: &Gpu, label: &str, size: u64) -> Self {
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let buffer = gpu.buffer(label, size, wgpu::BufferUsages::MAP_READ);
         Self { buffer, state: Arc::new(AtomicU8::new(FREE)) }
     }
 
@@ -78,4 +75,34 @@ impl Readback {
     fn set(&self, state: u8) {
         self.state.store(state, Ordering::Release);
     }
+}
+
+/// Waits until the device has executed all commands, then maps a buffer and returns its contents.
+pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        // Sending fails only if the poll below has failed, which drops the receiver.
+        let _ = sender.send(result);
+    });
+    gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+    receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
+    Ok(buffer.get_mapped_range(..)?)
+}
+
+/// Reasons why a buffer could not be read back from the device.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The wait for the device failed.
+    #[error("the graphics device did not finish: {0}")]
+    Poll(#[from] wgpu::PollError),
+    /// The buffer could not be mapped.
+    #[error("cannot read from the graphics device: {0}")]
+    Map(#[from] wgpu::BufferAsyncError),
+    /// The mapped range is invalid.
+    #[error("cannot read from the graphics device: {0}")]
+    Range(#[from] wgpu::MapRangeError),
+    /// The data that was read does not have the size of the picture.
+    #[error("the graphics device returned a picture of the wrong size")]
+    Size,
 }

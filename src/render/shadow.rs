@@ -3,7 +3,7 @@ use glam::Vec4;
 
 use super::Gpu;
 use super::instances::{QuadDescriptor, Quads};
-use super::pipeline::Output;
+use super::pipeline::PipelineOutput;
 use crate::scene::{Scene, Shadow};
 
 pub(super) const SHADER: &str =
@@ -31,8 +31,7 @@ impl Shadows {
                 shader: SHADER,
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
-                depth: wgpu::CompareFunction::Greater,
-                output: Output::Blended,
+                output: PipelineOutput::Blended,
             },
         ))
     }

@@ -5,8 +5,7 @@ use glam::Vec3;
 
 use super::Gpu;
 use super::instances::{QuadDescriptor, Quads};
-use super::pipeline::Output;
-use super::sphere_order::SphereSide;
+use super::pipeline::PipelineOutput;
 use crate::scene::SphereShell;
 
 pub(super) const SHADER: &str = concat!(
@@ -14,6 +13,13 @@ pub(super) const SHADER: &str = concat!(
     include_str!("../../shaders/sphere.wgsl"),
     include_str!("../../shaders/shell.wgsl"),
 );
+
+/// Side of a sphere, as seen from the eye.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SphereSide {
+    Near,
+    Far,
+}
 
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Pod, Zeroable, Debug)]
@@ -39,8 +45,7 @@ impl Shells {
                 shader: SHADER,
                 layouts: &[view],
                 attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32],
-                depth: wgpu::CompareFunction::Greater,
-                output: Output::Blended,
+                output: PipelineOutput::Blended,
             },
         ))
     }

@@ -1,11 +1,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
-use wgpu::util::DeviceExt as _;
 
+use super::Gpu;
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
 use super::skin_deform::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
 use super::skin_material::{SkinMaterial, SkinMaterials};
 use super::view::Uniforms;
-use super::{Gpu, pipeline};
 use crate::kinematics::Shared;
 use crate::kinematics::skin::TriangleMesh;
 use crate::rig::AttachedMesh;
@@ -197,60 +197,44 @@ impl SkinPipelines {
             },
         ];
         let layouts = [view, &look.layout, &materials.layout];
-        let plain = pipeline::PipelineDescriptor {
-            label: "skin",
-            shader: SHADER,
-            fragment: "fragment",
-            constants: &[],
-            layouts: &layouts,
+        let plain = PipelineDescriptor {
             buffers: &buffers,
-            topology: wgpu::PrimitiveTopology::TriangleList,
             cull: Some(wgpu::Face::Back),
-            depth: wgpu::CompareFunction::Greater,
-            output: pipeline::Output::Opaque,
+            ..PipelineDescriptor::new("skin", SHADER, &layouts, PipelineOutput::Opaque)
+        };
+        let depth =
+            PipelineDescriptor { label: "skin depth", output: PipelineOutput::Depth, ..plain };
+        let see_through = PipelineDescriptor {
+            label: "skin, see-through",
+            depth: wgpu::CompareFunction::Equal,
+            output: PipelineOutput::Blended,
+            ..plain
+        };
+        let wire = PipelineDescriptor {
+            label: "skin wireframe",
+            fragment: "fragment_wire",
+            topology: wgpu::PrimitiveTopology::LineList,
+            cull: None,
+            depth: wgpu::CompareFunction::GreaterEqual,
+            output: PipelineOutput::Blended,
+            ..plain
         };
         Self {
             deformer: SkinDeformer::new(gpu),
             opaque: SurfacePipelines::new(gpu, &plain),
-            depth: mirrored_or_not(
-                gpu,
-                &pipeline::PipelineDescriptor {
-                    label: "skin depth",
-                    output: pipeline::Output::Depth,
-                    ..plain
-                },
-            ),
-            see_through: SurfacePipelines::new(
-                gpu,
-                &pipeline::PipelineDescriptor {
-                    label: "skin, see-through",
-                    depth: wgpu::CompareFunction::Equal,
-                    output: pipeline::Output::Blended,
-                    ..plain
-                },
-            ),
-            wire: pipeline::build(
-                gpu,
-                &pipeline::PipelineDescriptor {
-                    label: "skin wireframe",
-                    fragment: "fragment_wire",
-                    topology: wgpu::PrimitiveTopology::LineList,
-                    cull: None,
-                    depth: wgpu::CompareFunction::GreaterEqual,
-                    output: pipeline::Output::Blended,
-                    ..plain
-                },
-            ),
+            depth: mirrored_or_not(gpu, &depth),
+            see_through: SurfacePipelines::new(gpu, &see_through),
+            wire: wire.build(gpu),
             materials,
         }
     }
 }
 
 impl SurfacePipelines {
-    fn new(gpu: &Gpu, descriptor: &pipeline::PipelineDescriptor<'_>) -> Self {
+    fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> Self {
         Self([0.0, 1.0].map(|is_textured| {
             let constants = &[("IS_TEXTURED", is_textured)];
-            mirrored_or_not(gpu, &pipeline::PipelineDescriptor { constants, ..*descriptor })
+            mirrored_or_not(gpu, &PipelineDescriptor { constants, ..*descriptor })
         }))
     }
 
@@ -260,25 +244,18 @@ impl SurfacePipelines {
 }
 
 /// Pipelines for skins that are not mirrored and for mirrored ones.
-fn mirrored_or_not(
-    gpu: &Gpu,
-    descriptor: &pipeline::PipelineDescriptor<'_>,
-) -> [wgpu::RenderPipeline; 2] {
-    [wgpu::Face::Back, wgpu::Face::Front].map(|cull| {
-        pipeline::build(gpu, &pipeline::PipelineDescriptor { cull: Some(cull), ..*descriptor })
-    })
+fn mirrored_or_not(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> [wgpu::RenderPipeline; 2] {
+    [wgpu::Face::Back, wgpu::Face::Front]
+        .map(|cull| PipelineDescriptor { cull: Some(cull), ..*descriptor }.build(gpu))
 }
 
 impl SkinMesh {
     fn new(gpu: &Gpu, materials: &SkinMaterials, mesh: Shared<AttachedMesh>) -> Self {
         let TriangleMesh { positions, texture_coordinates, triangles, .. } = mesh.mesh.mesh();
         let mut coordinates = texture_coordinates.clone();
-        coordinates.resize(positions.len().max(1), Vec2::ZERO);
-        let coordinates = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("skin texture coordinates"),
-            contents: bytemuck::cast_slice(&coordinates),
-            usage: wgpu::BufferUsages::VERTEX,
-        });
+        coordinates.resize(positions.len(), Vec2::ZERO);
+        let usage = wgpu::BufferUsages::VERTEX;
+        let coordinates = gpu.filled_buffer("skin texture coordinates", &coordinates, usage);
         let materials = materials.of_parts(gpu, &mesh.parts, triangles.len());
         let (triangles, indices) = index_buffer(gpu, "skin triangles", triangles.as_flattened());
         let vertices = SkinVertices::new(gpu, &mesh.mesh);
@@ -301,12 +278,7 @@ impl SkinMesh {
 }
 
 fn index_buffer(gpu: &Gpu, label: &str, indices: &[u32]) -> (wgpu::Buffer, u32) {
-    let contents = if indices.is_empty() { &[0; 3] } else { indices };
-    let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents: bytemuck::cast_slice(contents),
-        usage: wgpu::BufferUsages::INDEX,
-    });
+    let buffer = gpu.filled_buffer(label, indices, wgpu::BufferUsages::INDEX);
     (buffer, indices.len() as u32)
 }
 

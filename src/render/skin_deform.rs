@@ -1,9 +1,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec3, Vec4};
 
-use super::canvas::fetch;
-use super::compute::{self, BindingKind};
-use super::{Gpu, ReadError};
+use super::Gpu;
+use super::pipeline::{self, BindingKind};
+use super::readback::{ReadError, fetch};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::{JointDeform, SkinPose, SkinnedMesh, Skinning};
 
@@ -100,11 +100,11 @@ impl SkinDeformer {
     pub fn new(gpu: &Gpu) -> Self {
         let kinds =
             [BindingKind::Uniform, BindingKind::Read, BindingKind::Read, BindingKind::Write];
-        let layout = compute::layout(gpu, "skin", wgpu::ShaderStages::COMPUTE, &kinds);
+        let layout = pipeline::layout(gpu, "skin", wgpu::ShaderStages::COMPUTE, &kinds);
         let flags = gpu.adapter.get_downlevel_capabilities().flags;
         let pipeline = flags
             .contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
-            .then(|| compute::pipeline(gpu, "skin", SHADER, &[Some(&layout)]));
+            .then(|| pipeline::compute(gpu, "skin", SHADER, &[Some(&layout)]));
         Self { pipeline, layout }
     }
 
@@ -126,7 +126,7 @@ impl SkinDeformer {
         self.update(gpu, &vertices, &mut deformed, deformation);
         let size = u64::from(vertices.count) * size_of::<DeformedVertex>() as u64;
         let usage = wgpu::BufferUsages::MAP_READ;
-        let copy = compute::buffer(gpu, "skin read", size.max(4), usage);
+        let copy = gpu.buffer("skin read", size.max(4), usage);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&deformed.vertices, 0, &copy, 0, size);
         gpu.queue.submit([encoder.finish()]);
@@ -139,14 +139,15 @@ impl SkinDeformer {
     pub(super) fn skin(&self, gpu: &Gpu, mesh: &SkinVertices) -> DeformedSkin {
         let storage = wgpu::BufferUsages::STORAGE;
         let uniform_size = size_of::<SkinData>() as u64;
-        let uniform = compute::buffer(gpu, "skin", uniform_size, wgpu::BufferUsages::UNIFORM);
+        let uniform = gpu.buffer("skin", uniform_size, wgpu::BufferUsages::UNIFORM);
         let size = u64::from(mesh.joints.max(1)) * size_of::<JointData>() as u64;
-        let joints = compute::buffer(gpu, "skin joints", size, storage);
+        let joints = gpu.buffer("skin joints", size, storage);
         let size = u64::from(mesh.count.max(1)) * size_of::<DeformedVertex>() as u64;
         let usage = storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
-        let vertices = compute::buffer(gpu, "skin vertices", size, usage);
+        let vertices = gpu.buffer("skin vertices", size, usage);
         let buffers = [&uniform, &joints, &mesh.buffer, &vertices];
-        let group = compute::group(gpu, "skin", &self.layout, &buffers);
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        let group = pipeline::group(gpu, "skin", &self.layout, resources);
         DeformedSkin { uniform, joints, vertices, group, data: None, sent: Vec::new() }
     }
 
@@ -183,7 +184,7 @@ impl SkinDeformer {
                 gpu.queue.write_buffer(&deformed.joints, 0, bytes);
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 let groups = [&deformed.group];
-                compute::run_for_each(&mut encoder, "skin", pipeline, &groups, vertices.count);
+                pipeline::run_for_each(&mut encoder, "skin", pipeline, &groups, vertices.count);
                 gpu.queue.submit([encoder.finish()]);
                 (bytes.len() + size_of::<SkinData>()) as u64
             }
@@ -213,7 +214,6 @@ fn on_cpu(deformation: Deformation<'_>) -> Vec<DeformedVertex> {
 
 impl SkinVertices {
     pub fn new(gpu: &Gpu, mesh: &SkinnedMesh) -> Self {
-        use wgpu::util::DeviceExt as _;
         let triangles = mesh.mesh();
         let vertices = triangles.positions.iter().zip(&triangles.normals).zip(mesh.weights());
         let vertices: Vec<VertexData> = vertices
@@ -228,13 +228,7 @@ impl SkinVertices {
                 }
             })
             .collect();
-        let none = [VertexData::zeroed()];
-        let contents = if vertices.is_empty() { &none[..] } else { &vertices[..] };
-        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("skin mesh"),
-            contents: bytemuck::cast_slice(contents),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
+        let buffer = gpu.filled_buffer("skin mesh", &vertices, wgpu::BufferUsages::STORAGE);
         Self { buffer, count: vertices.len() as u32, joints: mesh.inverse_binds().len() as u32 }
     }
 }

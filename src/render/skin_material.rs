@@ -1,9 +1,9 @@
 use core::ops::Range;
 
 use glam::Vec3;
-use wgpu::util::DeviceExt as _;
 
 use super::Gpu;
+use super::pipeline::{self, BindingKind};
 use crate::io::texture_pixels;
 use crate::kinematics::Shared;
 use crate::rig::{SkinPart, SkinTexture};
@@ -28,27 +28,9 @@ pub(super) struct SkinMaterial {
 
 impl SkinMaterials {
     pub fn new(gpu: &Gpu) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("skin material"),
-            entries: &[entry(0, uniform), entry(1, texture), entry(2, sampler)],
-        });
+        let kinds = [BindingKind::Uniform, BindingKind::Texture, BindingKind::Sampler];
+        let stages = wgpu::ShaderStages::FRAGMENT;
+        let layout = pipeline::layout(gpu, "skin material", stages, &kinds);
         Self {
             layout,
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -91,21 +73,14 @@ impl SkinMaterials {
     }
 
     fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
-        let colour = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("skin colour"),
-            contents: bytemuck::bytes_of(&Vec3::from(part.colour).extend(0.0)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("skin material"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, colour.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(view)),
-                entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
-            ],
-        })
+        let colour = [Vec3::from(part.colour).extend(0.0)];
+        let colour = gpu.filled_buffer("skin colour", &colour, wgpu::BufferUsages::UNIFORM);
+        let resources = [
+            colour.as_entire_binding(),
+            wgpu::BindingResource::TextureView(view),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ];
+        pipeline::group(gpu, "skin material", &self.layout, resources)
     }
 }
 

@@ -1,10 +1,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
+use super::Gpu;
 use super::instances::InstanceBuffer;
-
 use super::mesh::{MeshBuffers, SolidVertex, ball, cone};
-use super::{Gpu, pipeline};
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
 use crate::scene::{Ball, Scene, Solid};
 
 pub(super) const SHADER: &str = concat!(
@@ -92,36 +92,22 @@ impl Solids {
                 attributes: &instance,
             },
         ];
-        let pipeline = |label, fragment, depth, output| {
-            pipeline::build(
-                gpu,
-                &pipeline::PipelineDescriptor {
-                    label,
-                    shader: SHADER,
-                    fragment,
-                    constants: &[],
-                    layouts: &[view],
-                    buffers: &buffers,
-                    topology: wgpu::PrimitiveTopology::TriangleList,
-                    cull: Some(wgpu::Face::Back),
-                    depth,
-                    output,
-                },
-            )
+        let layouts = [view];
+        let visible = PipelineDescriptor {
+            buffers: &buffers,
+            cull: Some(wgpu::Face::Back),
+            ..PipelineDescriptor::new("solid", SHADER, &layouts, PipelineOutput::Opaque)
+        };
+        let hidden = PipelineDescriptor {
+            label: "solid, hidden",
+            fragment: "fragment_hidden",
+            depth: wgpu::CompareFunction::Less,
+            output: PipelineOutput::Blended,
+            ..visible
         };
         Self {
-            visible: pipeline(
-                "solid",
-                "fragment",
-                wgpu::CompareFunction::Greater,
-                pipeline::Output::Opaque,
-            ),
-            hidden: pipeline(
-                "solid, hidden",
-                "fragment_hidden",
-                wgpu::CompareFunction::Less,
-                pipeline::Output::Blended,
-            ),
+            visible: visible.build(gpu),
+            hidden: hidden.build(gpu),
             lods: LODS.map(|lod| DetailMeshes::new(gpu, lod.segments)),
         }
     }

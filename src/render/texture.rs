@@ -1,4 +1,7 @@
-use super::{Gpu, pipeline};
+use egui::epaint::{ImageData, ImageDelta};
+
+use super::Gpu;
+use super::pipeline::{self, BindingKind, PipelineDescriptor, PipelineOutput};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/texture.wgsl");
 
@@ -14,21 +17,9 @@ impl TexturePainter {
     /// Creates the pipeline for passes with a colour attachment of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let sampler = TextureSampler::new(gpu, "texture");
-        let pipeline = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: "texture",
-                shader: SHADER,
-                fragment: "fragment",
-                constants: &[],
-                layouts: &[&sampler.layout],
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: None,
-                depth: wgpu::CompareFunction::Always,
-                output: pipeline::Output::Overlay(format),
-            },
-        );
+        let output = PipelineOutput::Overlay(format);
+        let pipeline =
+            PipelineDescriptor::new("texture", SHADER, &[&sampler.layout], output).build(gpu);
         Self { pipeline, sampler }
     }
 
@@ -52,22 +43,8 @@ pub(super) struct TextureSampler {
 
 impl TextureSampler {
     pub fn new(gpu: &Gpu, label: &'static str) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries: &[entry(0, texture), entry(1, sampler)],
-        });
+        let kinds = [BindingKind::Texture, BindingKind::Sampler];
+        let layout = pipeline::layout(gpu, label, wgpu::ShaderStages::FRAGMENT, &kinds);
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some(label),
             mag_filter: wgpu::FilterMode::Linear,
@@ -78,14 +55,48 @@ impl TextureSampler {
     }
 
     pub fn group(&self, gpu: &Gpu, texture: &wgpu::TextureView) -> wgpu::BindGroup {
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.label),
-            layout: &self.layout,
-            entries: &[
-                entry(0, wgpu::BindingResource::TextureView(texture)),
-                entry(1, wgpu::BindingResource::Sampler(&self.sampler)),
-            ],
-        })
+        let resources = [
+            wgpu::BindingResource::TextureView(texture),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ];
+        pipeline::group(gpu, self.label, &self.layout, resources)
+    }
+}
+
+/// A texture that epaint describes, such as an atlas of glyphs, on the device.
+#[derive(Debug)]
+pub struct PaintTexture {
+    texture: wgpu::Texture,
+    pub(super) group: wgpu::BindGroup,
+}
+
+impl PaintTexture {
+    /// Creates the texture of an image that is its whole, without its pixels.
+    pub(super) fn new(gpu: &Gpu, sampler: &TextureSampler, whole: &ImageDelta) -> Self {
+        let size = whole.image.size().map(|side| side as u32);
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texture = gpu.texture(sampler.label, wgpu::TextureFormat::Rgba8Unorm, size, usage);
+        let group = sampler.group(gpu, &texture.create_view(&Default::default()));
+        Self { texture, group }
+    }
+
+    /// Sends the pixels of the whole or of a part to the device, and returns the number of bytes
+    /// sent.
+    pub fn write(&self, gpu: &Gpu, delta: &ImageDelta) -> u64 {
+        let ImageData::Color(image) = &delta.image;
+        let [width, height] = image.size.map(|side| side as u32);
+        let [x, y] = delta.pos.unwrap_or_default().map(|side| side as u32);
+        let to = wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x, y, z: 0 },
+            ..self.texture.as_image_copy()
+        };
+        let rows = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * width),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        gpu.queue.write_texture(to, image.as_raw(), rows, size);
+        image.as_raw().len() as u64
     }
 }

@@ -1,12 +1,13 @@
 use core::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
+use egui::epaint::ImageDelta;
 
+use super::Gpu;
 use super::instances::InstanceBuffer;
-use super::pipeline::Output;
-use super::texture::TextureSampler;
+use super::pipeline::{PipelineDescriptor, PipelineOutput};
+use super::texture::{PaintTexture, TextureSampler};
 use super::view::Uniforms;
-use super::{Gpu, pipeline};
 
 pub(super) const SHADER: &str = include_str!("../../shaders/triangle.wgsl");
 
@@ -39,31 +40,23 @@ impl TrianglePainter {
         let (size, sampler) =
             (Uniforms::new(gpu, "triangles"), TextureSampler::new(gpu, "triangles"));
         let attributes = wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Unorm8x4];
-        let pipeline = pipeline::build(
-            gpu,
-            &pipeline::PipelineDescriptor {
-                label: "triangles",
-                shader: SHADER,
-                fragment: "fragment",
-                constants: &[],
-                layouts: &[&size.layout, &sampler.layout],
-                buffers: &[wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Corner>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &attributes,
-                }],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                cull: None,
-                depth: wgpu::CompareFunction::Always,
-                output: Output::Premultiplied(format),
-            },
-        );
+        let layouts = [&size.layout, &sampler.layout];
+        let output = PipelineOutput::Premultiplied(format);
+        let pipeline = PipelineDescriptor {
+            buffers: &[wgpu::VertexBufferLayout {
+                array_stride: size_of::<Corner>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &attributes,
+            }],
+            ..PipelineDescriptor::new("triangles", SHADER, &layouts, output)
+        }
+        .build(gpu);
         Self { pipeline, corners: InstanceBuffer::new("triangles"), size, sampler }
     }
 
-    /// The bind group of a texture, which must be filterable and of two dimensions.
-    pub fn texture_group(&self, gpu: &Gpu, texture: &wgpu::TextureView) -> wgpu::BindGroup {
-        self.sampler.group(gpu, texture)
+    /// Creates the texture of an image that is its whole, without its pixels.
+    pub fn texture(&self, gpu: &Gpu, whole: &ImageDelta) -> PaintTexture {
+        PaintTexture::new(gpu, &self.sampler, whole)
     }
 
     /// Adds a corner to the next upload. Three in a row are a triangle.
@@ -83,13 +76,13 @@ impl TrianglePainter {
     pub fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        texture_group: &wgpu::BindGroup,
+        texture: &PaintTexture,
         corners: Range<u32>,
     ) {
         if let Some((buffer, _)) = self.corners.get() {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &self.size.group, &[]);
-            pass.set_bind_group(1, texture_group, &[]);
+            pass.set_bind_group(1, &texture.group, &[]);
             pass.set_vertex_buffer(0, buffer.slice(..));
             pass.draw(corners, 0..1);
         }

@@ -2,6 +2,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::Gpu;
+use super::pipeline::{self, BindingKind};
 use crate::scene::{Colour, Scene};
 
 /// Uniforms that all shaders of a scene share: `View` in `view.wgsl`.
@@ -101,31 +102,11 @@ pub(super) struct Uniforms<T> {
 
 impl<T: Pod + PartialEq> Uniforms<T> {
     pub fn new(gpu: &Gpu, label: &'static str) -> Self {
-        let label = Some(label);
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label,
-            size: size_of::<T>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label,
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label,
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        });
+        let size = size_of::<T>() as u64;
+        let buffer = gpu.buffer(label, size, wgpu::BufferUsages::UNIFORM);
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let layout = pipeline::layout(gpu, label, stages, &[BindingKind::Uniform]);
+        let group = pipeline::group(gpu, label, &layout, [buffer.as_entire_binding()]);
         Self { sent: None, buffer, layout, group }
     }
 

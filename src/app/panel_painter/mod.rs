@@ -68,7 +68,7 @@ impl PanelPainter {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, panels: &Context) -> Self {
         // Opaque black, the same bytes in RGBA and BGRA. It is blended over the kept pixels.
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let black = texture(gpu, "black", format, [1, 1], usage);
+        let black = gpu.texture("black", format, [1, 1], usage);
         let row =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
         gpu.queue.write_texture(black.as_image_copy(), &[0, 0, 0, 255], row, black.size());
@@ -212,29 +212,10 @@ impl KeptPicture {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
             | wgpu::TextureUsages::COPY_SRC
             | wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture = texture(gpu, "panels", format, size, usage);
+        let texture = gpu.texture("panels", format, size, usage);
         let view = texture.create_view(&Default::default());
         Self { texture, view, viewport: None, is_stale: true }
     }
-}
-
-fn texture(
-    gpu: &Gpu,
-    label: &str,
-    format: wgpu::TextureFormat,
-    [width, height]: [u32; 2],
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
 }
 
 fn set_viewport(pass: &mut wgpu::RenderPass<'_>, area: PixelArea) {
@@ -270,7 +251,7 @@ mod tests {
             style::install(&context);
             let usage =
                 wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
-            let scene = texture(&gpu, "scene", FORMAT, [1, 1], usage);
+            let scene = gpu.texture("scene", FORMAT, [1, 1], usage);
             let scene = scene.create_view(&Default::default());
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -403,7 +384,7 @@ mod tests {
         });
         renderer.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &atlas);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-        let picture = texture(gpu, "egui", FORMAT, SIZE, usage);
+        let picture = gpu.texture("egui", FORMAT, SIZE, usage);
         let view = picture.create_view(&Default::default());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let screen = ScreenDescriptor { size_in_pixels: SIZE, pixels_per_point: 1.0 };

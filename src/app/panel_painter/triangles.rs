@@ -1,12 +1,12 @@
 use core::ops::Range;
 use std::collections::HashMap;
 
-use egui::epaint::{ClippedPrimitive, ImageData, ImageDelta, Mesh, Primitive, TextureAtlas};
-use egui::{Color32, Context, Pos2, Rect, TextureId};
+use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureAtlas};
+use egui::{Context, Pos2, Rect, TextureId};
 use egui_wgpu::ScreenDescriptor;
 
 use super::pixel_area::PixelArea;
-use crate::render::{Corner, Gpu, TrianglePainter};
+use crate::render::{Corner, Gpu, PaintTexture, TrianglePainter};
 
 /// Draws the triangles of the panels that touch some areas of the window.
 ///
@@ -14,12 +14,7 @@ use crate::render::{Corner, Gpu, TrianglePainter};
 /// computes all of them for every pixel, which takes several times as long as this.
 pub(in crate::app) struct PanelTriangles {
     painter: TrianglePainter,
-    textures: HashMap<TextureId, PanelTexture>,
-}
-
-struct PanelTexture {
-    texture: wgpu::Texture,
-    group: wgpu::BindGroup,
+    textures: HashMap<TextureId, PaintTexture>,
 }
 
 /// Triangles with the same texture and clipping.
@@ -45,31 +40,15 @@ impl PanelTriangles {
 
     /// Creates a texture, or writes a part of it.
     pub fn update_texture(&mut self, gpu: &Gpu, id: TextureId, delta: &ImageDelta) {
-        let ImageData::Color(image) = &delta.image;
-        let [width, height] = image.size.map(|side| side as u32);
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         if delta.pos.is_none() {
-            self.textures.insert(id, PanelTexture::new(gpu, &self.painter, size));
+            self.textures.insert(id, self.painter.texture(gpu, delta));
         }
-        let Some(PanelTexture { texture, .. }) = self.textures.get(&id) else {
-            log::warn!("texture {id:?} of the panels is changed before it is created");
-            return;
-        };
-        let [x, y] = delta.pos.unwrap_or_default().map(|at| at as u32);
-        let bytes: Vec<u8> = image.pixels.iter().flat_map(Color32::to_array).collect();
-        gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x, y, z: 0 },
-                ..texture.as_image_copy()
-            },
-            &bytes,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(4 * width),
-                rows_per_image: None,
-            },
-            size,
-        );
+        match self.textures.get(&id) {
+            Some(texture) => {
+                texture.write(gpu, delta);
+            }
+            None => log::warn!("texture {id:?} of the panels is changed before it is created"),
+        }
     }
 
     pub fn free_texture(&mut self, id: TextureId) {
@@ -129,28 +108,11 @@ impl PanelTriangles {
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, batches: &[TriangleBatch]) {
         for TriangleBatch { texture, clip, corners } in batches {
             let ([x, y], [width, height]) = (clip.at, clip.size);
-            if let Some(PanelTexture { group, .. }) = self.textures.get(texture) {
+            if let Some(texture) = self.textures.get(texture) {
                 pass.set_scissor_rect(x, y, width, height);
-                self.painter.draw(pass, group, corners.clone());
+                self.painter.draw(pass, texture, corners.clone());
             }
         }
-    }
-}
-
-impl PanelTexture {
-    fn new(gpu: &Gpu, painter: &TrianglePainter, size: wgpu::Extent3d) -> Self {
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("panels' texture"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        let group = painter.texture_group(gpu, &texture.create_view(&Default::default()));
-        Self { texture, group }
     }
 }
 
