@@ -4,16 +4,14 @@
 //! they mean.
 
 mod builder;
-mod globe;
-mod label;
 mod palette;
 #[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod scene;
 mod shapes;
 
 pub use builder::SceneBuilder;
-pub use globe::Globe;
-pub use label::{Label, LabelSide};
 pub use palette::{Colour, Palette};
 pub use scene::Scene;
+pub use shapes::Globe;
 pub use shapes::{Ball, Line, Planes, Shadow, SkinInstance, Solid, SphereShell};
+pub use shapes::{Label, LabelSide};

@@ -1,6 +1,7 @@
 use crate::document::{Theme, TwistReferenceKind};
 use crate::kinematics::chain_ik::Method;
 use crate::kinematics::skin::Skinning;
+use crate::session::OnionSkin;
 
 /// Colours of the scene in a theme. The panels use the colours of the two limbs and the accent too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +95,14 @@ impl Palette {
             TwistReferenceKind::Transport => [0xf08fb4, 0xb02a63],
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
+    }
+
+    /// Colour of an onion skin with this opacity: the fainter, the farther it is from the playhead.
+    pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
+        // Contrast of an opaque onion skin with the background, from 0 to 1.
+        const CONTRAST: f32 = 0.7;
+        let plain = if skin.past { self.joint } else { self.accent };
+        self.sky_top.mixed(plain, CONTRAST * skin.opacity)
     }
 
     /// Colour of a way of blending joints where several are compared.

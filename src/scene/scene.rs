@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use glam::{Quat, Vec3};
 
-use super::label::TextRange;
+use super::shapes::TextRange;
 use super::{
     Ball, Colour, Globe, Label, LabelSide, Line, Palette, Planes, Shadow, SkinInstance, Solid,
     SphereShell,
@@ -12,7 +12,7 @@ use super::{
 use crate::document::{Camera, Display, Theme};
 use crate::kinematics::Shared;
 use crate::kinematics::skin::SkinPose;
-use crate::rig::{Crowd, TaperedCylinder};
+use crate::rig::Crowd;
 
 /// Ratio of the radius of a singular direction's mark to the radius of the globe.
 const MARK_RADIUS: f32 = 0.026;
@@ -124,8 +124,7 @@ impl Scene {
         tip_radius: f32,
         colour: Colour,
     ) {
-        let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
-        self.solids.push(Solid { transform, shape, colour, stripes: None });
+        self.solids.push(Solid::cone(base, tip, base_radius, tip_radius, colour));
     }
 
     /// Adds a cone from base to tip, both in the world, that also shows faintly through the
@@ -138,8 +137,7 @@ impl Scene {
         tip_radius: f32,
         colour: Colour,
     ) {
-        let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
-        self.guide_solids.push(Solid { transform, shape, colour, stripes: None });
+        self.guide_solids.push(Solid::cone(base, tip, base_radius, tip_radius, colour));
     }
 
     /// Adds an arc that begins at `centre + start` and goes round `axis`.

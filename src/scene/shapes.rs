@@ -1,11 +1,18 @@
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::Colour;
-use crate::document::{Display, Overlay};
+use crate::document::{Camera, Display, Overlay};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::{SkinPose, Skinning};
+use crate::kinematics::twist::TwistReference;
 use crate::rig::{AttachedMesh, Crowd, TaperedCylinder};
+
+/// Distance of a text from its ball, in points.
+const GAP: f32 = 3.0;
+/// Distance from a point along both axes of the picture at which a text is clear of the squares and
+/// the free handle around the point, in points.
+const HANDLES: f32 = 46.0;
 
 /// A tapered cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +27,20 @@ pub struct Solid {
     /// Angle in radians by which darker stripes along the side wind from base to tip, right-handed
     /// about the solid's +x. `None` or an angle that is not finite means no stripes.
     pub stripes: Option<f32>,
+}
+
+impl Solid {
+    /// A cone from base to tip, both in the world.
+    pub(super) fn cone(
+        base: Vec3,
+        tip: Vec3,
+        base_radius: f32,
+        tip_radius: f32,
+        colour: Colour,
+    ) -> Self {
+        let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
+        Self { transform, shape, colour, stripes: None }
+    }
 }
 
 /// An opaque sphere.
@@ -163,5 +184,127 @@ impl Planes {
             grid_yz: false,
             ..Self::around(centre, radius, reach * 10_f32.powf(tens), display)
         }
+    }
+}
+
+/// Sphere of all directions of the Pointer, coloured by the [gain](TwistReference::gain) of the
+/// twist reference in each direction: radians that the elbow swings per radian that the Pointer
+/// turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Globe {
+    /// Position of the shoulder in the world.
+    pub centre: Vec3,
+    /// Radius in world units.
+    pub radius: f32,
+    /// Twist reference, whose gains colour the globe. Its directions are in Root space, which has
+    /// the world's axes.
+    pub reference: TwistReference,
+}
+
+impl Globe {
+    /// Unit vectors of the directions in which the reference is singular: none, one, or two
+    /// opposite ones.
+    ///
+    /// A pole at the shoulder has no direction, so it acts like [`TwistReference::Transport`],
+    /// which is singular nowhere.
+    pub fn singular(&self) -> impl Iterator<Item = Vec3> + Clone {
+        let both = |axis: Vec3| [Some(axis), Some(-axis)];
+        let directions = match self.reference {
+            TwistReference::Up => both(Vec3::Y),
+            TwistReference::Pole(pole) => {
+                let axis = pole.as_dvec3().try_normalize();
+                axis.map_or([None; 2], |axis| both(axis.as_vec3()))
+            }
+            TwistReference::Stereographic(map) => [Some(map.singular()), None],
+            TwistReference::Transport => [None; 2],
+        };
+        directions.into_iter().flatten()
+    }
+
+    /// True if the globe can be drawn: its centre and radius are finite, and the radius is above 0.
+    pub fn has_size(&self) -> bool {
+        self.centre.is_finite() && self.radius.is_finite() && self.radius > 0.0
+    }
+}
+
+/// A label beside a point; [`Scene::text`](super::Scene::text) returns its text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Label {
+    /// Point in the world that is labelled.
+    pub at: Vec3,
+    /// Radius in world units of a ball around the point that the text does not cover.
+    pub clearance: f32,
+    /// Distance of the text from the ball, in points.
+    pub gap: f32,
+    /// Side of the ball on which the text is written, if there is room.
+    pub side: LabelSide,
+    /// Colour of the text.
+    pub colour: Colour,
+    pub(super) text: TextRange,
+}
+
+/// Byte range of a label's text in the string of its scene. One string holds the texts of all
+/// labels, so that refilling a scene allocates nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct TextRange {
+    pub from: usize,
+    pub to: usize,
+}
+
+impl Label {
+    pub(super) fn new(at: Vec3, clearance: f32, side: LabelSide, colour: Colour) -> Self {
+        Self { at, clearance, gap: GAP, side, colour, text: TextRange::default() }
+    }
+
+    /// A label that is clear of the handles around its point.
+    pub(super) fn clear_of_handles(self) -> Self {
+        Self { gap: HANDLES, ..self }
+    }
+}
+
+/// Position of a label's text relative to the labelled point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LabelSide {
+    /// Above and to the right.
+    Above,
+    /// Below and to the right.
+    Below,
+    /// Above and to the left.
+    AboveLeft,
+    /// Below and to the left.
+    BelowLeft,
+}
+
+impl LabelSide {
+    /// All sides.
+    pub const ALL: [Self; 4] = [Self::Above, Self::Below, Self::AboveLeft, Self::BelowLeft];
+
+    /// True if the text is to the left of the point.
+    pub fn is_left(self) -> bool {
+        matches!(self, Self::AboveLeft | Self::BelowLeft)
+    }
+
+    /// True if the text is above the point.
+    pub fn is_above(self) -> bool {
+        matches!(self, Self::Above | Self::AboveLeft)
+    }
+
+    /// The side of the point `at` that is farthest from the directions in which `others` are seen.
+    pub(super) fn clear_of(others: &[Vec3], at: Vec3, camera: &Camera) -> Self {
+        let projection = camera.projection(1.0);
+        let [right, up] = [projection.right, projection.up].map(Vec3::normalize_or_zero);
+        let seen = |other: &Vec3| {
+            let away = *other - at;
+            Vec2::new(away.dot(right), away.dot(up)).normalize_or_zero()
+        };
+        let nearness = |side: Self| {
+            let x = if side.is_left() { -1.0 } else { 1.0 };
+            let y = if side.is_above() { 1.0 } else { -1.0 };
+            others.iter().map(|other| seen(other).dot(Vec2::new(x, y))).fold(f32::MIN, f32::max)
+        };
+        let sides = Self::ALL.into_iter();
+        sides
+            .min_by(|one, other| nearness(*one).total_cmp(&nearness(*other)))
+            .unwrap_or(Self::Above)
     }
 }

@@ -5,7 +5,7 @@ use egui::epaint::util::hash;
 use egui::epaint::{ClippedPrimitive, Mesh, Primitive, Vertex};
 use egui_wgpu::ScreenDescriptor;
 
-use super::pixel_area::PixelArea;
+use super::triangles::PixelArea;
 
 /// Side of a tile in pixels.
 const TILE: u32 = 32;

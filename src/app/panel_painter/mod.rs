@@ -19,7 +19,6 @@
 //! `egui_wgpu`'s; tests compare both.
 
 mod changes;
-mod pixel_area;
 mod triangles;
 
 use egui::epaint::{ClippedPrimitive, ImageDelta};
@@ -28,8 +27,8 @@ use egui_wgpu::ScreenDescriptor;
 
 use crate::render::{Gpu, Renderer, TexturePainter};
 use changes::PanelChanges;
-use pixel_area::PixelArea;
 use triangles::PanelTriangles;
+use triangles::PixelArea;
 
 /// Draws the panels, and the scene under them, into a texture that keeps them. A frame redraws only
 /// the areas that have changed, which is much faster on a software adapter (docs/performance.md).

@@ -2,11 +2,11 @@ use glam::{Affine3A, Vec3};
 
 use crate::document::{Arm, Display, Overlay, Posed, ShownLength, TwistReferenceKind};
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
-use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
+use crate::rig::{ArmPart, ArmRig};
 use crate::scene::{
     Ball, Colour, Globe, Label, LabelSide, Line, Palette, Scene, Shadow, Solid, SphereShell,
 };
-use crate::session::{BodyPart, Overlays};
+use crate::session::{BodyPart, OnionSkin, Overlays};
 
 /// Sizes on an arm of thickness 1.
 const CURSOR_BALL: f32 = 11.0;
@@ -14,6 +14,8 @@ const POLE_BALL: f32 = 11.0;
 const PIN: Vec3 = Vec3::new(-22.0, 62.0, 12.0);
 const PIN_RADIUS: f32 = 4.5;
 const PIN_HEAD: f32 = 13.0;
+/// Radius of the limbs in an onion skin, as a fraction of the arm's reach.
+const ONION_SKIN_RADIUS: f32 = 0.008;
 
 /// Adds the arm with the guides, labels and shadows that the display shows. The part under the
 /// mouse lights up; a hand with handles has no label.
@@ -53,6 +55,22 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
     }
     if display.shows(Overlay::Shadow) {
         add_shadows(scene, &rig, thickness);
+    }
+}
+
+/// Adds the onion skins of the arm. Those of a figure are added with the figure, whose sizes they
+/// have.
+pub(super) fn add_onion_skins(scene: &mut Scene, skins: &[OnionSkin], reach: f32) {
+    let radius = ONION_SKIN_RADIUS * reach;
+    for skin in skins {
+        let colour = scene.palette.onion_skin(skin);
+        let [root, elbow, hand] = skin.arm;
+        for (base, tip) in [(root, elbow), (elbow, hand)] {
+            if base != tip {
+                scene.add_solid(base, tip, radius, radius, colour);
+            }
+            scene.balls.push(Ball { centre: tip, radius, colour });
+        }
     }
 }
 
@@ -123,8 +141,7 @@ fn add_cursor(scene: &mut Scene, centre: Vec3, thickness: f32) {
 fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
     let colour = scene.palette.accent;
     let head = cursor + PIN * thickness;
-    let (transform, shape) = TaperedCylinder::between(cursor, head, 0.0, PIN_RADIUS * thickness);
-    scene.guide_solids.push(Solid { transform, shape, colour, stripes: None });
+    scene.add_guide_solid(cursor, head, 0.0, PIN_RADIUS * thickness, colour);
     scene.guide_balls.push(Ball { centre: head, radius: PIN_HEAD * thickness, colour });
 }
 

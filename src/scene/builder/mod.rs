@@ -4,16 +4,14 @@ mod arm;
 mod drawn_skeleton;
 mod figure;
 mod hand;
-mod motion;
 mod skeleton;
 mod skin;
 mod solver;
-mod targets;
 mod twist;
 
 use glam::Vec3;
 
-use super::{Palette, Planes, Scene};
+use super::{Ball, Line, Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, RigKind, Theme};
 use crate::session::Overlays;
 use skeleton::Scratch;
@@ -86,10 +84,11 @@ impl SceneBuilder {
                 if let Some(poses) = overlays.twist_references {
                     twist::add_references(scene, posed, poses);
                 }
+                arm::add_onion_skins(scene, &overlays.onion_skins, reach);
             }
             RigKind::Skeleton => skeleton::add(scene, posed, overlays, &mut self.scratch),
         }
-        motion::add(scene, document.rig, overlays, reach);
+        add_trail(scene, overlays, reach);
         scene.spare_skin_pose = None;
         scene.remove_non_finite();
     }
@@ -102,4 +101,17 @@ fn add_axes(scene: &mut Scene, reach: f32) {
     for (axis, colour) in Vec3::AXES.into_iter().zip(scene.palette.axes) {
         scene.add_solid(Vec3::ZERO, axis * length, radius, radius, colour);
     }
+}
+
+/// Adds the trail of the hand or the selected joint, with a dot for every frame.
+fn add_trail(scene: &mut Scene, overlays: &Overlays, reach: f32) {
+    // Radius of a dot as a fraction of the rig's reach.
+    const DOT_RADIUS: f32 = 0.004;
+    let (radius, colour) = (DOT_RADIUS * reach, scene.palette.accent);
+    for ends in overlays.trail.windows(2).filter(|ends| ends[0] != ends[1]) {
+        let colour = colour.with_opacity(0.6);
+        scene.lines.push(Line { from: ends[0], to: ends[1], colour, dashed: false });
+    }
+    let dots = overlays.trail.iter().map(|centre| Ball { centre: *centre, radius, colour });
+    scene.balls.extend(dots);
 }

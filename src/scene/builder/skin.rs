@@ -22,12 +22,12 @@ pub(super) struct ShownSkin<'a> {
     skin: &'a Skin,
     mesh: &'a Shared<AttachedMesh>,
     has_bones: bool,
-    row: Option<Row>,
+    compared: Option<ComparedSkins>,
 }
 
 /// Compared skins side by side.
 #[derive(Clone, Copy)]
-struct Row {
+struct ComparedSkins {
     /// Middle of the lower side of the mesh in the world, as it was attached.
     low: Vec3,
     /// From one skin to the next, in the world.
@@ -40,8 +40,8 @@ impl<'a> ShownSkin<'a> {
         let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
         let mesh = skin.mesh().ok()?;
         let is_compared = display.shows(Overlay::CompareSkinning);
-        let row = is_compared.then(|| Row::new(mesh, rig.skeleton.transform()));
-        Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones), row })
+        let compared = is_compared.then(|| ComparedSkins::new(mesh, rig.skeleton.transform()));
+        Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones), compared })
     }
 
     /// True if the bones are drawn too.
@@ -64,7 +64,7 @@ impl<'a> ShownSkin<'a> {
             weights_of: overlays.selection.last().copied().filter(|_| is_coloured),
             pose,
         };
-        let Some(Row { low, .. }) = self.row else {
+        let Some(ComparedSkins { low, .. }) = self.compared else {
             scene.skins.push(instance);
             return;
         };
@@ -78,8 +78,8 @@ impl<'a> ShownSkin<'a> {
 
     /// Offsets in the world of the skins that are drawn.
     fn offsets(&self) -> impl Iterator<Item = Vec3> + use<> {
-        let step = self.row.map_or(Vec3::ZERO, |row| row.step);
-        let sides: &[f32] = if self.row.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+        let step = self.compared.map_or(Vec3::ZERO, |compared| compared.step);
+        let sides: &[f32] = if self.compared.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
         sides.iter().map(move |side| step * side)
     }
 
@@ -125,7 +125,7 @@ impl<'a> ShownSkin<'a> {
     }
 }
 
-impl Row {
+impl ComparedSkins {
     fn new(mesh: &AttachedMesh, to_world: Affine3A) -> Self {
         let in_world = mesh.mesh.mesh().positions.iter().map(|at| to_world.transform_point3(*at));
         let bounds = in_world.map(|at| (at, at)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
