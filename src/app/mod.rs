@@ -1,11 +1,10 @@
 //! The window: winit's event loop, the surface, and the frames drawn on it.
 
-mod attributes;
 mod background;
 mod dynamic_resolution;
-mod effects;
 mod error;
 mod event_loop;
+mod frame;
 mod graphics;
 mod panel_painter;
 mod present;

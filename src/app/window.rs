@@ -10,7 +10,6 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
-use super::attributes::{TITLE, attributes, title};
 use super::background::UserEvent;
 use super::dynamic_resolution::{DynamicResolution, lap_timer};
 use super::error::{AppError, GraphicsError};
@@ -21,8 +20,12 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
 use crate::ui::{self, FrameTime, Machine, style};
 
-/// Time between frames while only counts of earlier frames are missing.
-const COUNTS_INTERVAL: Duration = Duration::from_millis(50);
+/// Name of the program, as in the window's title.
+const TITLE: &str = "ik-arm";
+const APP_ID: &str = "ik-arm";
+const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
+const MIN_SIZE: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
+const ICON: &[u8] = include_bytes!("../../assets/icon-64.png");
 
 /// Time of the next frame, or the reason why there is none.
 pub(super) enum Repaint {
@@ -37,32 +40,32 @@ pub(super) enum Repaint {
 pub(super) struct AppWindow {
     /// `None` while the graphics are lost.
     pub(super) graphics: Option<Graphics>,
-    retries: DeviceRetries,
+    pub(super) retries: DeviceRetries,
     /// Time at which lost graphics are created again.
     retry_at: Instant,
     debug: DebugOptions,
     pub(super) window: Arc<Window>,
     pub(super) egui: egui_winit::State,
-    machine: Machine,
-    overlays: Overlays,
-    builder: SceneBuilder,
+    pub(super) machine: Machine,
+    pub(super) overlays: Overlays,
+    pub(super) builder: SceneBuilder,
     /// Scene to refill and draw in the next frame, to reuse its memory; `None` before the first
     /// frame.
-    scene: Option<Scene>,
+    pub(super) scene: Option<Scene>,
     /// Typed events since a file dialog was requested, held back for that dialog.
-    held_keys: Vec<Event>,
+    pub(super) held_keys: Vec<Event>,
     /// Start of the previous frame, if that frame requested another one at once.
-    moving_since: Option<Instant>,
-    frames: u64,
+    pub(super) moving_since: Option<Instant>,
+    pub(super) frames: u64,
     title: String,
     /// Rectangle of the scene in points.
     pub(super) viewport: Rect,
     /// True if the program ends at the next frame.
     pub(super) ends: bool,
     pub(super) exporting: Option<JoinHandle<()>>,
-    dynamic_resolution: DynamicResolution,
+    pub(super) dynamic_resolution: DynamicResolution,
     /// True if counts of earlier frames will arrive from the device.
-    awaits_counts: bool,
+    pub(super) awaits_counts: bool,
 }
 
 impl AppWindow {
@@ -174,65 +177,9 @@ impl AppWindow {
         }
     }
 
-    /// Runs one frame: takes the input, applies the actions of the panels, and draws.
-    pub fn redraw(
-        &mut self,
-        event_loop: &ActiveEventLoop,
-        session: &mut Session,
-        proxy: &EventLoopProxy<UserEvent>,
-    ) -> Repaint {
-        if let Some(later) = self.restore(event_loop, session, proxy) {
-            return later;
-        }
-        let started = Instant::now();
-        let input = self.egui.take_egui_input(&self.window);
-        style::apply(self.egui.egui_ctx(), session.preferences().theme);
-        let interval = self.moving_since.take().map(|last| started - last);
-        let mut frame = FrameTime { interval, ..FrameTime::default() };
-        let (mut output, viewport, effects) = self.run(input, session, &mut frame);
-        self.viewport = viewport;
-        if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
-            output.textures_delta.clear();
-            return Repaint::Quit;
-        }
-        self.update_title(session);
-        let platform = std::mem::take(&mut output.platform_output);
-        self.egui.handle_platform_output(&self.window, platform);
-        let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
-        let delay = match self.draw(session, output, &mut frame) {
-            Ok(Presented::Shown { has_changed }) => {
-                self.machine.crowd = self.graphics.as_ref().and_then(Graphics::crowd_times);
-                if has_changed {
-                    self.machine.times.push(frame);
-                }
-                if !self.graphics.as_ref().is_some_and(|graphics| graphics.has_own_time) {
-                    let budget = session.preferences().frame_budget.time();
-                    self.dynamic_resolution.measure(frame.resolution_scale, frame.total(), budget);
-                }
-                self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
-                self.frames += 1;
-                log::trace!("frame {}: {frame}", self.frames);
-                self.retries.reset();
-                let counts = self.awaits_counts.then_some(COUNTS_INTERVAL);
-                delay
-                    .into_iter()
-                    .chain(self.dynamic_resolution.rests_in(started))
-                    .chain(counts)
-                    .min()
-            }
-            // Motion that is not visible needs few frames.
-            Ok(Presented::Later(again)) => {
-                let delay = delay.map(|delay| delay.max(Graphics::HIDDEN_FRAME_INTERVAL));
-                delay.into_iter().chain(again).min()
-            }
-            Err(error) => return self.lose(error),
-        };
-        delay.and_then(|delay| started.checked_add(delay)).map_or(Repaint::OnInput, Repaint::At)
-    }
-
     /// Creates lost graphics again. Returns `None` if a frame can be drawn, otherwise when to try
     /// again or why the program must end.
-    fn restore(
+    pub(super) fn restore(
         &mut self,
         event_loop: &ActiveEventLoop,
         session: &mut Session,
@@ -267,7 +214,7 @@ impl AppWindow {
 
     /// Drops failed graphics and schedules the next attempt to create them; returns
     /// [`Repaint::Failed`] if no attempt is left.
-    fn lose(&mut self, error: GraphicsError) -> Repaint {
+    pub(super) fn lose(&mut self, error: GraphicsError) -> Repaint {
         self.drop_graphics();
         let Some(pause) = self.retries.next_pause() else {
             return Repaint::Failed(error);
@@ -289,71 +236,8 @@ impl AppWindow {
         }
     }
 
-    /// Runs the panels once for each key press or mouse button, so that each press sees the effects
-    /// of the previous one.
-    fn run(
-        &mut self,
-        mut input: RawInput,
-        session: &mut Session,
-        frame: &mut FrameTime,
-    ) -> (FullOutput, Rect, Vec<Effect>) {
-        let mut events = std::mem::take(&mut self.held_keys);
-        if !session.shell().is_asking() {
-            // These events were typed while the system's dialog had the focus.
-            events.clear();
-        }
-        events.append(&mut input.events);
-        let strokes = ui::strokes(events);
-        let mut output = FullOutput::default();
-        let mut viewport = Rect::ZERO;
-        let mut effects = Vec::new();
-        for events in strokes {
-            let events = if session.shell().is_choosing() {
-                ui::hold_typed(events, &mut self.held_keys)
-            } else {
-                events
-            };
-            let dropped_files = std::mem::take(&mut input.dropped_files);
-            let stroke = RawInput { events, dropped_files, ..input.clone() };
-            let (run, rect, new_effects) = self.run_stroke(stroke, session, frame);
-            output.append(run);
-            viewport = rect;
-            effects.extend(new_effects);
-        }
-        (output, viewport, effects)
-    }
-
-    /// Runs the panels and applies their actions. If there were any actions, runs the panels again,
-    /// so that no panel shows an outdated state.
-    fn run_stroke(
-        &mut self,
-        input: RawInput,
-        session: &mut Session,
-        frame: &mut FrameTime,
-    ) -> (FullOutput, Rect, Vec<Effect>) {
-        let mut lap = lap_timer();
-        let again = RawInput { events: Vec::new(), dropped_files: Vec::new(), ..input.clone() };
-        let (machine, ctx) = (&self.machine, self.egui.egui_ctx());
-        let mut viewport = Rect::ZERO;
-        let mut actions = Actions::new();
-        let mut output = ctx.run_ui(input, |ui| {
-            viewport = ui::show(ui, session, machine, &mut actions);
-        });
-        frame.panels += lap();
-        if actions.is_empty() {
-            return (output, viewport, Vec::new());
-        }
-        let effects = actions.drain().filter_map(|action| session.apply(action)).collect();
-        frame.solve += lap();
-        style::apply(ctx, session.preferences().theme);
-        output.append(ctx.run_ui(again, |ui| {
-            viewport = ui::show(ui, session, machine, &mut actions);
-        }));
-        frame.panels += lap();
-        (output, viewport, effects)
-    }
-
-    fn update_title(&mut self, session: &Session) {
+    /// Shows the title that the window has now.
+    pub(super) fn update_title(&mut self, session: &Session) {
         let title = title(session);
         if title != self.title {
             self.window.set_title(&title);
@@ -361,78 +245,84 @@ impl AppWindow {
         }
     }
 
-    /// Draws the scene and the panels.
-    fn draw(
+    /// Applies an action that does not come from the panels, and carries out its effect.
+    pub fn act(
         &mut self,
-        session: &Session,
-        output: FullOutput,
-        frame: &mut FrameTime,
-    ) -> Result<Presented, GraphicsError> {
-        let FullOutput { shapes, textures_delta: mut textures, pixels_per_point: scale, .. } =
-            output;
-        // Taken out first: egui panics if texture changes are dropped with the output.
-        let changed = std::mem::take(&mut textures.set);
-        let freed = std::mem::take(&mut textures.free);
-        let pixels = self.viewport_pixels(scale);
-        let Some(graphics) = &mut self.graphics else {
-            return Ok(Presented::Later(None));
-        };
-        let size = self.window.inner_size();
-        if size.width == 0 || size.height == 0 {
-            return guarded(|| {
-                graphics.panels.update_textures(&graphics.gpu, changed);
-                graphics.panels.free_textures(freed);
-                Ok(Presented::Later(None))
-            });
+        action: Action,
+        session: &mut Session,
+        proxy: &EventLoopProxy<UserEvent>,
+    ) {
+        if let Some(effect) = session.apply(action)
+            && self.carry_out(effect, session, proxy)
+        {
+            self.ends = true;
         }
-        let mut lap = lap_timer();
-        let (posed, theme) = (session.posed(), session.preferences().theme);
-        session.write_overlays(&mut self.overlays);
-        self.overlays.has_handles = true;
-        match &mut self.scene {
-            Some(scene) => self.builder.refill(scene, posed, &self.overlays, theme),
-            None => self.scene = Some(self.builder.build(posed, &self.overlays, theme)),
+    }
+
+    fn viewport_picture(&self, session: &Session) -> ViewportPicture {
+        let scale = self.egui.egui_ctx().pixels_per_point();
+        ViewportPicture {
+            posed: session.posed().clone(),
+            overlays: session.overlays(),
+            theme: session.preferences().theme,
+            size: self.viewport_pixels(scale),
+            scale,
         }
-        let budget = session.preferences().frame_budget.time();
-        let held = self.egui.egui_ctx().input(|input| input.pointer.any_down());
-        let is_driven = held || session.playback().is_playing();
-        let is_moving = moves(graphics.drawn_scene(), self.scene.as_ref(), is_driven);
-        frame.resolution_scale = self.dynamic_resolution.next(is_moving, budget, Instant::now());
-        frame.scene += lap();
-        let panels = self.egui.egui_ctx().tessellate(shapes, scale);
-        frame.panels += lap();
-        let (machine, dynamic_resolution) = (&mut self.machine, &mut self.dynamic_resolution);
-        guarded(|| {
-            // The times are those of earlier frames.
-            while let Some((earlier, time)) = graphics.read_clock() {
-                if let Some(earlier) = machine.times.set_gpu(earlier, time)
-                    && graphics.has_own_time
-                {
-                    dynamic_resolution.measure(
-                        earlier.resolution_scale,
-                        earlier.work() + time,
-                        budget,
-                    );
-                }
+    }
+
+    /// Waits until the export's thread, if there is one, has ended: a cancelled export removes its
+    /// files first.
+    pub fn await_export(&mut self) {
+        if let Some(thread) = self.exporting.take()
+            && thread.join().is_err()
+        {
+            log::error!("an export panicked");
+        }
+    }
+
+    /// Carries out an effect and returns whether the program is to end.
+    pub(super) fn carry_out(
+        &mut self,
+        effect: Effect,
+        session: &mut Session,
+        proxy: &EventLoopProxy<UserEvent>,
+    ) -> bool {
+        match effect {
+            Effect::CopyText(text) => self.egui.egui_ctx().copy_text(text),
+            Effect::SavePicture(path) => {
+                let picture = self.viewport_picture(session);
+                background::save_picture(picture, PathBuf::from(path), proxy.clone());
             }
-            graphics.panels.update_textures(&graphics.gpu, changed);
-            if let Some(scene) = &mut self.scene {
-                machine.counts =
-                    Some(graphics.draw_scene(scene, pixels, scale, frame.resolution_scale));
-                self.awaits_counts = graphics.awaits_counts();
+            Effect::Bake(settings) => {
+                let job = background::bake(settings, session.document().clone(), proxy.clone());
+                session.apply(BakeAction::Started(job));
             }
-            frame.encode += lap();
-            let drawn = machine.times.drawn();
-            let (presented, waited) =
-                graphics.present(&panels, self.viewport, scale, &self.window, drawn)?;
-            frame.wait += waited;
-            frame.encode += lap().saturating_sub(waited);
-            graphics.panels.free_textures(freed);
-            if self.retries.is_retrying() && matches!(presented, Presented::Shown { .. }) {
-                graphics.finish()?;
+            Effect::Export(export) => {
+                let document = session.document().clone();
+                let picture = self.viewport_picture(session);
+                let (job, thread) = background::export(export, document, &picture, proxy.clone());
+                self.exporting = Some(thread);
+                session.apply(FileAction::ExportStarted(job));
             }
-            Ok(presented)
-        })
+            Effect::ChoosePath(dialog) => {
+                let path = session.files().full_path(&dialog, dialog.path());
+                background::choose_path(dialog, &path, proxy.clone());
+            }
+            Effect::Open { path, options } => background::open(path, options, proxy.clone()),
+            Effect::LocateSkin(path) => {
+                background::locate_skin(path, session.skeleton_rig(), proxy.clone());
+            }
+            Effect::Save(path) => {
+                let saved = match io::save(session.document(), &path) {
+                    Ok(()) => FileAction::Saved(path),
+                    Err(error) => FileAction::NotSaved { path, why: error.to_string() },
+                };
+                let next = session.apply(saved);
+                return next.is_some_and(|effect| self.carry_out(effect, session, proxy));
+            }
+            Effect::Quit => return true,
+        }
+        false
     }
 
     /// Width and height of the viewport in pixels; `scale` is in pixels per point.
@@ -442,11 +332,67 @@ impl AppWindow {
     }
 }
 
-/// True if a scene that differs from the one drawn before is a moment of a motion: the camera
-/// moves, or `is_driven` by a held mouse button or playback.
-fn moves(before: Option<&Scene>, now: Option<&Scene>, is_driven: bool) -> bool {
-    let (Some(before), Some(now)) = (before, now) else {
-        return false;
+/// Attributes of the window: title, icon, minimum size, and the size from the previous run.
+fn attributes(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> WindowAttributes {
+    let attributes = Window::default_attributes()
+        .with_title(TITLE)
+        .with_inner_size(size(event_loop, last))
+        .with_min_inner_size(MIN_SIZE)
+        .with_window_icon(icon())
+        // Shown after AccessKit is initialized, which needs a hidden window.
+        .with_visible(false);
+    named(attributes)
+}
+
+/// Size of the window in the previous run, limited to the screens; `SIZE` if it is unknown.
+fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSize<f64> {
+    let Some(mut last) = last else {
+        return SIZE;
     };
-    before.camera != now.camera || (is_driven && before != now)
+    let screens = event_loop.available_monitors().map(|screen| {
+        let size = screen.size().to_logical::<f32>(screen.scale_factor());
+        egui::vec2(size.width, size.height)
+    });
+    let largest = screens.filter(|size| size.min_elem() > 0.0).reduce(egui::Vec2::max);
+    last.clamp_size_to_sane_values(largest.unwrap_or(egui::Vec2::INFINITY));
+    let points = last.inner_size_points();
+    LogicalSize::new(
+        f64::from(points.x).max(MIN_SIZE.width),
+        f64::from(points.y).max(MIN_SIZE.height),
+    )
+}
+
+#[cfg(target_os = "linux")]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    use winit::platform::{wayland, x11};
+    let attributes = x11::WindowAttributesExtX11::with_name(attributes, APP_ID, APP_ID);
+    wayland::WindowAttributesExtWayland::with_name(attributes, APP_ID, APP_ID)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    attributes
+}
+
+fn icon() -> Option<Icon> {
+    let image = image::load_from_memory(ICON).ok()?.into_rgba8();
+    let (width, height) = image.dimensions();
+    Icon::from_rgba(image.into_raw(), width, height).ok()
+}
+
+/// Title of the window: the document's name, an asterisk for unsaved changes, and the program;
+/// during the tour, the step or the title of the last card.
+fn title(session: &Session) -> String {
+    if let Some(tour) = session.tour() {
+        return match tour.step() {
+            Some(_) => format!("Tour, step {} – {TITLE}", tour.number() + 1),
+            None => format!("Tour, {} – {TITLE}", tour.title()),
+        };
+    }
+    let unsaved = if session.history().is_unsaved() { "*" } else { "" };
+    match session.files().name() {
+        Some(name) => format!("{name}{unsaved} – {TITLE}"),
+        None if session.history().is_unsaved() => format!("untitled* – {TITLE}"),
+        None => TITLE.to_owned(),
+    }
 }
