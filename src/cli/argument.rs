@@ -1,17 +1,16 @@
-//! Values of arguments that more than one command takes.
-
-use std::str::FromStr;
+//! Values of arguments that more than one command takes. clap adds the argument's name and its text
+//! to the errors.
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Display, Overlay, Theme, Timeline};
+use crate::document::{AxisView, Camera, Display, Document, Overlay, Posed, Theme, Timeline};
 use crate::export::ExportOptions;
 use crate::kinematics::two_bone::TwoBone;
 
-/// Rule that the text of an argument breaks. clap adds the argument's name and its text to the
-/// message.
+/// Rule that the text of an argument breaks.
 #[derive(Debug, Error, PartialEq)]
 pub enum ArgumentError {
     #[error("size must be like 1280x800, each side 1 to {max}", max = ExportOptions::MAX_SIDE)]
@@ -35,115 +34,74 @@ pub enum ArgumentError {
     Guide(String),
 }
 
-/// Width and height of a picture in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SizeArgument {
-    pub width: u32,
-    pub height: u32,
-}
-
-/// A finite number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberArgument(pub f32);
-
-/// Finite time in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeArgument(pub f64);
-
-/// Frames per second; need not be whole, and may be a fraction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameRateArgument(pub f64);
-
-/// Length of a limb.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LengthArgument(pub f32);
-
-/// A point with finite coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointArgument(pub Vec3);
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum ThemeName {
-    Dark,
-    Light,
-}
-
-/// Guides that are shown; all others are hidden.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GuidesArgument(Vec<Overlay>);
-
-impl FromStr for FrameRateArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let number = |text: &str| text.parse::<f64>().ok();
-        let rate = match text.split_once('/') {
-            Some((frames, seconds)) => {
-                number(frames).zip(number(seconds)).map(|(frames, seconds)| frames / seconds)
-            }
-            None => number(text),
-        };
-        rate.filter(|rate| Timeline::is_frame_rate(*rate)).map(Self).ok_or(ArgumentError::FrameRate)
-    }
-}
-
-impl FromStr for SizeArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let side = |text: &str| {
-            text.parse().ok().filter(|side| {
-                (1..=ExportOptions::MAX_SIDE).contains(side) && !text.starts_with('+')
-            })
-        };
-        text.split_once('x')
-            .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))
-            .ok_or(ArgumentError::Size)
-    }
-}
-
-impl FromStr for NumberArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let number = text.trim().parse().ok().filter(|number: &f32| number.is_finite());
-        number.map(Self).ok_or(ArgumentError::Number)
-    }
-}
-
-impl FromStr for TimeArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite());
-        time.map(Self).ok_or(ArgumentError::Time)
-    }
-}
-
-impl FromStr for LengthArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let NumberArgument(length) = text.parse()?;
-        TwoBone::new(length, length)
-            .map(|bones| Self(bones.upper()))
-            .map_err(|_| ArgumentError::Length(length))
-    }
-}
-
-impl FromStr for PointArgument {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let numbers: Result<Vec<NumberArgument>, _> = text.split(',').map(str::parse).collect();
-        match numbers.as_deref() {
-            Ok([x, y, z]) => Ok(Self(Vec3::new(x.0, y.0, z.0))),
-            _ => Err(ArgumentError::Point),
+/// Reads frames per second, which need not be whole and may be a fraction.
+pub fn frame_rate(text: &str) -> Result<f64, ArgumentError> {
+    let number = |text: &str| text.parse::<f64>().ok();
+    let rate = match text.split_once('/') {
+        Some((frames, seconds)) => {
+            number(frames).zip(number(seconds)).map(|(frames, seconds)| frames / seconds)
         }
+        None => number(text),
+    };
+    rate.filter(|rate| Timeline::is_frame_rate(*rate)).ok_or(ArgumentError::FrameRate)
+}
+
+/// Reads the width and height of a picture in pixels.
+pub fn size(text: &str) -> Result<(u32, u32), ArgumentError> {
+    let is_side = |side: &u32| (1..=ExportOptions::MAX_SIDE).contains(side);
+    let side = |text: &str| text.parse().ok().filter(is_side).filter(|_| !text.starts_with('+'));
+    let sides = text.split_once('x').and_then(|(width, height)| side(width).zip(side(height)));
+    sides.ok_or(ArgumentError::Size)
+}
+
+/// Reads a finite number.
+pub fn number(text: &str) -> Result<f32, ArgumentError> {
+    let number = text.trim().parse().ok();
+    number.filter(|number: &f32| number.is_finite()).ok_or(ArgumentError::Number)
+}
+
+/// Reads a finite time in seconds.
+pub fn time(text: &str) -> Result<f64, ArgumentError> {
+    let time = text.trim().parse().ok();
+    time.filter(|time: &f64| time.is_finite()).ok_or(ArgumentError::Time)
+}
+
+/// Reads the length of a limb.
+pub fn length(text: &str) -> Result<f32, ArgumentError> {
+    let length = number(text)?;
+    TwoBone::new(length, length).map(|_| length).map_err(|_| ArgumentError::Length(length))
+}
+
+/// Reads a point with finite coordinates.
+pub fn point(text: &str) -> Result<Vec3, ArgumentError> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Ok([x, y, z]) => Ok(Vec3::new(*x, *y, *z)),
+        _ => Err(ArgumentError::Point),
     }
 }
 
-impl GuidesArgument {
+/// The guides that are shown; all others are hidden.
+#[derive(Clone, Debug)]
+pub struct ShownGuides(Vec<Overlay>);
+
+/// Reads the guides that are shown.
+pub fn guides(text: &str) -> Result<ShownGuides, ArgumentError> {
+    if text == "none" {
+        return Ok(ShownGuides(Vec::new()));
+    }
+    let guide = |name: &str| match name.trim() {
+        "cursor" => Ok(Overlay::Cursor),
+        "pointer" => Ok(Overlay::Pointer),
+        "inner" => Ok(Overlay::InnerLimit),
+        "outer" => Ok(Overlay::OuterLimit),
+        "circle" => Ok(Overlay::ElbowCircle),
+        _ => Err(ArgumentError::Guide(name.to_owned())),
+    };
+    text.split(',').map(guide).collect::<Result<_, _>>().map(ShownGuides)
+}
+
+impl ShownGuides {
     /// Returns `display` with these guides shown, the other guides hidden and all other overlays
     /// unchanged.
     pub fn shown_in(&self, display: Display) -> Display {
@@ -152,30 +110,61 @@ impl GuidesArgument {
     }
 }
 
-impl FromStr for GuidesArgument {
-    type Err = ArgumentError;
+impl ValueEnum for Theme {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Dark, Self::Light]
+    }
 
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        if text == "none" {
-            return Ok(Self(Vec::new()));
-        }
-        let guide = |name: &str| match name.trim() {
-            "cursor" => Ok(Overlay::Cursor),
-            "pointer" => Ok(Overlay::Pointer),
-            "inner" => Ok(Overlay::InnerLimit),
-            "outer" => Ok(Overlay::OuterLimit),
-            "circle" => Ok(Overlay::ElbowCircle),
-            _ => Err(ArgumentError::Guide(name.to_owned())),
-        };
-        text.split(',').map(guide).collect::<Result<_, _>>().map(Self)
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Self::Dark => "dark",
+            Self::Light => "light",
+        }))
     }
 }
 
-impl From<ThemeName> for Theme {
-    fn from(name: ThemeName) -> Self {
-        match name {
-            ThemeName::Dark => Self::Dark,
-            ThemeName::Light => Self::Light,
+/// A side from which a rig is shown.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ViewName {
+    Front,
+    Right,
+    Top,
+    Perspective,
+}
+
+impl ViewName {
+    /// The default camera, turned to look from this side.
+    pub fn camera(self) -> Camera {
+        let camera = Camera::default();
+        match self {
+            Self::Front => camera.along(AxisView::Front),
+            Self::Right => camera.along(AxisView::Right),
+            Self::Top => camera.along(AxisView::Top),
+            Self::Perspective => camera,
         }
+    }
+
+    /// A camera that looks from this side and frames the shown rig over the timeline, for a picture
+    /// of this width and height.
+    pub fn framing(self, document: &Document, (width, height): (u32, u32)) -> Camera {
+        let display = document.display;
+        let (centre, radius) = document.motion_bounds_by(|posed| arm_bounds(posed, display));
+        self.camera().framing(centre, radius, width as f32 / height as f32)
+    }
+}
+
+/// Centre and radius of a bounding sphere of the arm, in world space. The sphere contains the outer
+/// limit if that is shown, otherwise the Cursor if that is shown.
+fn arm_bounds(posed: &Posed, display: Display) -> (Vec3, f32) {
+    let arm = posed.arm();
+    let (centre, radius) = arm.bounds(posed.arm_pose());
+    if display.shows(Overlay::OuterLimit) {
+        (arm.root, arm.reach_limits().outer.max(arm.root.distance(centre) + radius))
+    } else if display.shows(Overlay::Cursor) {
+        let cursor = arm.cursor_in_world();
+        let excess = (centre.distance(cursor) - radius).max(0.0);
+        (centre.move_towards(cursor, excess / 2.0), radius + excess / 2.0)
+    } else {
+        (centre, radius)
     }
 }

@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::argument::{FrameRateArgument, NumberArgument};
-use super::open;
-use super::open_args::OpenArgs;
-use super::progress_bar::run_with_bar;
+use super::argument::{frame_rate, number};
+use super::open::{self, InputArgs};
 use super::report::{CommandError, say};
 use super::time_limit::TimeLimitArgs;
-use crate::document::{Bake, BakeError, Baked, Document, Timeline};
-use crate::io::save;
+use crate::document::{Bake, BakeError, Baked, Document, ShortenedBone, Timeline};
+use crate::io::{Progress, save};
 
 #[derive(clap::Args)]
 #[command(
@@ -17,69 +15,67 @@ use crate::io::save;
 offsets that solvers move. Then removes keys while every base and tip stays within the tolerance at
 every frame. The targets stay in the document, with their influence keyed to 0; a followed path is
 removed. The numbers of keys, and bones whose stretch keys cannot hold, are listed on stderr. Ctrl+C
-cancels: no file is written, and the exit code is 130."#
+cancels: no file is written, and the exit code is 130."#,
+    mut_arg("file", |file| file.help(
+        "File to bake, an ik-arm document (.json); - reads standard input"
+    ))
 )]
 pub struct BakeArgs {
-    /// File to bake, an ik-arm document (.json); - reads standard input
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
     /// Document to write (.json)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    open: OpenArgs,
+    input: InputArgs,
     /// Frames per second [default: the timeline's]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    fps: Option<FrameRateArgument>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = frame_rate)]
+    fps: Option<f64>,
     /// Largest distance from the evaluated motion at a frame, as a fraction of the skeleton's
     /// reach, 0.00001 to 1 [default: 0.001]
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
-    tolerance: Option<NumberArgument>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
+    tolerance: Option<f32>,
     #[command(flatten)]
     time_limit: TimeLimitArgs,
 }
 
 pub fn run(args: &BakeArgs) -> Result<(), CommandError> {
-    let BakeArgs { file, output, .. } = args;
+    let BakeArgs { input, output, .. } = args;
     open::require_document("bake", output)?;
-    let limit = args.time_limit.start_long(file);
-    let document = open::open(file, &args.open.options())?.document;
+    let limit = args.time_limit.start_long(&input.file);
+    let document = input.open()?.document;
     let settings = args.settings(&document);
-    let baked = run_with_bar(&limit, |progress| {
+    let bake = |progress: &Progress| {
         settings.run(&document, |done, total| progress.step(done, total).is_ok())
-    })?;
-    let baked = baked.map_err(|error| match error {
-        cancelled @ BakeError::Cancelled => {
-            CommandError::Cancelled { cancelled, output: output.display().to_string() }
-        }
-        error => CommandError::of_file(open::name(file), error),
+    };
+    let baked = limit.run(bake)?.map_err(|error| match error {
+        BakeError::Cancelled => CommandError::Cancelled { output: output.clone() },
+        error => CommandError::of_file(input.name(), error),
     })?;
     save(&baked.document, output)?;
-    report(&settings, &baked).iter().for_each(|line| say(line));
+    report(&settings, &baked);
     Ok(())
 }
 
 impl BakeArgs {
     fn settings(&self, document: &Document) -> Bake {
         let whole = Bake::of_timeline(document);
-        let frame_rate = self.fps.map_or(whole.frames.frame_rate, |FrameRateArgument(rate)| rate);
+        let frame_rate = self.fps.unwrap_or(whole.frames.frame_rate);
         Bake {
             frames: Timeline { frame_rate, ..whole.frames },
-            tolerance: self.tolerance.map_or(whole.tolerance, |tolerance| tolerance.0),
+            tolerance: self.tolerance.unwrap_or(whole.tolerance),
         }
     }
 }
 
-fn report(settings: &Bake, baked: &Baked) -> Vec<String> {
+/// Prints the number of keys, and the bones whose stretch has none.
+fn report(settings: &Bake, baked: &Baked) {
     let Baked { document, keys_at_frames, keys, error, shortened } = baked;
     let frames = settings.frames.frames();
-    let mut lines = vec![format!(
+    say(&format_args!(
         "{frames} frames baked: {keys} of {keys_at_frames} keys left, at most {error} from the \
          evaluated motion"
-    )];
-    lines.extend(shortened.iter().map(|bone| {
-        let name = &document.skeleton()[bone.joint].name;
-        format!("the stretch of the bone of {name:?}, up to {}, has no keys", bone.error)
-    }));
-    lines
+    ));
+    for ShortenedBone { joint, error } in shortened {
+        let name = &document.skeleton()[*joint].name;
+        say(&format_args!("the stretch of the bone of {name:?}, up to {error}, has no keys"));
+    }
 }

@@ -1,19 +1,14 @@
 //! `ik-arm convert`: a file of another program as a document, or in another format.
 
-use std::path::PathBuf;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
-use super::argument::FrameRateArgument;
-use super::export::{UnitName, named};
-use super::open;
-use super::open_args::OpenArgs;
-use super::progress_bar::run_with_bar;
-use super::report::{INTERRUPTED, USAGE, fail, say};
+use super::argument::frame_rate;
+use super::export;
+use super::open::{self, InputArgs};
+use super::report::CommandError;
 use super::time_limit::TimeLimitArgs;
-use crate::export::{ExportError, ExportOptions, export};
-use crate::io::{ExportOption, FileFormat, OpenError, SaveError, dotted, enumerated, save};
+use crate::export::ExportOptions;
+use crate::io::{BvhUnit, ExportOption, FileFormat, dotted, enumerated, save};
 
 /// The command's line in the list of commands.
 pub fn about() -> String {
@@ -44,99 +39,55 @@ fn after_help() -> String {
 }
 
 #[derive(clap::Args)]
-#[command(after_help = after_help())]
+#[command(
+    after_help = after_help(),
+    mut_arg("file", |file| file.help(open::input_help("File to convert")))
+)]
 pub struct ConvertArgs {
-    #[arg(help = open::input_help("File to convert"), value_name = "FILE")]
-    file: PathBuf,
     #[arg(help = format!("File to write: {}", extensions()), short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    open: OpenArgs,
+    input: InputArgs,
     /// Frames per second of .glb and .bvh [default: the timeline's]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    fps: Option<FrameRateArgument>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = frame_rate)]
+    fps: Option<f64>,
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
-    unit: Option<UnitName>,
+    unit: Option<BvhUnit>,
     #[command(flatten)]
     time_limit: TimeLimitArgs,
 }
 
-/// Reasons why no file is written.
-#[derive(Debug, Error)]
-enum ConvertError {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error("{file}: {error}")]
-    Save { file: String, error: SaveError },
-    #[error(transparent)]
-    Output(ExportError),
-    #[error("{file}: {error}")]
-    Input { file: String, error: ExportError },
-    #[error("Ctrl+C cannot be handled: {0}")]
-    Interrupt(#[from] ctrlc::Error),
-    #[error("OUT must end in {}, got {got}; ik-arm export writes other formats", extensions())]
-    Extension { got: String },
-    #[error("{0} does not apply to this format")]
-    Argument(&'static str),
+pub fn run(args: &ConvertArgs) -> Result<(), CommandError> {
+    let ConvertArgs { input, output, fps, unit, .. } = args;
+    let format = format_of(output)?;
+    for (is_given, option, argument) in [
+        (fps.is_some(), ExportOption::FrameRate, "--fps"),
+        (unit.is_some(), ExportOption::Unit, "--unit"),
+    ] {
+        if is_given && !format.takes(option) {
+            let error = format!("{argument} does not apply to this format");
+            return Err(CommandError::Usage(error));
+        }
+    }
+    let limit = args.time_limit.start_long(&input.file);
+    let document = input.open()?.document;
+    if format.is_document() {
+        return save(&document, output).map_err(|error| CommandError::of_file(input.name(), error));
+    }
+    let unit = unit.unwrap_or_default();
+    let options = ExportOptions { fps: *fps, unit, ..ExportOptions::default() };
+    export::write(input, &document, output, &options, &limit)
 }
 
-pub fn run(args: &ConvertArgs) -> ExitCode {
-    match args.convert() {
-        Ok(notes) => {
-            notes.iter().for_each(|note| say(note));
-            ExitCode::SUCCESS
-        }
-        Err(ConvertError::Output(ExportError::Cancelled(cancelled))) => {
-            say(&format_args!("{cancelled}; {} is not written", args.output.display()));
-            ExitCode::from(INTERRUPTED)
-        }
-        Err(error @ (ConvertError::Extension { .. } | ConvertError::Argument(_))) => {
-            say(&error);
-            ExitCode::from(USAGE)
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-impl ConvertArgs {
-    fn convert(&self) -> Result<Vec<String>, ConvertError> {
-        let output = self.output()?;
-        for (is_given, option, argument) in [
-            (self.fps.is_some(), ExportOption::FrameRate, "--fps"),
-            (self.unit.is_some(), ExportOption::Unit, "--unit"),
-        ] {
-            if is_given && !output.takes(option) {
-                return Err(ConvertError::Argument(argument));
-            }
-        }
-        let limit = self.time_limit.start_long(&self.file);
-        let document = open::open(&self.file, &self.open.options())?.document;
-        if output.is_document() {
-            save(&document, &self.output)
-                .map_err(|error| ConvertError::Save { file: open::name(&self.file), error })?;
-            return Ok(Vec::new());
-        }
-        let options = ExportOptions {
-            fps: self.fps.map(|FrameRateArgument(rate)| rate),
-            unit: self.unit.map(UnitName::into).unwrap_or_default(),
-            ..ExportOptions::default()
-        };
-        let write = |progress: &_| export(&document, &self.output, &options, progress);
-        let exported = run_with_bar(&limit, write)?;
-        named(&self.file, exported).map_err(|(file, error)| {
-            if error.is_about_output() {
-                ConvertError::Output(error)
-            } else {
-                ConvertError::Input { file, error }
-            }
-        })
-    }
-
-    /// The format of the output.
-    fn output(&self) -> Result<FileFormat, ConvertError> {
-        let mut formats = FileFormat::convertible();
-        let output = formats.find(|format| format.is_written_to(&self.output));
-        output.ok_or_else(|| ConvertError::Extension { got: self.output.display().to_string() })
-    }
+/// The format of the file to write.
+fn format_of(output: &Path) -> Result<FileFormat, CommandError> {
+    let format = FileFormat::convertible().find(|format| format.is_written_to(output));
+    format.ok_or_else(|| {
+        CommandError::Usage(format!(
+            "OUT must end in {}, got {}; ik-arm export writes other formats",
+            extensions(),
+            output.display()
+        ))
+    })
 }

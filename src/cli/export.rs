@@ -1,21 +1,18 @@
 //! `ik-arm export`: a file's motion or pictures, for other programs.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::ValueEnum;
-use thiserror::Error;
+use clap::builder::PossibleValue;
 
-use super::argument::{FrameRateArgument, SizeArgument, ThemeName, TimeArgument};
-use super::open;
-use super::open_args::OpenArgs;
-use super::progress_bar::run_with_bar;
-use super::report::{INTERRUPTED, USAGE, fail, say};
-use super::time_limit::TimeLimitArgs;
-use super::view_name::ViewName;
-use crate::document::Document;
+use super::argument::{ViewName, frame_rate, size, time};
+use super::open::{self, InputArgs};
+use super::report::{CommandError, say};
+use super::time_limit::{TimeLimit, TimeLimitArgs};
+use crate::document::{Document, Theme};
 use crate::export::{ExportError, ExportFormat, ExportOptions, export};
-use crate::io::{BvhUnit, ExportOption, OpenError, Progress, dotted};
+use crate::io::{BvhUnit, ExportOption, dotted};
 use crate::kinematics::skin::Skinning;
 
 /// The command's line in the list of commands.
@@ -36,34 +33,35 @@ fn after_help() -> String {
 }
 
 #[derive(clap::Args)]
-#[command(after_help = after_help())]
+#[command(
+    after_help = after_help(),
+    mut_arg("file", |file| file.help(open::input_help("File to export")))
+)]
 pub struct ExportArgs {
-    #[arg(help = open::input_help("File to export"), value_name = "FILE")]
-    file: PathBuf,
     /// File to write
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    open: OpenArgs,
+    input: InputArgs,
     /// Frames per second [default: the timeline's]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    fps: Option<FrameRateArgument>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = frame_rate)]
+    fps: Option<f64>,
     /// Picture width and height in pixels, each 1 to 8192 [default: 1280x800]
-    #[arg(long, value_name = "WxH")]
-    size: Option<SizeArgument>,
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
     /// Colours of a picture [default: dark]
     #[arg(long, value_enum)]
-    theme: Option<ThemeName>,
+    theme: Option<Theme>,
     /// Camera that frames the whole motion from this side, for pictures [default: the file's
     /// camera]
     #[arg(long, value_enum)]
     view: Option<ViewName>,
     /// Time of a single picture or mesh in seconds [default: the timeline's start]
-    #[arg(long, value_name = "S", allow_hyphen_values = true)]
-    time: Option<TimeArgument>,
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = time)]
+    time: Option<f64>,
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
-    unit: Option<UnitName>,
+    unit: Option<BvhUnit>,
     /// How the joints of .obj are blended: linear, dual-quaternion or spread-twist [default: the
     /// file's]
     #[arg(long, value_name = "WAY")]
@@ -72,72 +70,58 @@ pub struct ExportArgs {
     time_limit: TimeLimitArgs,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub enum UnitName {
-    Cm,
-    M,
-    Scene,
+impl ValueEnum for BvhUnit {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Centimetres, Self::Metres, Self::Scene]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Self::Centimetres => "cm",
+            Self::Metres => "m",
+            Self::Scene => "scene",
+        }))
+    }
 }
 
-/// Reasons why no file is written.
-#[derive(Debug, Error)]
-enum ExportCommandError {
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error("{0} does not apply to this format: see ik-arm export --help")]
-    Argument(&'static str),
-    #[error("cannot handle Ctrl+C: {0}")]
-    Signal(#[from] ctrlc::Error),
-    #[error(transparent)]
-    Output(ExportError),
-    #[error("{file}: {error}")]
-    Input { file: String, error: ExportError },
+pub fn run(args: &ExportArgs) -> Result<(), CommandError> {
+    // Checks the arguments first, so that no file is read if one of them does not apply.
+    let format = ExportFormat::of(&args.output).map_err(ExportError::from)?;
+    args.check(format)?;
+    let limit = args.time_limit.start_long(&args.input.file);
+    let mut document = args.input.open()?.document;
+    let options = args.options();
+    if let Some(view) = args.view {
+        document.camera = view.framing(&document, options.size);
+    }
+    write(&args.input, &document, &args.output, &options, &limit)
 }
 
-pub fn run(args: &ExportArgs) -> ExitCode {
-    match args.export() {
+/// Writes the document of an input to a file, and prints what the file cannot hold.
+pub fn write(
+    input: &InputArgs,
+    document: &Document,
+    output: &Path,
+    options: &ExportOptions,
+    limit: &Arc<TimeLimit>,
+) -> Result<(), CommandError> {
+    let name = input.name();
+    match limit.run(|progress| export(document, output, options, progress))? {
         Ok(notes) => {
-            notes.iter().for_each(|note| say(note));
-            ExitCode::SUCCESS
+            notes.iter().for_each(|note| say(&format_args!("{name}: {note}")));
+            Ok(())
         }
-        Err(ExportCommandError::Output(ExportError::Cancelled(cancelled))) => {
-            say(&format_args!("{cancelled}; {} is not written", args.output.display()));
-            ExitCode::from(INTERRUPTED)
+        Err(ExportError::Cancelled(_)) => {
+            Err(CommandError::Cancelled { output: output.to_owned() })
         }
-        Err(error @ ExportCommandError::Argument(_)) => {
-            say(&error);
-            ExitCode::from(USAGE)
-        }
-        Err(error) => fail(&error),
+        Err(error) if error.is_about_output() => Err(error.into()),
+        Err(error) => Err(CommandError::of_file(name, error)),
     }
 }
 
 impl ExportArgs {
-    fn export(&self) -> Result<Vec<String>, ExportCommandError> {
-        // Checks the arguments first, so that no file is read if one of them does not apply.
-        let format = ExportFormat::of(&self.output).map_err(ExportError::from);
-        self.check(format.map_err(ExportCommandError::Output)?)?;
-        let limit = self.time_limit.start_long(&self.file);
-        let mut document = open::open(&self.file, &self.open.options())?.document;
-        if let Some(view) = self.view {
-            document.camera = view.framing(&document, self.size());
-        }
-        let notes = run_with_bar(&limit, |progress| self.write(&document, progress))?;
-        named(&self.file, notes).map_err(|(file, error)| {
-            if error.is_about_output() {
-                ExportCommandError::Output(error)
-            } else {
-                ExportCommandError::Input { file, error }
-            }
-        })
-    }
-
-    fn write(&self, document: &Document, progress: &Progress) -> Result<Vec<String>, ExportError> {
-        export(document, &self.output, &self.options(), progress)
-    }
-
     /// Refuses arguments that do not apply to the format.
-    fn check(&self, format: ExportFormat) -> Result<(), ExportCommandError> {
+    fn check(&self, format: ExportFormat) -> Result<(), CommandError> {
         for (is_given, option, argument) in [
             (self.fps.is_some(), ExportOption::FrameRate, "--fps"),
             (self.size.is_some(), ExportOption::Picture, "--size"),
@@ -148,50 +132,23 @@ impl ExportArgs {
             (self.skinning.is_some(), ExportOption::Skinning, "--skinning"),
         ] {
             if is_given && !format.takes(option) {
-                return Err(ExportCommandError::Argument(argument));
+                return Err(CommandError::Usage(format!(
+                    "{argument} does not apply to this format: see ik-arm export --help"
+                )));
             }
         }
         Ok(())
     }
 
-    /// The size of a picture.
-    fn size(&self) -> SizeArgument {
-        let (width, height) = ExportOptions::default().size;
-        self.size.unwrap_or(SizeArgument { width, height })
-    }
-
     fn options(&self) -> ExportOptions {
         let defaults = ExportOptions::default();
-        let SizeArgument { width, height } = self.size();
         ExportOptions {
-            fps: self.fps.map(|FrameRateArgument(rate)| rate),
-            size: (width, height),
-            theme: self.theme.map_or(defaults.theme, ThemeName::into),
-            time: self.time.map(|time| time.0),
-            unit: self.unit.map_or(defaults.unit, UnitName::into),
+            fps: self.fps,
+            size: self.size.unwrap_or(defaults.size),
+            theme: self.theme.unwrap_or(defaults.theme),
+            time: self.time,
+            unit: self.unit.unwrap_or(defaults.unit),
             skinning: self.skinning,
-        }
-    }
-}
-
-/// The notes and the error of an export, with the name of the file that they are about.
-pub fn named(
-    file: &Path,
-    exported: Result<Vec<String>, ExportError>,
-) -> Result<Vec<String>, (String, ExportError)> {
-    let name = open::name(file);
-    match exported {
-        Ok(notes) => Ok(notes.iter().map(|note| format!("{name}: {note}")).collect()),
-        Err(error) => Err((name, error)),
-    }
-}
-
-impl From<UnitName> for BvhUnit {
-    fn from(name: UnitName) -> Self {
-        match name {
-            UnitName::Cm => Self::Centimetres,
-            UnitName::M => Self::Metres,
-            UnitName::Scene => Self::Scene,
         }
     }
 }

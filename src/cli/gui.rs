@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 
-use super::open;
-use super::open_args::OpenArgs;
+use super::open::{self, OpenArgs};
 use super::report::CommandError;
 use crate::app;
 use crate::io::FileFormat;

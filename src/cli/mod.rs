@@ -7,32 +7,30 @@ mod examples;
 mod export;
 mod gui;
 mod open;
-mod open_args;
-mod packaging;
 mod pose;
-mod progress_bar;
-mod quiet;
 mod render;
 mod report;
 mod skin;
 mod solve;
 mod time_limit;
 mod tour;
-mod view_name;
 
+use std::fs;
 use std::io::{self, ErrorKind, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
+use clap_complete::Shell;
 
 use bake::BakeArgs;
 use convert::ConvertArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
 use gui::GuiArgs;
-use packaging::{CompletionsArgs, ManualArgs};
 use pose::PoseArgs;
 use render::RenderArgs;
+use report::CommandError;
 use skin::SkinArgs;
 use solve::SolveArgs;
 
@@ -69,9 +67,15 @@ enum Command {
     /// Print the text of the tour that the window gives
     Tour,
     /// Print the completions of commands and options for a shell
-    Completions(CompletionsArgs),
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
     /// Write pages for man to a folder
-    Manual(ManualArgs),
+    Manual {
+        /// Folder for the pages; it is made if it does not exist
+        folder: PathBuf,
+    },
     /// Open the window (also without a command)
     Gui(GuiArgs),
 }
@@ -85,21 +89,24 @@ pub fn run() -> ExitCode {
         Ok(parsed) => parsed,
         Err(message) => return print_message(&message),
     };
+    #[cfg(target_os = "linux")]
     if let None | Some(Command::Render(_) | Command::Export(_) | Command::Gui(_)) = command {
-        quiet::restart_without_device_select();
+        restart_without_device_select();
     }
     let done = match command {
-        Some(Command::Solve(args)) => return solve::run(&args),
-        Some(Command::Export(args)) => return export::run(&args),
-        Some(Command::Convert(args)) => return convert::run(&args),
+        Some(Command::Solve(args)) => {
+            return solve::run(&args).unwrap_or_else(|error| error.exit());
+        }
         Some(Command::Pose(args)) => pose::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Bake(args)) => bake::run(&args),
         Some(Command::Skin(args)) => skin::run(&args),
         Some(Command::Examples(args)) => examples::run(&args),
         Some(Command::Tour) => tour::run(),
-        Some(Command::Completions(args)) => packaging::print_completions(&args, Cli::command()),
-        Some(Command::Manual(args)) => packaging::write_manual(&args, Cli::command()),
+        Some(Command::Completions { shell }) => print_completions(shell),
+        Some(Command::Manual { folder }) => write_manual(folder),
         Some(Command::Gui(args)) => gui::run(&args),
         None => gui::run(&window),
     };
@@ -119,4 +126,51 @@ fn print_message(message: &clap::Error) -> ExitCode {
         }
         _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(report::USAGE)),
     }
+}
+
+/// Prints a shell's completions of commands and options.
+fn print_completions(shell: Shell) -> Result<(), CommandError> {
+    let mut command = Cli::command();
+    let name = command.get_name().to_owned();
+    // Written to memory first: clap_complete panics if its output is closed.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, name, &mut script);
+    Ok(io::stdout().lock().write_all(&script)?)
+}
+
+/// Writes the pages of the manual, one for the program and one for each command.
+fn write_manual(folder: PathBuf) -> Result<(), CommandError> {
+    let command = Cli::command().disable_help_subcommand(true);
+    fs::create_dir_all(&folder).and_then(|()| clap_mangen::generate_to(command, &folder)).map_err(
+        |error| CommandError::System {
+            doing: "write the pages to",
+            name: folder.display().to_string(),
+            error,
+        },
+    )
+}
+
+/// Replaces this process by one without Mesa's Vulkan layer "device select", if the layer would
+/// print an error.
+///
+/// The layer asks the Wayland compositor for its GPU. Without `XDG_RUNTIME_DIR` there is no
+/// compositor, and libwayland prints an error each time. The layer is switched off by an
+/// environment variable, which must be set before a process starts: changing it later is unsafe.
+#[cfg(target_os = "linux")]
+fn restart_without_device_select() {
+    use std::os::unix::process::CommandExt as _;
+    use std::path::Path;
+    use std::{env, process};
+
+    const SWITCH: &str = "NODEVICE_SELECT";
+    let runtime_folder = env::var_os("XDG_RUNTIME_DIR").unwrap_or_default();
+    if Path::new(&runtime_folder).is_absolute() || env::var_os(SWITCH).is_some() {
+        return;
+    }
+    let (Ok(program), mut arguments) = (env::current_exe(), env::args_os()) else { return };
+    let name = arguments.next().unwrap_or_default();
+    let mut restarted = process::Command::new(program);
+    // `exec` returns only if it fails. This process then continues, and the layer prints its errors.
+    let error = restarted.arg0(name).args(arguments).env(SWITCH, "1").exec();
+    log::debug!("cannot restart: {error}");
 }

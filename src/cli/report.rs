@@ -8,7 +8,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::app::AppError;
-use crate::document::BakeError;
+use crate::export::ExportError;
 use crate::io::{OpenError, SaveError, WriteError, system_reason};
 use crate::kinematics::two_bone::LengthError;
 use crate::render::{CrowdError, DrawError, GpuError, SavePictureError};
@@ -27,16 +27,18 @@ pub enum CommandError {
     Save(#[from] SaveError),
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
     #[error("cannot write to standard output: {}", system_reason(.0))]
     StandardOutput(#[from] io::Error),
-    #[error("cannot write the pages to {}: {}", folder.display(), system_reason(error))]
-    Manual { folder: PathBuf, error: io::Error },
+    #[error("cannot {doing} {name}: {}", system_reason(error))]
+    System { doing: &'static str, name: String, error: io::Error },
     #[error("cannot handle Ctrl+C: {0}")]
     Signal(#[from] ctrlc::Error),
-    #[error("{cancelled}; {output} is not written")]
-    Cancelled { cancelled: BakeError, output: String },
-    #[error("{command} writes a document, so OUT must end in .json, got {output}")]
-    Extension { command: &'static str, output: String },
+    #[error("cancelled; {} is not written", output.display())]
+    Cancelled { output: PathBuf },
+    #[error("{0}")]
+    Usage(String),
     #[error("{file}: {error}")]
     Input { file: String, error: Box<dyn Error> },
     #[error("{0}: a skin needs a skeleton, and the document shows an arm")]
@@ -80,7 +82,7 @@ impl CommandError {
         }
         match self {
             Self::Cancelled { .. } => ExitCode::from(INTERRUPTED),
-            Self::Extension { .. } => ExitCode::from(USAGE),
+            Self::Usage(_) => ExitCode::from(USAGE),
             _ => ExitCode::FAILURE,
         }
     }
@@ -94,12 +96,6 @@ impl CommandError {
 pub fn print_json(line: &impl Serialize) -> Result<(), CommandError> {
     let line = serde_json::to_string(line).map_err(io::Error::from)?;
     Ok(writeln!(io::stdout(), "{line}")?)
-}
-
-/// Prints an error and returns the exit code of a failure.
-pub fn fail(error: &dyn Error) -> ExitCode {
-    say(error);
-    ExitCode::FAILURE
 }
 
 /// Prints a message to standard error.

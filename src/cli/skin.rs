@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::argument::NumberArgument;
-use super::open;
-use super::open_args::OpenArgs;
+use super::argument::number;
+use super::open::{self, InputArgs};
 use super::report::{CommandError, say};
 use crate::document::{Document, Overlay, RigKind, Skin};
 use crate::io::save;
@@ -16,23 +15,22 @@ use crate::rig::{BoneSkin, SkinSource};
     after_help = r#"The skin is a closed mesh around the bones in the bind pose, as thick as the joints' radii. The
 document holds its settings; the mesh is made again when the document is opened. It replaces the
 mesh of a figure from another program. Settings that are not given stay as they are in FILE, also
-blobs, which only a document can have. The numbers of vertices and triangles are listed on stderr."#
+blobs, which only a document can have. The numbers of vertices and triangles are listed on stderr."#,
+    mut_arg("file", |file| file.help(open::input_help("File with a skeleton")))
 )]
 pub struct SkinArgs {
-    #[arg(help = open::input_help("File with a skeleton"), value_name = "FILE")]
-    file: PathBuf,
     /// Document to write (.json)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    open: OpenArgs,
+    input: InputArgs,
     /// How finely the mesh is made: the smallest radius is N cells of the grid, 1.2 to 16; twice
     /// the detail gives four times the vertices [default: 2]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    detail: Option<NumberArgument>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = number)]
+    detail: Option<f32>,
     /// Factor of all radii, above 0 [default: 1]
-    #[arg(long, value_name = "X", allow_hyphen_values = true)]
-    thickness: Option<NumberArgument>,
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = number)]
+    thickness: Option<f32>,
     /// How a vertex between joints follows them: linear, dual-quaternion or spread-twist [default:
     /// dual-quaternion]
     #[arg(long, visible_alias = "blend", value_name = "WAY")]
@@ -40,14 +38,14 @@ pub struct SkinArgs {
 }
 
 pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
-    let SkinArgs { file, output, .. } = args;
+    let SkinArgs { input, output, .. } = args;
     open::require_document("skin", output)?;
-    let mut document = open::open(file, &args.open.options())?.document;
+    let mut document = input.open()?.document;
     if document.rig == RigKind::Arm {
-        return Err(CommandError::SkinOfArm(open::name(file)));
+        return Err(CommandError::SkinOfArm(input.name()));
     }
     let skin = args.made(&document);
-    let made = skin.mesh().map_err(|error| CommandError::of_file(open::name(file), error))?;
+    let made = skin.mesh().map_err(|error| CommandError::of_file(input.name(), error))?;
     let mesh = made.mesh.mesh();
     let report = format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
     document.skeleton_rig.skin = Some(skin);
@@ -70,8 +68,8 @@ impl SkinArgs {
             SkinSource::Bones(bones) => bones.shape().clone(),
             SkinSource::Mesh(_) => SkinShape::default(),
         };
-        shape.detail = self.detail.map_or(shape.detail, |detail| detail.0);
-        shape.thickness = self.thickness.map_or(shape.thickness, |thickness| thickness.0);
+        shape.detail = self.detail.unwrap_or(shape.detail);
+        shape.thickness = self.thickness.unwrap_or(shape.thickness);
         let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
         let skinning = self.skinning.unwrap_or(old.skinning);
         Skin { source, skinning, ..old }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 use std::process::exit;
-use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use indicatif::ProgressBar;
 
 use super::open;
 use super::report::say;
@@ -17,23 +17,16 @@ use crate::io::Progress;
 #[derive(Args)]
 pub struct TimeLimitArgs {
     /// Seconds after which the command gives up and writes nothing [default: 60 for pose, else 600]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
-    time_limit: Option<Seconds>,
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = seconds)]
+    time_limit: Option<Duration>,
 }
 
-/// A finite time above 0.
-#[derive(Clone, Copy, Debug)]
-struct Seconds(Duration);
-
-impl FromStr for Seconds {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        const RULE: &str = "time limit must be a finite number of seconds above 0";
-        let seconds: f64 = text.trim().parse().map_err(|_| RULE)?;
-        let limit = Duration::try_from_secs_f64(seconds).map_err(|_| RULE)?;
-        if limit.is_zero() { Err(RULE) } else { Ok(Self(limit)) }
-    }
+/// Reads a finite time above 0, in seconds.
+fn seconds(text: &str) -> Result<Duration, &'static str> {
+    const RULE: &str = "time limit must be a finite number of seconds above 0";
+    let seconds = text.trim().parse().map_err(|_| RULE)?;
+    let limit = Duration::try_from_secs_f64(seconds).map_err(|_| RULE)?;
+    if limit.is_zero() { Err(RULE) } else { Ok(limit) }
 }
 
 impl TimeLimitArgs {
@@ -48,8 +41,7 @@ impl TimeLimitArgs {
     }
 
     fn start(&self, file: &Path, default: Duration) -> Arc<TimeLimit> {
-        let limit = self.time_limit.map_or(default, |Seconds(limit)| limit);
-        TimeLimit::start(open::name(file), limit)
+        TimeLimit::start(open::name(file), self.time_limit.unwrap_or(default))
     }
 }
 
@@ -59,7 +51,7 @@ pub struct TimeLimit {
     limit: Duration,
     started: Instant,
     /// Progress of the command's job, which is cancelled when the time is over.
-    pub progress: Progress,
+    progress: Progress,
     is_reported: AtomicBool,
 }
 
@@ -84,8 +76,37 @@ impl TimeLimit {
         started
     }
 
+    /// Runs a job on a thread of its own; Ctrl+C and the end of the time cancel its progress. Shows the
+    /// progress on standard error if standard error is a terminal.
+    ///
+    /// # Errors
+    ///
+    /// If Ctrl+C cannot be handled; the job is then not run.
+    pub fn run<T: Send>(
+        self: &Arc<Self>,
+        job: impl FnOnce(&Progress) -> T + Send,
+    ) -> Result<T, ctrlc::Error> {
+        const STEPS: u64 = 1000;
+        const UPDATE_INTERVAL: Duration = Duration::from_millis(50);
+        let interrupted = Arc::clone(self);
+        ctrlc::set_handler(move || interrupted.progress.cancel())?;
+        let progress = &self.progress;
+        let bar = ProgressBar::new(STEPS);
+        let done = thread::scope(|scope| {
+            let job = scope.spawn(|| job(progress));
+            while !job.is_finished() {
+                bar.set_position((progress.part() * STEPS as f32) as u64);
+                thread::park_timeout(UPDATE_INTERVAL);
+            }
+            job.join()
+        });
+        bar.finish_and_clear();
+        self.check();
+        Ok(done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    }
+
     /// Ends the process with an error if the time is over.
-    pub fn check(&self) {
+    fn check(&self) {
         if self.started.elapsed() >= self.limit {
             self.end_process();
         }

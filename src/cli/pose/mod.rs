@@ -1,28 +1,22 @@
 //! `ik-arm pose`: the pose of a file's skeleton at a time, as one line of JSON.
 
-mod answered_pose;
-mod given_target;
-mod list;
-mod pose_line;
+mod output;
+mod targets;
 
 use std::io::{self, Write as _};
-use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 
-use self::list::FileList;
-use super::argument::TimeArgument;
-use super::open;
-use super::open_args::OpenArgs;
+use super::argument::time;
+use super::open::{self, InputArgs};
 use super::report::{CommandError, print_json, say};
 use super::time_limit::TimeLimitArgs;
 use crate::document::{Posed, RigKind, Track};
 use crate::io::{OpenOptions, Opened};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
-use answered_pose::AnsweredPose;
-use given_target::GivenTarget;
-use pose_line::PoseLine;
+use output::{AnsweredPose, FileList, PoseLine};
+use targets::GivenTarget;
 
 #[derive(clap::Args)]
 #[command(
@@ -46,19 +40,18 @@ rotation_limits, locked, conflict, stalled, singular, out_of_iterations, influen
 does not converge is not an error. For documents that
 show the arm use `ik-arm solve`.
 
-  ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#
+  ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#,
+    mut_arg("file", |file| file.help(open::input_help("File to pose")))
 )]
 pub struct PoseArgs {
-    #[arg(help = open::input_help("File to pose"), value_name = "FILE")]
-    file: PathBuf,
     #[command(flatten)]
-    open: OpenArgs,
+    input: InputArgs,
     /// Print what the file has, instead of a pose: its skeletons, animations and targets
     #[arg(long, conflicts_with_all = ["fk", "solver", "targets"])]
     list: bool,
     /// Time in seconds at which keys and moving targets are evaluated
-    #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0")]
-    time: TimeArgument,
+    #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0", value_parser = time)]
+    time: f64,
     /// Print the FK pose, without the targets
     #[arg(long, conflicts_with_all = ["solver", "targets"])]
     fk: bool,
@@ -92,19 +85,19 @@ fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
     parser.try_map(|name| name.parse::<Method>())
 }
 
-fn tolerance(text: &str) -> Result<f32, String> {
-    let number = text.trim().parse().ok();
-    number
+fn tolerance(text: &str) -> Result<f32, &'static str> {
+    let tolerance = text.trim().parse().ok();
+    tolerance
         .filter(|tolerance: &f32| tolerance.is_finite() && *tolerance > 0.0)
-        .ok_or_else(|| "tolerance must be finite and above 0".to_owned())
+        .ok_or("tolerance must be finite and above 0")
 }
 
 pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
-    let file = open::name(&args.file);
-    args.time_limit.start_short(&args.file);
+    let file = args.input.name();
+    args.time_limit.start_short(&args.input.file);
     // A list needs no camera, and a skeleton is solved to be framed by one.
-    let options = OpenOptions { without_camera: args.list, ..args.open.options() };
-    let opened = open::open(&args.file, &options)?;
+    let options = OpenOptions { without_camera: args.list, ..args.input.options() };
+    let opened = open::open(&args.input.file, &options)?;
     if opened.document.rig == RigKind::Arm {
         return Err(CommandError::PoseOfArm(file));
     }
@@ -114,20 +107,19 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
         return Ok(writeln!(io::stdout(), "{text}")?);
     }
     let Opened { document, order, .. } = opened;
-    let TimeArgument(time) = args.time;
-    let posed = given_target::with_targets(&Track::new(&document), time, &args.targets, &order)
+    let posed = targets::with_targets(&Track::new(&document), args.time, &args.targets, &order)
         .map_err(|error| CommandError::of_file(file.clone(), error))?;
-    let answer = answer(&posed, args, &order, &file)?;
+    let answer = answered(&posed, args, &order, &file)?;
     if let Some(remark) = &answer.remark {
         say(&format_args!("{file}: {remark}"));
     }
-    let line = PoseLine::new(&posed.document().skeleton_rig, &answer, &order, time)
+    let line = PoseLine::new(&posed.document().skeleton_rig, &answer, &order, args.time)
         .map_err(|name| CommandError::Overflow { file, name: name.to_owned() })?;
     print_json(&line)
 }
 
 /// The pose that the arguments ask for.
-fn answer(
+fn answered(
     posed: &Posed,
     args: &PoseArgs,
     order: &[JointId],

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use serde::Serialize;
-use thiserror::Error;
 
-use super::report::fail;
-use crate::io::{LineError, solve_line, system_reason};
+use super::open;
+use super::report::CommandError;
+use crate::io::{LineError, solve_line};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -39,53 +39,34 @@ pub struct SolveArgs {
     file: PathBuf,
 }
 
-pub fn run(args: &SolveArgs) -> ExitCode {
-    let solved =
-        LineReader::open(&args.file).and_then(|input| solve_lines(input, io::stdout().lock()));
-    match solved {
-        Ok(0) => ExitCode::SUCCESS,
-        Ok(_) => ExitCode::FAILURE,
-        // The reader has closed its end: `ik-arm solve | head` succeeds.
-        Err(SolveCommandError::Write(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error),
-    }
-}
-
-/// Reasons why the command stops before the end of the input.
-#[derive(Debug, Error)]
-enum SolveCommandError {
-    #[error("cannot open {name}: {}", system_reason(error))]
-    Open { name: String, error: io::Error },
-    #[error("cannot read {name}: {}", system_reason(error))]
-    Read { name: String, error: io::Error },
-    #[error("cannot write to standard output: {}", system_reason(.0))]
-    Write(io::Error),
+/// Returns the exit code of the command: a failure if a line is invalid.
+pub fn run(args: &SolveArgs) -> Result<ExitCode, CommandError> {
+    let invalid = solve_lines(LineReader::open(&args.file)?, io::stdout().lock())?;
+    Ok(if invalid == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// Solves every line and returns the number of invalid lines.
-fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, SolveCommandError> {
+fn solve_lines(mut input: LineReader, output: impl Write) -> Result<u64, CommandError> {
     let mut output = BufWriter::new(output);
     let mut previous = None;
     let mut invalid = 0;
     loop {
         // The next read may block, and the program that writes the lines may wait for the answers.
         if !input.has_line() {
-            output.flush().map_err(SolveCommandError::Write)?;
+            output.flush()?;
         }
         let Some(line) = input.next_line()? else { return Ok(invalid) };
         if line.is_blank() {
             continue;
         }
-        let written = match solve_line(line.content, &mut previous) {
-            Ok(answer) => write_line(&mut output, &answer),
+        match solve_line(line.content, &mut previous) {
+            Ok(answer) => write_line(&mut output, &answer)?,
             Err(error) => {
                 invalid += 1;
-                write_line(&mut output, &InvalidLine { line: line.number, error: error.message() })
+                let line = InvalidLine { line: line.number, error: error.message() };
+                write_line(&mut output, &line)?;
             }
-        };
-        written.map_err(SolveCommandError::Write)?;
+        }
     }
 }
 
@@ -111,36 +92,35 @@ struct LineReader {
 }
 
 impl LineReader {
-    fn open(path: &Path) -> Result<Self, SolveCommandError> {
-        if path == Path::new("-") {
-            return Ok(Self::new("standard input".to_owned(), Box::new(io::stdin().lock())));
-        }
-        let name = path.display().to_string();
-        match File::open(path) {
-            Ok(file) => Ok(Self::new(name, Box::new(file))),
-            Err(error) => Err(SolveCommandError::Open { name, error }),
-        }
+    fn open(path: &Path) -> Result<Self, CommandError> {
+        let name = open::name(path);
+        let input: Box<dyn Read> = if path == Path::new(open::STANDARD_INPUT) {
+            Box::new(io::stdin().lock())
+        } else {
+            match File::open(path) {
+                Ok(file) => Box::new(file),
+                Err(error) => return Err(CommandError::System { doing: "open", name, error }),
+            }
+        };
+        let reader = BufReader::with_capacity(LineError::MAX_LENGTH, input);
+        Ok(Self { name, reader, line: Vec::new(), number: 0 })
     }
 
-    fn new(name: String, reader: Box<dyn Read>) -> Self {
-        let reader = BufReader::with_capacity(LineError::MAX_LENGTH, reader);
-        Self { name, reader, line: Vec::new(), number: 0 }
-    }
-
-    /// Whether the next line is buffered as a whole.
+    /// True if the next line is buffered as a whole.
     fn has_line(&self) -> bool {
         self.reader.buffer().contains(&b'\n')
     }
 
-    fn next_line(&mut self) -> Result<Option<InputLine<'_>>, SolveCommandError> {
-        match self.read_line() {
-            Ok(true) => {
-                self.number += 1;
-                Ok(Some(InputLine::new(self.number, &self.line)))
-            }
-            Ok(false) => Ok(None),
-            Err(error) => Err(SolveCommandError::Read { name: self.name.clone(), error }),
+    fn next_line(&mut self) -> Result<Option<InputLine<'_>>, CommandError> {
+        let is_read = self.read_line().map_err(|error| {
+            let name = self.name.clone();
+            CommandError::System { doing: "read", name, error }
+        })?;
+        if !is_read {
+            return Ok(None);
         }
+        self.number += 1;
+        Ok(Some(InputLine::new(self.number, &self.line)))
     }
 
     /// Reads one line. Returns false at the end of the input. Of a line that is too long, keeps
@@ -164,8 +144,8 @@ struct InputLine<'a> {
 
 impl<'a> InputLine<'a> {
     fn new(number: u64, read: &'a [u8]) -> Self {
-        let content = read.strip_suffix(b"\n").unwrap_or(read);
-        let content = content.strip_suffix(b"\r").unwrap_or(content);
+        let line = read.strip_suffix(b"\n").unwrap_or(read);
+        let content = line.strip_suffix(b"\r").unwrap_or(line);
         let mark = if number == 1 { BYTE_ORDER_MARK } else { b"" };
         Self { number, content: content.strip_prefix(mark).unwrap_or(content) }
     }

@@ -1,9 +1,11 @@
+//! Targets that are given on the command line.
+
 use std::str::FromStr;
 
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::cli::argument::PointArgument;
+use crate::cli::argument;
 use crate::document::{Document, Posed, Track};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, Skeleton};
@@ -35,7 +37,7 @@ impl FromStr for GivenTarget {
     fn from_str(text: &str) -> Result<Self, GivenTargetError> {
         // A name may contain "=", a point may not.
         let (joint, point) = text.rsplit_once('=').ok_or(GivenTargetError)?;
-        let PointArgument(point) = point.parse().map_err(|_| GivenTargetError)?;
+        let point = argument::point(point).map_err(|_| GivenTargetError)?;
         Ok(Self { joint: joint.to_owned(), point })
     }
 }
