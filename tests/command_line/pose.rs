@@ -13,6 +13,7 @@ use ik_arm::rig::{LimbSettings, Target as RigTarget, TargetKind, TargetPath, Tar
 use serde::Deserialize;
 
 use crate::common::Random;
+use crate::common::documents::example;
 use crate::{program, stderr};
 
 /// A file in a folder of its own.
@@ -277,7 +278,7 @@ fn the_humans_targets_are_in_reach() {
 
 /// The figure of the Human example without targets.
 fn human() -> Document {
-    let mut human = Example::find("human").expect("there").open().expect("opens").document;
+    let mut human = example("human");
     human.skeleton_rig.targets.clear();
     human.keys = Default::default();
     human
@@ -534,7 +535,7 @@ fn a_usage_error_exits_with_2_and_prints_no_result() {
 // Times
 
 fn keyed_chain() -> ik_arm::document::Document {
-    let mut document = Example::find("ten-joints").expect("there").open().expect("opens").document;
+    let mut document = example("ten-joints");
     document.keys = Default::default();
     let channel = ik_arm::document::Channel::Rotation(JointId::new(1));
     for (time, z) in [(-1.0, 0.0), (0.0, 0.5), (2.0, -1.0), (3.0, 2.0)] {
@@ -598,7 +599,7 @@ fn a_bvh_motion_is_posed_at_a_time() {
 
 #[test]
 fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
-    let mut document = Example::find("human").expect("there").open().expect("opens").document;
+    let mut document = example("human");
     document.skeleton_rig.targets.clear();
     let scene = Scene::document(&document);
     for method in ["transpose", "ccd", "fabrik", "relaxation", "dls", "two-bone"] {
@@ -655,7 +656,7 @@ fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
 
 /// The Human with its left foot asked to turn about x by so many degrees.
 fn foot_turned_by(degrees: f32) -> Scene {
-    let mut document = Example::find("human").expect("there").open().expect("opens").document;
+    let mut document = example("human");
     let rig = &mut document.skeleton_rig;
     let shin = rig.skeleton.find("left_shin").expect("a shin");
     let index = rig.target(shin).expect("a target");

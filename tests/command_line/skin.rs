@@ -11,6 +11,7 @@ use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
 use tempfile::TempDir;
 
+use crate::common::documents::example;
 use crate::{program, stderr};
 
 struct Desk(TempDir);
@@ -26,7 +27,7 @@ impl Desk {
 
     /// The file of an example, without its skin if it has one.
     fn example(&self, name: &str) -> PathBuf {
-        let mut document = Example::find(name).expect("example").open().expect("opens").document;
+        let mut document = example(name);
         document.skeleton_rig.skin = None;
         let path = self.path(&format!("{name}.json"));
         io::save(&document, &path).expect("saved");

@@ -1,4 +1,4 @@
-//! Random documents, and a snake with keys.
+//! Random documents, built-in examples, and a snake with keys.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
@@ -6,7 +6,7 @@ use ik_arm::document::{
     PathKind, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
     TwistReferenceKind, WavyRing,
 };
-use ik_arm::io::{OpenOptions, parse};
+use ik_arm::io::{Example, OpenOptions, parse};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
@@ -16,6 +16,7 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::session::FileAction;
 
 use super::Random;
 
@@ -230,6 +231,16 @@ fn skeleton(random: &mut Random) -> Skeleton {
     let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.finite()));
     skeleton.set_transform(transform).expect("finite");
     skeleton
+}
+
+/// The document of a built-in example.
+pub fn example(name: &str) -> Document {
+    Example::find(name).expect("an example").open().expect("it opens").document
+}
+
+/// The action that opens a built-in example.
+pub fn open_example(name: &str) -> FileAction {
+    FileAction::OpenExample(Example::find(name).expect("an example"))
 }
 
 /// A file of a snake whose head has keys.

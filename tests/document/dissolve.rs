@@ -5,6 +5,8 @@ use ik_arm::document::{Channel, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 
+use crate::common::documents::example;
+
 /// Positions of bases and tips in world space, by joint name.
 fn positions(document: &Document, time: f64) -> Vec<(String, Vec3, Vec3)> {
     let evaluated = document.at(time).into_document();
@@ -33,7 +35,7 @@ fn assert_children_stay(document: &Document, deleted: &[JointId], times: &[f64])
 
 /// The figure of the Human example with other angles, posed by them alone.
 fn human() -> Document {
-    let mut document = Example::find("human").expect("there").open().expect("opens").document;
+    let mut document = example("human");
     document.skeleton_rig.targets.clear();
     for joint in document.skeleton().ids() {
         let turn = |axis: f32| (joint.index() as f32 * 1.7 + axis).sin() * 0.8;

@@ -7,6 +7,8 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
 
+use crate::common::documents::open_example;
+
 /// A vertical chain of bones, two units long, with a target for its tip.
 fn chain(bones: usize) -> Document {
     let mut skeleton = Skeleton::default();
@@ -67,7 +69,7 @@ fn shadows_of_short_bones_do_not_add_up() {
 #[test]
 fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("walk").expect("an example")));
+    session.apply(open_example("walk"));
     session.apply(PlaybackAction::SetTime(0.5));
     for has_skin in [true, false] {
         let mut document = session.shown().clone();

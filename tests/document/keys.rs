@@ -9,13 +9,14 @@ use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 
 use crate::common::Random;
+use crate::common::documents::example;
 
 fn number(value: f32) -> Vec3 {
     Vec3::new(value, 0.0, 0.0)
 }
 
 fn human() -> Document {
-    Example::find("human").expect("an example").open().expect("it opens").document
+    example("human")
 }
 
 #[test]

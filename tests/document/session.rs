@@ -23,6 +23,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use crate::common::Random;
+use crate::common::documents::open_example;
 use crate::common::strategies::config;
 
 fn numbers() -> impl Strategy<Value = f32> + Clone {
@@ -495,7 +496,7 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
     for name in [None, Some("human")] {
         let mut session = Session::default();
         if let Some(name) = name {
-            session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
+            session.apply(open_example(name));
             session.apply(KeysEdit::ClearChannels(session.keyed_channels().collect()));
         }
         assert!(!session.playback().is_auto_key() && !session.playback().is_auto_key_news());
@@ -555,7 +556,7 @@ fn a_key_replaces_an_unkeyed_edit() {
 #[test]
 fn selected_and_copied_keys_follow_their_joints() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    session.apply(open_example("human"));
     let channels: Vec<Channel> =
         (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
     session.apply(KeysEdit::Key(channels));
@@ -683,7 +684,7 @@ fn playing_stops_at_the_end_or_loops() {
 #[test]
 fn a_paused_solver_uses_the_new_weight_of_a_target() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("two-targets").expect("an example")));
+    session.apply(open_example("two-targets"));
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
     let targets: Vec<_> = session.skeleton_rig().targets.clone();
     for (target, home) in targets.iter().zip(apart) {
@@ -703,7 +704,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
 #[test]
 fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
+    session.apply(open_example("ten-joints"));
     let before = session.document().clone();
     let target = session.skeleton_rig().targets[0];
     let tip = session.skeleton_pose().tip(target.joint);
@@ -879,7 +880,7 @@ fn an_export_into_a_missing_folder_does_not_leave_the_next_one_there() {
 #[test]
 fn what_a_diagnosis_names_is_outlined() {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    session.apply(open_example("human"));
     let rig = session.skeleton_rig();
     let [hand, forearm] =
         ["left_hand", "left_forearm"].map(|it| rig.skeleton.find(it).expect("a joint"));

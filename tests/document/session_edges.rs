@@ -15,6 +15,8 @@ use ik_arm::session::{
     ViewAction,
 };
 
+use crate::common::documents::open_example;
+
 fn ray() -> Ray {
     Camera::default().projection(1.0).ray(Vec2::new(0.1, 0.2))
 }
@@ -176,7 +178,7 @@ fn a_comparison_is_made_anew_when_the_joints_change() {
         TransactionAction::Undo.into(),
     ] {
         let mut session = session();
-        session.apply(FileAction::OpenExample(Example::find("ten-joints").expect("an example")));
+        session.apply(open_example("ten-joints"));
         session.apply(JointEdit::AddChild { parent: JointId::new(0), tip: None });
         session.apply(SolverAction::Compare);
         session.apply(PlaybackAction::Advance(1.0));

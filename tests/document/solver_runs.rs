@@ -16,6 +16,7 @@ use ik_arm::session::{
     TargetEdit, TransactionAction,
 };
 
+use crate::common::documents::open_example;
 use crate::common::{Random, skeletons};
 
 /// A tree with one to three targets that it can reach, some of which move, and a method that can
@@ -50,7 +51,7 @@ fn open(document: Document) -> Session {
 
 fn example(name: &str) -> Session {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
+    session.apply(open_example(name));
     session
 }
 

@@ -10,10 +10,11 @@ use ik_arm::session::{
 };
 
 use crate::common::Random;
+use crate::common::documents::open_example;
 
 fn tadpoles() -> Session {
     let mut session = Session::default();
-    session.apply(FileAction::OpenExample(Example::find("tadpoles").expect("an example")));
+    session.apply(open_example("tadpoles"));
     session
 }
 

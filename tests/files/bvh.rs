@@ -9,6 +9,7 @@ use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
 use crate::common::damage::{message, mutations};
+use crate::common::documents::example;
 use crate::common::{Random, skeletons};
 
 fn export(document: &Document) -> Exported {
@@ -420,7 +421,7 @@ fn documents_that_no_file_can_hold_are_refused() {
 fn a_cancelled_export_stops() {
     let progress = Progress::default();
     progress.cancel();
-    let document = Example::find("snake").expect("there").open().expect("it opens").document;
+    let document = example("snake");
     let stopped = io::to_bvh(&document, None, BvhUnit::default(), &progress);
     assert!(matches!(stopped, Err(MotionError::Cancelled(_))));
 }

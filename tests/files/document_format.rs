@@ -10,6 +10,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 
 use crate::common::damage::{message, mutations};
+use crate::common::documents::example;
 use crate::common::{Random, documents};
 
 fn open(text: &str) -> Opened {
@@ -536,10 +537,9 @@ fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
 
 #[test]
 fn the_examples_hold_what_their_names_say() {
-    let rig =
-        |name| Example::find(name).expect("there").open().expect("opens").document.skeleton_rig;
+    let rig = |name| example(name).skeleton_rig;
     let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
-    let arm = Example::find("arm").expect("there").open().expect("opens").document;
+    let arm = example("arm");
     assert_eq!((arm.rig, arm), (RigKind::Arm, Document::default()));
     assert_eq!(count("two-targets"), (9, 2));
     assert_eq!(count("human"), (19, 4));
@@ -555,7 +555,7 @@ fn the_examples_hold_what_their_names_say() {
 
 #[test]
 fn the_human_stands_on_the_ground_within_its_limits() {
-    let human = Example::find("human").expect("there").open().expect("opens").document.skeleton_rig;
+    let human = example("human").skeleton_rig;
     let joints = human.skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
     assert!(joints.iter().filter(|joint| joint.limits.is_limited()).count() >= 12);
@@ -567,7 +567,7 @@ fn the_human_stands_on_the_ground_within_its_limits() {
 
 #[test]
 fn the_snake_lies_in_an_s() {
-    let snake = Example::find("snake").expect("there").open().expect("opens").document.skeleton_rig;
+    let snake = example("snake").skeleton_rig;
     let posed = snake.skeleton_at(0.0).pose();
     let turn = |index: usize| {
         let (joint, next) = (JointId::new(index), JointId::new(index + 1));

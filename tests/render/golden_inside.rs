@@ -12,11 +12,12 @@ use ik_arm::session::{
     Session, SkinEdit, SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
+use crate::common::documents::open_example;
 use crate::pictures;
 
 fn example(name: &str) -> Session {
     let mut session = Session::new(Preferences::default());
-    session.apply(FileAction::OpenExample(Example::find(name).expect("an example")));
+    session.apply(open_example(name));
     session
 }
 

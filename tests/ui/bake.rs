@@ -12,7 +12,7 @@ use ik_arm::session::{BakeAction, BakeJob, Dialog, Effect, FileAction};
 use crate::bench::Bench;
 
 fn opened(example: &str) -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find(example).expect("there"))])
+    Bench::example(example)
 }
 
 /// The snake, which follows a path, with the bake dialog open.

@@ -12,11 +12,14 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node, SnapshotOptions, SnapshotResults};
 use glam::{Quat, Vec3};
 use ik_arm::document::{Ray, RigKind, Theme};
+use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
     Action, Actions, Effect, Grip, GripRing, PanelTab, Preferences, SelectAction, Session,
     ShellAction, ViewAction,
 };
 use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
+
+use crate::common::documents::open_example;
 
 pub const LARGE: Vec2 = vec2(1280.0, 800.0);
 pub const SMALL: Vec2 = vec2(960.0, 600.0);
@@ -105,6 +108,11 @@ impl Bench {
         bench
     }
 
+    /// With a built-in example.
+    pub fn example(name: &str) -> Self {
+        Self::after([open_example(name)])
+    }
+
     pub fn apply(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
         for action in actions {
             self.harness.state_mut().session.apply(action);
@@ -127,6 +135,14 @@ impl Bench {
 
     pub fn session(&self) -> &Session {
         &self.harness.state().session
+    }
+
+    pub fn joint(&self, name: &str) -> JointId {
+        self.session().skeleton().find(name).expect("a joint of that name")
+    }
+
+    pub fn tip(&self, name: &str) -> Vec3 {
+        self.session().skeleton_pose().tip(self.joint(name))
     }
 
     pub fn hand(&self) -> Vec3 {

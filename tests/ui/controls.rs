@@ -14,6 +14,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use crate::common::documents::open_example;
 
 const MENUS: [&str; 5] = ["File", "Edit", "View", "Examples", "Help"];
 
@@ -81,7 +82,7 @@ fn tall() -> Bench {
 
 fn example(name: &str) -> Bench {
     let mut bench = tall();
-    bench.apply([FileAction::OpenExample(Example::find(name).expect("an example"))]);
+    bench.apply([open_example(name)]);
     bench
 }
 

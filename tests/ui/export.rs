@@ -15,8 +15,7 @@ use ik_arm::session::{
 use crate::bench::Bench;
 
 fn asked() -> Bench {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("keyframes").expect("there"))]);
+    let mut bench = Bench::example("keyframes");
     bench.key_with(Modifiers::COMMAND, Key::E);
     bench.settle();
     bench

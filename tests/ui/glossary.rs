@@ -8,6 +8,7 @@ use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{DisplayEdit, FileAction, PanelTab, Preferences, SelectAction, SolverEdit};
 
 use crate::bench::{Bench, LARGE, SMALL};
+use crate::common::documents::open_example;
 
 /// Holds the mouse over a label until it explains its term, and follows *Show me* to a step.
 fn show_me(bench: &mut Bench, label: &str, meaning: &str, step: usize) {
@@ -46,7 +47,7 @@ fn a_term_of_the_solver_explains_itself_and_shows_its_step() {
         ("Error", "The largest distance from a tip"),
     ] {
         let mut bench = Bench::first(LARGE, Preferences::default());
-        bench.apply([FileAction::OpenExample(Example::find("ten-joints").unwrap())]);
+        bench.apply([open_example("ten-joints")]);
         let solver = SolverOptions::new(Method::DampedLeastSquares);
         bench.apply([SolverEdit::SetSolver(solver)]);
         bench.show_tab(PanelTab::Solver);
@@ -54,7 +55,7 @@ fn a_term_of_the_solver_explains_itself_and_shows_its_step() {
     }
     let mut bench = Bench::first(LARGE, Preferences::default());
     bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
-    let hand = bench.session().skeleton().find("left_hand").expect("a hand");
+    let hand = bench.joint("left_hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.reveal(Role::Slider, "Target influence");
     show_me(&mut bench, "Influence", "Blends two poses", 10);

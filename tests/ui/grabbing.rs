@@ -14,12 +14,8 @@ use crate::bench::{Bench, bits};
 
 const LEFT: PointerButton = PointerButton::Primary;
 
-fn example(name: &str) -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
-}
-
 fn human() -> Bench {
-    let mut bench = example("human");
+    let mut bench = Bench::example("human");
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench
 }
@@ -28,27 +24,19 @@ fn show(bench: &mut Bench, skin: bool, bones: bool) {
     bench.apply([SkinEdit::ShowSkin { skin, bones }]);
 }
 
-fn joint(bench: &Bench, name: &str) -> JointId {
-    bench.session().skeleton().find(name).expect("a joint of that name")
-}
-
 fn name(bench: &Bench, joint: JointId) -> String {
     bench.session().skeleton()[joint].name.clone()
 }
 
-fn tip(bench: &Bench, name: &str) -> Vec3 {
-    bench.session().skeleton_pose().tip(joint(bench, name))
-}
-
 /// The middle of a bone, on screen.
 fn middle(bench: &Bench, name: &str) -> Pos2 {
-    let (pose, joint) = (bench.session().skeleton_pose(), joint(bench, name));
+    let (pose, joint) = (bench.session().skeleton_pose(), bench.joint(name));
     bench.on_screen(pose.base(joint).midpoint(pose.tip(joint)))
 }
 
 fn home(bench: &Bench, joint_with_target: &str) -> Vec3 {
     let rig = bench.session().skeleton_rig();
-    rig.targets[rig.target(joint(bench, joint_with_target)).expect("a target")].home
+    rig.targets[rig.target(bench.joint(joint_with_target)).expect("a target")].home
 }
 
 fn icon(bench: &Bench) -> CursorIcon {
@@ -97,13 +85,13 @@ fn what_lights_up_on_a_figure_can_be_dragged_and_nothing_else_lights_up() {
         let count = press_everywhere(&mut bench, 31.0);
         assert!(count > 15, "{count} points of the figure with skin {skin}, bones {bones}");
     }
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     assert!(press_everywhere(&mut bench, 31.0) > 3, "a figure of bones alone");
 }
 
 #[test]
 fn a_snake_on_its_path_lights_up_only_where_it_can_be_dragged() {
-    let mut bench = example("snake");
+    let mut bench = Bench::example("snake");
     press_everywhere(&mut bench, 37.0);
 }
 
@@ -135,25 +123,25 @@ fn the_pelvis_is_called_pelvis_and_moves_by_its_skin_its_point_and_its_arrows() 
     for (skin, bones) in [(true, false), (false, true)] {
         let mut bench = human();
         show(&mut bench, skin, bones);
-        let (pelvis, before) = (joint(&bench, "pelvis"), tip(&bench, "pelvis"));
+        let (pelvis, before) = (bench.joint("pelvis"), bench.tip("pelvis"));
         let at = bench.on_screen(before);
         bench.move_to(at);
         assert_eq!(bench.session().selection().hovered(), Some(pelvis), "skin {skin}");
         assert!(bench.says("left drag: drag pelvis"));
-        let toes = tip(&bench, "left_foot");
+        let toes = bench.tip("left_foot");
         bench.drag(LEFT, at, at + vec2(6.0, 14.0));
         assert!(bench.says("Move pelvis freely"));
         bench.release(LEFT);
-        let moved = tip(&bench, "pelvis");
+        let moved = bench.tip("pelvis");
         assert!(bench.on_screen(moved).distance(at + vec2(6.0, 14.0)) < 1.0);
-        assert!(tip(&bench, "left_foot").distance(toes) < 1e-3, "the feet stay");
+        assert!(bench.tip("left_foot").distance(toes) < 1e-3, "the feet stay");
         bench.apply([TransactionAction::Undo]);
 
         bench.click_at(at);
         assert_eq!(bench.session().selection().joints(), [pelvis]);
         let up = at - vec2(0.0, 70.0);
         bench.drag_and_drop(LEFT, up, up + vec2(3.0, 25.0));
-        let moved = tip(&bench, "pelvis");
+        let moved = bench.tip("pelvis");
         assert_eq!([moved.x, moved.z].map(f32::to_bits), [before.x, before.z].map(f32::to_bits));
         assert!(moved.y < before.y - 0.02, "{moved} was {before}");
     }
@@ -165,7 +153,7 @@ fn hands_and_feet_drag_their_targets_by_the_skin() {
         let mut bench = human();
         let (at, before) = (middle(&bench, end), home(&bench, lower));
         bench.move_to(at);
-        assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, end)));
+        assert_eq!(bench.session().selection().hovered(), Some(bench.joint(end)));
         assert!(bench.says(&format!("left drag: drag the target of {end}")));
         let start = bench.on_screen(before);
         let by = vec2(-18.0, -26.0);
@@ -180,35 +168,35 @@ fn hands_and_feet_drag_their_targets_by_the_skin() {
 fn both_bones_of_a_limb_with_a_target_turn_its_elbow_and_the_hand_stays() {
     for bone in ["right_upper_arm", "right_forearm"] {
         let mut bench = human();
-        let (at, wrist) = (middle(&bench, bone), tip(&bench, "right_forearm"));
-        let elbow = tip(&bench, "right_upper_arm");
+        let (at, wrist) = (middle(&bench, bone), bench.tip("right_forearm"));
+        let elbow = bench.tip("right_upper_arm");
         bench.move_to(at);
-        assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, bone)));
+        assert_eq!(bench.session().selection().hovered(), Some(bench.joint(bone)));
         assert!(bench.says("left drag: drag the limb of right_hand"));
         bench.drag_and_drop(LEFT, at, at + vec2(-6.0, -34.0));
-        assert!(tip(&bench, "right_upper_arm").distance(elbow) > 0.03, "{bone}");
-        assert!(tip(&bench, "right_forearm").distance(wrist) < 1e-4, "{bone}");
+        assert!(bench.tip("right_upper_arm").distance(elbow) > 0.03, "{bone}");
+        assert!(bench.tip("right_forearm").distance(wrist) < 1e-4, "{bone}");
         bench.apply([TransactionAction::Undo]);
-        assert_eq!(bits(tip(&bench, "right_upper_arm")), bits(elbow));
+        assert_eq!(bits(bench.tip("right_upper_arm")), bits(elbow));
     }
 }
 
 #[test]
 fn a_segment_without_a_target_poses_the_joints_above_it() {
     let mut bench = human();
-    let (at, before) = (middle(&bench, "chest"), tip(&bench, "chest"));
-    let wrist = tip(&bench, "right_forearm");
+    let (at, before) = (middle(&bench, "chest"), bench.tip("chest"));
+    let wrist = bench.tip("right_forearm");
     bench.move_to(at);
-    assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, "chest")));
+    assert_eq!(bench.session().selection().hovered(), Some(bench.joint("chest")));
     bench.drag_and_drop(LEFT, at, at + vec2(30.0, 0.0));
-    let by = bench.on_screen(tip(&bench, "chest")) - bench.on_screen(before);
+    let by = bench.on_screen(bench.tip("chest")) - bench.on_screen(before);
     assert!(by.x > 15.0, "{by}");
-    assert!(tip(&bench, "right_forearm").distance(wrist) < 1e-3, "its target holds the hand");
+    assert!(bench.tip("right_forearm").distance(wrist) < 1e-3, "its target holds the hand");
 }
 
 #[test]
 fn bones_that_a_target_poses_alone_drag_the_target() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     let target = bench.session().skeleton_rig().targets[0];
     bench.apply([TargetEdit::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
     let rig = bench.session().skeleton_rig();

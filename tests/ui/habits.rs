@@ -15,6 +15,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
+use crate::common::documents::open_example;
 
 const LEFT: PointerButton = PointerButton::Primary;
 
@@ -162,7 +163,7 @@ fn new_opens_the_arm_and_asks_before_changes_are_lost() {
     assert_eq!(bench.session().arm(), &Arm::default());
     assert!(!bench.session().history().is_unsaved());
 
-    bench.apply([FileAction::OpenExample(Example::find("snake").unwrap())]);
+    bench.apply([open_example("snake")]);
     bench.choose(&["File", "New"]);
     assert_eq!(bench.session().rig(), RigKind::Arm);
     bench.key_with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::N);
@@ -247,7 +248,7 @@ fn at_scale_two_in_a_small_window_the_view_has_room_and_nothing_leaves_the_windo
 #[test]
 fn undoing_an_added_joint_selects_its_parent_again() {
     let mut bench = human(LARGE);
-    let chest = bench.session().skeleton().find("chest").unwrap();
+    let chest = bench.joint("chest");
     bench.apply([SelectAction::Joints(vec![chest])]);
     bench.apply([JointEdit::AddJoint { tip: None }]);
     assert_ne!(bench.session().selection().joints(), [chest]);
@@ -255,7 +256,7 @@ fn undoing_an_added_joint_selects_its_parent_again() {
     assert_eq!(bench.session().selection().joints(), [chest]);
 
     bench.apply([JointEdit::AddJoint { tip: None }]);
-    let head = bench.session().skeleton().find("head").unwrap();
+    let head = bench.joint("head");
     bench.apply([SelectAction::Joints(vec![head])]);
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().selection().joints(), [head], "another selection stays");
@@ -274,7 +275,7 @@ fn undoing_a_deletion_in_the_middle_forgets_a_selection_whose_indices_have_chang
 #[test]
 fn export_shows_only_the_fields_of_its_format() {
     let mut bench = first(LARGE);
-    bench.apply([FileAction::OpenExample(Example::find("walk").unwrap())]);
+    bench.apply([open_example("walk")]);
     bench.key_with(Modifiers::COMMAND, Key::E);
     bench.settle();
     for (format, has_frames, has_size, has_scale) in [

@@ -90,8 +90,7 @@ fn undo_during_a_drag_cancels_the_drag() {
 
 #[test]
 fn a_solver_run_is_no_step_and_applying_its_pose_is_one() {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
+    let mut bench = Bench::example("ten-joints");
     let first = bench.session().document().clone();
     bench.apply_moving([SolverAction::Run(true)]);
     bench.wait(2.0);
@@ -108,8 +107,7 @@ fn a_solver_run_is_no_step_and_applying_its_pose_is_one() {
 
 #[test]
 fn undo_leaves_a_running_solver_running() {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
+    let mut bench = Bench::example("ten-joints");
     let joint = JointId::new(2);
     let before = bench.session().skeleton()[joint].rotation;
     bench.apply([
@@ -127,7 +125,7 @@ fn undo_leaves_a_running_solver_running() {
 
 #[test]
 fn the_view_and_the_selection_are_no_steps() {
-    let mut bench = Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))]);
+    let mut bench = Bench::example("human");
     let camera = *bench.session().camera();
     bench.apply([
         Action::from(SelectAction::Joints(vec![JointId::new(3)])),

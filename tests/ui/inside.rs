@@ -19,8 +19,7 @@ fn after_a_step(method: Method) -> Bench {
 }
 
 fn example(name: &str) -> Bench {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))]);
+    let mut bench = Bench::example(name);
     bench.settle();
     bench
 }
@@ -218,7 +217,7 @@ fn selecting_a_joint_lists_its_columns_alone() {
     let mut bench = after_a_step(Method::Transpose);
     look_inside(&mut bench);
     assert!(bench.count("joint_3 ") >= 3);
-    let joint = bench.session().skeleton().find("joint_1").expect("a joint");
+    let joint = bench.joint("joint_1");
     bench.apply([SelectAction::Joints(vec![joint])]);
     bench.settle();
     assert_eq!(bench.count("joint_3 x"), 0);

@@ -20,11 +20,7 @@ use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 const CTRL: Modifiers = Modifiers::COMMAND;
 
 fn human() -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))])
-}
-
-fn joint_named(bench: &Bench, name: &str) -> JointId {
-    bench.session().skeleton().find(name).expect("a joint of that name")
+    Bench::example("human")
 }
 
 /// The text of a dialog's field.
@@ -60,7 +56,7 @@ fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selec
 #[test]
 fn a_joint_is_named_after_a_click_on_it() {
     let mut bench = human();
-    let joint = joint_named(&bench, "head");
+    let joint = bench.joint("head");
     let tip = bench.session().skeleton_pose().tip(JointId::new(joint.index()));
     let base = bench.session().skeleton_pose().base(JointId::new(joint.index()));
     bench.click_at(bench.on_screen(base.lerp(tip, 0.5)));
@@ -225,7 +221,7 @@ fn an_edit_is_unsaved_whatever_view_changes_come_before_and_after() {
 #[test]
 fn the_reading_of_a_ring_shows_the_angle_after_limits() {
     let mut bench = human();
-    let joint = joint_named(&bench, "left_shin");
+    let joint = bench.joint("left_shin");
     bench.apply([
         Action::from(TargetEdit::RemoveTarget(joint)),
         SelectAction::Joints(vec![joint]).into(),
@@ -301,7 +297,7 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
 #[test]
 fn deleting_a_joint_asks_what_becomes_of_its_children() {
     let mut bench = human();
-    let shoulder = joint_named(&bench, "left_upper_arm");
+    let shoulder = bench.joint("left_upper_arm");
     let names = |bench: &Bench| -> Vec<String> {
         let joints = bench.session().skeleton().joints();
         joints.iter().map(|joint| joint.name.clone()).collect()
@@ -557,7 +553,7 @@ fn enter_in_the_frame_of_the_key_that_opens_a_question_answers_it() {
 #[test]
 fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     let mut bench = human();
-    bench.apply([SelectAction::Joints(vec![joint_named(&bench, "head")])]);
+    bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
     bench.key(Key::F2);
     bench.settle();
     bench.type_text("neck");
@@ -569,7 +565,7 @@ fn a_name_that_another_joint_has_is_refused_where_it_is_typed() {
     bench.key(Key::Enter);
     bench.settle();
     assert_eq!(bench.session().shell().dialog(), None);
-    joint_named(&bench, "neck2");
+    bench.joint("neck2");
 }
 
 #[test]

@@ -18,14 +18,10 @@ use crate::bench::{Bench, SMALL};
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
-fn example(name: &str) -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
-}
-
 /// The Y-shaped tree with its last joint selected.
 fn tree() -> Bench {
-    let mut bench = example("two-targets");
-    let joint = bench.session().skeleton().find("left_3").expect("there");
+    let mut bench = Bench::example("two-targets");
+    let joint = bench.joint("left_3");
     bench.apply([SelectAction::Joints(vec![joint])]);
     bench
 }
@@ -275,7 +271,7 @@ fn the_list_of_keys_fits_a_small_window_and_cuts_no_line() {
 
 #[test]
 fn follow_path_can_be_switched_off_as_its_tooltip_says() {
-    let mut bench = example("snake");
+    let mut bench = Bench::example("snake");
     bench.node(Role::ComboBox, "Follow path").scroll_to_me();
     bench.settle();
     bench.click(Role::ComboBox, "Follow path");

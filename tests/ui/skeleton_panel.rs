@@ -16,6 +16,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
+use crate::common::documents::{example, open_example};
 use ik_arm::kinematics::skeleton::{JointId, JointLimits};
 
 /// A root with three joints in a chain, built by pressing buttons.
@@ -29,10 +30,6 @@ fn built_in(mut bench: Bench) -> Bench {
         bench.click(Role::Button, "Add child");
     }
     bench
-}
-
-fn example(name: &str) -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find(name).expect("an example"))])
 }
 
 fn names(bench: &Bench) -> Vec<&str> {
@@ -242,7 +239,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
 
 #[test]
 fn a_step_is_one_iteration_of_a_ghost_and_reset_removes_it() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     let before = bench.session().document().clone();
     let ghosts = |bench: &Bench| bench.session().overlays().ghosts;
     let mut poses = Vec::new();
@@ -261,7 +258,7 @@ fn a_step_is_one_iteration_of_a_ghost_and_reset_removes_it() {
 
 #[test]
 fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     assert!(!bench.shows(Role::Slider, "Iteration"), "there is no run yet");
     (0..5).for_each(|_| bench.click(Role::Button, "Step"));
     let run = bench.session().solvers().run().expect("it stepped").clone();
@@ -284,7 +281,7 @@ fn the_iteration_slider_moves_the_ghost_the_plot_and_the_error_together() {
 
 #[test]
 fn comma_and_full_stop_go_through_the_iterations() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     let shown =
         |bench: &Bench| bench.session().solvers().shown_iteration().map(|shown| shown.number);
     bench.key(Key::Comma);
@@ -310,7 +307,7 @@ fn comma_and_full_stop_go_through_the_iterations() {
 
 #[test]
 fn apply_pose_writes_the_shown_iterate_as_one_step() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     let before = bench.session().document().clone();
     let is_disabled_because = |bench: &mut Bench, reason: &str| {
         bench.reveal(Role::Button, "Apply pose");
@@ -337,7 +334,7 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
 
 #[test]
 fn escape_ends_a_solver_run_and_a_race() {
-    let mut bench = example("ten-joints");
+    let mut bench = Bench::example("ten-joints");
     bench.apply([SolverEdit::SetSolver({
         let solver = bench.session().skeleton_rig().solver;
         solver.with_method(Method::TransposeFixed)
@@ -356,7 +353,7 @@ fn escape_ends_a_solver_run_and_a_race() {
 
 #[test]
 fn a_disabled_target_is_ignored() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     bench.click(Role::CheckBox, "Target of left_3");
     assert!(!bench.session().skeleton_rig().targets[0].enabled);
     assert_eq!(bench.session().skeleton_rig().targets_at(0.0).len(), 1);
@@ -366,7 +363,7 @@ fn a_disabled_target_is_ignored() {
 
 #[test]
 fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
-    let mut bench = example("two-targets");
+    let mut bench = Bench::example("two-targets");
     let before = bench.session().skeleton_rig().clone();
     bench.show_tab(PanelTab::Race);
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
@@ -614,7 +611,7 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
     assert!(bench.session().shell().dialog().is_none(), "there is nothing to choose");
     bench.key(Key::Escape);
     let opened = |contents| FileAction::Opened {
-        document: Box::new(Example::find("human").expect("there").open().expect("opens").document),
+        document: Box::new(Bench::example("human")),
         file: None,
         contents: Some(contents),
     };
@@ -630,7 +627,7 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
 
 #[test]
 fn a_figure_that_stands_along_z_can_be_turned_or_left() {
-    let human = Example::find("human").expect("there").open().expect("opens").document;
+    let human = Bench::example("human");
     let mut standing_along_z = human.clone();
     (0..3).for_each(|_| standing_along_z.turn_y_up());
     let mut bench = Bench::new();
@@ -700,7 +697,7 @@ fn where_no_solver_can_run_the_empty_plots_say_why() {
 fn a_race_of_many_iterations_stays_inside_the_window() {
     for size in [LARGE, SMALL] {
         let mut bench = Bench::of_size(size);
-        bench.apply([FileAction::OpenExample(Example::find("ten-joints").expect("there"))]);
+        bench.apply([open_example("ten-joints")]);
         let far = |target: &Target| Target { home: Vec3::new(3.0, 3.0, 3.0), ..*target };
         let targets: Vec<_> = bench.session().skeleton_rig().targets.iter().map(far).collect();
         bench.apply(targets.into_iter().map(TargetEdit::SetTarget));

@@ -43,22 +43,14 @@ fn bench() -> Bench {
     bench
 }
 
-fn joint(bench: &Bench, name: &str) -> JointId {
-    bench.session().skeleton().find(name).expect("a joint of that name")
-}
-
-fn tip(bench: &Bench, name: &str) -> Vec3 {
-    bench.session().skeleton_pose().tip(joint(bench, name))
-}
-
 fn tip_place(bench: &Bench, name: &str) -> Pos2 {
-    bench.on_screen(tip(bench, name))
+    bench.on_screen(bench.tip(name))
 }
 
 /// The middle of a bone, on screen.
 fn bone_place(bench: &Bench, name: &str) -> Pos2 {
     let pose = bench.session().skeleton_pose();
-    let joint = joint(bench, name);
+    let joint = bench.joint(name);
     bench.on_screen(
         pose.base(JointId::new(joint.index())).midpoint(pose.tip(JointId::new(joint.index()))),
     )
@@ -82,7 +74,7 @@ fn a_click_on_a_bone_selects_it_and_a_click_beside_all_selects_none() {
     for name in ["b", "d", "a", "c"] {
         let at = bone_place(&bench, name);
         bench.click_at(at);
-        assert_eq!(bench.session().selection().joints(), [joint(&bench, name)]);
+        assert_eq!(bench.session().selection().joints(), [bench.joint(name)]);
     }
     let empty = bench.empty_point();
     bench.click_at(empty);
@@ -109,7 +101,7 @@ fn orbiting_the_view_keeps_the_selection() {
     bench.click_at(at);
     let empty = bench.empty_point();
     bench.drag_and_drop(LEFT, empty, empty + vec2(120.0, 40.0));
-    assert_eq!(bench.session().selection().joints(), [joint(&bench, "b")]);
+    assert_eq!(bench.session().selection().joints(), [bench.joint("b")]);
 }
 
 #[test]
@@ -117,7 +109,7 @@ fn the_bone_under_the_mouse_is_highlighted() {
     let mut bench = bench();
     let at = bone_place(&bench, "c");
     bench.move_to(at);
-    assert_eq!(bench.session().selection().hovered(), Some(joint(&bench, "c")));
+    assert_eq!(bench.session().selection().hovered(), Some(bench.joint("c")));
     let empty = bench.empty_point();
     bench.move_to(empty);
     assert_eq!(bench.session().selection().hovered(), None);
@@ -176,9 +168,9 @@ fn a_tip_comes_back_to_where_it_was_when_the_mouse_does() {
 #[test]
 fn a_root_that_is_a_point_moves_with_its_subtree() {
     let mut bench = bench();
-    let (root, before) = (tip_place(&bench, "root"), tip(&bench, "c"));
+    let (root, before) = (tip_place(&bench, "root"), bench.tip("c"));
     bench.drag_and_drop(LEFT, root, root + vec2(60.0, 25.0));
-    let moved = tip(&bench, "c") - before;
+    let moved = bench.tip("c") - before;
     assert!(moved.length() > 0.1);
     assert!(tip_place(&bench, "root").distance(root + vec2(60.0, 25.0)) < 1.0);
     for joint in bench.session().skeleton().joints() {
@@ -190,7 +182,7 @@ fn a_root_that_is_a_point_moves_with_its_subtree() {
 fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
     for axis in RotationAxis::ALL {
         let mut bench = bench();
-        let b = joint(&bench, "b");
+        let b = bench.joint("b");
         bench.apply([SelectAction::Joints(vec![b])]);
         // At a point without other handles.
         let grip = |bench: &mut Bench, from: f32| {
@@ -233,7 +225,7 @@ fn a_ring_turns_its_angle_alone_by_as_much_as_the_mouse_goes_around() {
 fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     const RADIUS: f32 = 56.0;
     let mut bench = bench();
-    let b = joint(&bench, "b");
+    let b = bench.joint("b");
     bench.apply([SelectAction::Joints(vec![b])]);
     let tips: Vec<Pos2> = ["root", "a", "b", "c", "d"].map(|name| tip_place(&bench, name)).into();
     let free = (0..64).map(|part| part as f32 * PI / 32.0).find(|angle| {
@@ -261,7 +253,7 @@ fn beside_a_ring(aside: f32) -> (Bench, JointId, [Pos2; 2]) {
     let outwards = outwards * outwards.dot(on_ring - bench.on_screen(centre)).signum();
     let at = on_ring + outwards * aside;
     let tip = bench.ray(at).meets_plane(centre, projection.forward);
-    let parent = joint(&bench, "root");
+    let parent = bench.joint("root");
     bench.apply([JointEdit::AddChild { parent, tip }]);
     let added = bench.session().selection().active().expect("the new joint");
     bench.apply([Action::from(SelectAction::Joints(vec![b]))]);
@@ -280,7 +272,7 @@ fn grip_at(bench: &mut Bench, at: Pos2) -> Option<Grip> {
 #[test]
 fn the_ring_of_the_selected_joint_wins_over_the_tip_of_another_bone_on_it() {
     let (mut bench, _, [_, on_ring]) = beside_a_ring(0.0);
-    let b = joint(&bench, "b");
+    let b = bench.joint("b");
     assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, RotationAxis::Y)));
     let (mut bench, _, [_, on_ring]) = beside_a_ring(6.0);
     assert_eq!(grip_at(&mut bench, on_ring), Some(Grip::Ring(b, RotationAxis::Y)));
@@ -296,7 +288,7 @@ fn a_tip_wins_over_a_ring_if_its_centre_is_clearly_nearer() {
 #[test]
 fn digits_type_the_degrees_that_a_ring_turns() {
     let mut bench = bench();
-    let b = joint(&bench, "b");
+    let b = bench.joint("b");
     let forward = bench.session().camera().projection(1.0).forward;
     let ray = bench.session().camera().projection(1.0).ray(glam::Vec2::new(0.3, 0.3));
     bench.apply([TransactionAction::Grab { grip: Grip::Ring(b, RotationAxis::Z), ray, forward }]);
@@ -310,7 +302,7 @@ fn digits_type_the_degrees_that_a_ring_turns() {
 #[test]
 fn a_target_is_dragged_and_the_skeleton_follows() {
     let mut bench = bench();
-    let c = joint(&bench, "c");
+    let c = bench.joint("c");
     bench.apply([TargetEdit::AddTarget(c)]);
     let start = tip_place(&bench, "c");
     for step in 1..=15 {
@@ -326,7 +318,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
         bench.move_to(pointer);
         let target = bench.session().skeleton_rig().targets[0].home;
         assert!(bench.on_screen(target).distance(pointer) < 0.1);
-        assert!(tip(&bench, "c").distance(target) < 0.01, "the tip follows");
+        assert!(bench.tip("c").distance(target) < 0.01, "the tip follows");
     }
     bench.release(LEFT);
 }
@@ -334,7 +326,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
 #[test]
 fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
     let mut bench = bench();
-    let c = joint(&bench, "c");
+    let c = bench.joint("c");
     bench.apply([Action::from(TargetEdit::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
     let home = bench.session().skeleton_rig().targets[0].home;
     let start = bench.on_screen(home);
@@ -350,7 +342,7 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
 #[test]
 fn dragging_a_moving_target_moves_its_path() {
     let mut bench = bench();
-    let c = joint(&bench, "c");
+    let c = bench.joint("c");
     bench.apply([TargetEdit::AddTarget(c)]);
     let mut target = bench.session().skeleton_rig().targets[0];
     target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
@@ -365,9 +357,9 @@ fn dragging_a_moving_target_moves_its_path() {
 #[test]
 fn ctrl_click_adds_a_bone_from_the_selected_tip_to_the_mouse() {
     let mut bench = bench();
-    let c = joint(&bench, "c");
+    let c = bench.joint("c");
     bench.apply([SelectAction::Joints(vec![c])]);
-    let (from, at) = (tip(&bench, "c"), tip_place(&bench, "c") + vec2(-20.0, 90.0));
+    let (from, at) = (bench.tip("c"), tip_place(&bench, "c") + vec2(-20.0, 90.0));
     bench.hold(Modifiers::COMMAND);
     bench.click_at(at);
     let added = bench.session().selection().active().expect("the new joint");

@@ -13,9 +13,10 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use crate::common::documents::example;
 
 fn chain() -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find("ten-joints").expect("an example"))])
+    Bench::example("ten-joints")
 }
 
 fn with_skin() -> Bench {
@@ -160,8 +161,7 @@ fn the_candy_wrapper_plots_the_area_of_its_middle() {
 fn with_file() -> (tempfile::TempDir, Bench) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("figure.glb");
-    let human =
-        Example::find("two-targets").expect("an example").open().expect("it opens").document;
+    let human = example("two-targets");
     let bytes = io::glb(&human, None, &Progress::default()).expect("an export");
     std::fs::write(&path, bytes).expect("a file");
     let document =

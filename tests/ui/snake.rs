@@ -14,7 +14,7 @@ use crate::bench::Bench;
 const HEAD: JointId = JointId::new(0);
 
 fn snake() -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find("snake").expect("an example"))])
+    Bench::example("snake")
 }
 
 fn head(bench: &Bench) -> Vec3 {

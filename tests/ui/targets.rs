@@ -19,8 +19,7 @@ use crate::bench::Bench;
 
 /// The Human without targets.
 fn figure() -> Bench {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    let mut bench = Bench::example("human");
     let targets = bench.session().skeleton_rig().targets.clone();
     bench.apply(targets.into_iter().map(|target| TargetEdit::RemoveTarget(target.joint)));
     bench
@@ -37,17 +36,9 @@ fn with_targets() -> Bench {
     bench
 }
 
-fn joint(bench: &Bench, name: &str) -> JointId {
-    bench.session().skeleton().find(name).expect("a joint")
-}
-
 fn select(bench: &mut Bench, name: &str) {
-    let joint = joint(bench, name);
+    let joint = bench.joint(name);
     bench.apply([SelectAction::Joints(vec![joint])]);
-}
-
-fn tip(bench: &Bench, name: &str) -> Vec3 {
-    bench.session().skeleton_pose().tip(joint(bench, name))
 }
 
 fn tips(bench: &Bench) -> Vec<Vec3> {
@@ -61,7 +52,7 @@ fn farthest(before: &[Vec3], after: &[Vec3]) -> f32 {
 
 fn target<'a>(bench: &'a Bench, name: &str) -> &'a Target {
     let rig = bench.session().skeleton_rig();
-    &rig.targets[rig.target(joint(bench, name)).expect("a target")]
+    &rig.targets[rig.target(bench.joint(name)).expect("a target")]
 }
 
 fn choose(bench: &mut Bench, list: &str, item: &str) {
@@ -114,8 +105,8 @@ fn a_target_added_to_a_hand_or_foot_poses_its_limb_and_moves_nothing() {
 fn hands_and_feet_stay_while_the_pelvis_is_dragged_in_one_undo_step() {
     let mut bench = with_targets();
     let lowers = ["left_forearm", "right_forearm", "left_shin", "right_shin"];
-    let before = lowers.map(|name| tip(&bench, name));
-    let (pelvis, all) = (tip(&bench, "pelvis"), tips(&bench));
+    let before = lowers.map(|name| bench.tip(name));
+    let (pelvis, all) = (bench.tip("pelvis"), tips(&bench));
     let reach = bench.session().skeleton_rig().reach();
     bench.apply([SelectAction::Joints(Vec::new())]);
     let start = bench.on_screen(pelvis);
@@ -124,12 +115,12 @@ fn hands_and_feet_stay_while_the_pelvis_is_dragged_in_one_undo_step() {
     for step in 1..=10 {
         bench.move_to(start + vec2(1.0, 3.0) * step as f32);
         for (name, before) in lowers.into_iter().zip(before) {
-            let moved = tip(&bench, name).distance(before);
+            let moved = bench.tip(name).distance(before);
             assert!(moved <= 1e-5 * reach, "{name} moves by {moved} in step {step}");
         }
     }
     bench.release(LEFT);
-    assert!(tip(&bench, "pelvis").distance(pelvis) > 0.02);
+    assert!(bench.tip("pelvis").distance(pelvis) > 0.02);
     bench.apply([TransactionAction::Undo]);
     assert_eq!(tips(&bench), all);
 }
@@ -138,28 +129,28 @@ fn hands_and_feet_stay_while_the_pelvis_is_dragged_in_one_undo_step() {
 fn influence_blends_from_the_joint_angles_to_the_target() {
     let mut bench = with_targets();
     select(&mut bench, "left_hand");
-    let fk = tip(&bench, "left_forearm");
+    let fk = bench.tip("left_forearm");
     enter(&mut bench, "Target y", "1.4");
-    let solved = tip(&bench, "left_forearm");
+    let solved = bench.tip("left_forearm");
     assert!(solved.distance(fk) > 0.1);
     enter(&mut bench, "Target influence", "0");
-    assert!(tip(&bench, "left_forearm").distance(fk) <= 1e-6);
+    assert!(bench.tip("left_forearm").distance(fk) <= 1e-6);
     assert!(bench.says("has no influence: the joint angles alone pose it"));
     bench.reveal(Role::Button, "FK to pose");
     assert!(is_disabled(&bench, Role::Button, "FK to pose"));
     enter(&mut bench, "Target influence", "0.5");
-    let between = tip(&bench, "left_forearm");
+    let between = bench.tip("left_forearm");
     assert!(between.distance(fk) > 0.02 && between.distance(solved) > 0.02);
     enter(&mut bench, "Target influence", "1");
-    assert!(tip(&bench, "left_forearm").distance(solved) <= 1e-6);
+    assert!(bench.tip("left_forearm").distance(solved) <= 1e-6);
 }
 
 #[test]
 fn diamonds_key_what_a_target_has_and_the_limb_follows_over_time() {
     let mut bench = with_targets();
     select(&mut bench, "left_foot");
-    let shin = joint(&bench, "left_shin");
-    let start = tip(&bench, "left_shin");
+    let shin = bench.joint("left_shin");
+    let start = bench.tip("left_shin");
     bench.reveal(Role::Button, "Key Target y");
     bench.click(Role::Button, "Key Target y");
     bench.apply([PlaybackAction::SetTime(1.0)]);
@@ -168,11 +159,11 @@ fn diamonds_key_what_a_target_has_and_the_limb_follows_over_time() {
         bench.session().document().keys.track(channel).map_or(0, |track| track.knots().len())
     };
     assert_eq!(keys(&bench, Channel::Target(shin)), 2, "the first key has turned auto-key on");
-    assert!((tip(&bench, "left_shin").y - 0.4).abs() < 1e-4);
+    assert!((bench.tip("left_shin").y - 0.4).abs() < 1e-4);
     bench.apply([PlaybackAction::SetTime(0.0)]);
-    assert!(tip(&bench, "left_shin").distance(start) < 1e-5);
+    assert!(bench.tip("left_shin").distance(start) < 1e-5);
     bench.apply([PlaybackAction::SetTime(0.5)]);
-    let middle = tip(&bench, "left_shin").y;
+    let middle = bench.tip("left_shin").y;
     assert!(middle > start.y + 0.05 && middle < 0.35, "{middle}");
 
     bench.reveal(Role::Button, "Key Target influence");
@@ -188,7 +179,7 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
     select(&mut bench, "left_hand");
     let before = tips(&bench);
     choose(&mut bench, "Target space", "chest");
-    let chest = joint(&bench, "chest");
+    let chest = bench.joint("chest");
     assert_eq!(target(&bench, "left_forearm").space, TargetSpace::Joint(chest));
     assert!(farthest(&before, &tips(&bench)) <= 1e-5);
     let on_chest = |bench: &Bench| {
@@ -196,9 +187,9 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
         pose.full_transform(chest).inverse().transform_point3(tip(bench, "left_forearm"))
     };
     let place = on_chest(&bench);
-    let spine = joint(&bench, "spine");
+    let spine = bench.joint("spine");
     bench.apply([JointEdit::SetRotation { joint: spine, rotation: Vec3::new(0.3, 0.2, 0.0) }]);
-    let moved = tip(&bench, "left_forearm").distance(before[7]);
+    let moved = bench.tip("left_forearm").distance(before[7]);
     assert!(moved > 0.02, "it moves with the chest by {moved}");
     assert!(on_chest(&bench).distance(place) <= 1e-5);
 
@@ -211,24 +202,24 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
 fn dragging_an_elbow_turns_it_about_the_line_to_the_target() {
     let mut bench = with_targets();
     bench.apply([SelectAction::Joints(Vec::new())]);
-    let (elbow, hand) = (tip(&bench, "right_upper_arm"), tip(&bench, "right_forearm"));
+    let (elbow, hand) = (bench.tip("right_upper_arm"), bench.tip("right_forearm"));
     let start = bench.on_screen(elbow);
     bench.drag_and_drop(LEFT, start, start + vec2(0.0, -25.0));
     let twist = target(&bench, "right_forearm").limb().expect("a limb").twist;
     assert!(twist.abs() > 0.1, "{twist}");
-    assert!(tip(&bench, "right_forearm").distance(hand) <= 1e-5, "the hand stays");
-    assert!(tip(&bench, "right_upper_arm").distance(elbow) > 0.01);
+    assert!(bench.tip("right_forearm").distance(hand) <= 1e-5, "the hand stays");
+    assert!(bench.tip("right_upper_arm").distance(elbow) > 0.01);
 }
 
 #[test]
 fn dragging_the_tip_of_a_limb_moves_its_target() {
     let mut bench = with_targets();
     bench.apply([SelectAction::Joints(Vec::new())]);
-    let wrist = tip(&bench, "left_forearm");
+    let wrist = bench.tip("left_forearm");
     let start = bench.on_screen(wrist);
     let end = start + vec2(20.0, -15.0);
     bench.drag_and_drop(LEFT, start, end);
-    assert!(bench.on_screen(tip(&bench, "left_forearm")).distance(end) < 1.0);
+    assert!(bench.on_screen(bench.tip("left_forearm")).distance(end) < 1.0);
     assert!(target(&bench, "left_forearm").home.distance(wrist) > 0.02);
 }
 
@@ -238,7 +229,7 @@ fn the_pole_of_a_limb_is_dragged_and_the_elbow_points_at_it() {
     select(&mut bench, "left_hand");
     let before = tips(&bench);
     choose(&mut bench, "Elbow reference", "Pole");
-    let forearm = joint(&bench, "left_forearm");
+    let forearm = bench.joint("left_forearm");
     let pole = bench.session().target_report(forearm).and_then(|report| report.pole);
     let pole = pole.expect("a pole");
     assert!(farthest(&before, &tips(&bench)) <= 2e-2, "the new pole is in front of the elbow");
@@ -277,14 +268,14 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     select(&mut bench, "left_hand");
     bench.reveal(Role::RadioButton, "Keep orientation");
     bench.click(Role::RadioButton, "Keep orientation");
-    let hand = joint(&bench, "left_hand");
+    let hand = bench.joint("left_hand");
     let turned =
         |bench: &Bench| bench.session().posed().evaluated_skeleton().solved.rotation_in_world(hand);
     let before = turned(&bench);
-    let place = tip(&bench, "left_forearm") + Vec3::new(0.02, 0.06, 0.05);
+    let place = bench.tip("left_forearm") + Vec3::new(0.02, 0.06, 0.05);
     let moved = Target { home: place, ..*target(&bench, "left_forearm") };
     bench.apply([Action::from(TargetEdit::SetTarget(moved))]);
-    assert!(tip(&bench, "left_forearm").distance(place) <= 1e-5);
+    assert!(bench.tip("left_forearm").distance(place) <= 1e-5);
     assert!(turned(&bench).angle_between(before) <= 1e-4);
     let kind = TargetKind::Limb(LimbSettings::default());
     bench.apply([Action::from(TargetEdit::SetTarget(Target { kind, ..moved }))]);
@@ -345,7 +336,7 @@ fn no_row_moves_when_a_slider_is_let_go_that_put_a_target_out_of_reach() {
 const RING: f32 = 104.0;
 
 fn human() -> Bench {
-    Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))])
+    Bench::example("human")
 }
 
 fn held(bench: &Bench, name: &str) -> Option<Vec3> {
@@ -357,7 +348,7 @@ fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
     for axis in RotationAxis::ALL {
         let mut bench = human();
         select(&mut bench, "left_foot");
-        let (shin, foot) = (joint(&bench, "left_shin"), joint(&bench, "left_foot"));
+        let (shin, foot) = (bench.joint("left_shin"), bench.joint("left_foot"));
         let grip = Grip::Orientation(shin, axis);
         let (before, home) =
             (held(&bench, "left_shin").expect("held"), target(&bench, "left_shin").home);
@@ -398,7 +389,7 @@ fn rings_turn_the_orientation_that_the_target_of_a_foot_holds() {
 fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
     let mut bench = human();
     select(&mut bench, "right_foot");
-    let shin = joint(&bench, "right_shin");
+    let shin = bench.joint("right_shin");
     let ring =
         GripRing::of_orientation(bench.session().posed(), shin, RotationAxis::Y).expect("a ring");
     bench.apply([PlaybackAction::SetAutoKey(true)]);
@@ -418,7 +409,7 @@ fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
 fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     let mut bench = human();
     select(&mut bench, "left_hand");
-    let (forearm, hand) = (joint(&bench, "left_forearm"), joint(&bench, "left_hand"));
+    let (forearm, hand) = (bench.joint("left_forearm"), bench.joint("left_hand"));
     assert_eq!(GripRing::of_orientation(bench.session().posed(), forearm, RotationAxis::X), None);
     let before = bench.session().skeleton()[hand].rotation;
     let ring = GripRing::of_joint(bench.session().posed(), hand, RotationAxis::Z).expect("a ring");

@@ -16,6 +16,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
+use crate::common::documents::open_example;
 
 pub const HAND: [(f64, Vec3); 3] = [
     (1.0, Vec3::new(250.0, 120.0, 60.0)),
@@ -506,7 +507,7 @@ fn the_view_menu_hides_the_timeline_and_shows_it() {
 #[test]
 fn channels_of_a_skeleton_have_the_names_of_its_joints() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    bench.apply([open_example("human")]);
     let names = |joint: JointId| bench.session().skeleton()[joint].name.clone();
     let (turned, reached) = (names(JointId::new(1)), names(JointId::new(8)));
     bench.apply([KeysEdit::Key(vec![
@@ -568,7 +569,7 @@ fn zooming_out_ends_at_four_times_the_timeline() {
 
 #[test]
 fn the_zoom_of_the_timeline_is_that_of_one_document() {
-    let opened = || FileAction::OpenExample(Example::find("keyframes").expect("an example"));
+    let opened = || open_example("keyframes");
     let keys = |bench: &Bench| key_of_hand(bench, 2.0).x - key_of_hand(bench, 1.0).x;
     let mut bench = keyed();
     let was = keys(&bench);
@@ -590,7 +591,7 @@ fn the_status_line_says_how_many_keys_and_joints_are_selected() {
     bench.apply([SelectAction::Keys(vec![(Channel::Hand, 1.0), (Channel::Hand, 2.0)])]);
     bench.apply([ShellAction::ClearMessage]);
     assert!(bench.says("2 keys selected"));
-    let mut bench = Bench::after([FileAction::OpenExample(Example::find("human").expect("there"))]);
+    let mut bench = Bench::example("human");
     bench.apply([
         Action::from(SelectAction::Joints([1, 2, 3].map(JointId::new).to_vec())),
         ShellAction::ClearMessage.into(),

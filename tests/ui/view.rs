@@ -12,6 +12,7 @@ use ik_arm::session::{
 };
 
 use crate::bench::Bench;
+use crate::common::documents::example;
 
 use PointerButton::{Middle, Primary, Secondary};
 
@@ -221,7 +222,7 @@ fn dragging_the_corner_axes_orbits_the_view() {
 #[test]
 fn the_camera_follows_the_selection_while_it_is_ticked_in_the_menu() {
     let mut bench = Bench::new();
-    let walk = Example::find("walk").expect("there").open().expect("opens").document;
+    let walk = example("walk");
     bench.apply([FileAction::Opened { document: Box::new(walk), file: None, contents: None }]);
     bench.choose(&["View", "Follow selection"]);
     assert!(bench.session().view().follows_selection());

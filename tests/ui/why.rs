@@ -20,8 +20,7 @@ const STRETCH: &str = "Let the limb stretch by up to";
 
 /// The Human with the target of its left hand too far away.
 fn bench() -> Bench {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
+    let mut bench = Bench::example("human");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..target(&bench) };
     bench.apply([TargetEdit::SetTarget(target)]);
     bench.settle();
@@ -30,11 +29,7 @@ fn bench() -> Bench {
 
 fn target(bench: &Bench) -> Target {
     let rig = bench.session().skeleton_rig();
-    rig.targets[rig.target_of_end(joint(bench, "left_hand")).expect("a target")]
-}
-
-fn joint(bench: &Bench, name: &str) -> JointId {
-    bench.session().skeleton().find(name).expect("a joint")
+    rig.targets[rig.target_of_end(bench.joint("left_hand")).expect("a target")]
 }
 
 fn error(bench: &Bench) -> f32 {
@@ -57,7 +52,7 @@ fn a_note_beside_the_target_and_the_status_bar_say_why() {
     assert!(button.distance_to_pos(at) < 260.0 && !button.contains(at), "{button:?} {at:?}");
 
     // The panel adds one, with all remedies.
-    let hand = joint(&bench, "left_hand");
+    let hand = bench.joint("left_hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.settle();
     assert_eq!(labels(&bench, TOO_FAR), 4);
@@ -81,7 +76,7 @@ fn the_button_of_the_note_applies_the_remedy_as_one_undo_step_and_says_what_it_d
 #[test]
 fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
     let mut bench = bench();
-    let hand = joint(&bench, "left_hand");
+    let hand = bench.joint("left_hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.settle();
     let tried: Vec<_> = bench.session().why().iter().flat_map(|it| it.remedies.clone()).collect();
@@ -141,9 +136,8 @@ fn a_cancelled_drag_says_why_again() {
 
 /// The Human with its left foot asked to turn about x by so many degrees, the foot selected.
 fn foot_turned_by(degrees: &str) -> Bench {
-    let mut bench =
-        Bench::after([FileAction::OpenExample(Example::find("human").expect("an example"))]);
-    let foot = joint(&bench, "left_foot");
+    let mut bench = Bench::example("human");
+    let foot = bench.joint("left_foot");
     bench.apply([SelectAction::Joints(vec![foot])]);
     bench.settle();
     bench.reveal(Role::SpinButton, "Target rotation x value");
@@ -153,7 +147,7 @@ fn foot_turned_by(degrees: &str) -> Bench {
 }
 
 fn missing_degrees(bench: &Bench) -> f32 {
-    let shin = joint(bench, "left_shin");
+    let shin = bench.joint("left_shin");
     let report = bench.session().target_report(shin).expect("a report");
     report.rotation_error.expect("a rotation").to_degrees()
 }
@@ -189,7 +183,7 @@ fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     let tried = bench.session().why()[0].remedies[0].clone();
     let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
     assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
-    let target = joint(&bench, "left_shin");
+    let target = bench.joint("left_shin");
     bench.apply([TargetEdit::ApplyRemedy { target, remedy: tried.remedy }]);
     bench.settle();
     assert!(missing_degrees(&bench) < 0.05);

@@ -8,12 +8,13 @@ use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::session::{FileAction, GripRing, Preferences, SelectAction, Session, WiggleView};
 
 use crate::bench::Bench;
+use crate::common::documents::open_example;
 
 /// The ten-joint chain with one of its joints selected.
 fn bench(joint: &str) -> (Bench, JointId) {
     let example = Example::find("ten-joints").expect("an example");
     let mut bench = Bench::after([FileAction::OpenExample(example)]);
-    let joint = bench.session().skeleton().find(joint).expect("a joint");
+    let joint = bench.joint(joint);
     bench.apply([SelectAction::Joints(vec![joint])]);
     bench.settle();
     (bench, joint)
@@ -102,7 +103,7 @@ fn it_stops_when_alt_is_released_or_the_mouse_leaves_the_ring() {
 #[test]
 fn a_joint_without_targets_below_swings_its_farthest_tip() {
     let mut session = Session::new(Preferences::default());
-    session.apply(FileAction::OpenExample(Example::find("human").expect("an example")));
+    session.apply(open_example("human"));
     let joint = |session: &Session, name| session.skeleton().find(name).expect("a joint");
     let (neck, head) = (joint(&session, "neck"), joint(&session, "head"));
     session.apply(SelectAction::Wiggle(Some((neck, RotationAxis::X))));

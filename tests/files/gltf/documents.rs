@@ -7,11 +7,8 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 
 use crate::common::Random;
+use crate::common::documents::example;
 use crate::common::skeletons::transform;
-
-pub fn example(name: &str) -> Document {
-    Example::find(name).expect("an example").open().expect("it opens").document
-}
 
 pub fn glb(document: &Document) -> Vec<u8> {
     io::glb(document, None, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
