@@ -28,8 +28,10 @@ pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [
     (AxisView::Bottom, "Bottom", "Ctrl+7"),
 ];
 
-pub(in crate::ui) fn with_other_projection(camera: Camera) -> Camera {
-    Camera { orthographic: !camera.orthographic, ..camera }
+/// The action that changes between perspective and orthographic projection.
+pub(in crate::ui) fn toggle_projection(session: &Session) -> ViewAction {
+    let camera = session.settled_camera();
+    ViewAction::SetCamera(Camera { orthographic: !camera.orthographic, ..camera })
 }
 
 pub(in crate::ui) fn frame_selection(session: &Session) -> ViewAction {

@@ -2,12 +2,12 @@
 
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
-use super::{commands, labels, panels};
+use super::{commands, labels, panels, widgets};
 use crate::document::{Channel, Overlay, RigKind, Theme};
 use crate::io::{Example, ExampleGroup, OpenOptions};
 use crate::session::{
-    Action, Actions, Dialog, DisplayEdit, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation,
-    Session, ShellAction, TourAction, TransactionAction, ViewAction,
+    Action, Actions, Dialog, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation, Session,
+    ShellAction, TourAction, TransactionAction, ViewAction,
 };
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -38,67 +38,73 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Shows the name of the document, with an asterisk while it has unsaved changes.
 fn document_name(ui: &mut Ui, session: &Session) {
     const NO_FILE: &str = "This document has no file yet (Ctrl+S)";
-    let name = session.files().name().unwrap_or_else(|| "untitled".to_owned());
+    let file = session.files().name().unwrap_or_else(|| "untitled".to_owned());
     let (name, tooltip) = match (session.files().file(), session.files().contents()) {
         _ if session.tour().is_some() => {
             ("Tour".to_owned(), "Your own document is kept".to_owned())
         }
-        (Some(path), _) => (name, path.display().to_string()),
-        (None, Some(from)) => (name, format!("{NO_FILE}; it comes from {}", from.path.display())),
-        (None, None) => (name, NO_FILE.to_owned()),
+        (Some(path), _) => (file, path.display().to_string()),
+        (None, Some(from)) => (file, format!("{NO_FILE}; it comes from {}", from.path.display())),
+        (None, None) => (file, NO_FILE.to_owned()),
     };
     let is_unsaved = session.tour().is_none() && session.history().is_unsaved();
     let (mark, told) = if is_unsaved { ("*", "\nIt has unsaved changes") } else { ("", "") };
-    let name = Label::new(format!("{name}{mark}")).truncate().selectable(false);
-    ui.add(name).on_hover_text(format!("{tooltip}{told}"));
+    let label = Label::new(format!("{name}{mark}")).truncate().selectable(false);
+    ui.add(label).on_hover_text(format!("{tooltip}{told}"));
 }
 
-fn item(ui: &mut Ui, name: &str, keys: &str) -> bool {
+/// Shows an item with its shortcut, which may be empty, and pushes the action when it is pressed.
+fn item<A: Into<Action>>(
+    ui: &mut Ui,
+    name: &str,
+    keys: &str,
+    action: impl FnOnce() -> A,
+    actions: &mut Actions,
+) {
     let button = Button::new(name);
-    ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked()
+    if ui.add(if keys.is_empty() { button } else { button.shortcut_text(keys) }).clicked() {
+        actions.push(action());
+    }
+}
+
+/// Shows an item with a tooltip, which may be empty, and returns whether it was pressed. `why_not`
+/// is the reason why it is disabled; `None` enables it.
+fn explained_item(ui: &mut Ui, button: Button<'_>, tooltip: &str, why_not: Option<&str>) -> bool {
+    widgets::explained(ui.add_enabled(why_not.is_none(), button), tooltip, why_not).clicked()
 }
 
 fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if item(ui, "New", "Ctrl+N") {
-        actions.push(FileAction::New);
-    }
-    if item(ui, "New skeleton", "Ctrl+Shift+N") {
-        actions.push(FileAction::NewSkeleton);
-    }
-    if item(ui, "Open…", "Ctrl+O") {
-        actions.push(commands::open());
-    }
+    item(ui, "New", "Ctrl+N", || FileAction::New, actions);
+    item(ui, "New skeleton", "Ctrl+Shift+N", || FileAction::NewSkeleton, actions);
+    item(ui, "Open…", "Ctrl+O", || commands::open(), actions);
     ui.add_enabled_ui(!session.files().recent().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| recent(ui, session, actions));
     });
     contents(ui, session, actions);
     ui.separator();
-    if item(ui, "Save", "Ctrl+S") {
-        actions.push(FileAction::Save);
-    }
-    if item(ui, "Save as…", "Ctrl+Shift+S") {
-        actions.push(commands::save_as(session));
-    }
+    item(ui, "Save", "Ctrl+S", || FileAction::Save, actions);
+    item(ui, "Save as…", "Ctrl+Shift+S", || commands::save_as(session), actions);
     ui.separator();
-    if item(ui, "Export…", "Ctrl+E") {
-        actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
-    }
-    if item(ui, "Save picture…", "Ctrl+P") {
-        actions.push(commands::save_picture(session));
-    }
+    item(
+        ui,
+        "Export…",
+        "Ctrl+E",
+        || ShellAction::OpenDialog(session.export_dialog().into()),
+        actions,
+    );
+    item(ui, "Save picture…", "Ctrl+P", || commands::save_picture(session), actions);
     ui.separator();
-    if item(ui, "Quit", "Ctrl+Q") {
-        actions.push(FileAction::Quit);
-    }
+    item(ui, "Quit", "Ctrl+Q", || FileAction::Quit, actions);
 }
 
 /// Shows the item that opens another skeleton or animation of the file.
 fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let several = session.files().contents().filter(|contents| contents.has_choice());
+    let none = "The file has no other skeleton or animation";
+    let why_not = several.is_none().then_some(none);
     let button = Button::new("Skeletons and animations…");
-    let item = ui.add_enabled(several.is_some(), button);
-    let item = item.on_disabled_hover_text("The file has no other skeleton or animation");
-    if let Some(contents) = several.filter(|_| item.clicked()) {
+    let is_pressed = explained_item(ui, button, "", why_not);
+    if let Some(contents) = several.filter(|_| is_pressed) {
         actions.push(ShellAction::OpenDialog(Dialog::ChooseContents(Box::new(contents.clone()))));
     }
 }
@@ -114,36 +120,22 @@ fn recent(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    step(
-        ui,
-        "Undo",
-        session.history().undo_label(),
-        "Ctrl+Z",
-        TransactionAction::Undo.into(),
-        actions,
-    );
-    step(
-        ui,
-        "Redo",
-        session.history().redo_label(),
-        "Ctrl+Shift+Z",
-        TransactionAction::Redo.into(),
-        actions,
-    );
+    let (undo, redo) = (session.history().undo_label(), session.history().redo_label());
+    step(ui, "Undo", undo, "Ctrl+Z", TransactionAction::Undo, actions);
+    step(ui, "Redo", redo, "Ctrl+Shift+Z", TransactionAction::Redo, actions);
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     bake(ui, session, actions);
     let is_skeleton = session.rig() == RigKind::Skeleton;
-    let turn = ui.add_enabled(is_skeleton, Button::new("Turn to y up"));
     let tooltip = "Turn a skeleton that stands along z by −90° about x";
-    let turn = turn.on_hover_text(tooltip);
-    if turn.on_disabled_hover_text("Show a skeleton: the arm is not turned").clicked() {
+    let why_not = (!is_skeleton).then_some("Show a skeleton: the arm is not turned");
+    if explained_item(ui, Button::new("Turn to y up"), tooltip, why_not) {
         actions.push(JointEdit::TurnYUp);
     }
     ui.separator();
     let copy = Button::new("Copy pose as JSON line").shortcut_text("Ctrl+C");
-    let copy = ui.add_enabled(!is_skeleton, copy);
-    if copy.on_disabled_hover_text("Only the pose of the arm can be copied").clicked() {
+    let why_no_copy = is_skeleton.then_some("Only the pose of the arm can be copied");
+    if explained_item(ui, copy, "", why_no_copy) {
         actions.push(ShellAction::CopyPose);
     }
     ui.separator();
@@ -171,22 +163,16 @@ fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         }
         RigKind::Skeleton => None,
     };
-    let tooltip = "Replace targets and path by keys";
-    let item = ui.add_enabled(why_not.is_none(), Button::new("Bake to keys…"));
-    let item = item.on_hover_text(tooltip).on_disabled_hover_text(why_not.unwrap_or_default());
-    if item.clicked() {
+    let button = Button::new("Bake to keys…");
+    if explained_item(ui, button, "Replace targets and path by keys", why_not) {
         actions.push(ShellAction::OpenDialog(session.bake_dialog()));
     }
 }
 
 /// Shows the menu of channels to key; the channels of overlays are in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if item(ui, "Selected", "K") {
-        actions.push(KeysEdit::Key(session.channels_to_key()));
-    }
-    if item(ui, "All", "Shift+K") {
-        actions.push(KeysEdit::Key(session.all_channels()));
-    }
+    item(ui, "Selected", "K", || KeysEdit::Key(session.channels_to_key()), actions);
+    item(ui, "All", "Shift+K", || KeysEdit::Key(session.all_channels()), actions);
     ui.separator();
     let one = |ui: &mut Ui, channel: Channel, actions: &mut Actions| {
         if ui.button(labels::channel(session, channel)).clicked() {
@@ -216,7 +202,7 @@ fn step(
     verb: &str,
     name: Option<&str>,
     keys: &str,
-    action: Action,
+    action: TransactionAction,
     actions: &mut Actions,
 ) {
     let title = name.map_or(verb.to_owned(), |name| format!("{verb} {name}"));
@@ -228,27 +214,18 @@ fn step(
 
 fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     for (axis_view, name, keys) in commands::AXIS_VIEWS {
-        if item(ui, name, keys) {
-            actions.push(ViewAction::GlideTo(session.settled_camera().along(axis_view)));
-        }
+        let glide = || ViewAction::GlideTo(session.settled_camera().along(axis_view));
+        item(ui, name, keys, glide, actions);
     }
     ui.separator();
-    if item(ui, "Toggle orthographic", "5") {
-        actions
-            .push(ViewAction::SetCamera(commands::with_other_projection(session.settled_camera())));
-    }
-    if item(ui, "Frame selection", "F") {
-        actions.push(commands::frame_selection(session));
-    }
-    if item(ui, "Frame all", "Home") {
-        actions.push(commands::frame_all(session));
-    }
-    let mut follows = session.view().follows_selection();
+    item(ui, "Toggle orthographic", "5", || commands::toggle_projection(session), actions);
+    item(ui, "Frame selection", "F", || commands::frame_selection(session), actions);
+    item(ui, "Frame all", "Home", || commands::frame_all(session), actions);
+    let follows = session.view().follows_selection();
     let tooltip =
         "Move the camera with the selection, or with the whole rig, while the time changes";
-    if ui.checkbox(&mut follows, "Follow selection").on_hover_text(tooltip).changed() {
-        actions.push(ViewAction::FollowSelection(follows));
-    }
+    let followed = widgets::check_box(ui, "Follow selection", tooltip, follows, None);
+    actions.extend(followed.map(ViewAction::FollowSelection));
     ui.separator();
     for (theme, name) in [(Theme::Light, "Light theme"), (Theme::Dark, "Dark theme")] {
         if ui.radio(session.preferences().theme == theme, name).clicked() {
@@ -270,34 +247,21 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         overlays.push((Overlay::TwistReferences, "Twist references"));
     }
     for (overlay, name) in overlays {
-        let mut shown = session.shown().display.shows(overlay);
-        if ui.checkbox(&mut shown, name).changed() {
-            actions.push(DisplayEdit::ShowOverlay(overlay, shown));
-        }
+        widgets::overlay_check_box(ui, session, overlay, name, "", None, actions);
     }
-    let mut crowd = session.crowd().is_some();
     let tooltip = "Show up to a million arms, each with its own target";
-    if ui.checkbox(&mut crowd, "Crowd").on_hover_text(tooltip).changed() {
-        actions.push(ViewAction::ShowCrowd(crowd));
-    }
-    let mut explain = session.preferences().explain;
-    let panel = egui::Checkbox::new(&mut explain, "Explain panel");
-    let panel = ui.add_enabled(panels::has_room(ui), panel);
-    if panel.on_disabled_hover_text("Make the window wider: it has no room").changed() {
-        actions.push(ViewAction::ShowExplain(explain));
-    }
-    let mut timeline = session.shows_timeline();
-    if ui.checkbox(&mut timeline, "Timeline").changed() {
-        actions.push(ViewAction::ShowTimeline(timeline));
-    }
-    let mut curves = session.preferences().curves;
-    if ui
-        .checkbox(&mut curves, "Graph editor")
-        .on_hover_text("Show keys as curves instead of a dope sheet")
-        .changed()
-    {
-        actions.push(ViewAction::ShowGraphEditor(curves));
-    }
+    let crowd = widgets::check_box(ui, "Crowd", tooltip, session.crowd().is_some(), None);
+    actions.extend(crowd.map(ViewAction::ShowCrowd));
+    let why_not = (!panels::has_room(ui)).then_some("Make the window wider: it has no room");
+    let explains = session.preferences().explain;
+    let explain = widgets::check_box(ui, "Explain panel", "", explains, why_not);
+    actions.extend(explain.map(ViewAction::ShowExplain));
+    let timeline = widgets::check_box(ui, "Timeline", "", session.shows_timeline(), None);
+    actions.extend(timeline.map(ViewAction::ShowTimeline));
+    let tooltip = "Show keys as curves instead of a dope sheet";
+    let curves = session.preferences().curves;
+    let graph_editor = widgets::check_box(ui, "Graph editor", tooltip, curves, None);
+    actions.extend(graph_editor.map(ViewAction::ShowGraphEditor));
 }
 
 fn examples(ui: &mut Ui, actions: &mut Actions) {
@@ -317,19 +281,9 @@ fn examples_of(group: ExampleGroup, ui: &mut Ui, actions: &mut Actions) {
 }
 
 fn help(ui: &mut Ui, actions: &mut Actions) {
-    if item(ui, "Tour", "") {
-        actions.push(TourAction::Enter(0));
-    }
-    if item(ui, "Glossary", "") {
-        actions.push(ShellAction::OpenDialog(Dialog::Glossary));
-    }
-    if item(ui, "Shortcuts", "F1") {
-        actions.push(ShellAction::OpenDialog(Dialog::Shortcuts));
-    }
-    if item(ui, "Statistics", "") {
-        actions.push(ShellAction::OpenDialog(Dialog::Statistics));
-    }
-    if item(ui, "About", "") {
-        actions.push(ShellAction::OpenDialog(Dialog::About));
-    }
+    item(ui, "Tour", "", || TourAction::Enter(0), actions);
+    item(ui, "Glossary", "", || ShellAction::OpenDialog(Dialog::Glossary), actions);
+    item(ui, "Shortcuts", "F1", || ShellAction::OpenDialog(Dialog::Shortcuts), actions);
+    item(ui, "Statistics", "", || ShellAction::OpenDialog(Dialog::Statistics), actions);
+    item(ui, "About", "", || ShellAction::OpenDialog(Dialog::About), actions);
 }

@@ -2,7 +2,7 @@
 
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
-use egui::{Event, Id, Key, Response, Ui};
+use egui::{Event, EventFilter, Id, Key, Response, Ui};
 
 /// Marks a widget that makes no use of Space and digits, so that Space plays or pauses and digits
 /// choose a view while it has the focus.
@@ -14,6 +14,14 @@ pub(in crate::ui) fn leave_letters(ui: &Ui, widget: Id) {
     ui.data_mut(|data| data.insert_temp(widget, IgnoresLetters));
 }
 
+/// Lets arrow keys act on `widget`, which has the keyboard focus, instead of moving the focus.
+pub(in crate::ui) fn take_arrows(ui: &Ui, widget: Id) {
+    let arrows =
+        EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(widget, arrows));
+}
+
+/// True if Space and digits act although a widget has the keyboard focus, or if none has it.
 pub(in crate::ui) fn leaves_letters(ui: &Ui) -> bool {
     let focused = ui.memory(egui::Memory::focused);
     focused.is_none_or(|id| ui.data(|data| data.get_temp::<IgnoresLetters>(id)).is_some())
@@ -38,7 +46,7 @@ pub(in crate::ui) fn was_typing(ui: &Ui) -> bool {
 
 /// The numbers of a frame in the order in which they were shown.
 #[derive(Clone, Default)]
-struct Numbers(Vec<Id>);
+struct FrameNumbers(Vec<Id>);
 
 /// Marks a number into which the user has typed.
 #[derive(Clone, Copy, Default)]
@@ -62,7 +70,7 @@ struct NextNumber(Id);
 
 /// Begins a frame.
 pub(in crate::ui) fn begin(ui: &Ui) {
-    ui.data_mut(|data| data.insert_temp(numbers(), Numbers::default()));
+    ui.data_mut(|data| data.insert_temp(numbers(), FrameNumbers::default()));
     // For Shift+Tab, egui sets the focus only now.
     let next = ui.data_mut(|data| data.remove_temp::<Option<NextNumber>>(numbers()).flatten());
     if let Some(NextNumber(number)) = next {
@@ -85,7 +93,9 @@ fn edit(ui: &Ui, number: Id) {
 /// From other widgets, and from numbers without typing, Tab leads to the next widget of any kind.
 pub(in crate::ui) fn list_number(ui: &Ui, number: &Response) {
     if number.enabled() {
-        ui.data_mut(|data| data.get_temp_mut_or_default::<Numbers>(numbers()).0.push(number.id));
+        ui.data_mut(|data| {
+            data.get_temp_mut_or_default::<FrameNumbers>(numbers()).0.push(number.id)
+        });
     }
     let is_stroke = |event: &Event| match event {
         Event::Text(_) | Event::Paste(_) => true,
@@ -112,11 +122,11 @@ fn follow_numbers(ui: &Ui) {
     else {
         return;
     };
-    let all = ui.data(|data| data.get_temp::<Numbers>(numbers())).unwrap_or_default().0;
+    let all = ui.data(|data| data.get_temp::<FrameNumbers>(numbers())).unwrap_or_default().0;
     let step = if left.backwards { -1 } else { 1 };
-    let next = all.iter().position(|id| *id == left.number);
-    let next = next.and_then(|at| at.checked_add_signed(step)).and_then(|at| all.get(at));
-    if let Some(next) = next {
+    let left_at = all.iter().position(|id| *id == left.number);
+    let next_at = left_at.and_then(|at| at.checked_add_signed(step));
+    if let Some(next) = next_at.and_then(|at| all.get(at)) {
         ui.memory_mut(|memory| memory.request_focus(*next));
         ui.data_mut(|data| data.insert_temp(numbers(), Some(NextNumber(*next))));
         ui.ctx().request_repaint();

@@ -26,8 +26,13 @@ pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions)
     }
 }
 
+/// True if the key was pressed without modifiers in this frame.
+pub(in crate::ui) fn pressed(ui: &Ui, key: Key) -> bool {
+    ui.input(|input| input.key_pressed(key) && input.modifiers.is_none())
+}
+
 fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
-    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let pressed = |key| pressed(ui, key);
     let selected = session.selection().active();
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {
         actions.push(SelectAction::Joints(session.skeleton_pose().ids().collect()));
@@ -66,11 +71,10 @@ fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
 
 fn view(ui: &Ui, session: &Session, actions: &mut Actions) {
     axis_views(ui, session, actions);
-    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
-    if pressed(Key::F) {
+    if pressed(ui, Key::F) {
         actions.push(commands::frame_selection(session));
     }
-    if pressed(Key::Home) {
+    if pressed(ui, Key::Home) {
         actions.push(commands::frame_all(session));
     }
 }
@@ -95,7 +99,7 @@ pub(in crate::ui) fn axis_views(ui: &Ui, session: &Session, actions: &mut Action
             }
         }
         if input.key_pressed(Key::Num5) && !other_side {
-            actions.push(ViewAction::SetCamera(commands::with_other_projection(camera)));
+            actions.push(commands::toggle_projection(session));
         }
     });
 }

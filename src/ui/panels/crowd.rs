@@ -5,7 +5,7 @@ use egui::{Align2, Rect, Slider, Ui, Window, vec2};
 use crate::rig::{Crowd, Processor};
 use crate::session::{Actions, Session, ViewAction};
 use crate::ui::frame_times::Machine;
-use crate::ui::widgets::text::grouped;
+use crate::ui::widgets::{self, text::grouped};
 
 const WIDTH: f32 = 232.0;
 
@@ -87,17 +87,14 @@ fn figures(ui: &mut Ui, crowd: &Crowd, machine: &Machine) {
     for (name, value, unit, tooltip) in rows {
         ui.horizontal(|ui| {
             ui.label(name).on_hover_text(tooltip);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let text = value.map_or("–".to_owned(), |value| format!("{value:.2} {unit}"));
-                ui.label(egui::RichText::new(text).monospace());
-            });
+            let text = value.map_or("–".to_owned(), |value| format!("{value:.2} {unit}"));
+            widgets::value(ui, text);
         });
     }
 }
 
 fn moving(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let mut moving = session.view().is_crowd_animated();
-    if ui.checkbox(&mut moving, "Moving targets").changed() {
-        actions.push(ViewAction::AnimateCrowd(moving));
-    }
+    let is_moving = session.view().is_crowd_animated();
+    let changed = widgets::check_box(ui, "Moving targets", "", is_moving, None);
+    actions.extend(changed.map(ViewAction::AnimateCrowd));
 }

@@ -10,7 +10,7 @@ pub(in crate::ui) mod statistics;
 
 use egui::{ScrollArea, Ui};
 
-use super::widgets::{self, Segment, Tab};
+use super::widgets;
 use crate::document::{Overlay, RigKind};
 use crate::session::{Actions, ArmFigure, DisplayEdit, PanelTab, Session, ViewAction};
 
@@ -48,16 +48,8 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rigs = [
-        Segment {
-            name: "Arm",
-            tooltip: "Pose an arm of two limbs, solved in closed form",
-            value: RigKind::Arm,
-        },
-        Segment {
-            name: "Skeleton",
-            tooltip: "Pose a tree of joints, solved by iteration",
-            value: RigKind::Skeleton,
-        },
+        (RigKind::Arm, "Arm", "Pose an arm of two limbs, solved in closed form"),
+        (RigKind::Skeleton, "Skeleton", "Pose a tree of joints, solved by iteration"),
     ];
     let chosen = widgets::segments(ui, session.rig(), &rigs);
     actions.extend(chosen.map(DisplayEdit::ShowRig));
@@ -79,13 +71,11 @@ fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         RigKind::Skeleton => ("Reset to bind pose", "Set every joint rotation to 0"),
     };
     ui.horizontal(|ui| {
-        if ui.button(name).on_hover_text(tooltip).clicked() {
+        if widgets::button(ui, name, tooltip, None) {
             actions.push(DisplayEdit::ResetPose);
         }
-        let all = ui
-            .button("Reset all")
-            .on_hover_text("Reset pose, guides, display and view; hide the crowd");
-        if all.clicked() {
+        let tooltip = "Reset pose, guides, display and view; hide the crowd";
+        if widgets::button(ui, "Reset all", tooltip, None) {
             actions.push(DisplayEdit::ResetAll);
         }
     });
@@ -103,9 +93,8 @@ pub(super) fn has_room(ui: &Ui) -> bool {
 pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Option<ArmFigure> {
     let shown = shown(session);
     ui.add_space(4.0);
-    let tabs: Vec<_> = tabs(session)
-        .map(|value| Tab { name: value.name(), tooltip: tooltip(session.rig(), value), value })
-        .collect();
+    let tabs: Vec<_> =
+        tabs(session).map(|tab| (tab, tab.name(), tooltip(session.rig(), tab))).collect();
     actions.extend(widgets::tabs(ui, shown, &tabs).map(ViewAction::ShowTab));
     ui.separator();
     // Each page is scrolled on its own.

@@ -77,19 +77,24 @@ pub(in crate::ui) fn of_curves(area: &Response, session: &Session, actions: &mut
     area.context_menu(|ui| of_keys(ui, session, actions));
 }
 
+/// The reason why items that act on the selected keys are disabled; `None` if there are any.
+fn none_selected(session: &Session) -> Option<&'static str> {
+    session.selected_keys().is_empty().then_some("Select keys first: click or draw a box")
+}
+
 /// Shows the items that choose the curve after the selected keys and their tangents.
 fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let keys = session.selection().keys();
-    let none = keys.is_empty().then_some("Select keys first: click or draw a box");
     let document = session.document();
     let chosen = |interpolation| {
         let mut all = keys.iter().filter_map(|(channel, time)| document.keys.key(*channel, *time));
         !keys.is_empty() && all.all(|key| key.interpolation == interpolation)
     };
-    let no_angles = keys.iter().any(|(channel, _)| !channel.is_rotation());
-    let no_angles = no_angles.then_some("Only angles of joints turn the shortest way");
-    let switches = keys.iter().all(|(channel, _)| channel.is_switch());
-    let none = none.or(switches.then_some("Switches keep their value until the next key"));
+    let has_others = keys.iter().any(|(channel, _)| !channel.is_rotation());
+    let no_angles = has_others.then_some("Only angles of joints turn the shortest way");
+    let are_switches = keys.iter().all(|(channel, _)| channel.is_switch());
+    let switches = are_switches.then_some("Switches keep their value until the next key");
+    let none = none_selected(session).or(switches);
     for (interpolation, tooltip) in [
         (Interpolation::Auto, "Follow a smooth curve that stays between the two keys"),
         (Interpolation::Smooth, "Follow a smooth curve that may swing beyond the keys"),
@@ -99,8 +104,8 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ] {
         let button = Button::selectable(chosen(interpolation), interpolation.title());
         let why_not = none.or(no_angles.filter(|_| interpolation == Interpolation::Slerp));
-        let button = ui.add_enabled(why_not.is_none(), button).on_hover_text(tooltip);
-        if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
+        let item = ui.add_enabled(why_not.is_none(), button);
+        if widgets::explained(item, tooltip, why_not).clicked() {
             actions.push(KeysEdit::SetInterpolation(keys.to_vec(), interpolation));
             ui.close();
         }
@@ -116,7 +121,7 @@ fn shape(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn of_keys(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     shape(ui, session, actions);
     let keys = session.selection().keys();
-    let none = keys.is_empty().then_some("Select keys first: click or draw a box");
+    let none = none_selected(session);
     if widgets::button(ui, "Copy keys", "Copy the selected keys (Ctrl+C)", none) {
         actions.push(SelectAction::CopyKeys);
         ui.close();

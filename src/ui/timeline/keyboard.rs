@@ -1,6 +1,6 @@
 //! Shortcuts of the focused timeline, and shortcuts of keys and playback in the whole window.
 
-use egui::{Event, EventFilter, Key, Modifiers, Ui};
+use egui::{Event, Key, Modifiers, Ui};
 
 use super::{drag, ruler, time_scale};
 use crate::session::{Actions, KeysEdit, PlaybackAction, SelectAction, Session, ShellAction};
@@ -67,11 +67,9 @@ pub(in crate::ui) fn focused(ui: &Ui, session: &Session, actions: &mut Actions) 
     if !ui.memory(|memory| memory.has_focus(ruler::id())) {
         return;
     }
-    let arrows =
-        EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(ruler::id(), arrows));
+    focus::take_arrows(ui, ruler::id());
     focus::leave_letters(ui, ruler::id());
-    let pressed = |key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+    let pressed = |key| viewport::pressed(ui, key);
     let consumed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
     let timeline = session.document().timeline;
     let to = if pressed(Key::ArrowLeft) {

@@ -17,7 +17,6 @@ pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 use egui::{Rect, Ui};
 
 use crate::session::{Actions, Session};
-use drag::TimelineDrag;
 use rows::TimelineAreas;
 use time_scale::TimeScale;
 
@@ -38,9 +37,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.expand_to_include_rect(areas.whole);
     let timeline = session.document().timeline;
     let mut scale = TimeScale::load(ui, session, areas.keys.x_range());
-    let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
     let wheeled = Rect::from_min_max(areas.ruler.min, areas.keys.max);
-    scale.follow_input(ui, session, wheeled, curves.then_some(areas.keys), is_panning);
+    scale.follow_input(ui, session, wheeled, curves.then_some(areas.keys), drag::is_panning(ui));
 
     // First, so that Tab goes through it before the keys below it.
     ruler::auto_key_note(ui, session, scale, areas.ruler, actions);

@@ -1,11 +1,13 @@
-//! Rows of the timeline: their places on screen and their keys.
+//! The areas of the timeline on screen; its rows, their keys, and clicks on their names.
 
 use std::collections::HashSet;
 
 use egui::{Color32, FontId, Rect, Response, StrokeKind, TextStyle, Ui, UiBuilder, pos2, vec2};
+use glam::Vec3;
 
 use crate::document::Channel;
-use crate::session::{Key, SelectAction, Session};
+use crate::kinematics::spline::Spline;
+use crate::session::{Key, Session};
 
 /// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;
@@ -143,24 +145,25 @@ impl DopeSheetRow {
     }
 }
 
-type Track = crate::kinematics::spline::Spline<glam::Vec3>;
-
-fn times(track: &Track, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
+fn times(track: &Spline<Vec3>, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
     let knots = track.knots();
     let first = knots.partition_point(|knot| knot.time < from);
     let seen = knots.iter().skip(first).take_while(move |knot| knot.time <= to);
     seen.map(|knot| knot.time)
 }
 
-/// The selection after a click on the name of a channel: the channel alone, or none if it was alone
+/// The selection after a click on a name: that channel or joint alone, or none if it was alone
 /// before; with Shift or Ctrl it is added or removed.
-pub(in crate::ui) fn clicked(ui: &Ui, session: &Session, channel: Channel) -> SelectAction {
-    let selected = session.selection().channels();
-    let is_selected = selected.contains(&channel);
+pub(in crate::ui) fn after_click<'a, T: Copy + PartialEq + 'a, C: FromIterator<T>>(
+    ui: &Ui,
+    selected: impl IntoIterator<Item = &'a T>,
+    name: T,
+) -> C {
+    let selected: Vec<T> = selected.into_iter().copied().collect();
     let several = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-    let goes = is_selected && (several || selected.len() == 1);
-    let others = selected.iter().copied().filter(|other| several && *other != channel);
-    SelectAction::Channels(others.chain((!goes).then_some(channel)).collect())
+    let goes = selected.contains(&name) && (several || selected.len() == 1);
+    let others = selected.into_iter().filter(|other| several && *other != name);
+    others.chain((!goes).then_some(name)).collect()
 }
 
 /// A set of keys with fast lookup.

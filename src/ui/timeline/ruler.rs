@@ -2,7 +2,7 @@
 
 use egui::{
     Align2, Area, Color32, CursorIcon, Event, Frame, Id, Order, PointerButton, Rect, Response,
-    Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, accesskit, pos2,
+    Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2,
 };
 
 use super::drag;
@@ -34,14 +34,8 @@ pub(in crate::ui) fn ui(
     let time = session.playback().time();
     response.widget_info(|| WidgetInfo::slider(true, time, "Timeline ruler"));
     let timeline = session.document().timeline;
-    ui.ctx().accesskit_node_builder(response.id, |node| {
-        node.set_min_numeric_value(timeline.start);
-        node.set_max_numeric_value(timeline.end);
-        node.set_numeric_value_step(1.0 / timeline.frame_rate);
-        node.add_action(accesskit::Action::SetValue);
-        node.add_action(accesskit::Action::Increment);
-        node.add_action(accesskit::Action::Decrement);
-    });
+    let step = 1.0 / timeline.frame_rate;
+    widgets::set_range(ui, response.id, timeline.start..=timeline.end, step);
     paint(ui, scale, timeline, rect);
     if response.has_focus() {
         let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
@@ -74,23 +68,12 @@ pub(in crate::ui) fn is_pressed(ui: &Ui, response: &Response) -> bool {
 /// Handles requests of screen readers to step or set the time.
 fn step_by_accesskit(ui: &Ui, session: &Session, actions: &mut Actions) {
     let timeline = session.document().timeline;
-    let frames = ui.input(|input| {
-        let count = |action| input.num_accesskit_action_requests(id(), action) as f64;
-        count(accesskit::Action::Increment) - count(accesskit::Action::Decrement)
-    });
+    let frames = widgets::requested_steps(ui, id());
     if frames != 0.0 {
         let time = timeline.snapped(session.playback().time()) + frames / timeline.frame_rate;
         actions.push(PlaybackAction::SetTime(timeline.snapped(time)));
     }
-    let values: Vec<f64> = ui.input(|input| {
-        let requests = input.accesskit_action_requests(id(), accesskit::Action::SetValue);
-        let value = |request: &accesskit::ActionRequest| match request.data {
-            Some(accesskit::ActionData::NumericValue(value)) => Some(value),
-            _ => None,
-        };
-        requests.filter_map(value).collect()
-    });
-    actions.extend(values.into_iter().map(PlaybackAction::SetTime));
+    actions.extend(widgets::requested_values(ui, id()).into_iter().map(PlaybackAction::SetTime));
 }
 
 fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
@@ -164,9 +147,12 @@ pub(in crate::ui) fn auto_key_note(
         return;
     }
     let x = scale.x(session.playback().time()).clamp(ruler.left(), ruler.right());
-    let area = Area::new(Id::unique("auto-key is on")).order(Order::Middle);
-    let area = area.pivot(Align2::CENTER_BOTTOM).fixed_pos(pos2(x, ruler.top() - GAP));
-    area.constrain_to(ui.ctx().content_rect()).show(ui.ctx(), |ui| {
+    let area = Area::new(Id::unique("auto-key is on"))
+        .order(Order::Middle)
+        .pivot(Align2::CENTER_BOTTOM)
+        .fixed_pos(pos2(x, ruler.top() - GAP))
+        .constrain_to(ui.ctx().content_rect());
+    area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label("Auto-key is on: every edit sets keys at the playhead");
@@ -240,8 +226,8 @@ impl RulerTicks {
         let frames = [1, 2, 3, 5, 6, 10, 15].into_iter().filter(is_part).map(RulerStep::Frames);
         let steps: Vec<RulerStep> = frames.chain(SECONDS.map(RulerStep::Seconds)).collect();
         let points = |step: RulerStep| step.seconds(timeline) * scale.points_per_second();
-        let major = steps.iter().copied().find(|step| points(*step) >= LABEL);
-        let major = major.unwrap_or(RulerStep::Seconds(86_400));
+        let labelled = steps.iter().copied().find(|step| points(*step) >= LABEL);
+        let major = labelled.unwrap_or(RulerStep::Seconds(86_400));
         let finer = |step: &RulerStep| step.divides(major, timeline) && points(*step) >= LINE;
         let minor = steps.iter().copied().find(finer).unwrap_or(major);
         Self { major, minor }

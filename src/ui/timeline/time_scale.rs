@@ -68,11 +68,6 @@ impl TimeScale {
         Self { seen, from, to }
     }
 
-    fn keep(self, ui: &Ui, session: &Session) {
-        let zoom = StoredRange { of: RangeOwner::of(session), from: self.from, to: self.to };
-        ui.data_mut(|data| data.insert_temp(id(), zoom));
-    }
-
     /// Removes the stored range, so that the next frame shows the whole timeline.
     pub fn fit(ui: &Ui) {
         ui.data_mut(|data| data.remove::<StoredRange>(id()));
@@ -116,15 +111,12 @@ impl TimeScale {
         if session.playback().is_playing() {
             self.reveal(session.playback().time());
         }
-        let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else {
-            self.keep_if_other(ui, before, session);
-            return;
-        };
-        if is_panning {
+        let mouse = ui.input(|input| input.pointer.latest_pos());
+        if mouse.is_some() && is_panning {
             self.pan(-ui.input(|input| input.pointer.delta().x));
         }
         let is_in_values = values.is_some_and(|values| ui.rect_contains_pointer(values));
-        if ui.rect_contains_pointer(area) {
+        if let Some(mouse) = mouse.filter(|_| ui.rect_contains_pointer(area)) {
             for event in ui.input(|input| input.events.clone()) {
                 match event {
                     Event::Zoom(factor) => self.zoom(mouse.x, f64::from(factor), session),
@@ -141,19 +133,16 @@ impl TimeScale {
                 }
             }
         }
-        self.keep_if_other(ui, before, session);
-    }
-
-    fn keep_if_other(self, ui: &Ui, before: Self, session: &Session) {
-        if self != before {
-            self.keep(ui, session);
+        if *self != before {
+            let range = StoredRange { of: RangeOwner::of(session), from: self.from, to: self.to };
+            ui.data_mut(|data| data.insert_temp(id(), range));
         }
     }
 
     fn pan(&mut self, points: f32) {
         let farthest = 2.0 * Timeline::MAX_TIME;
-        let by = f64::from(points) / self.points_per_second();
-        let by = by.clamp(-farthest - self.from, farthest - self.to);
+        let way = f64::from(points) / self.points_per_second();
+        let by = way.clamp(-farthest - self.from, farthest - self.to);
         self.from += by;
         self.to += by;
     }

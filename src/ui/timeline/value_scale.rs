@@ -1,5 +1,5 @@
 //! The scales of the values in the graph editor, one for angles, one for lengths and one for
-//! ratios; and a channel's curve.
+//! ratios, and their axes, one at the left and one at the right; a channel's curve.
 
 use egui::{
     Align2, Color32, Event, Id, Pos2, Rangef, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo,
@@ -166,9 +166,9 @@ fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    let room = (ROOM * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
+    let least = (ROOM * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
     // A constant value lies in the middle.
-    let room = if high - low < room { 0.5 * room + 0.5 } else { room };
+    let room = if high - low < least { 0.5 * least + 0.5 } else { least };
     (low - room, high + room)
 }
 

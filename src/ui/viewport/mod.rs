@@ -4,8 +4,8 @@ mod navigation;
 mod notes;
 
 use egui::{
-    Event, EventFilter, Id, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui,
-    WidgetInfo, pos2, vec2,
+    Event, Id, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui, WidgetInfo,
+    pos2, vec2,
 };
 
 use super::gizmo::screen::ScreenProjection;
@@ -25,7 +25,7 @@ use navigation::{covers_view_axes, motion, show_cursor, view_axes, wheel};
 const PANEL_EDGE: f32 = 4.0;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Rect {
-    // What follows, and the status bar, say what is found here.
+    // The notes below and the status bar read the diagnosis that this call makes.
     pose_summary::found(ui, session);
     let rect = whole_pixels(ui, ui.available_rect_before_wrap());
     // The edges are those of the resizable panels beside the view.
@@ -46,9 +46,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     let over = response.contains_pointer() && !on_view_axes;
     let is_held = (held_grip.is_some() || session.view().drag().is_some())
         && !ui.input(|input| input.pointer.any_released());
-    let pointed = mouse.filter(|_| over && !is_held);
-    let pointed = pointed.map(|at| pointed_at(session, &screen, &gizmo, at));
-    let Pointed { grip: pointed, lit } = pointed.unwrap_or_default();
+    let free_mouse = mouse.filter(|_| over && !is_held);
+    let found = free_mouse.map(|at| pointed_at(session, &screen, &gizmo, at));
+    let Pointed { grip: pointed, lit } = found.unwrap_or_default();
     status_bar::set_pointed(ui, pointed);
     if held_grip.is_none() && session.view().drag().is_none() {
         light_up(ui, session, lit, actions);
@@ -88,15 +88,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         actions.push(SelectAction::ArmJoint(None));
     }
     if response.double_clicked() && !on_view_axes {
-        actions.push(match pointed {
-            Some(_) => commands::frame_selection(session),
-            None if joint_at(session, &screen, &gizmo, mouse).is_some() => {
-                commands::frame_selection(session)
-            }
-            None => ViewAction::GlideTo(match session.rig() {
-                RigKind::Arm if session.crowd().is_none() => Camera::default(),
-                _ => session.framing_all(),
-            }),
+        let is_on_body = pointed.is_some() || joint_at(session, &screen, &gizmo, mouse).is_some();
+        actions.push(match session.rig() {
+            _ if is_on_body => commands::frame_selection(session),
+            RigKind::Arm if session.crowd().is_none() => ViewAction::GlideTo(Camera::default()),
+            _ => commands::frame_all(session),
         });
     }
     show_cursor(ui, session, pointed.or(held_grip));
@@ -378,9 +374,7 @@ fn keys(ui: &Ui, response: &Response, session: &Session, actions: &mut Actions) 
     }
     if response.has_focus() {
         focus::leave_letters(ui, response.id);
-        let arrows =
-            EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        focus::take_arrows(ui, response.id);
         keyboard::viewport::turn(ui, session, response.rect.aspect_ratio(), actions);
     }
 }

@@ -9,7 +9,7 @@ use egui::{
 use crate::document::RigKind;
 use crate::session::{Actions, Session, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
-use crate::ui::{pose_summary, style};
+use crate::ui::{pose_summary, style, widgets};
 
 /// Width of the text, in points.
 const WIDTH: f32 = 232.0;
@@ -36,11 +36,11 @@ pub(in crate::ui) fn why_not_reached(
     let size = ui.memory(|memory| memory.area_rect(id)).map_or(SIZE, |rect| rect.size());
     let room = screen.rect.shrink(8.0);
     let joints = session.skeleton_pose();
-    let bones = joints.ids().flat_map(|joint| {
+    let points = joints.ids().flat_map(|joint| {
         let (base, tip) = (joints.base(joint), joints.tip(joint));
         [base, base.midpoint(tip), tip].map(|point| screen.place(point))
     });
-    let bones: Vec<Pos2> = bones.flatten().collect();
+    let bones: Vec<Pos2> = points.flatten().collect();
     let at = place(target.clamp(room.min, room.max), size, room, &bones);
     Area::new(id).order(Order::Middle).fixed_pos(at.min).constrain_to(room).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
@@ -56,10 +56,7 @@ fn place(target: Pos2, size: Vec2, room: Rect, points: &[Pos2]) -> Rect {
     let sides = [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)];
     let corners = [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, -1.0)];
     let beside = |side: Vec2| {
-        let rect = Rect::from_center_size(target + side * (DISTANCE + size * 0.5), size);
-        rect.translate(
-            (room.min - rect.min).max(Vec2::ZERO) + (room.max - rect.max).min(Vec2::ZERO),
-        )
+        moved_into(Rect::from_center_size(target + side * (DISTANCE + size * 0.5), size), room)
     };
     let hidden = |rect: &Rect| {
         let near = rect.expand(CLEAR);
@@ -72,7 +69,7 @@ fn place(target: Pos2, size: Vec2, room: Rect, points: &[Pos2]) -> Rect {
 
 const TEXT: &str = "Drag the hand";
 /// Corner of the hint from the hand, in points, clear of the arrows.
-const OFFSET: egui::Vec2 = vec2(44.0, -78.0);
+const OFFSET: Vec2 = vec2(44.0, -78.0);
 
 pub(in crate::ui) fn drag_the_hand(ui: &Ui, session: &Session, screen: &ScreenProjection) {
     let (arm, preferences) = (session.arm(), session.preferences());
@@ -92,8 +89,8 @@ fn paint(ui: &Ui, viewport: Rect, hand: Pos2) {
     let (accent, visuals) = (style::accent(ui), ui.visuals());
     let font = FontId::proportional(15.0);
     let text = painter.layout_no_wrap(TEXT.to_owned(), font, visuals.strong_text_color());
-    let tag = Rect::from_min_size(hand + OFFSET, text.size() + vec2(20.0, 10.0));
-    let tag = tag.translate(into(tag, viewport.shrink(8.0)));
+    let beside = Rect::from_min_size(hand + OFFSET, text.size() + vec2(20.0, 10.0));
+    let tag = moved_into(beside, viewport.shrink(8.0));
     let near = pos2(hand.x.clamp(tag.left() + 8.0, tag.right() - 8.0), tag.bottom());
     let direction = (near - hand).normalized();
     painter.line_segment([hand + 18.0 * direction, near], Stroke::new(1.5, accent));
@@ -104,11 +101,10 @@ fn paint(ui: &Ui, viewport: Rect, hand: Pos2) {
     hint.widget_info(|| WidgetInfo::labeled(Role::Label, true, TEXT));
 }
 
-/// The shift that brings `tag` into `room`.
-fn into(tag: Rect, room: Rect) -> egui::Vec2 {
-    let least = (room.min - tag.min).max(egui::Vec2::ZERO);
-    let most = (room.max - tag.max).min(egui::Vec2::ZERO);
-    least + most
+/// The rectangle, moved into `room`.
+fn moved_into(rect: Rect, room: Rect) -> Rect {
+    let (least, most) = (room.min - rect.min, room.max - rect.max);
+    rect.translate(least.max(Vec2::ZERO) + most.min(Vec2::ZERO))
 }
 
 /// Distance from the edges of the view, in points.
@@ -121,12 +117,11 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
     let area = Area::new(Id::unique("follow the mouse")).order(Order::Middle);
     area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
-            let mut follows = session.follows_mouse();
+            let follows = session.follows_mouse();
             let tooltip =
                 "Let the heads follow the mouse and record it; a click in the view ends it";
-            if ui.checkbox(&mut follows, "Follow the mouse").on_hover_text(tooltip).changed() {
-                actions.push(TransactionAction::FollowMouse(follows));
-            }
+            let changed = widgets::check_box(ui, "Follow the mouse", tooltip, follows, None);
+            actions.extend(changed.map(TransactionAction::FollowMouse));
         });
     });
 }

@@ -2,10 +2,11 @@
 //! them), and the diamond that keys a value.
 
 use egui::{
-    Button, Color32, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke, Ui,
-    WidgetInfo, WidgetText, pos2, vec2,
+    Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
+    Stroke, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
+use super::choices::explained;
 use crate::document::Channel;
 use crate::session::{Actions, KeysEdit, Session};
 use crate::ui::style;
@@ -19,11 +20,18 @@ pub(in crate::ui) fn button(
     disabled: Option<&str>,
 ) -> bool {
     let button = ui.add_enabled(disabled.is_none(), Button::new(name.into()));
-    let button = button.on_hover_text(tooltip);
-    match disabled {
-        Some(why) => button.on_disabled_hover_text(why).clicked(),
-        None => button.clicked(),
-    }
+    explained(button, tooltip, disabled).clicked()
+}
+
+/// Shows a button like [`button`], as wide as the panel.
+pub(in crate::ui) fn wide_button(
+    ui: &mut Ui,
+    name: &str,
+    tooltip: &str,
+    disabled: Option<&str>,
+) -> bool {
+    let layout = Layout::top_down_justified(Align::Center);
+    ui.with_layout(layout, |ui| button(ui, name, tooltip, disabled)).inner
 }
 
 /// Shows the button that most users press, in the accent colour. `disabled` is the reason why it is
@@ -133,13 +141,10 @@ impl Icon {
 
 /// The diamond that marks a key; `size` is the distance in points from its centre to a corner.
 pub(in crate::ui) fn diamond(at: Pos2, size: f32, fill: Color32, stroke: Stroke) -> Shape {
-    let points = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
-    let points = points.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();
+    let corners = [(0.0, -size), (size, 0.0), (0.0, size), (-size, 0.0)];
+    let points = corners.map(|(x, y)| pos2(at.x + x, at.y + y)).to_vec();
     Shape::convex_polygon(points, fill, stroke)
 }
-
-/// Distance in points from the centre of the diamond to a corner.
-const SIZE: f32 = 4.5;
 
 /// A diamond that adds a key of a channel at the playhead, or deletes the key that is there. It is
 /// filled at a key, and has the accent colour there and while the channel has an unkeyed change.
@@ -152,6 +157,8 @@ pub(in crate::ui) struct KeyButton {
 impl KeyButton {
     /// Width in points of the button.
     pub const WIDTH: f32 = 16.0;
+    /// Distance in points from the centre of the diamond to a corner.
+    const SIZE: f32 = 4.5;
 
     /// Shows the button, named after the value that it keys.
     pub fn show(self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Actions) {
@@ -193,7 +200,7 @@ impl KeyButton {
             (false, false) => visuals.weak_text_color(),
         };
         let fill = if is_at_key { colour } else { Color32::TRANSPARENT };
-        let size = if stands_out { SIZE + 1.0 } else { SIZE };
+        let size = if stands_out { Self::SIZE + 1.0 } else { Self::SIZE };
         ui.painter().add(diamond(rect.center(), size, fill, Stroke::new(1.2, colour)));
         response
     }

@@ -1,8 +1,8 @@
-//! Choices: tabs, a row of buttons of which one is chosen, a labelled drop-down list, and check
-//! boxes of overlays.
+//! Choices: tabs, a row of buttons of which one is chosen, a drop-down list with a label, and check
+//! boxes.
 
 use egui::{
-    Align, Button, Checkbox, Color32, ComboBox, Layout, Rect, RichText, Role, Stroke, Ui,
+    Align, Button, Checkbox, Color32, ComboBox, Layout, Rect, Response, RichText, Role, Stroke, Ui,
     WidgetInfo, vec2,
 };
 
@@ -10,39 +10,35 @@ use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, Session};
 use crate::ui::{labels, style, widgets};
 
-/// A tab that can be chosen.
-pub(in crate::ui) struct Tab<'a, T> {
-    pub name: &'a str,
-    pub tooltip: &'a str,
-    pub value: T,
-}
+/// A value that can be chosen, its name and its tooltip.
+pub(in crate::ui) type Alternative<'a, T> = (T, &'a str, &'a str);
 
 /// Shows a row of tabs, the chosen one underlined, and returns the value of one that was pressed
 /// and is not `now`.
 pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     ui: &mut Ui,
     now: T,
-    tabs: &[Tab<'_, T>],
+    tabs: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().button_padding = vec2(6.0, 5.0);
-        for Tab { name, tooltip, value } in tabs {
-            let is_now = *value == now;
+        for &(value, name, tooltip) in tabs {
+            let is_now = value == now;
             let colour = if is_now {
                 ui.visuals().strong_text_color()
             } else {
                 ui.visuals().weak_text_color()
             };
-            let text = RichText::new(*name).color(colour);
+            let text = RichText::new(name).color(colour);
             let tab = ui.add(Button::new(text).fill(Color32::TRANSPARENT));
             tab.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_now, name));
             if is_now {
                 underline(ui, tab.rect);
             }
-            if tab.on_hover_text(*tooltip).clicked() && !is_now {
-                pressed = Some(*value);
+            if tab.on_hover_text(tooltip).clicked() && !is_now {
+                pressed = Some(value);
             }
         }
     });
@@ -54,32 +50,29 @@ fn underline(ui: &Ui, tab: Rect) {
     ui.painter().hline(tab.x_range().shrink(6.0), y, Stroke::new(2.0, style::accent(ui)));
 }
 
-/// One of the buttons.
-pub(in crate::ui) struct Segment<'a, T> {
-    pub name: &'a str,
-    pub tooltip: &'a str,
-    pub value: T,
-}
-
-/// Shows the buttons, all as wide, and returns the value of one that was pressed and is not `now`.
+/// Shows buttons, all as wide, and returns the value of one that was pressed and is not `now`.
 pub(in crate::ui) fn segments<T: PartialEq + Copy>(
     ui: &mut Ui,
     now: T,
-    choices: &[Segment<'_, T>],
+    choices: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
     ui.columns(choices.len(), |columns| {
-        for (column, Segment { name, tooltip, value }) in columns.iter_mut().zip(choices) {
-            let is_now = *value == now;
+        for (column, &(value, name, tooltip)) in columns.iter_mut().zip(choices) {
             column.with_layout(Layout::top_down_justified(Align::Center), |ui| {
-                let button = ui.add(Button::selectable(is_now, *name).frame_when_inactive(true));
-                if button.on_hover_text(*tooltip).clicked() && !is_now {
-                    pressed = Some(*value);
+                let is_now = value == now;
+                if segment(ui, is_now, name, tooltip).clicked() && !is_now {
+                    pressed = Some(value);
                 }
             });
         }
     });
     pressed
+}
+
+/// Shows a button with a frame that stands out while it is chosen.
+pub(in crate::ui) fn segment(ui: &mut Ui, is_now: bool, name: &str, tooltip: &str) -> Response {
+    ui.add(Button::selectable(is_now, name).frame_when_inactive(true)).on_hover_text(tooltip)
 }
 
 /// A drop-down list with a label on its left.
@@ -104,9 +97,29 @@ impl Choice<'_> {
                 .width(ui.available_width().min(150.0))
                 .truncate();
             let response = combo.show_ui(ui, |ui| items(&mut ChoiceList(ui))).response;
-            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
+            name(ui, &response, self.name);
             response.on_hover_text(self.tooltip);
         });
+    }
+
+    /// Shows the list of `alternatives`, and returns the value of one that was chosen. `is_now` is
+    /// true for the present choice, whose name replaces [`Self::shown`].
+    pub fn pick<T: Copy>(
+        self,
+        ui: &mut Ui,
+        alternatives: &[Alternative<'_, T>],
+        is_now: impl Fn(&T) -> bool,
+    ) -> Option<T> {
+        let now = alternatives.iter().find(|(value, ..)| is_now(value));
+        let mut chosen = None;
+        Choice { shown: now.map_or("", |now| now.1), ..self }.show(ui, |list| {
+            for (value, name, tooltip) in alternatives {
+                if list.item(is_now(value), name, tooltip, None) {
+                    chosen = Some(*value);
+                }
+            }
+        });
+        chosen
     }
 }
 
@@ -120,15 +133,55 @@ impl ChoiceList<'_> {
         tooltip: &str,
         disabled: Option<&str>,
     ) -> bool {
-        let button = Button::selectable(is_now, name);
-        let response = self.0.add_enabled(disabled.is_none(), button);
-        let response = if tooltip.is_empty() { response } else { response.on_hover_text(tooltip) };
-        let response = match disabled {
-            Some(reason) => response.on_disabled_hover_text(reason),
-            None => response,
-        };
-        response.clicked() && !is_now
+        let item = self.0.add_enabled(disabled.is_none(), Button::selectable(is_now, name));
+        explained(item, tooltip, disabled).clicked() && !is_now
     }
+}
+
+/// Gives a widget a name for screen readers that differs from its visible text.
+pub(in crate::ui) fn name(ui: &Ui, widget: &Response, name: &str) {
+    ui.ctx().accesskit_node_builder(widget.id, |node| node.set_label(name));
+}
+
+/// Gives a widget a tooltip, unless it is empty, and the reason why it is disabled, if it is.
+pub(in crate::ui) fn explained(
+    widget: Response,
+    tooltip: &str,
+    disabled: Option<&str>,
+) -> Response {
+    let told = if tooltip.is_empty() { widget } else { widget.on_hover_text(tooltip) };
+    match disabled {
+        Some(reason) => told.on_disabled_hover_text(reason),
+        None => told,
+    }
+}
+
+/// Shows a check box, and returns its state if the user changed it. An empty `tooltip` shows none.
+/// `disabled` is the reason why it is disabled; `None` enables it.
+pub(in crate::ui) fn check_box(
+    ui: &mut Ui,
+    name: &str,
+    tooltip: &str,
+    mut is_on: bool,
+    disabled: Option<&str>,
+) -> Option<bool> {
+    let check_box = ui.add_enabled(disabled.is_none(), Checkbox::new(&mut is_on, name));
+    explained(check_box, tooltip, disabled).changed().then_some(is_on)
+}
+
+/// Shows the check box of an overlay.
+pub(in crate::ui) fn overlay_check_box(
+    ui: &mut Ui,
+    session: &Session,
+    overlay: Overlay,
+    name: &str,
+    tooltip: &str,
+    disabled: Option<&str>,
+    actions: &mut Actions,
+) {
+    let is_shown = session.shown().display.shows(overlay);
+    let changed = check_box(ui, name, tooltip, is_shown, disabled);
+    actions.extend(changed.map(|is_shown| DisplayEdit::ShowOverlay(overlay, is_shown)));
 }
 
 /// Shows check boxes of overlays in `count` columns. `disabled` is the reason why they are
@@ -144,13 +197,8 @@ pub(in crate::ui) fn check_boxes(
     ui.columns(count, |columns| {
         for (index, overlay) in overlays.iter().enumerate() {
             let (name, tooltip) = labels::overlay(session.rig(), *overlay);
-            let mut shown = session.shown().display.shows(*overlay);
-            let check_box = Checkbox::new(&mut shown, name);
-            let check_box = columns[index % count].add_enabled(disabled.is_none(), check_box);
-            let check_box = check_box.on_hover_text(tooltip);
-            if check_box.on_disabled_hover_text(disabled.unwrap_or_default()).changed() {
-                actions.push(DisplayEdit::ShowOverlay(*overlay, shown));
-            }
+            let column = &mut columns[index % count];
+            overlay_check_box(column, session, *overlay, name, tooltip, disabled, actions);
         }
     });
 }

@@ -5,6 +5,8 @@ use std::cell::Cell;
 use egui::emath::Numeric;
 use egui::{Align, DragValue, Key, Layout, Response, TextWrapMode, Ui, vec2};
 
+use super::choices::name;
+use super::section::pair;
 use super::text;
 use crate::document::Timeline;
 use crate::session::{Action, Actions, Session, ShellAction, TransactionAction};
@@ -58,7 +60,7 @@ impl<N: Numeric> DragNumber<'_, N> {
             ui.add(number)
         });
         let response = row.inner;
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
+        name(ui, &response, self.name);
         focus::list_number(ui, &response);
         if response.drag_started() {
             actions.push(TransactionAction::Begin);
@@ -88,14 +90,14 @@ impl<N: Numeric> DragNumber<'_, N> {
     /// Evaluates text with or without the unit, such as `2*50`; `None` if the result is not a
     /// finite number. Unchanged text returns the value itself, with the digits that are not shown.
     fn parse(&self, text: &str) -> Option<f64> {
-        let text = text.trim().trim_end_matches(self.unit.trim()).trim_end();
-        let text = text.replace('\u{2212}', "-");
+        let number = text.trim().trim_end_matches(self.unit.trim()).trim_end();
+        let text = number.replace('\u{2212}', "-");
         let value = self.value.to_f64();
         if text == (self.format)(value) {
             return Some(value);
         }
-        let number = text.parse().ok().or_else(|| exmex::eval_str::<f64>(&text).ok());
-        number.filter(|value| (*value as f32).is_finite())
+        let parsed = text.parse().ok().or_else(|| exmex::eval_str::<f64>(&text).ok());
+        parsed.filter(|value| (*value as f32).is_finite())
     }
 }
 
@@ -150,6 +152,18 @@ impl NumberField<'_> {
         let digits = self.digits;
         let format = |value| text::fixed(value, digits);
         self.show_as(ui, session, actions, &format, set)
+    }
+
+    /// Shows the field in a row with a label on its left.
+    pub fn row<A: Into<Action>>(
+        self,
+        ui: &mut Ui,
+        session: &Session,
+        label: &str,
+        actions: &mut Actions,
+        set: impl Fn(f32) -> A,
+    ) {
+        pair(ui, label, |ui| self.show(ui, session, actions, set));
     }
 
     /// Shows the field as [`Self::show`] does, but with the text that `format` returns.

@@ -3,8 +3,8 @@
 use egui::collapsing_header::CollapsingState;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align, CollapsingHeader, FontId, Id, InnerResponse, Label, Layout, Rect, Ui, UiBuilder,
-    WidgetText, vec2,
+    Align, CollapsingHeader, FontId, Id, InnerResponse, Label, Layout, Rect, Response, RichText,
+    Ui, UiBuilder, WidgetText, vec2,
 };
 
 use crate::session::Actions;
@@ -21,8 +21,7 @@ pub(in crate::ui) fn open_section(ui: &Ui, id: Option<&str>) {
 /// Folds the sections that [`open_section`] has unfolded since the last call.
 pub(in crate::ui) fn fold_opened_sections(ui: &Ui) {
     let opened: Option<Vec<Id>> = ui.data_mut(|data| data.remove_temp(opened_sections()));
-    let opened = opened.unwrap_or_default();
-    for mut section in opened.iter().filter_map(|id| CollapsingState::load(ui, *id)) {
+    for mut section in opened.iter().flatten().filter_map(|id| CollapsingState::load(ui, *id)) {
         section.set_open(false);
         section.store(ui);
     }
@@ -52,9 +51,9 @@ pub(in crate::ui) fn section_with(
     let (whole, clip, top) = (ui.max_rect().x_range(), ui.clip_rect(), ui.cursor().top());
     let mut aside = Some(aside);
     let mut show_aside = |ui: &mut Ui, bottom: f32| {
-        let row = Rect::from_x_y_ranges(whole, top..=bottom);
-        let row = UiBuilder::new().max_rect(row).layout(Layout::left_to_right(Align::Center));
-        let mut row = ui.new_child(row);
+        let rect = Rect::from_x_y_ranges(whole, top..=bottom);
+        let builder = UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center));
+        let mut row = ui.new_child(builder);
         row.set_clip_rect(clip);
         if let Some(aside) = aside.take() {
             aside(&mut row);
@@ -93,8 +92,8 @@ fn show_section(
 ) -> Rect {
     let heading = cut(ui, title);
     let is_asked = ui.data(|data| data.get_temp(section_to_open())) == Some(Some(id.to_owned()));
-    let header = CollapsingHeader::new(heading).id_salt(id).default_open(open);
-    let shown = header.open(is_asked.then_some(true)).show_unindented(ui, contents);
+    let section = CollapsingHeader::new(heading).id_salt(id).default_open(open);
+    let shown = section.open(is_asked.then_some(true)).show_unindented(ui, contents);
     let header = &shown.header_response;
     if is_asked && header.changed() {
         ui.data_mut(|data| {
@@ -102,11 +101,11 @@ fn show_section(
         });
     }
     if is_asked {
-        let end = shown.body_returned.map_or(shown.header_response.rect, |()| ui.min_rect());
-        ui.scroll_to_rect(shown.header_response.rect.union(end), None);
+        let end = shown.body_returned.map_or(header.rect, |()| ui.min_rect());
+        ui.scroll_to_rect(header.rect.union(end), None);
     }
     ui.add_space(SPACE);
-    shown.header_response.rect
+    header.rect
 }
 
 /// The title, truncated to the width of the panel: egui would widen the panel for a longer title.
@@ -149,6 +148,12 @@ pub(in crate::ui) fn pair<T>(
         ui.add(Label::new(name).selectable(false));
         ui.with_layout(Layout::right_to_left(Align::Center), contents).inner
     })
+}
+
+/// Shows the value of a quantity, in digits of one width, at the right end of a row or a cell.
+pub(in crate::ui) fn value(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let right = Layout::right_to_left(Align::Center);
+    ui.with_layout(right, |ui| ui.label(RichText::new(text).monospace())).inner
 }
 
 /// Shows a row like [`pair`], whose name is a term of the glossary.

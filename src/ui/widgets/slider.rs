@@ -1,10 +1,12 @@
-//! A slider with a label and a number.
+//! A slider with a label and a number; sliders that belong together: of a point, of angles in
+//! degrees, and of the soft limits.
 
 use core::f32::consts::PI;
+use core::ops::RangeInclusive;
 
 use egui::{
-    Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Response, Sense, TextStyle,
-    Ui, Vec2, WidgetInfo, accesskit, pos2, vec2,
+    Align2, Color32, CornerRadius, CursorIcon, Id, Key, Rect, Response, Sense, TextStyle, Ui, Vec2,
+    WidgetInfo, accesskit, pos2, vec2,
 };
 use glam::Vec3;
 
@@ -130,14 +132,7 @@ impl Slider<'_> {
         let size = vec2(width.max(40.0), HEIGHT);
         let (rect, mut response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::slider(true, f64::from(self.value), self.name));
-        ui.ctx().accesskit_node_builder(response.id, |node| {
-            node.set_min_numeric_value(f64::from(self.range.0));
-            node.set_max_numeric_value(f64::from(self.range.1));
-            node.set_numeric_value_step(f64::from(self.step));
-            node.add_action(accesskit::Action::SetValue);
-            node.add_action(accesskit::Action::Increment);
-            node.add_action(accesskit::Action::Decrement);
-        });
+        set_range(ui, response.id, self.range.0.into()..=self.range.1.into(), self.step.into());
         self.paint(ui, rect, &response);
         response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         hover_text(response, self.tooltip)
@@ -213,16 +208,14 @@ impl Slider<'_> {
         if rail.clicked() || rail.drag_stopped() {
             actions.push(TransactionAction::Commit);
         }
-        let change = self.keyed(ui, rail) + self.spoken_steps(ui, rail);
+        let change = self.keyed(ui, rail) + requested_steps(ui, rail.id) as f32 * self.step;
         if change != 0.0 {
             actions.push(set(self.value + change));
         }
         if let Some(end) = self.keyed_end(ui, rail) {
             actions.push(set(end));
         }
-        for value in spoken_values(ui, rail) {
-            actions.push(set(value));
-        }
+        actions.extend(requested_values(ui, rail.id).into_iter().map(|value| set(value as f32)));
     }
 
     /// Change of the value by the arrow and page keys that were pressed in this frame.
@@ -231,9 +224,7 @@ impl Slider<'_> {
             return 0.0;
         }
         focus::leave_letters(ui, rail.id);
-        let arrows =
-            EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(rail.id, arrows));
+        focus::take_arrows(ui, rail.id);
         ui.input(|input| {
             let pressed = |key: Key| input.num_presses(key) as f32;
             let step = self.step * if input.modifiers.shift { FINE } else { 1.0 };
@@ -255,15 +246,6 @@ impl Slider<'_> {
         }
     }
 
-    /// Change of the value by the steps that a screen reader requested in this frame.
-    fn spoken_steps(&self, ui: &Ui, rail: &Response) -> f32 {
-        ui.input(|input| {
-            let requests = |action| input.num_accesskit_action_requests(rail.id, action) as f32;
-            (requests(accesskit::Action::Increment) - requests(accesskit::Action::Decrement))
-                * self.step
-        })
-    }
-
     fn number<A: Into<Action>>(
         &self,
         ui: &mut Ui,
@@ -277,26 +259,42 @@ impl Slider<'_> {
             unit: self.unit,
             speed: (self.range.1 - self.range.0) / 1000.0,
             width: VALUE_WIDTH,
-            format: &|value| text::fixed(value, self.decimals()),
+            format: &|value| text::fixed(value, text::decimals(self.step)),
         };
         let response = number.show(ui, is_sliding(session), actions, set);
         hover_text(response, "Drag, or click to type");
     }
-
-    fn decimals(&self) -> usize {
-        text::decimals(self.step)
-    }
 }
 
-fn spoken_values(ui: &Ui, rail: &Response) -> Vec<f32> {
+/// Tells screen readers the range and the step of a slider, and that they can set and step it.
+pub(in crate::ui) fn set_range(ui: &Ui, slider: Id, range: RangeInclusive<f64>, step: f64) {
+    ui.ctx().accesskit_node_builder(slider, |node| {
+        node.set_min_numeric_value(*range.start());
+        node.set_max_numeric_value(*range.end());
+        node.set_numeric_value_step(step);
+        node.add_action(accesskit::Action::SetValue);
+        node.add_action(accesskit::Action::Increment);
+        node.add_action(accesskit::Action::Decrement);
+    });
+}
+
+/// Number of steps up, negative for down, that a screen reader requested of a slider in this frame.
+pub(in crate::ui) fn requested_steps(ui: &Ui, slider: Id) -> f64 {
     ui.input(|input| {
-        input
-            .accesskit_action_requests(rail.id, accesskit::Action::SetValue)
-            .filter_map(|request| match request.data {
-                Some(accesskit::ActionData::NumericValue(value)) => Some(value as f32),
-                _ => None,
-            })
-            .collect()
+        let requests = |action| input.num_accesskit_action_requests(slider, action) as f64;
+        requests(accesskit::Action::Increment) - requests(accesskit::Action::Decrement)
+    })
+}
+
+/// Values that a screen reader requested of a slider in this frame.
+pub(in crate::ui) fn requested_values(ui: &Ui, slider: Id) -> Vec<f64> {
+    ui.input(|input| {
+        let requests = input.accesskit_action_requests(slider, accesskit::Action::SetValue);
+        let value = |request: &accesskit::ActionRequest| match request.data {
+            Some(accesskit::ActionData::NumericValue(value)) => Some(value),
+            _ => None,
+        };
+        requests.filter_map(value).collect()
     })
 }
 
@@ -349,13 +347,16 @@ impl PointSliders<'_> {
                 disabled: self.disabled,
                 channel: self.channel,
             };
-            slider.show(ui, session, actions, |coordinate| {
-                let mut moved = self.value;
-                moved[axis] = coordinate;
-                set(moved)
-            });
+            let set = |coordinate| set(with_axis(self.value, axis, coordinate));
+            slider.show(ui, session, actions, set);
         }
     }
+}
+
+/// The vector with another component x, y or z.
+pub(in crate::ui) fn with_axis(mut vector: Vec3, axis: usize, component: f32) -> Vec3 {
+    vector[axis] = component;
+    vector
 }
 
 /// A slider from −180° to 180° for an angle that is given in radians. The slider shows and sets
@@ -388,13 +389,13 @@ pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
     let colours = style::palette(ui).axes;
     for (axis, label) in AXES.into_iter().enumerate() {
         let name = format!("{name} {label}");
-        let slider = angle_slider(&name, tooltip, angles[axis]);
-        let slider = Slider { label, colour: Some(style::colour(colours[axis])), ..slider };
-        slider.show(ui, session, actions, |degrees| {
-            let mut turned = angles;
-            turned[axis] = degrees.to_radians();
-            set(turned)
-        });
+        let slider = Slider {
+            label,
+            colour: Some(style::colour(colours[axis])),
+            ..angle_slider(&name, tooltip, angles[axis])
+        };
+        let set = |degrees: f32| set(with_axis(angles, axis, degrees.to_radians()));
+        slider.show(ui, session, actions, set);
     }
 }
 
@@ -423,7 +424,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
         );
         set(soft_reach.unwrap_or(default))
     };
-    let slider = Slider {
+    let softness_slider = Slider {
         name: &format!("{prefix}Softness"),
         label: "Softness",
         term: Some("Softness"),
@@ -434,8 +435,8 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
         step: 0.1,
         ..Slider::default()
     };
-    slider.show(ui, session, actions, |softness| set(softness, stretch, angle));
-    let slider = Slider {
+    softness_slider.show(ui, session, actions, |softness| set(softness, stretch, angle));
+    let stretch_slider = Slider {
         name: &format!("{prefix}Stretch"),
         label: "Stretch",
         term: Some("Stretch"),
@@ -446,12 +447,12 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
         step: 0.1,
         ..Slider::default()
     };
-    slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
+    stretch_slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
     let name = format!("{prefix}Minimum elbow angle");
-    let slider = Slider {
+    let angle_slider = Slider {
         label: "Min. angle",
         range: (0.0, 179.0),
         ..angle_slider(&name, "Keep the elbow open by at least this angle", angle)
     };
-    slider.show(ui, session, actions, |degrees| set(softness, stretch, degrees.to_radians()));
+    angle_slider.show(ui, session, actions, |degrees| set(softness, stretch, degrees.to_radians()));
 }

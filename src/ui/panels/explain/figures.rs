@@ -4,17 +4,14 @@
 use core::f32::consts::PI;
 use std::sync::Arc;
 
-use egui::{
-    Align, Color32, Galley, Grid, Layout, Painter, Pos2, Rect, Response, RichText, Shape, Stroke,
-    Ui, Vec2, vec2,
-};
+use egui::{Color32, Galley, Grid, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
 
 use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
 use crate::ui::gizmo::screen::to_segment;
 use crate::ui::style;
-use crate::ui::widgets::text;
+use crate::ui::widgets::{self, text};
 
 /// Distance from the mouse to a line that it points at, in points.
 const NEAR: f32 = 7.0;
@@ -257,10 +254,8 @@ fn show(ui: &mut Ui, row: &FormulaRow, is_lit: bool, right: f32) -> Rect {
     } else {
         explained(ui, row.formula, if is_lit { text } else { weak }, row.meaning);
     }
-    let value = ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        ui.label(RichText::new(&row.value).monospace())
-    });
-    let mut rect = symbol.rect.union(value.inner.rect);
+    let value = widgets::value(ui, &row.value);
+    let mut rect = symbol.rect.union(value.rect);
     rect.max.x = rect.max.x.min(right);
     rect
 }
@@ -286,9 +281,7 @@ pub(super) fn pair(
     lit.row(ui, figure, |ui| {
         let row = ui.horizontal(|ui| {
             explained(ui, name, colour, meaning);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.label(RichText::new(value).monospace());
-            });
+            widgets::value(ui, value);
         });
         row.response.rect
     });

@@ -11,7 +11,7 @@ mod twist_references;
 use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
-use crate::session::{Actions, ArmFigure, DisplayEdit, Session, TourState};
+use crate::session::{Actions, ArmFigure, Session, TourState};
 use crate::ui::{pose_summary, widgets};
 use figures::{Lit, degrees, figure_colour, length, point};
 
@@ -25,10 +25,9 @@ pub(in crate::ui) fn triangle(
     session: &Session,
     actions: &mut Actions,
 ) -> Option<ArmFigure> {
-    let mut lit = Lit::new(session);
-    triangle::ui(ui, session, &mut lit);
+    let lit = &mut Lit::new(session);
+    triangle::ui(ui, session, lit);
     sentence(ui, session);
-    let lit = &mut lit;
     widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, lit, actions));
     widgets::section(ui, "Pointer", |ui| pointer::ui(ui, session, lit));
     widgets::section(ui, "Elbow triangle", |ui| triangle::quantities(ui, session, lit));
@@ -92,11 +91,8 @@ fn hierarchy(ui: &mut Ui, session: &Session, lit: &mut Lit, actions: &mut Action
             lit.row(ui, part.figure, |ui| show(ui, &part));
         }
     });
-    let mut shown = session.shown().display.shows(Overlay::Frames);
-    let tooltip = "Show the axes of Root, Limb and Socket";
-    if ui.checkbox(&mut shown, "Axes in the view").on_hover_text(tooltip).changed() {
-        actions.push(DisplayEdit::ShowOverlay(Overlay::Frames, shown));
-    }
+    let (name, tooltip) = ("Axes in the view", "Show the axes of Root, Limb and Socket");
+    widgets::overlay_check_box(ui, session, Overlay::Frames, name, tooltip, None, actions);
 }
 
 fn parts(session: &Session) -> [HierarchyRow; 5] {
@@ -154,9 +150,7 @@ fn show(ui: &mut Ui, part: &HierarchyRow) -> egui::Rect {
         let colour = figure_colour(ui, Some(part.figure));
         let name = Label::new(RichText::new(part.name).color(colour)).selectable(false);
         ui.add(name).on_hover_text(part.meaning);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(RichText::new(&part.value).monospace());
-        });
+        widgets::value(ui, &part.value);
     });
     row.response.rect
 }

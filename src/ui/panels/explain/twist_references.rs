@@ -4,7 +4,7 @@ use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
-use crate::session::{Actions, DisplayEdit, Session, ViewAction};
+use crate::session::{Actions, Session, ViewAction};
 use crate::ui::widgets;
 use crate::ui::{glossary, labels, style};
 
@@ -17,24 +17,14 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     table(ui, session, actions);
     ui.add_space(4.0);
     transport_path(ui, session, actions);
-    let display = session.shown().display;
-    let shown = [
-        (Overlay::TwistReferences, "Ghosts", "Show the arm with the other twist references"),
-        (
-            Overlay::SingularityGlobe,
-            "Singularity globe",
-            "Colour the outer limit by how fast the elbow turns",
-        ),
-    ];
+    let (ghosts, globe) = (Overlay::TwistReferences, Overlay::SingularityGlobe);
+    let told = "Show the arm with the other twist references";
+    let (globe_name, globe_told) = labels::overlay(session.rig(), globe);
     ui.horizontal(|ui| {
-        for (overlay, name, tooltip) in shown {
-            let mut on = display.shows(overlay);
-            if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
-                actions.push(DisplayEdit::ShowOverlay(overlay, on));
-            }
-        }
+        widgets::overlay_check_box(ui, session, ghosts, "Ghosts", told, None, actions);
+        widgets::overlay_check_box(ui, session, globe, globe_name, globe_told, None, actions);
     });
-    if display.shows(Overlay::SingularityGlobe) {
+    if session.shown().display.shows(globe) {
         legend(ui);
     }
 }
@@ -47,8 +37,8 @@ fn legend(ui: &mut Ui) {
         let gain = (place * end).exp_m1();
         style::colour(palette.gain(gain).with_opacity(1.0))
     };
-    let marks = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")];
-    let marks = marks.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
+    let gains = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (5.0, "5"), (Palette::MAX_GAIN, "8+")];
+    let marks = gains.map(|(gain, text)| (f32::ln_1p(gain) / end, text));
     widgets::colour_bar(ui, summary, colour, &marks);
 }
 
@@ -77,9 +67,7 @@ fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
                 (apart, "Elbow rotation from the current elbow at the same twist"),
                 (gain_in_words(gain), "Elbow degrees per degree of the Pointer"),
             ] {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    ui.label(RichText::new(value).monospace()).on_hover_text(tooltip);
-                });
+                widgets::value(ui, value).on_hover_text(tooltip);
             }
             ui.end_row();
         }

@@ -10,7 +10,7 @@ use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
 use crate::session::{Actions, Edit, JointEdit, Session};
 use crate::ui::widgets::Choice;
-use crate::ui::widgets::{self, AXES, NumberField, Slider, text};
+use crate::ui::widgets::{self, AXES, NumberField, Slider, text, with_axis};
 use crate::ui::{labels, style};
 
 const STIFF: &str = "The limits leave one angle only";
@@ -25,11 +25,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
     limits(ui, session, index, joint, actions);
     bone(ui, session, index, joint, actions);
     parent(ui, session, index, joint, actions);
-    let mut locked = joint.locked;
     let tooltip = "Keep solvers from rotating this joint";
-    if ui.checkbox(&mut locked, "Locked").on_hover_text(tooltip).changed() {
-        actions.push(JointEdit::SetLocked { joint: index, locked });
-    }
+    let changed = widgets::check_box(ui, "Locked", tooltip, joint.locked, None);
+    actions.extend(changed.map(|locked| JointEdit::SetLocked { joint: index, locked }));
 }
 
 fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
@@ -66,8 +64,7 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
             channel: Some(Channel::Rotation(index)),
         };
         slider.show(ui, session, actions, |degrees| {
-            let mut rotation = joint.rotation;
-            rotation[axis.index()] = degrees.to_radians();
+            let rotation = with_axis(joint.rotation, axis.index(), degrees.to_radians());
             JointEdit::SetRotation { joint: index, rotation }
         });
     }
@@ -80,13 +77,11 @@ fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
         let set = |limit| JointEdit::SetLimit { joint: index, axis, limit };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
-            let mut limited = limit.is_some();
-            let tooltip = format!("Limit the rotation about {label}");
-            let name = format!("Limit {label}");
-            if ui.checkbox(&mut limited, name).on_hover_text(tooltip).changed() {
-                let wide = Limit { min: -PI / 2.0, max: PI / 2.0 };
-                actions.push(set(limited.then_some(wide)));
-            }
+            let (name, tooltip) =
+                (format!("Limit {label}"), format!("Limit the rotation about {label}"));
+            let changed = widgets::check_box(ui, &name, &tooltip, limit.is_some(), None);
+            let wide = Limit { min: -PI / 2.0, max: PI / 2.0 };
+            actions.extend(changed.map(|limited| set(limited.then_some(wide))));
             let Some(limit) = limit else { return };
             widgets::at_right(ui, |ui| {
                 angle(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
@@ -112,53 +107,42 @@ fn angle(
     set: &dyn Fn(f32) -> Edit,
 ) {
     let tooltip = "Set the end of the range";
-    NumberField { name, value: value.to_degrees(), unit: "°", step: 1.0, digits: 1, tooltip }.show(
-        ui,
-        session,
-        actions,
-        |degrees| set(degrees.to_radians()),
-    );
+    let value = value.to_degrees();
+    let field = NumberField { name, value, unit: "°", step: 1.0, digits: 1, tooltip };
+    field.show(ui, session, actions, |degrees| set(degrees.to_radians()));
 }
 
 fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     let step = session.shown().grid_cell() * 0.1;
-    let tooltip = "Set the vector from base to tip, in joint space";
     widgets::pair(ui, "Bone", |ui| {
         widgets::at_right(ui, |ui| {
             for (axis, label) in AXES.into_iter().enumerate() {
-                let name = format!("Bone {label}");
-                let value = joint.axis[axis];
-                NumberField {
-                    name: &name,
-                    value,
+                let field = NumberField {
+                    name: &format!("Bone {label}"),
+                    value: joint.axis[axis],
                     unit: "",
                     step,
                     digits: text::decimals(step),
-                    tooltip,
-                }
-                .show(ui, session, actions, |value| {
-                    let mut bone = joint.axis;
-                    bone[axis] = value;
-                    JointEdit::SetAxis { joint: index, axis: bone }
+                    tooltip: "Set the vector from base to tip, in joint space",
+                };
+                field.show(ui, session, actions, |value| JointEdit::SetAxis {
+                    joint: index,
+                    axis: with_axis(joint.axis, axis, value),
                 });
             }
         });
     });
-    let length = joint.axis.length();
-    widgets::pair(ui, "Length", |ui| {
-        let tooltip = "Set the bone length; the direction stays";
-        NumberField {
-            name: "Length",
-            value: length,
-            unit: "",
-            step,
-            digits: text::decimals(step),
-            tooltip,
-        }
-        .show(ui, session, actions, |length| {
-            let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
-            JointEdit::SetAxis { joint: index, axis: direction * length.max(0.0) }
-        });
+    let length = NumberField {
+        name: "Length",
+        value: joint.axis.length(),
+        unit: "",
+        step,
+        digits: text::decimals(step),
+        tooltip: "Set the bone length; the direction stays",
+    };
+    length.row(ui, session, "Length", actions, |length| {
+        let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
+        JointEdit::SetAxis { joint: index, axis: direction * length.max(0.0) }
     });
 }
 

@@ -6,6 +6,8 @@ mod outliner;
 mod skin;
 mod targets;
 
+use core::mem::discriminant;
+
 use egui::Ui;
 use glam::Vec3;
 
@@ -89,27 +91,20 @@ fn shown_root(session: &Session) -> Option<JointId> {
 
 fn choice(ui: &mut Ui, session: &Session, root: JointId, actions: &mut Actions) {
     let rig = session.skeleton_rig();
-    let now = rig.path_kind(root);
-    let is_ring = matches!(now, Some(PathKind::Ring(_)));
     let ring = PathKind::Ring(default_ring(rig.reach()));
-    let by_head = "Drag and key the head; the body follows its path";
-    let by_target = "Move the head's target; the body follows its path";
     let choices = [
-        (now.is_none(), "None", "Pose all joints by their own angles", None),
-        (now == Some(PathKind::Head), "Head", by_head, Some(PathKind::Head)),
-        (now == Some(PathKind::Target), "Target", by_target, Some(PathKind::Target)),
-        (is_ring, "Wavy ring", "Move along a wavy ring without keys", Some(ring)),
+        (None, "None", "Pose all joints by their own angles"),
+        (Some(PathKind::Head), "Head", "Drag and key the head; the body follows its path"),
+        (Some(PathKind::Target), "Target", "Move the head's target; the body follows its path"),
+        (Some(ring), "Wavy ring", "Move along a wavy ring without keys"),
     ];
-    let shown = choices.iter().find(|(is_now, ..)| *is_now).map_or("", |(_, name, ..)| name);
     let name = &rig.skeleton[root].name;
     let tooltip = &format!("Let the chain of {name} follow a path, like a snake");
-    Choice { label: "Follow", name: "Follow path", tooltip, shown }.show(ui, |list| {
-        for (is_now, name, tooltip, kind) in choices {
-            if list.item(is_now, name, tooltip, None) {
-                actions.push(PathEdit::SetFollowPath { root, kind });
-            }
-        }
-    });
+    let of_kind = |kind: &Option<PathKind>| kind.as_ref().map(discriminant);
+    let now = of_kind(&rig.path_kind(root));
+    let choice = Choice { label: "Follow", name: "Follow path", tooltip, shown: "" };
+    let chosen = choice.pick(ui, &choices, |kind| of_kind(kind) == now);
+    actions.extend(chosen.map(|kind| PathEdit::SetFollowPath { root, kind }));
 }
 
 /// Default ring of a skeleton with this reach.

@@ -13,7 +13,7 @@ use crate::session::{
     Actions, FileAction, PathDialog, Session, SkinAreas, SkinEdit, TransactionAction,
 };
 use crate::ui::style;
-use crate::ui::widgets::{self, Choice, Segment, Slider, plot};
+use crate::ui::widgets::{self, Choice, Slider, plot};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(skin) = &session.skeleton_rig().skin else {
@@ -43,9 +43,9 @@ fn shown(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let display = session.shown().display;
     let now = (display.shows(Overlay::Skin), display.shows(Overlay::Bones));
     let choices = [
-        Segment { name: "Skin", tooltip: "Show the skin alone", value: (true, false) },
-        Segment { name: "Bones", tooltip: "Show the bones alone", value: (false, now.1) },
-        Segment { name: "Both", tooltip: "Show the bones through the skin", value: (true, true) },
+        ((true, false), "Skin", "Show the skin alone"),
+        ((false, now.1), "Bones", "Show the bones alone"),
+        ((true, true), "Both", "Show the bones through the skin"),
     ];
     let chosen = widgets::segments(ui, now, &choices);
     actions.extend(chosen.map(|(skin, bones)| SkinEdit::ShowSkin { skin, bones }));
@@ -84,17 +84,13 @@ fn skinning(ui: &mut Ui, skin: &Skin, actions: &mut Actions) {
         (Skinning::Linear, "Add the joints' transforms; loses volume where bones twist"),
         (Skinning::DualQuaternion, "Blend rigid motions; keeps the volume, bulges at bends"),
         (Skinning::SpreadTwist, "Spread each bone's roll along it, then blend linearly"),
-    ];
+    ]
+    .map(|(skinning, tooltip)| (skinning, skinning.title(), tooltip));
     let tooltip = "Choose how a vertex between joints follows them";
-    let shown = skin.skinning.title();
-    Choice { label: "Blend", name: "Blend", tooltip, shown }.show(ui, |list| {
-        for (skinning, tooltip) in choices {
-            let is_now = skinning == skin.skinning;
-            if list.item(is_now, skinning.title(), tooltip, None) {
-                actions.push(SkinEdit::SetSkin(Some(Skin { skinning, ..skin.clone() })));
-            }
-        }
-    });
+    let choice = Choice { label: "Blend", name: "Blend", tooltip, shown: "" };
+    let chosen = choice.pick(ui, &choices, |skinning| *skinning == skin.skinning);
+    let set = |skinning| SkinEdit::SetSkin(Some(Skin { skinning, ..skin.clone() }));
+    actions.extend(chosen.map(set));
 }
 
 fn shape(ui: &mut Ui, session: &Session, skin: &Skin, bones: &BoneSkin, actions: &mut Actions) {
@@ -167,7 +163,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
     widgets::pair(ui, "Colour", |ui| {
         let mut colour = skin.colour.map(|channel| (channel * 255.0).round() as u8);
         let response = ui.color_edit_button_srgb(&mut colour);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Skin colour"));
+        widgets::name(ui, &response, "Skin colour");
         if response.changed() {
             // The picker is dragged: one undo step from the first change to the release.
             if !session.history().is_editing() {
@@ -267,6 +263,6 @@ fn area_values(ui: &mut Ui, session: &Session, areas: &SkinAreas) {
 
 fn describe_areas(areas: &SkinAreas, time: f64) -> String {
     let now = Skinning::ALL.into_iter().zip(areas.at(time));
-    let now = now.map(|(skinning, area)| format!("{} {:.0} %", skinning.title(), 100.0 * area));
-    format!("Area of the cross-section: {}", now.collect::<Vec<_>>().join(", "))
+    let said = now.map(|(skinning, area)| format!("{} {:.0} %", skinning.title(), 100.0 * area));
+    format!("Area of the cross-section: {}", said.collect::<Vec<_>>().join(", "))
 }

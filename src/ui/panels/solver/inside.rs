@@ -32,19 +32,18 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn switch(ui: &mut Ui, run: &SolverRun, actions: &mut Actions) {
-    let mut is_on = run.shown_part().is_some() || run.is_walking();
+    let is_on = run.shown_part().is_some() || run.is_walking();
     let nothing = match run.shown().iteration {
         _ if run.is_running() => Some("Pause the solver first"),
         0 => Some("Make an iteration first: press Step"),
         _ => None,
     };
-    let check = ui.add_enabled(nothing.is_none(), egui::Checkbox::new(&mut is_on, "Look inside"));
-    let check = check.on_hover_text("Show what the method computes in this iteration (Shift .)");
-    let check = check.on_disabled_hover_text(nothing.unwrap_or_default());
-    if check.changed() {
+    let tooltip = "Show what the method computes in this iteration (Shift .)";
+    let changed = widgets::check_box(ui, "Look inside", tooltip, is_on, nothing);
+    actions.extend(changed.map(|is_on| {
         let part = is_on.then_some(0);
-        actions.push(SolverAction::ShowPart { iteration: run.shown().iteration, part });
-    }
+        SolverAction::ShowPart { iteration: run.shown().iteration, part }
+    }));
 }
 
 fn slider(ui: &mut Ui, run: &SolverRun, shown: usize, count: usize, actions: &mut Actions) {
@@ -55,11 +54,11 @@ fn slider(ui: &mut Ui, run: &SolverRun, shown: usize, count: usize, actions: &mu
         const VALUE_WIDTH: f32 = 72.0;
         ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).max(40.0);
         // Without a second value the slider could not be laid out.
-        let slider = Slider::new(&mut number, 1..=count.max(2)).suffix(format!(" / {count}"));
-        let slider = ui.add(slider).labelled_by(label.id);
+        let widget = Slider::new(&mut number, 1..=count.max(2)).suffix(format!(" / {count}"));
+        let slider = ui.add(widget).labelled_by(label.id);
         focus::leave_letters(ui, slider.id);
-        let slider = slider.on_hover_text("Show a part of the iteration (Shift , and Shift .)");
-        if slider.changed() {
+        let tooltip = "Show a part of the iteration (Shift , and Shift .)";
+        if slider.on_hover_text(tooltip).changed() {
             let part = Some(number.clamp(1, count) - 1);
             actions.push(SolverAction::ShowPart { iteration: run.shown().iteration, part });
         }
@@ -72,7 +71,7 @@ fn buttons(ui: &mut Ui, session: &Session, run: &SolverRun, actions: &mut Action
         .then_some("This is the last part of the last iteration");
     ui.columns(3, |columns| {
         let [back, walk, next] = columns else { return };
-        if wide(back, "Back", "Show the part before (Shift ,)", first) {
+        if widgets::wide_button(back, "Back", "Show the part before (Shift ,)", first) {
             actions.extend(commands::previous_part(session));
         }
         let (name, tooltip) = if run.is_walking() {
@@ -80,18 +79,15 @@ fn buttons(ui: &mut Ui, session: &Session, run: &SolverRun, actions: &mut Action
         } else {
             ("Walk", "Show the parts of all iterations slowly")
         };
-        if wide(walk, name, tooltip, if run.is_walking() { None } else { last }) {
+        let disabled = if run.is_walking() { None } else { last };
+        if widgets::wide_button(walk, name, tooltip, disabled) {
             actions.push(SolverAction::Walk(!run.is_walking()));
         }
-        if wide(next, "Next", "Show the next part, or make an iteration (Shift .)", last) {
+        let tooltip = "Show the next part, or make an iteration (Shift .)";
+        if widgets::wide_button(next, "Next", tooltip, last) {
             actions.extend(commands::next_part(session));
         }
     });
-}
-
-fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
-    let layout = Layout::top_down_justified(Align::Center);
-    ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
 /// The damping λ, whose effect on the ellipsoid is seen at once.
@@ -114,7 +110,7 @@ fn damping(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 /// A thing in the view: its colours, its name and what it means.
-struct Entry {
+struct MarkLegend {
     layer: InsideLayer,
     colours: Vec<Color32>,
     name: &'static str,
@@ -125,25 +121,24 @@ fn legend(ui: &mut Ui, session: &Session, kind: &SubStepKind, actions: &mut Acti
     for entry in entries(ui, kind) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            let mut shown = session.view().inside_layers().shows(entry.layer);
-            let check = ui.checkbox(&mut shown, entry.name);
+            let is_shown = session.view().inside_layers().shows(entry.layer);
+            let tooltip = format!("Show {}", entry.meaning);
+            let changed = widgets::check_box(ui, entry.name, &tooltip, is_shown, None);
+            actions.extend(changed.map(|shown| ViewAction::ShowInside(entry.layer, shown)));
             for colour in &entry.colours {
                 let (rect, _) = ui.allocate_exact_size(vec2(12.0, 3.0), Sense::hover());
                 ui.painter().rect_filled(rect, 1.0, *colour);
-            }
-            if check.on_hover_text(format!("Show {}", entry.meaning)).changed() {
-                actions.push(ViewAction::ShowInside(entry.layer, shown));
             }
         });
         ui.label(RichText::new(capitalized(entry.meaning)).weak().small());
     }
 }
 
-fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<Entry> {
+fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<MarkLegend> {
     let palette = style::palette(ui);
     let axes = palette.axes.map(style::colour).to_vec();
     let (accent, guide) = (style::colour(palette.accent), style::colour(palette.guide));
-    let entry = |layer, colours, name, meaning| Entry { layer, colours, name, meaning };
+    let entry = |layer, colours, name, meaning| MarkLegend { layer, colours, name, meaning };
     match kind {
         SubStepKind::Gradient(Gradient { damping, .. }) => {
             let columns = entry(
@@ -233,11 +228,8 @@ fn numbers(ui: &mut Ui, session: &Session, run: &SolverRun, shown: usize) {
             run.iterates().at(iteration).error
         }
     };
-    pairs(
-        ui,
-        "error",
-        &[("Error before", text::short(before)), ("Error after", text::short(part.error))],
-    );
+    let rows = [("Error before", text::short(before)), ("Error after", text::short(part.error))];
+    pairs(ui, "error", &rows);
 }
 
 /// The lengths of the columns, and the axes of the ellipsoid.
@@ -245,14 +237,11 @@ fn jacobian(ui: &mut Ui, session: &Session, gradient: &Gradient) {
     let selection = session.selection().joints();
     let any = gradient.columns.iter().any(|column| selection.contains(&column.joint));
     let shown = gradient.columns.iter().filter(|it| !any || selection.contains(&it.joint));
-    let mut rows: Vec<[String; 2]> = shown
-        .map(|column| {
-            let name = format!("{} {}", name(session, column.joint), column.axis);
-            (column.by.length(), name)
-        })
-        .map(|(speed, name)| [name, text::short(speed)])
-        .collect();
-    rows.truncate(MOST);
+    let columns = shown.take(MOST).map(|column| {
+        let angle = format!("{} {}", name(session, column.joint), column.axis);
+        [angle, text::short(column.by.length())]
+    });
+    let rows: Vec<_> = columns.collect();
     table(ui, "columns", ["Angle", "Column, per radian"], &rows);
     if let (Some(damping), [ellipsoid]) = (gradient.damping, &gradient.ellipsoids[..]) {
         singular_values(ui, ellipsoid, damping);
@@ -328,25 +317,23 @@ fn table<const N: usize>(ui: &mut Ui, id: &str, titles: [&str; N], rows: &[[Stri
 }
 
 fn pairs(ui: &mut Ui, id: &str, rows: &[(&str, String)]) {
-    let rows: Vec<[String; 2]> =
-        rows.iter().map(|(name, value)| [(*name).to_owned(), value.clone()]).collect();
     if rows.is_empty() {
         return;
     }
     Grid::new(id).num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
-        for [name, value] in rows {
-            ui.label(name);
-            cell(ui, 1, RichText::new(value).monospace());
+        for (name, value) in rows {
+            ui.label(*name);
+            widgets::value(ui, value);
             ui.end_row();
         }
     });
 }
 
 fn cell(ui: &mut Ui, column: usize, text: RichText) {
-    let align = if column == 0 { Align::Min } else { Align::Max };
-    let layout = match align {
-        Align::Min => Layout::left_to_right(Align::Center),
-        _ => Layout::right_to_left(Align::Center),
+    let layout = if column == 0 {
+        Layout::left_to_right(Align::Center)
+    } else {
+        Layout::right_to_left(Align::Center)
     };
     ui.with_layout(layout, |ui| ui.label(text));
 }

@@ -3,7 +3,7 @@
 mod inside;
 mod runs;
 
-use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::session::{Actions, Session, ShownIteration, SolverAction, SolverEdit};
@@ -22,14 +22,8 @@ pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Action
     if session.solvers().run().is_some() {
         widgets::section(ui, "Inside the iteration", |ui| inside::ui(ui, session, actions));
     }
-    widgets::section(ui, "Convergence", |ui| {
-        iterations(
-            ui,
-            session,
-            "Press Run to see how the error falls, iteration by iteration.",
-            actions,
-        );
-    });
+    let empty = "Press Run to see how the error falls, iteration by iteration.";
+    widgets::section(ui, "Convergence", |ui| iterations(ui, session, empty, actions));
 }
 
 /// All solvers on the same targets.
@@ -62,7 +56,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         .selected_text(options.method.title())
         .width(ui.available_width() - 12.0)
         .truncate();
-    let response = combo.show_ui(ui, |ui| {
+    let list = combo.show_ui(ui, |ui| {
         for method in Method::ALL {
             let item = ui.selectable_label(method == options.method, method.title());
             if item.on_hover_text(method.summary()).clicked() {
@@ -70,59 +64,48 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             }
         }
     });
-    let response = response.response;
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Method"));
-    response.on_hover_text(options.method.summary());
+    widgets::name(ui, &list.response, "Method");
+    list.response.on_hover_text(options.method.summary());
 }
 
 fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.skeleton_rig();
     let options = rig.solver;
     let set = |options| SolverEdit::SetSolver(options);
-    widgets::pair(ui, "Iterations per frame", |ui| {
-        let value = rig.iterations_per_frame as f32;
-        let tooltip = "Set the iterations of a running solver per frame";
-        NumberField {
-            name: "Iterations per frame",
-            value,
-            unit: "",
-            step: 1.0,
-            digits: 0,
-            tooltip,
-        }
-        .show(ui, session, actions, |value| {
-            SolverEdit::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
-        });
+    let field = |name, value, step, digits, tooltip| NumberField {
+        name,
+        value,
+        unit: "",
+        step,
+        digits,
+        tooltip,
+    };
+    let (name, tooltip) =
+        ("Iterations per frame", "Set the iterations of a running solver per frame");
+    let per_frame = field(name, rig.iterations_per_frame as f32, 1.0, 0, tooltip);
+    per_frame.row(ui, session, name, actions, |value| {
+        SolverEdit::SetIterationsPerFrame(value.round().clamp(1.0, 1000.0) as u32)
     });
-    widgets::pair(ui, "Maximum iterations", |ui| {
-        let value = options.iterations.unwrap_or_else(|| options.method.budget()) as f32;
-        let tooltip = "Stop the solver after this many iterations";
-        NumberField { name: "Maximum iterations", value, unit: "", step: 1.0, digits: 0, tooltip }
-            .show(ui, session, actions, |value| {
-                let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
-                set(SolverOptions { iterations, ..options })
-            });
+    let (name, tooltip) = ("Maximum iterations", "Stop the solver after this many iterations");
+    let most = options.iterations.unwrap_or_else(|| options.method.budget());
+    field(name, most as f32, 1.0, 0, tooltip).row(ui, session, name, actions, |value| {
+        let iterations = Some(value.round().clamp(1.0, 1e6) as u32);
+        set(SolverOptions { iterations, ..options })
     });
     tolerance(ui, session, actions);
     if options.method.uses_damping() {
         widgets::term_pair(ui, "Damping λ", "Damping", actions, |ui, actions| {
             let tooltip = "Set the damping λ, in chain lengths: more is stabler, slower";
-            let value = options.damping;
-            NumberField { name: "Damping", value, unit: "", step: 0.01, digits: 3, tooltip }.show(
-                ui,
-                session,
-                actions,
-                |damping| set(SolverOptions { damping, ..options }),
-            );
+            let damping = field("Damping", options.damping, 0.01, 3, tooltip);
+            let set = |damping| set(SolverOptions { damping, ..options });
+            damping.show(ui, session, actions, set);
         });
     }
     if options.method.uses_step() {
-        widgets::pair(ui, "Step", |ui| {
-            let tooltip = "Set the step, as a fraction of the largest stable one";
-            let value = options.step;
-            NumberField { name: "Step length", value, unit: "", step: 0.1, digits: 2, tooltip }
-                .show(ui, session, actions, |step| set(SolverOptions { step, ..options }));
-        });
+        let tooltip = "Set the step, as a fraction of the largest stable one";
+        let step = field("Step length", options.step, 0.1, 2, tooltip);
+        let set = |step| set(SolverOptions { step, ..options });
+        step.row(ui, session, "Step", actions, set);
     }
     roots(ui, options, actions);
 }
@@ -137,9 +120,8 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
                     Root::Turns => ("Turns", "Let the solver turn the roots in place"),
                     Root::Free => ("Free", "Let the solver turn and move the roots"),
                 };
-                let button = Button::selectable(root == options.root, name);
-                let button = ui.add(button.frame_when_inactive(true)).on_hover_text(tooltip);
-                if button.clicked() && root != options.root {
+                let is_now = root == options.root;
+                if widgets::segment(ui, is_now, name, tooltip).clicked() && !is_now {
                     chosen = Some(root);
                 }
             }
@@ -154,27 +136,22 @@ fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::term_pair(ui, "Tolerance", "Tolerance", actions, |ui, actions| {
         let auto = session.skeleton_rig().tolerance();
         widgets::at_right(ui, |ui| {
-            let mut is_auto = options.tolerance.is_none();
+            let set = |tolerance| SolverEdit::SetSolver(SolverOptions { tolerance, ..options });
             let tooltip = "Use 1/10,000 of the chain length";
-            if ui.checkbox(&mut is_auto, "Auto").on_hover_text(tooltip).changed() {
-                let tolerance = (!is_auto).then_some(auto);
-                actions.push(SolverEdit::SetSolver(SolverOptions { tolerance, ..options }));
-            }
+            let is_auto = options.tolerance.is_none();
+            let changed = widgets::check_box(ui, "Auto", tooltip, is_auto, None);
+            actions.extend(changed.map(|is_auto| set((!is_auto).then_some(auto))));
             if let Some(tolerance) = options.tolerance {
-                let tooltip = "Set the distance at which a tip has converged";
-                let step = 0.05 * tolerance;
                 let short = |value: f64| text::short(value as f32);
-                NumberField {
+                let field = NumberField {
                     name: "Tolerance",
                     value: tolerance,
                     unit: "",
-                    step,
+                    step: 0.05 * tolerance,
                     digits: 0,
-                    tooltip,
-                }
-                .show_as(ui, session, actions, &short, |tolerance| {
-                    SolverEdit::SetSolver(SolverOptions { tolerance: Some(tolerance), ..options })
-                });
+                    tooltip: "Set the distance at which a tip has converged",
+                };
+                field.show_as(ui, session, actions, &short, |value| set(Some(value)));
             }
         });
     });
@@ -190,22 +167,18 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         let [run, step, reset] = columns else { return };
         let running = session.solvers().is_running();
         let name = if running { "Pause solver" } else { "Run" };
-        if wide(run, name, "Iterate until converged (R)", disabled) {
+        if widgets::wide_button(run, name, "Iterate until converged (R)", disabled) {
             actions.push(SolverAction::Run(!running));
         }
-        if wide(step, "Step", "Make one iteration (S)", disabled) {
+        if widgets::wide_button(step, "Step", "Make one iteration (S)", disabled) {
             actions.push(SolverAction::Step);
         }
         let nothing = session.solvers().run().is_none().then_some("The solver has not run yet");
-        if wide(reset, "Reset", "End the run and remove its ghost (Esc)", nothing) {
+        let tooltip = "End the run and remove its ghost (Esc)";
+        if widgets::wide_button(reset, "Reset", tooltip, nothing) {
             actions.push(SolverAction::Reset);
         }
     });
-}
-
-fn wide(ui: &mut Ui, name: &str, tooltip: &str, disabled: Option<&str>) -> bool {
-    let layout = Layout::top_down_justified(Align::Center);
-    ui.with_layout(layout, |ui| widgets::button(ui, name, tooltip, disabled)).inner
 }
 
 /// Shows the report on the shown iterate or the evaluated pose, at constant height so that nothing

@@ -6,8 +6,8 @@ use core::ops::RangeInclusive;
 use core::time::Duration;
 
 use egui::{
-    Align, Color32, Grid, Layout, Rangef, Rect, RichText, Role, Sense, Slider, Stroke, StrokeKind,
-    Ui, Vec2b, WidgetInfo, vec2,
+    Align, Color32, Grid, Layout, Rangef, Rect, Role, Sense, Slider, Stroke, StrokeKind, Ui,
+    WidgetInfo, vec2,
 };
 use egui_plot::{AxisHints, GridMark, HLine, Line, PlotBounds, PlotPoints, Points, VLine};
 
@@ -52,8 +52,7 @@ pub(in crate::ui) fn convergence(ui: &mut Ui, session: &Session) {
         ])
         .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 2.0, 4.0]))
         .show(ui, |plot| {
-            plot.set_auto_bounds(Vec2b::FALSE);
-            plot.set_plot_bounds(bounds);
+            plot::show(plot, bounds);
             plot.hline(
                 HLine::new("tolerance", tolerance.log10())
                     .stroke(Stroke::new(1.0, weak))
@@ -72,7 +71,7 @@ pub(in crate::ui) fn convergence(ui: &mut Ui, session: &Session) {
         })
         .response;
     let said = describe(session);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &said));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
     response.on_hover_text("Error over iterations, dashed: tolerance, line: shown iteration");
 }
 
@@ -152,8 +151,8 @@ fn slider(ui: &mut Ui, shown: ShownIteration, actions: &mut Actions) {
         // Without a second value the slider could not be laid out.
         let slider = ui.add(Slider::new(&mut number, 0..=latest.max(1))).labelled_by(label.id);
         focus::leave_letters(ui, slider.id);
-        let slider = slider.on_hover_text("Show the pose of an iteration: 0 is FK (, and .)");
-        if slider.changed() {
+        let tooltip = "Show the pose of an iteration: 0 is FK (, and .)";
+        if slider.on_hover_text(tooltip).changed() {
             actions.push(SolverAction::Show(number));
         }
     });
@@ -176,8 +175,7 @@ fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Ac
         _ => None,
     };
     let tooltip = "Write the shown pose to the joints' own angles (FK)";
-    let layout = Layout::top_down_justified(Align::Center);
-    if ui.with_layout(layout, |ui| widgets::button(ui, "Apply pose", tooltip, nothing)).inner {
+    if widgets::wide_button(ui, "Apply pose", tooltip, nothing) {
         actions.push(SolverEdit::ApplyPose);
     }
 }
@@ -196,8 +194,9 @@ pub(in crate::ui) fn race(ui: &mut Ui, session: &Session, actions: &mut Actions)
     }
     Grid::new("race").num_columns(4).min_col_width(20.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
         ui.weak("Solver");
+        let right = Layout::right_to_left(Align::Center);
         for heading in ["iter.", "error", "time"] {
-            right(ui, |ui| ui.weak(heading));
+            ui.with_layout(right, |ui| ui.weak(heading));
         }
         ui.end_row();
         for solver in comparison.solvers() {
@@ -251,12 +250,8 @@ fn show(ui: &mut Ui, solver: &ComparedSolver) {
         Err(_) => ["–", "–", "–"].map(str::to_owned),
     };
     for text in texts {
-        right(ui, |ui| ui.label(RichText::new(text).monospace())).on_hover_text(status(solver));
+        widgets::value(ui, text).on_hover_text(status(solver));
     }
-}
-
-fn right(ui: &mut Ui, label: impl FnOnce(&mut Ui) -> egui::Response) -> egui::Response {
-    ui.with_layout(Layout::right_to_left(Align::Center), label).inner
 }
 
 fn status(solver: &ComparedSolver) -> String {

@@ -133,7 +133,8 @@ impl DopeSheet<'_> {
         rows::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();
-            actions.push(rows::clicked(ui, session, channel));
+            let channels = rows::after_click(ui, session.selected_channels(), channel);
+            actions.push(SelectAction::Channels(channels));
         }
         context_menu::of_channel(&response, session, channel, actions);
         response.on_hover_text(format!("Select {shown}; Shift or Ctrl adds it to the selection"));

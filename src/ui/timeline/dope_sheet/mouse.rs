@@ -1,13 +1,11 @@
 //! The mouse in the dope sheet: selects and moves keys, draws selection boxes.
 
-use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
+use egui::{Event, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2};
 use glam::Vec3;
 
 use crate::document::Channel;
-use crate::session::{
-    Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session, ShellAction, TransactionAction,
-};
-use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, TimelineDrag};
+use crate::session::{Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session};
+use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, KeyShift, Press, TimelineDrag};
 use crate::ui::timeline::rows::{DopeSheetRow, SelectedKeys};
 use crate::ui::timeline::rows::{ROW, take_keyboard};
 use crate::ui::timeline::time_scale::TimeScale;
@@ -15,8 +13,6 @@ use crate::ui::{labels, style};
 
 /// Hit radius of a key, in points.
 const REACH: f32 = 7.0;
-/// Distance in points that the mouse must exceed for a press to become a drag.
-const SLACK: f32 = 3.0;
 
 /// The dope sheet as it lies on screen.
 pub(in crate::ui) struct DopeSheetView<'a> {
@@ -94,7 +90,11 @@ pub(in crate::ui) fn press(
             PointerButton::Primary => {
                 let adds = modifiers.shift || modifiers.command;
                 match sheet.key(pos) {
-                    Some((row, time)) => press_key(ui, sheet, row, time, pos, adds, actions),
+                    Some((row, time)) => {
+                        let (session, press) = (sheet.session, Press { at: pos, adds });
+                        let keys = row.keys(session, time);
+                        drag::press_keys(ui, session, keys, time, press, None, actions);
+                    }
                     None => press_background(ui, sheet, pos, adds),
                 }
             }
@@ -109,58 +109,15 @@ pub(in crate::ui) fn press(
             PointerButton::Extra1 | PointerButton::Extra2 => {}
         }
     }
-    let double_click =
-        body.double_clicked().then(|| ui.input(|input| input.pointer.interact_pos()));
-    if let Some(at) = double_click.flatten()
+    if body.double_clicked()
+        && let Some(at) = ui.input(|input| input.pointer.interact_pos())
         && sheet.key(at).is_none()
         && let Some(row) = sheet.row(at)
     {
-        actions.push(PlaybackAction::SetTime(drag::pointed_time(
-            ui,
-            sheet.session,
-            sheet.scale,
-            at,
-        )));
+        let time = drag::pointed_time(ui, sheet.session, sheet.scale, at);
+        actions.push(PlaybackAction::SetTime(time));
         actions.push(KeysEdit::Key(row.channels(sheet.session)));
     }
-}
-
-fn press_key(
-    ui: &Ui,
-    sheet: &DopeSheetView<'_>,
-    row: DopeSheetRow,
-    time: f64,
-    pressed: Pos2,
-    adds: bool,
-    actions: &mut Actions,
-) {
-    let session = sheet.session;
-    let pointed = row.keys(session, time);
-    let selected = session.selection().keys();
-    let picked = |of: &[Key]| {
-        let of = SelectedKeys::of(of);
-        move |key: &&Key| of.has(DopeSheetRow::Channel(key.0), key.1)
-    };
-    let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
-    let all_selected = pointed.iter().all(|key| is_selected(&key));
-    let (keys, clicked) = match (adds, all_selected) {
-        // Keys that are selected already are deselected by this click, unless they are dragged.
-        (true, true) => {
-            let others = selected.iter().filter(|key| !is_pointed(key)).copied();
-            (selected.to_vec(), others.collect())
-        }
-        (true, false) => {
-            let new = pointed.iter().filter(|key| !is_selected(key));
-            let both: Vec<_> = selected.iter().chain(new).copied().collect();
-            (both.clone(), both)
-        }
-        (false, true) => (selected.to_vec(), pointed),
-        (false, false) => (pointed.clone(), pointed),
-    };
-    if keys != selected {
-        actions.push(SelectAction::Keys(keys.clone()));
-    }
-    drag::set(ui, TimelineDrag::Keys(KeyDrag { keys, time, pressed, moved: false, clicked }));
 }
 
 fn press_background(ui: &Ui, sheet: &DopeSheetView<'_>, at: Pos2, adds: bool) {
@@ -175,45 +132,27 @@ pub(in crate::ui) fn follow(ui: &Ui, sheet: &DopeSheetView<'_>, actions: &mut Ac
         return;
     };
     match drag::get(ui) {
-        Some(TimelineDrag::Keys(drag)) => move_keys(ui, sheet, drag, mouse, actions),
+        Some(TimelineDrag::Keys(drag)) => {
+            let shift = |drag: &KeyDrag, way| shift(ui, sheet, drag, way);
+            drag::follow_keys(ui, sheet.session, drag, mouse, actions, shift);
+        }
         Some(TimelineDrag::Box(drag)) => draw_box(ui, sheet, &drag, mouse, actions),
         Some(TimelineDrag::Pan) if drag::is_released(ui) => drag::clear(ui),
         Some(_) | None => {}
     }
 }
 
-fn move_keys(
-    ui: &Ui,
-    sheet: &DopeSheetView<'_>,
-    mut drag: KeyDrag,
-    mouse: Pos2,
-    actions: &mut Actions,
-) {
-    let session = sheet.session;
-    let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !session.history().is_editing() {
-        actions.push(SelectAction::Keys(drag.keys));
-        drag::clear(ui);
-        return;
-    }
-    if !drag.moved && (mouse - drag.pressed).length() > SLACK {
-        actions.push(TransactionAction::Begin);
-        drag.moved = true;
-        drag::set(ui, TimelineDrag::Keys(drag.clone()));
-    }
-    if drag.moved {
-        let way = f64::from(mouse.x - drag.pressed.x) / sheet.scale.points_per_second();
-        let by = drag::snapped(ui, session.document().timeline, drag.time + way) - drag.time;
-        let count = labels::count_of_keys(drag.keys.len());
-        let said = if drag::is_released(ui) {
-            format!("Moved {count} by {by:+.2} s")
-        } else {
-            format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel")
-        };
-        actions.push(KeysEdit::MoveKeys { keys: drag.keys.clone(), by, raise: Vec3::ZERO });
-        actions.push(ShellAction::Report(said));
-    }
-    drag::release_keys(ui, drag.moved, drag.clicked, actions);
+/// The shift of dragged keys for the way of the mouse, in points.
+fn shift(ui: &Ui, sheet: &DopeSheetView<'_>, drag: &KeyDrag, way: Vec2) -> KeyShift {
+    let later = drag.time + f64::from(way.x) / sheet.scale.points_per_second();
+    let by = drag::snapped(ui, sheet.session.document().timeline, later) - drag.time;
+    let count = labels::count_of_keys(drag.keys.len());
+    let said = if drag::is_released(ui) {
+        format!("Moved {count} by {by:+.2} s")
+    } else {
+        format!("Move {count}: {by:+.2} s     Ctrl off the frame grid · Esc cancel")
+    };
+    KeyShift { by, raise: Vec3::ZERO, said }
 }
 
 fn draw_box(
@@ -223,13 +162,12 @@ fn draw_box(
     mouse: Pos2,
     actions: &mut Actions,
 ) {
-    if ui.input(|input| input.key_pressed(Button::Escape)) {
+    if drag::is_cancelled(ui) {
         actions.push(SelectAction::Keys(drag.base.clone()));
-        drag::clear(ui);
-        return;
+        return drag::clear(ui);
     }
     let corner = place(sheet, drag);
-    let is_box = (mouse - corner).length() > SLACK;
+    let is_box = (mouse - corner).length() > drag::SLACK;
     let mut keys = drag.base.clone();
     if is_box {
         let (time, y) = (sheet.scale.time(mouse.x), sheet.content_y(mouse));

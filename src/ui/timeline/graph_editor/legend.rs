@@ -64,18 +64,12 @@ fn joint_name(
     let rig = session.skeleton_rig();
     let name = rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
     let selected = session.selection().joints();
-    let is_selected = selected.contains(&joint);
-    let (rect, response) =
-        item(ui, ("timeline joint", joint), is_selected, &format!("Curves of joint {name}"));
+    let said = format!("Curves of joint {name}");
+    let (rect, response) = item(ui, ("timeline joint", joint), selected.contains(&joint), &said);
     rows::line(ui, rect, name, ui.visuals().strong_text_color());
     if response.clicked() {
         ruler.request_focus();
-        let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-        let others = selected.iter().copied().filter(|other| adds && *other != joint);
-        let is_alone = is_selected && selected.len() == 1;
-        let goes = is_selected && adds || is_alone;
-        let joints = others.chain((!goes).then_some(joint)).collect();
-        actions.push(SelectAction::Joints(joints));
+        actions.push(SelectAction::Joints(rows::after_click(ui, selected, joint)));
     }
     response.on_hover_text(format!(
         "Show the curves of {name} alone, or of all joints again; Shift or Ctrl adds it"
@@ -113,7 +107,8 @@ fn channel_name(
     rows::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
     if response.clicked() {
         ruler.request_focus();
-        actions.push(rows::clicked(ui, session, *channel));
+        let channels = rows::after_click(ui, session.selected_channels(), *channel);
+        actions.push(SelectAction::Channels(channels));
     }
     context_menu::of_channel(&response, session, *channel, actions);
     let axes = if colours.len() == 3 { ", x, y and z in axis colours" } else { "" };

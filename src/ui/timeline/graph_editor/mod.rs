@@ -3,7 +3,7 @@
 mod legend;
 mod mouse;
 
-use egui::{Color32, Id, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo};
+use egui::{Color32, Id, PointerButton, Response, Role, Sense, Ui, UiBuilder, Vec2b, WidgetInfo};
 use egui_plot::{Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 use super::drag::{self, TimelineDrag};
@@ -71,15 +71,14 @@ pub(in crate::ui) fn ui(
         drag::grab_playhead(ui, session, actions);
         drag::follow_playhead(ui, session, scale, actions);
     }
-    if area.contains_pointer() && ui.input(|input| input.pointer.button_pressed(MIDDLE)) {
+    let is_middle = ui.input(|input| input.pointer.button_pressed(PointerButton::Middle));
+    if area.contains_pointer() && is_middle {
         drag::set(ui, TimelineDrag::Pan);
     }
-    if matches!(drag::get(ui), Some(TimelineDrag::Pan)) && drag::is_released(ui) {
+    if drag::is_panning(ui) && drag::is_released(ui) {
         drag::clear(ui);
     }
 }
-
-const MIDDLE: egui::PointerButton = egui::PointerButton::Middle;
 
 /// Width in points of the axis at the right of the curves, if there is one.
 pub(super) fn width_at_right(session: &Session) -> f32 {
@@ -109,8 +108,8 @@ fn listed(session: &Session) -> Vec<Channel> {
 /// selected.
 fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
     let selected = session.selection().channels();
-    let chosen = listed.iter().copied().filter(|channel| selected.contains(channel));
-    let chosen: Vec<Channel> = chosen.collect();
+    let is_chosen = |channel: &Channel| selected.contains(channel);
+    let chosen: Vec<Channel> = listed.iter().copied().filter(is_chosen).collect();
     if chosen.is_empty() { listed.iter().copied().take(MOST_DRAWN).collect() } else { chosen }
 }
 
@@ -145,8 +144,7 @@ fn scales(
         })
     };
     let mut scales = stored.unwrap_or_else(fitting);
-    let is_panning = matches!(drag::get(ui), Some(TimelineDrag::Pan));
-    scales.follow_input(ui, areas.keys, drawn, is_panning);
+    scales.follow_input(ui, areas.keys, drawn, drag::is_panning(ui));
     scales
 }
 

@@ -1,6 +1,6 @@
 //! The mouse in the graph editor: moves keys in time and value, and turns their tangents.
 
-use egui::{Event, Key as Button, PointerButton, Pos2, Rect, Response, Stroke, Ui, pos2};
+use egui::{Event, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2};
 use glam::Vec3;
 
 use crate::document::{Channel, Quantity};
@@ -8,15 +8,15 @@ use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::session::{
     Actions, Edit, Key, KeysEdit, SelectAction, Session, ShellAction, TransactionAction,
 };
-use crate::ui::timeline::drag::{self, PointsDrag, TangentDrag, TimelineDrag};
+use crate::ui::timeline::drag::{
+    self, DraggedValues, KeyDrag, KeyShift, Press, TangentDrag, TimelineDrag,
+};
 use crate::ui::timeline::time_scale::TimeScale;
 use crate::ui::timeline::value_scale::{ChannelCurve, ValueKind, ValueScales};
 use crate::ui::{labels, style};
 
 /// Hit radius of a key or a handle, in points.
 const REACH: f32 = 8.0;
-/// Distance in points that the mouse must exceed for a press to become a drag.
-const SLACK: f32 = 3.0;
 /// Length of a tangent handle, in points.
 const HANDLE: f32 = 40.0;
 
@@ -49,6 +49,10 @@ impl GraphView<'_> {
 
     fn track(&self, channel: Channel) -> Option<&Spline<Vec3>> {
         self.session.document().keys.track(channel)
+    }
+
+    fn values(&self, curve: &ChannelCurve) -> DraggedValues {
+        DraggedValues { axis: curve.axis, kind: curve.kind, scales: self.scales }
     }
 
     /// The places of the keys of a curve that are on screen.
@@ -128,8 +132,8 @@ impl GraphView<'_> {
 /// The scales of the plot when the drag in it began; `None` without one.
 pub(in crate::ui::timeline) fn held_scales(ui: &Ui) -> Option<ValueScales> {
     match drag::get(ui)? {
-        TimelineDrag::Points(PointsDrag { scales, .. })
-        | TimelineDrag::Tangent(TangentDrag { scales, .. }) => Some(scales),
+        TimelineDrag::Keys(drag) => Some(drag.values?.scales),
+        TimelineDrag::Tangent(drag) => Some(drag.value.scales),
         _ => None,
     }
 }
@@ -170,7 +174,7 @@ pub(in crate::ui::timeline) fn press(
             PointerButton::Primary => {
                 let adds = modifiers.shift || modifiers.command;
                 if !press_handle(ui, graph, pos) {
-                    press_key(ui, graph, pos, adds, actions);
+                    press_key(ui, graph, Press { at: pos, adds }, actions);
                 }
             }
             PointerButton::Secondary => {
@@ -193,91 +197,56 @@ fn press_handle(ui: &Ui, graph: &GraphView<'_>, at: Pos2) -> bool {
         return false;
     };
     let Handle { curve, key, is_leaving, .. } = *handle;
-    let (axis, kind, scales) = (curve.axis, curve.kind, graph.scales);
-    let drag = TangentDrag { key, axis, kind, is_leaving, moved: false, scales };
+    let drag = TangentDrag { key, value: graph.values(curve), is_leaving, moved: false };
     drag::set(ui, TimelineDrag::Tangent(drag));
     true
 }
 
-fn press_key(ui: &Ui, graph: &GraphView<'_>, pressed: Pos2, adds: bool, actions: &mut Actions) {
-    let Some((curve, key)) = graph.key_at(pressed) else { return };
-    let selected = graph.session.selection().keys();
-    let is_selected = selected.contains(&key);
-    let others = || selected.iter().copied().filter(|other| *other != key);
-    let with_key = || others().chain([key]).collect::<Vec<_>>();
-    let (keys, clicked) = match (adds, is_selected) {
-        (true, true) => (selected.to_vec(), others().collect()),
-        (true, false) => (with_key(), with_key()),
-        (false, true) => (selected.to_vec(), vec![key]),
-        (false, false) => (vec![key], vec![key]),
-    };
-    if keys != selected {
-        actions.push(SelectAction::Keys(keys.clone()));
-    }
-    let (axis, kind, time, scales) = (curve.axis, curve.kind, key.1, graph.scales);
-    let moved = false;
-    let drag = PointsDrag { keys, axis, kind, time, pressed, moved, clicked, scales };
-    drag::set(ui, TimelineDrag::Points(drag));
+fn press_key(ui: &Ui, graph: &GraphView<'_>, press: Press, actions: &mut Actions) {
+    let Some((curve, key)) = graph.key_at(press.at) else { return };
+    let values = Some(graph.values(curve));
+    drag::press_keys(ui, graph.session, vec![key], key.1, press, values, actions);
 }
 
 /// Continues a drag of keys or of a handle until the release of the mouse button or Esc.
 pub(in crate::ui::timeline) fn follow(ui: &Ui, graph: &GraphView<'_>, actions: &mut Actions) {
     let Some(mouse) = ui.input(|input| input.pointer.latest_pos()) else { return };
     match drag::get(ui) {
-        Some(TimelineDrag::Points(drag)) => move_keys(ui, graph, drag, mouse, actions),
+        Some(TimelineDrag::Keys(drag)) => {
+            let shift = |drag: &KeyDrag, way| shift(ui, graph, drag, way);
+            drag::follow_keys(ui, graph.session, drag, mouse, actions, shift);
+        }
         Some(TimelineDrag::Tangent(drag)) => turn_tangent(ui, graph, drag, mouse, actions),
         _ => {}
     }
 }
 
-fn move_keys(
-    ui: &Ui,
-    graph: &GraphView<'_>,
-    mut drag: PointsDrag,
-    mouse: Pos2,
-    actions: &mut Actions,
-) {
-    let session = graph.session;
-    let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !session.history().is_editing() {
-        actions.push(SelectAction::Keys(drag.keys));
-        return drag::clear(ui);
+/// The shift of dragged keys for the way of the mouse, in points.
+fn shift(ui: &Ui, graph: &GraphView<'_>, drag: &KeyDrag, way: Vec2) -> KeyShift {
+    // Shift keeps to the direction in which the mouse has moved more.
+    let is_locked = ui.input(|input| input.modifiers.shift);
+    let is_level = way.x.abs() > way.y.abs();
+    let x = if is_locked && !is_level { 0.0 } else { way.x };
+    let y = if is_locked && is_level { 0.0 } else { way.y };
+    let later = drag.time + f64::from(x) / graph.scale.points_per_second();
+    let by = match x {
+        0.0 => 0.0,
+        _ => drag::snapped(ui, graph.session.document().timeline, later) - drag.time,
+    };
+    let (mut raise, mut shown) = (Vec3::ZERO, 0.0);
+    if let Some(DraggedValues { axis, kind, .. }) = drag.values {
+        shown = -f64::from(y) / graph.points_per_value(kind);
+        raise[axis] = (shown / kind.factor()) as f32;
     }
-    let way = mouse - drag.pressed;
-    if !drag.moved && way.length() > SLACK {
-        actions.push(TransactionAction::Begin);
-        drag.moved = true;
-        drag::set(ui, TimelineDrag::Points(drag.clone()));
-    }
-    if drag.moved {
-        // Shift keeps to the direction in which the mouse has moved more.
-        let is_locked = ui.input(|input| input.modifiers.shift);
-        let is_level = way.x.abs() > way.y.abs();
-        let (x, y) = match (is_locked, is_level) {
-            (true, true) => (way.x, 0.0),
-            (true, false) => (0.0, way.y),
-            (false, _) => (way.x, way.y),
-        };
-        let later = drag.time + f64::from(x) / graph.scale.points_per_second();
-        let by = match x {
-            0.0 => 0.0,
-            _ => drag::snapped(ui, session.document().timeline, later) - drag.time,
-        };
-        let shown = -f64::from(y) / graph.points_per_value(drag.kind);
-        let mut raise = Vec3::ZERO;
-        raise[drag.axis] = (shown / drag.kind.factor()) as f32;
-        let count = labels::count_of_keys(drag.keys.len());
-        let said = if drag::is_released(ui) {
-            format!("Moved {count} by {by:+.2} s, {shown:+.2}")
-        } else {
-            format!(
-                "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
-            )
-        };
-        actions.push(KeysEdit::MoveKeys { keys: drag.keys.clone(), by, raise });
-        actions.push(ShellAction::Report(said));
-    }
-    drag::release_keys(ui, drag.moved, drag.clicked, actions);
+    let count = labels::count_of_keys(drag.keys.len());
+    let said = if drag::is_released(ui) {
+        format!("Moved {count} by {by:+.2} s, {shown:+.2}")
+    } else {
+        format!(
+            "Move {count}: {by:+.2} s, {shown:+.2}     Shift one direction · Ctrl off the frame grid · Esc cancel"
+        )
+    };
+    KeyShift { by, raise, said }
 }
 
 fn turn_tangent(
@@ -287,8 +256,7 @@ fn turn_tangent(
     mouse: Pos2,
     actions: &mut Actions,
 ) {
-    let cancelled = ui.input(|input| input.key_pressed(Button::Escape));
-    if cancelled || drag.moved && !graph.session.history().is_editing() {
+    if drag::is_cancelled(ui) || drag.moved && !graph.session.history().is_editing() {
         return drag::clear(ui);
     }
     if !drag.moved {
@@ -315,21 +283,22 @@ fn turned(ui: &Ui, graph: &GraphView<'_>, drag: TangentDrag, mouse: Pos2) -> Opt
     /// Least distance of the mouse from the key in time, in points, so that slopes stay finite.
     const LEAST: f32 = 2.0;
     let (channel, time) = drag.key;
+    let DraggedValues { axis, kind, .. } = drag.value;
     let track = graph.track(channel)?;
-    let value = drag.kind.factor() * f64::from(track.get(time)?[drag.axis]);
-    let key = graph.place(time, drag.kind, value);
+    let value = kind.factor() * f64::from(track.get(time)?[axis]);
+    let key = graph.place(time, kind, value);
     let side = if drag.is_leaving { 1.0 } else { -1.0 };
     let across = (side * (mouse.x - key.x)).max(LEAST);
     let seconds = f64::from(across) / graph.scale.points_per_second();
-    let rise = f64::from(key.y - mouse.y) / graph.points_per_value(drag.kind);
-    let slope = (f64::from(side) * rise / (drag.kind.factor() * seconds)) as f32;
+    let rise = f64::from(key.y - mouse.y) / graph.points_per_value(kind);
+    let slope = (f64::from(side) * rise / (kind.factor() * seconds)) as f32;
     let Slopes { mut arriving, mut leaving } = track.slopes(time)?;
     let is_alone = ui.input(|input| input.modifiers.alt);
     if drag.is_leaving || !is_alone {
-        leaving[drag.axis] = slope;
+        leaving[axis] = slope;
     }
     if !drag.is_leaving || !is_alone {
-        arriving[drag.axis] = slope;
+        arriving[axis] = slope;
     }
     Some(KeysEdit::SetSlopes(vec![drag.key], Some(Slopes { arriving, leaving })).into())
 }

@@ -12,28 +12,30 @@ use crate::kinematics::twist::Stereographic;
 use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
 use crate::session::{Actions, Session, TargetEdit};
 use crate::ui::widgets::Choice;
-use crate::ui::widgets::{self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders};
+use crate::ui::widgets::{
+    self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders, with_axis,
+};
 
 pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    let no_limb = Limb::ending_at(session.skeleton(), target.joint).err();
-    let no_limb = no_limb.map(|reason| format!("No limb: {reason}"));
+    let no_limb = Limb::ending_at(session.skeleton(), target.joint)
+        .err()
+        .map(|reason| format!("No limb: {reason}"));
+    let is_limb = target.limb().is_some();
     let choice = Choice {
         label: "Moves",
         name: "Target kind",
         tooltip: "Choose the joints that the target moves",
-        shown: if target.limb().is_some() { "Limb" } else { "Whole body" },
+        shown: if is_limb { "Limb" } else { "Whole body" },
     };
+    let mut set = |kind| actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
     choice.show(ui, |list| {
-        let is_limb = target.limb().is_some();
-        let tooltip = "Solve from the root, together with the other whole-body targets";
-        if list.item(!is_limb, "Whole body", tooltip, None) {
-            let kind = TargetKind::WholeBody;
-            actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
+        let by_body = "Solve from the root, together with the other whole-body targets";
+        if list.item(!is_limb, "Whole body", by_body, None) {
+            set(TargetKind::WholeBody);
         }
-        let tooltip = "Solve the two bones above the tip in closed form";
-        if list.item(is_limb, "Limb", tooltip, no_limb.as_deref()) {
-            let kind = TargetKind::Limb(LimbSettings::default());
-            actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
+        let by_limb = "Solve the two bones above the tip in closed form";
+        if list.item(is_limb, "Limb", by_limb, no_limb.as_deref()) {
+            set(TargetKind::Limb(LimbSettings::default()));
         }
     });
 }
@@ -89,20 +91,10 @@ fn reference(
     ];
     let is_now =
         |reference: &ElbowReference| discriminant(reference) == discriminant(&settings.reference);
-    let shown = references.iter().find(|(reference, ..)| is_now(reference)).map_or("", |it| it.1);
-    let choice = Choice {
-        label: "Elbow from",
-        name: "Elbow reference",
-        tooltip: "Choose the direction of the elbow or knee at twist 0",
-        shown,
-    };
-    choice.show(ui, |list| {
-        for (reference, name, tooltip) in references {
-            if list.item(is_now(&reference), name, tooltip, None) {
-                actions.push(set(LimbSettings { reference, ..settings }));
-            }
-        }
-    });
+    let tooltip = "Choose the direction of the elbow or knee at twist 0";
+    let choice = Choice { label: "Elbow from", name: "Elbow reference", tooltip, shown: "" };
+    let chosen = choice.pick(ui, &references, is_now);
+    actions.extend(chosen.map(|reference| set(LimbSettings { reference, ..settings })));
 }
 
 /// A pole in front of the elbow as it is posed, in the pole's space.
@@ -185,8 +177,7 @@ fn hand(
             ..angle_slider(&name, tooltip, angles[axis])
         };
         slider.show(ui, session, actions, |degrees| {
-            let mut turned = angles;
-            turned[axis] = degrees.to_radians();
+            let turned = with_axis(angles, axis, degrees.to_radians());
             set(LimbSettings { orientation: Some(turned), ..settings })
         });
     }

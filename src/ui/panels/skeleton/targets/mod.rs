@@ -42,7 +42,7 @@ fn row(
             let mut enabled = target.enabled;
             let name = format!("Target of {end_name}");
             let check = ui.checkbox(&mut enabled, "").on_hover_text("Enable this target");
-            ui.ctx().accesskit_node_builder(check.id, |node| node.set_label(name.as_str()));
+            widgets::name(ui, &check, &name);
             if check.changed() {
                 actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
             }
@@ -141,32 +141,28 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    widgets::pair(ui, "Weight", |ui| {
-        let tooltip = "Weigh this target against the other whole-body targets";
-        let field = NumberField {
-            name: "Weight",
-            value: target.weight,
-            unit: "",
-            step: 0.1,
-            digits: 2,
-            tooltip,
-        };
-        field.show(ui, session, actions, |weight| {
-            TargetEdit::SetTarget(Target { weight, ..target })
-        });
-    });
+    let weight = NumberField {
+        name: "Weight",
+        value: target.weight,
+        unit: "",
+        step: 0.1,
+        digits: 2,
+        tooltip: "Weigh this target against the other whole-body targets",
+    };
+    let set = |weight| TargetEdit::SetTarget(Target { weight, ..target });
+    weight.row(ui, session, "Weight", actions, set);
 }
 
 /// Shows the buttons that match the target and the FK pose.
 fn matches(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     ui.horizontal(|ui| {
         // A target that poses pulls the tip with it.
-        let tooltip = if target.is_posing() {
+        let to_fk = if target.is_posing() {
             "Move the target to the tip's FK place; the figure follows into its FK pose"
         } else {
             "Move the target to the tip; nothing else moves"
         };
-        if widgets::button(ui, "Target to FK", tooltip, None) {
+        if widgets::button(ui, "Target to FK", to_fk, None) {
             actions.push(TargetEdit::MatchTargetToFk(target.joint));
         }
         let tooltip = "Write the shown pose to the joint angles; nothing moves";
@@ -186,48 +182,39 @@ const PATHS: [(TargetPath, &str, &str); 3] = [
 
 /// Shows the choice of the path.
 fn path(ui: &mut Ui, target: Target, actions: &mut Actions) {
-    let now = PATHS.iter().find(|(path, ..)| *path == target.motion.path);
-    let choice = Choice {
-        label: "Motion",
-        name: "Motion",
-        tooltip: "Move the target along a path during playback",
-        shown: now.map_or("", |now| now.1),
-    };
-    choice.show(ui, |list| {
-        for (path, name, tooltip) in PATHS {
-            if list.item(path == target.motion.path, name, tooltip, None) {
-                let motion = TargetMotion { path, ..target.motion };
-                actions.push(TargetEdit::SetTarget(Target { motion, ..target }));
-                actions.push(PlaybackAction::Play(path != TargetPath::Still));
-            }
-        }
-    });
+    let tooltip = "Move the target along a path during playback";
+    let choice = Choice { label: "Motion", name: "Motion", tooltip, shown: "" };
+    if let Some(path) = choice.pick(ui, &PATHS, |path| *path == target.motion.path) {
+        let motion = TargetMotion { path, ..target.motion };
+        actions.push(TargetEdit::SetTarget(Target { motion, ..target }));
+        actions.push(PlaybackAction::Play(path != TargetPath::Still));
+    }
 }
 
 /// Shows the size and the period of the path.
 fn motion(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
     let set = |motion| TargetEdit::SetTarget(Target { motion, ..target });
-    widgets::pair(ui, "Radius", |ui| {
-        let radius = NumberField {
-            name: "Radius",
-            value: target.motion.radius,
-            unit: "",
-            step,
-            digits: text::decimals(step),
-            tooltip: "Set the radius of the path",
-        };
-        radius.show(ui, session, actions, |radius| set(TargetMotion { radius, ..target.motion }));
+    let radius = NumberField {
+        name: "Radius",
+        value: target.motion.radius,
+        unit: "",
+        step,
+        digits: text::decimals(step),
+        tooltip: "Set the radius of the path",
+    };
+    radius.row(ui, session, "Radius", actions, |radius| {
+        set(TargetMotion { radius, ..target.motion })
     });
-    widgets::pair(ui, "Period", |ui| {
-        let period = NumberField {
-            name: "Period",
-            value: target.motion.period,
-            unit: " s",
-            step: 0.1,
-            digits: 2,
-            tooltip: "Set the time for one round",
-        };
-        period.show(ui, session, actions, |period| set(TargetMotion { period, ..target.motion }));
+    let period = NumberField {
+        name: "Period",
+        value: target.motion.period,
+        unit: " s",
+        step: 0.1,
+        digits: 2,
+        tooltip: "Set the time for one round",
+    };
+    period.row(ui, session, "Period", actions, |period| {
+        set(TargetMotion { period, ..target.motion })
     });
 }
 
