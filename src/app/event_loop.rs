@@ -24,8 +24,7 @@ pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), A
         EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
     let (settings, problem) = Settings::load();
     let mut session = Session::new(settings.preferences);
-    session.set_recent(settings.recent.clone());
-    session.set_export_folder(settings.export_folder.clone());
+    session.restore_files(settings.recent.clone(), settings.export_folder.clone());
     if let Some(opened) = opened {
         session.apply(opened);
     }

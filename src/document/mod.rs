@@ -127,4 +127,16 @@ impl Document {
             RigKind::Skeleton => SkeletonRig::grid_cell_for(self.skeleton_rig.reach()),
         }
     }
+
+    /// True if the shown skin hides the bones.
+    pub fn hides_bones(&self) -> bool {
+        let is_shown = self.display.shows(Overlay::Skin) && !self.display.shows(Overlay::Bones);
+        is_shown && self.skeleton_rig.skin.as_ref().is_some_and(|skin| skin.mesh().is_ok())
+    }
+
+    /// True if the skin is shown for each way of blending joints.
+    pub fn compares_skinning(&self) -> bool {
+        let overlays = [Overlay::Skin, Overlay::CompareSkinning];
+        self.rig == RigKind::Skeleton && overlays.into_iter().all(|it| self.display.shows(it))
+    }
 }

@@ -8,7 +8,7 @@ use super::channel::Channel;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::ik::IkSolution;
-use crate::kinematics::skeleton::Skeleton;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{EvaluatedSkeleton, PathKind, Skin, TargetReport};
 
@@ -154,6 +154,11 @@ impl Posed {
     /// Results for the rig's targets, in their order.
     pub fn targets(&self) -> &[TargetReport] {
         &self.evaluated_skeleton().targets
+    }
+
+    /// The report of a joint's target; `None` if the joint has none.
+    pub fn target_report(&self, joint: JointId) -> Option<&TargetReport> {
+        self.targets().get(self.document.skeleton_rig.target(joint)?)
     }
 
     /// The skeleton posed by FK and by its targets, with a report for each target.

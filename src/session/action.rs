@@ -5,11 +5,8 @@ use super::edit::Edit;
 use super::files::action::FileAction;
 use super::history::transaction::TransactionAction;
 use super::keys::KeysEdit;
-use super::outcome::{Consequence, Effect};
 use super::playback::PlaybackAction;
-use super::preferences::PanelTab;
 use super::selection::SelectAction;
-use super::session::Session;
 use super::shell::ShellAction;
 use super::skeleton::joints::JointEdit;
 use super::skeleton::path::PathEdit;
@@ -19,7 +16,6 @@ use super::solver::edits::SolverEdit;
 use super::solver::solvers::SolverAction;
 use super::tour::state::TourAction;
 use super::view::view::ViewAction;
-use crate::document::RigKind;
 
 /// A change of a [`Session`](super::Session), grouped by the part of the session that it changes.
 /// Values are absolute, so that setting the same value twice is harmless.
@@ -82,57 +78,6 @@ macro_rules! from_edit {
 }
 
 from_edit!(ArmEdit, JointEdit, PathEdit, TargetEdit, SolverEdit, SkinEdit, KeysEdit, DisplayEdit);
-
-impl Session {
-    /// Applies an action and returns the effect that the program must carry out, if any. An invalid
-    /// action changes nothing and is reported by [`Shell::message`]; an action that would lose
-    /// unsaved changes opens a dialog first.
-    pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
-        let compared = self.compares_skinning();
-        let effect = self.apply_to_part(action.into());
-        if self.compares_skinning() && !compared {
-            self.act(Consequence::ShowTab(PanelTab::Skin));
-        }
-        self.watch_tour();
-        effect
-    }
-
-    fn apply_to_part(&mut self, action: Action) -> Option<Effect> {
-        let outcome = match action {
-            Action::Edit(edit) => {
-                self.edit(edit);
-                return None;
-            }
-            Action::File(action) => return self.apply_file(action),
-            Action::Bake(action) => return self.apply_bake(action),
-            Action::Tour(action) => {
-                self.apply_tour(action);
-                return None;
-            }
-            Action::Transaction(action) => action.apply(self),
-            Action::Select(action) => self.apply_selection(action),
-            Action::View(action) => self.apply_view(action),
-            Action::Playback(action) => self.apply_playback(action),
-            Action::Solver(action) => self.apply_solver(action),
-            Action::Shell(action) => {
-                let arm = (self.rig() == RigKind::Arm).then(|| self.arm());
-                action.apply(arm, *self.preferences())
-            }
-        };
-        self.act(outcome)
-    }
-
-    fn apply_bake(&mut self, action: BakeAction) -> Option<Effect> {
-        match action.apply(self) {
-            Ok((edit, said)) => {
-                self.act(Consequence::TakeDialog);
-                self.edit(edit);
-                self.act(said)
-            }
-            Err(outcome) => self.act(outcome),
-        }
-    }
-}
 
 /// Actions in the order in which they are applied.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -17,31 +17,31 @@ pub enum BakeAction {
 }
 
 impl BakeAction {
-    /// Applies the action; a bake that has ended gives the edit to apply.
-    pub(super) fn apply(self, session: &Session) -> Result<(KeysEdit, Outcome), Outcome> {
+    pub(super) fn apply(self, session: &mut Session) -> Outcome {
         match (self, session.shell().dialog()) {
-            (Self::Start(settings), _) => Err(start(session, settings)),
+            (Self::Start(settings), _) => start(session, settings),
             (Self::Started(job), Some(Dialog::Bake { settings, job: None })) => {
                 let dialog = Dialog::Bake { settings: *settings, job: Some(job) };
-                Err(Consequence::ShowDialog(Box::new(dialog)).into())
+                Consequence::ShowDialog(Box::new(dialog)).into()
             }
             (Self::Started(job), _) => {
                 job.progress.cancel();
-                Err(Outcome::default())
+                Outcome::default()
             }
             (Self::Ended(job, result), Some(Dialog::Bake { job: Some(own), .. }))
                 if *own == job =>
             {
+                session.act(Consequence::TakeDialog);
                 match result {
                     Ok(baked) => {
                         let message = describe(&baked);
-                        Ok((KeysEdit::Bake(baked), Outcome::say(message)))
+                        session.edit(KeysEdit::Bake(baked));
+                        Outcome::say(message)
                     }
-                    Err(error) => Err(Outcome::from(Consequence::TakeDialog)
-                        .and(Outcome::fail(format!("not baked: {error}")))),
+                    Err(error) => Outcome::fail(format!("not baked: {error}")),
                 }
             }
-            (Self::Ended(..), _) => Err(Outcome::default()),
+            (Self::Ended(..), _) => Outcome::default(),
         }
     }
 }
@@ -63,12 +63,5 @@ fn describe(Baked { keys_at_frames, keys, shortened, .. }: &Baked) -> String {
         0 => kept,
         1 => format!("{kept}; the stretch of one bone has no keys"),
         bones => format!("{kept}; the stretch of {bones} bones has no keys"),
-    }
-}
-
-impl Session {
-    /// The bake dialog for the document, with default settings.
-    pub fn bake_dialog(&self) -> Dialog {
-        Dialog::Bake { settings: Bake::of_timeline(self.document()), job: None }
     }
 }

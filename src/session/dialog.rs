@@ -72,6 +72,11 @@ pub enum Dialog {
 }
 
 impl Dialog {
+    /// The dialog for a bake of the document, with default settings.
+    pub fn bake(document: &Document) -> Self {
+        Self::Bake { settings: Bake::of_timeline(document), job: None }
+    }
+
     /// True if the dialog takes all keyboard and mouse input.
     pub fn is_modal(&self) -> bool {
         *self != Self::Statistics

@@ -59,14 +59,3 @@ edits! {
     /// Of the display and of both rigs alike.
     Display(DisplayEdit),
 }
-
-impl Session {
-    /// Applies an edit as an undo step of its own, or as part of the open transaction.
-    pub(super) fn edit(&mut self, edit: impl Into<Edit>) {
-        let edit = edit.into();
-        self.step(edit.label(), |session| {
-            let outcome = edit.apply(session);
-            session.act(outcome);
-        });
-    }
-}

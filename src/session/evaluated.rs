@@ -4,9 +4,9 @@ use super::arm::pops::{CursorMove, Pops};
 use super::arm::transport::TransportPath;
 use super::cached::Cached;
 use super::skin_areas::SkinAreas;
-use crate::document::Posed;
+use crate::document::{Document, Overlay, Posed, Ray};
 use crate::kinematics::diagnosis::Diagnosis;
-use crate::kinematics::skeleton::SkeletonPose;
+use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::kinematics::skin::TriangleMesh;
 
 /// Values derived from the poses at the playhead.
@@ -75,9 +75,24 @@ impl Evaluated {
         self.trail.get(sample)
     }
 
-    /// The mesh of the skin in the world.
-    pub(super) fn posed_skin(&self, pose: impl FnOnce() -> TriangleMesh) -> &TriangleMesh {
-        self.posed_skin.get(pose)
+    /// The joint with the greatest weight at the point of the shown skin that a ray meets first, in
+    /// the pose at the playhead; `None` if the skin is hidden or the ray meets none. A root without a
+    /// bone, such as a pelvis, shares its skin with the bones on it, and wins where it has at least
+    /// half of their weight.
+    pub fn joint_on_skin(&self, posed: &Posed, ray: Ray) -> Option<JointId> {
+        /// Weight of a root without a bone, as a fraction of the greatest one, from which the skin is
+        /// its own.
+        const SHARED: f32 = 0.5;
+        let Document { skeleton_rig, display, .. } = posed.document();
+        let skin = skeleton_rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
+        let mesh = &skin.mesh().ok()?.mesh;
+        let pose = || mesh.posed(&mesh.pose(posed.skeleton()), skin.skinning);
+        let hit = self.posed_skin.get(pose).hit(ray.origin, ray.direction)?;
+        let weights = mesh.weights_at(&hit);
+        let least = SHARED * weights.of(weights.first());
+        let is_root = |joint| skeleton_rig.skeleton.joint(joint).is_some_and(Joint::is_root_point);
+        let root = weights.iter().find(|(joint, _)| is_root(*joint));
+        Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
     }
 
     /// The areas of the skin over the timeline.

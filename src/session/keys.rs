@@ -221,59 +221,55 @@ fn of_width(channel: Channel, vector: Vec3) -> Vec3 {
 }
 
 /// Channels for the keys.
-impl Session {
+impl KeysEdit {
     /// Channels that the shortcut K keys: those selected in the timeline, if any. Otherwise, for
     /// the arm, the channels that pose it and those with unkeyed edits; for the skeleton, the
     /// channels of the selected joints, or all channels if no joint is selected.
-    pub fn channels_to_key(&self) -> Vec<Channel> {
-        let is_there = |channel: &Channel| channel.value(self.shown()).is_some();
-        if !self.selection().channels().is_empty() {
-            return self.selection().channels().iter().copied().filter(is_there).collect();
+    pub fn channels_to_key(session: &Session) -> Vec<Channel> {
+        let (shown, selection) = (session.shown(), session.selection());
+        let is_there = |channel: &Channel| channel.value(shown).is_some();
+        if !selection.channels().is_empty() {
+            return selection.channels().iter().copied().filter(is_there).collect();
         }
-        match self.rig() {
+        match shown.rig {
             RigKind::Arm => {
-                let overridden = self.history().overridden_channels().filter(is_there);
-                let all: BTreeSet<_> =
-                    self.posing_channels().into_iter().chain(overridden).collect();
+                let overridden = session.history().overridden_channels().filter(is_there);
+                let all: BTreeSet<_> = posing_channels(shown).chain(overridden).collect();
                 all.into_iter().collect()
             }
-            RigKind::Skeleton if self.selection().joints().is_empty() => self.all_channels(),
+            RigKind::Skeleton if selection.joints().is_empty() => Self::all_channels(shown),
             RigKind::Skeleton => {
-                let rig = self.skeleton_rig();
-                let ends = self.selection().joints().iter().filter_map(|it| rig.target_of_end(*it));
+                let rig = &shown.skeleton_rig;
+                let ends = selection.joints().iter().filter_map(|it| rig.target_of_end(*it));
                 let targeted: Vec<_> = ends.map(|index| rig.targets[index].joint).collect();
                 let is_selected = |channel: &Channel| match channel.target() {
                     Some(joint) => targeted.contains(&joint),
-                    None => {
-                        channel.joint().is_some_and(|it| self.selection().joints().contains(&it))
-                    }
+                    None => channel.joint().is_some_and(|it| selection.joints().contains(&it)),
                 };
-                Channel::of_rig(self.shown()).into_iter().filter(is_selected).collect()
+                Channel::of_rig(shown).into_iter().filter(is_selected).collect()
             }
         }
     }
 
-    /// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
-    /// influence is below 1. The switch of the pin is among them if it is on or has keys.
-    fn posing_channels(&self) -> Vec<Channel> {
-        let (arm, keys) = (self.arm(), &self.shown().keys);
-        let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
-        let poses = |channel: &Channel| {
-            channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
-        };
-        hand.chain(Channel::FK).filter(poses).collect()
-    }
-
     /// Channels that affect the pose of the shown rig, and those of [`Self::keyed_channels`].
-    pub fn all_channels(&self) -> Vec<Channel> {
-        let of_rig = Channel::of_rig(self.shown()).into_iter();
-        let all: BTreeSet<Channel> = of_rig.chain(self.keyed_channels()).collect();
+    pub fn all_channels(shown: &Document) -> Vec<Channel> {
+        let of_rig = Channel::of_rig(shown).into_iter();
+        let all: BTreeSet<Channel> = of_rig.chain(Self::keyed_channels(shown)).collect();
         all.into_iter().collect()
     }
 
     /// All channels with keys, except the point of the arm's Cursor that is not in use.
-    pub fn keyed_channels(&self) -> impl Iterator<Item = Channel> {
-        let keyed = self.shown().keys.tracks().map(|(channel, _)| channel);
-        keyed.filter(|channel| !channel.is_idle(self.arm()))
+    pub fn keyed_channels(shown: &Document) -> impl Iterator<Item = Channel> {
+        let keyed = shown.keys.tracks().map(|(channel, _)| channel);
+        keyed.filter(|channel| !channel.is_idle(&shown.arm))
     }
+}
+
+/// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
+/// influence is below 1. The switch of the pin is among them if it is on or has keys.
+fn posing_channels(Document { arm, keys, .. }: &Document) -> impl Iterator<Item = Channel> {
+    let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
+    hand.chain(Channel::FK).filter(|channel| {
+        channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
+    })
 }

@@ -2,7 +2,7 @@ use core::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::document::{RigKind, Theme};
+use crate::document::{Document, RigKind, Theme};
 
 /// Settings of the user, kept from one start of the program to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,6 +73,32 @@ impl Default for Preferences {
             has_dragged_hand: false,
             offers_tour: true,
         }
+    }
+}
+
+impl Preferences {
+    /// The page of the panel on the right for a rig.
+    pub fn tab(&self, rig: RigKind) -> PanelTab {
+        match rig {
+            RigKind::Arm => self.arm_tab,
+            RigKind::Skeleton => self.skeleton_tab,
+        }
+    }
+
+    /// Brings a page of the panel on the right to the front, if the rig has it.
+    pub(super) fn show_tab(&mut self, rig: RigKind, tab: PanelTab) {
+        if PanelTab::of(rig).contains(&tab) {
+            match rig {
+                RigKind::Arm => self.arm_tab = tab,
+                RigKind::Skeleton => self.skeleton_tab = tab,
+            }
+        }
+    }
+
+    /// True if the timeline of a document is open above the transport bar: by choice, else if the
+    /// document has keys.
+    pub fn shows_timeline(&self, document: &Document) -> bool {
+        self.timeline_open.unwrap_or_else(|| !document.keys.is_empty())
     }
 }
 

@@ -9,17 +9,18 @@ use super::preferences::Preferences;
 use super::selection::Selection;
 use super::shell::Shell;
 use super::solver::solvers::Solvers;
-use super::solver::wiggle::WiggleView;
 use super::tour::state::TourState;
 use super::view::view::View;
 use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
 use crate::io;
-use crate::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{Crowd, TargetReport};
+use crate::rig::Crowd;
 
 mod act;
+mod files;
 mod time;
+mod tour;
 
 /// Ratio of width to height of the viewport that cameras are framed for; the margin of a framed
 /// view allows for other ratios.
@@ -45,8 +46,6 @@ pub struct Session {
     editing: Editing,
     evaluated: Evaluated,
     selection: Selection,
-    /// Heads that follow the mouse, in a transaction of their own.
-    follow_mouse: Option<FollowMouse>,
     playback: Playback,
     solvers: Solvers,
     view: View,
@@ -79,7 +78,6 @@ impl Session {
             evaluated: Evaluated::new(editing.posed()),
             editing,
             selection: Selection::default(),
-            follow_mouse: None,
             playback: Playback::default(),
             solvers: Solvers::default(),
             view: View::default(),
@@ -150,14 +148,10 @@ impl Session {
         self.own.as_deref().unwrap_or(self)
     }
 
-    /// Sets the recent files, as saved by an earlier run of the program.
-    pub fn set_recent(&mut self, recent: Vec<PathBuf>) {
-        self.files.set_recent(recent);
-    }
-
-    /// Sets the folder of the last export or picture, as saved by an earlier run of the program.
-    pub fn set_export_folder(&mut self, folder: Option<PathBuf>) {
-        self.files.set_export_folder(folder);
+    /// Sets the recent files and the folder of the last export or picture, as saved by an earlier
+    /// run of the program.
+    pub fn restore_files(&mut self, recent: Vec<PathBuf>, export_folder: Option<PathBuf>) {
+        self.files.restore(recent, export_folder);
     }
 
     /// Sets the text for the status bar once the file is open that was read: with unsaved changes,
@@ -210,19 +204,9 @@ impl Session {
         self.posed().arm_pose()
     }
 
-    /// The report of a joint's target at the playhead; `None` if the joint has none.
-    pub fn target_report(&self, joint: JointId) -> Option<&TargetReport> {
-        self.posed().evaluated_skeleton().targets.get(self.skeleton_rig().target(joint)?)
-    }
-
     /// The pose of the skeleton at the playhead, in world space.
     pub fn skeleton_pose(&self) -> &SkeletonPose {
         self.evaluated.skeleton_pose()
-    }
-
-    /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
-    pub fn arm_unit(&self) -> f32 {
-        self.editing.shown_before().arm.grid_cell() * 0.01
     }
 }
 
@@ -253,28 +237,9 @@ impl Session {
         self.view.crowd(self.arm().bones)
     }
 
-    /// The angle that swings, with the paths of the tip.
-    pub fn wiggle_view(&self) -> Option<WiggleView> {
-        let wiggle = self.view.wiggle().filter(|_| self.rig() == RigKind::Skeleton)?;
-        wiggle.view(self.skeleton_rig(), self.posed().evaluated_skeleton())
-    }
-
     /// True if targets move heads, which can follow the mouse.
     pub fn can_follow_mouse(&self) -> bool {
         let is_shown = self.rig() == RigKind::Skeleton && self.crowd().is_none();
-        is_shown && self.following_heads().is_some()
-    }
-
-    /// True if heads follow the mouse.
-    pub fn follows_mouse(&self) -> bool {
-        self.follow_mouse.is_some()
-    }
-
-    fn following_heads(&self) -> Option<FollowMouse> {
-        FollowMouse::new(
-            self.skeleton_rig(),
-            &self.posed().evaluated_skeleton().solved,
-            self.playback.time(),
-        )
+        is_shown && FollowMouse::new(self.posed()).is_some()
     }
 }

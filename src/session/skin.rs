@@ -4,14 +4,9 @@ use super::files::action::PathDialog;
 use super::outcome::{Consequence, Outcome};
 use super::session::Session;
 use super::skin_areas::SkinAreas;
-use crate::document::{Document, Overlay, Ray, Skin};
-use crate::kinematics::skeleton::{Joint, JointId};
+use crate::document::{Document, Overlay, Skin};
 use crate::kinematics::skin::SkinShapeError;
 use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
-
-/// Weight of a root without a bone, as a fraction of the greatest one, from which the skin is its
-/// own.
-const SHARED: f32 = 0.5;
 
 /// A change of the skin.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,32 +131,6 @@ pub(super) fn located(
 
 /// The skin under the mouse.
 impl Session {
-    /// The joint with the greatest weight at the point of the shown skin that a ray meets first;
-    /// `None` if the skin is hidden or the ray meets none. A root without a bone, such as a pelvis,
-    /// shares its skin with the bones on it, and wins where it has at least half of their weight.
-    pub fn joint_on_skin(&self, ray: Ray) -> Option<JointId> {
-        let skin = self.skeleton_rig().skin.as_ref();
-        let skin = skin.filter(|_| self.shown().display.shows(Overlay::Skin))?;
-        let mesh = &skin.mesh().ok()?.mesh;
-        let posed = self.evaluated().posed_skin(|| {
-            mesh.posed(&mesh.pose(&self.posed().evaluated_skeleton().solved), skin.skinning)
-        });
-        let hit = posed.hit(ray.origin, ray.direction)?;
-        let weights = mesh.weights_at(&hit);
-        let least = SHARED * weights.of(weights.first());
-        let root = weights
-            .iter()
-            .find(|(joint, _)| self.skeleton().joint(*joint).is_some_and(Joint::is_root_point));
-        Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
-    }
-
-    /// True if the shown skin hides the bones.
-    pub fn hides_bones(&self) -> bool {
-        let display = self.shown().display;
-        let skin = self.skeleton_rig().skin.as_ref().filter(|_| display.shows(Overlay::Skin));
-        !display.shows(Overlay::Bones) && skin.is_some_and(|skin| skin.mesh().is_ok())
-    }
-
     /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
     /// skins are not compared or have no section there.
     pub fn skin_areas(&self) -> Option<&SkinAreas> {

@@ -89,7 +89,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui,
         "Export…",
         "Ctrl+E",
-        || ShellAction::OpenDialog(session.export_dialog().into()),
+        || ShellAction::OpenDialog(session.files().export_dialog(session.document()).into()),
         actions,
     );
     item(ui, "Save picture…", "Ctrl+P", || commands::save_picture(session), actions);
@@ -165,14 +165,14 @@ fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     };
     let button = Button::new("Bake to keys…");
     if explained_item(ui, button, "Replace targets and path by keys", why_not) {
-        actions.push(ShellAction::OpenDialog(session.bake_dialog()));
+        actions.push(ShellAction::OpenDialog(Dialog::bake(session.document())));
     }
 }
 
 /// Shows the menu of channels to key; the channels of overlays are in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    item(ui, "Selected", "K", || KeysEdit::Key(session.channels_to_key()), actions);
-    item(ui, "All", "Shift+K", || KeysEdit::Key(session.all_channels()), actions);
+    item(ui, "Selected", "K", || KeysEdit::Key(KeysEdit::channels_to_key(&session)), actions);
+    item(ui, "All", "Shift+K", || KeysEdit::Key(KeysEdit::all_channels(session.shown())), actions);
     ui.separator();
     let one = |ui: &mut Ui, channel: Channel, actions: &mut Actions| {
         if ui.button(labels::channel(session, channel)).clicked() {
@@ -256,7 +256,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let explains = session.preferences().explain;
     let explain = widgets::check_box(ui, "Explain panel", "", explains, why_not);
     actions.extend(explain.map(ViewAction::ShowExplain));
-    let timeline = widgets::check_box(ui, "Timeline", "", session.shows_timeline(), None);
+    let timeline = widgets::check_box(ui, "Timeline", "", session.preferences().shows_timeline(session.document()), None);
     actions.extend(timeline.map(ViewAction::ShowTimeline));
     let tooltip = "Show keys as curves instead of a dope sheet";
     let curves = session.preferences().curves;

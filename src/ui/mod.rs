@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Act
     Panel::top("menu").show(ui, |ui| menu_bar::ui(ui, session, actions));
     let status = reserve(Panel::bottom("status"), ui, Some(status_bar::HEIGHT));
     let transport = reserve(Panel::bottom("transport"), ui, Some(timeline::TRANSPORT_HEIGHT));
-    let keys = session.shows_timeline().then(|| {
+    let keys = session.preferences().shows_timeline(session.document()).then(|| {
         // In a low window the timeline gives way to the view.
         let most = (ui.available_height() - VIEW_HEIGHT).clamp(88.0, 328.0);
         let panel = Panel::bottom("keys").default_size(120.0).size_range(88.0..=most);

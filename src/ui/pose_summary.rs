@@ -60,8 +60,7 @@ fn describe_crowd(crowd: &Crowd) -> String {
 
 fn describe_skeleton(session: &Session) -> String {
     let rig = session.skeleton_rig();
-    if let (Some(found), None) = (session.known_why().first(), session.solvers().shown_iteration())
-    {
+    if let (Some(found), None) = (session.why(false).first(), session.solvers().shown_iteration()) {
         return words::cause(rig, found);
     }
     let joints = rig.skeleton.joints();
@@ -91,12 +90,12 @@ fn describe_skeleton(session: &Session) -> String {
 /// reaches its targets; `None` without an enabled target.
 fn describe_solver(session: &Session) -> Option<String> {
     let Some(ShownIteration { number, latest, .. }) = session.solvers().shown_iteration() else {
-        return Some(session.solver_status()?.state.to_string());
+        return Some(session.solvers().status(session.posed())?.state.to_string());
     };
     let iteration = format!("iteration {number} of {latest}");
     Some(match session.solvers().run() {
         Some(run) => {
-            let state = session.solver_status()?.state;
+            let state = session.solvers().status(session.posed())?.state;
             format!("{}: {iteration}, {state}", run.method().title())
         }
         None => format!("Race of all solvers: {iteration}"),
@@ -125,7 +124,7 @@ fn describe_pose(session: &Session) -> String {
 /// Why the target is not reached that the session examines. While a mouse button is down nothing is
 /// found out that is not known, so that scrubbing does not wait.
 pub(in crate::ui) fn found<'a>(ui: &Ui, session: &'a Session) -> &'a [Diagnosis] {
-    if is_held(ui) { session.known_why() } else { session.why() }
+    if is_held(ui) { session.why(false) } else { session.why(true) }
 }
 
 pub(in crate::ui) fn is_held(ui: &Ui) -> bool {

@@ -111,7 +111,7 @@ fn line(session: &Session) -> String {
     if let Some(drag) = session.history().drag() {
         return describe_drag(session, drag);
     }
-    if let Some(wiggle) = session.wiggle_view() {
+    if let Some(wiggle) = session.view().wiggle_view(session.posed()) {
         return describe_wiggle(session, &wiggle);
     }
     session.shell().message().map_or_else(|| pose_summary::describe(session), ToOwned::to_owned)

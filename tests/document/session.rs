@@ -497,10 +497,10 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         let mut session = Session::default();
         if let Some(name) = name {
             session.apply(open_example(name));
-            session.apply(KeysEdit::ClearChannels(session.keyed_channels().collect()));
+            session.apply(KeysEdit::ClearChannels(KeysEdit::keyed_channels(session.shown()).collect()));
         }
         assert!(!session.playback().is_auto_key() && !session.playback().is_auto_key_news());
-        let channels = session.channels_to_key();
+        let channels = KeysEdit::channels_to_key(&session);
         session.apply(KeysEdit::Key(channels.clone()));
         assert!(session.playback().is_auto_key() && session.playback().is_auto_key_news());
         assert_eq!(
@@ -835,7 +835,10 @@ fn an_imported_file_gives_the_document_its_name() {
     let named = |dialog: PathDialog| dialog.path().to_owned();
     assert_eq!(named(session.files().save_as_dialog()), PathBuf::from("Walk cycle.json"));
     assert_eq!(named(session.files().save_picture_dialog()), PathBuf::from("Walk cycle.png"));
-    assert_eq!(named(session.export_dialog()), PathBuf::from("Walk cycle.glb"));
+    assert_eq!(
+        named(session.files().export_dialog(session.document())),
+        PathBuf::from("Walk cycle.glb")
+    );
     assert_eq!(
         session.files().folder_of(&session.files().save_as_dialog()),
         PathBuf::from("/models")
@@ -863,18 +866,24 @@ fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about
 #[test]
 fn an_export_into_a_missing_folder_does_not_leave_the_next_one_there() {
     let mut session = Session::default();
-    let dialog = session.export_dialog();
+    let dialog = session.files().export_dialog(session.document());
     let before = session.files().folder_of(&dialog);
     let PathDialog::Export(export) = dialog.clone() else { panic!("an export") };
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("missing/arm.glb");
     session.apply(FileAction::Export(Export { path: missing, ..export.clone() }));
     session.apply(FileAction::ExportEnded(Err("there is no folder".to_owned())));
-    assert_eq!(session.files().folder_of(&session.export_dialog()), before);
+    assert_eq!(
+        session.files().folder_of(&session.files().export_dialog(session.document())),
+        before
+    );
     let there = folder.path().join("arm.glb");
     session.apply(FileAction::Export(Export { path: there, ..export }));
     session.apply(FileAction::ExportEnded(Ok("Exported".to_owned())));
-    assert_eq!(session.files().folder_of(&session.export_dialog()), folder.path());
+    assert_eq!(
+        session.files().folder_of(&session.files().export_dialog(session.document())),
+        folder.path()
+    );
 }
 
 #[test]
@@ -887,7 +896,7 @@ fn what_a_diagnosis_names_is_outlined() {
     let index = rig.target_of_end(hand).expect("a target");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
     session.apply(TargetEdit::SetTarget(target));
-    let found = session.why().first().expect("it is too far away");
+    let found = session.why(true).first().expect("it is too far away");
     let said = words::cause(session.skeleton_rig(), found);
     assert!(said.starts_with("left_hand cannot reach that far"), "{said}");
     let outlined = session.overlays().concerned;

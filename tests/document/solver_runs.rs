@@ -368,7 +368,7 @@ fn a_run_ends_with_the_reason_if_its_solver_refuses_the_targets() {
 #[test]
 fn the_status_is_that_of_the_shown_iterate_or_of_the_evaluated_pose() {
     let mut session = example("ten-joints");
-    let status = |session: &Session| session.solver_status().expect("a target");
+    let status = |session: &Session| session.solvers().status(session.posed()).expect("a target");
     assert_eq!(
         (status(&session).state, status(&session).iteration),
         (SolverState::NotReached, None)

@@ -122,7 +122,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     let mut clock = 100.0;
     session.apply(PlaybackAction::Advance(clock));
     session.apply(TransactionAction::FollowMouse(true));
-    assert!(session.follows_mouse() && session.history().is_editing());
+    assert!(session.history().follows_mouse() && session.history().is_editing());
     let s_shape = |seconds: f64| {
         let (x, z) = (0.8 * seconds - 0.8, 0.5 * (3.0 * seconds).sin());
         Vec3::new(x as f32, 0.0, z as f32)
@@ -131,7 +131,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     let end = session.playback().time();
     lead(&mut session, &mut clock, 60, |_| s_shape(2.0));
     session.apply(TransactionAction::FollowMouse(false));
-    assert!(!session.follows_mouse() && !session.history().is_editing());
+    assert!(!session.history().follows_mouse() && !session.history().is_editing());
     assert_eq!(session.history().undo_label(), Some("Follow the mouse"));
 
     let recorded = session.document().clone();
@@ -173,7 +173,7 @@ fn a_recording_past_the_end_makes_the_timeline_longer_and_esc_restores_it() {
     let least = times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     assert!(least > 0.015 && times.len() < 60, "{} keys, {least} s apart", times.len());
     session.apply(TransactionAction::Cancel);
-    assert!(!session.follows_mouse());
+    assert!(!session.history().follows_mouse());
     assert_eq!(session.document(), &Document { camera: session.document().camera, ..before });
 }
 

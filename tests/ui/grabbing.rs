@@ -223,7 +223,8 @@ fn hidden_points_of_joints_take_no_press_from_the_skin() {
             if targets.iter().any(|target| target.distance(at) < 16.0) {
                 continue;
             }
-            let seen = bench.session().joint_on_skin(bench.ray(at));
+            let seen =
+                bench.session().evaluated().joint_on_skin(bench.session().posed(), bench.ray(at));
             bench.move_to(at);
             assert_eq!(bench.session().selection().hovered(), seen, "beside the tip of {joint}");
             bench.press(LEFT);

@@ -233,13 +233,13 @@ fn the_report_and_the_thin_lines_are_those_of_the_part_that_is_looked_at() {
     for part in 0..parts {
         bench.apply([SolverAction::ShowPart { iteration: 1, part: Some(part) }]);
         let shown = &run(&bench).parts()[part];
-        let status = bench.session().solver_status().expect("a report");
+        let status = bench.session().solvers().status(bench.session().posed()).expect("a report");
         assert_eq!(status.error, shown.error, "part {part}");
         let view = bench.session().overlays().inside.expect("a part");
         assert_eq!(*view.before, before, "part {part}");
         before = shown.pose.pose();
     }
     bench.apply([SolverAction::ShowPart { iteration: 1, part: None }]);
-    let status = bench.session().solver_status().expect("a report");
+    let status = bench.session().solvers().status(bench.session().posed()).expect("a report");
     assert_eq!(status.error, run(&bench).shown().error);
 }

@@ -259,7 +259,9 @@ fn the_reading_of_a_ring_shows_the_angle_after_limits() {
 fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_pose() {
     let example = Example::find("ten-joints").expect("there");
     let mut bench = Bench::after([FileAction::OpenExample(example)]);
-    let status = |bench: &Bench| bench.session().solver_status().expect("it has a target");
+    let status = |bench: &Bench| {
+        bench.session().solvers().status(bench.session().posed()).expect("it has a target")
+    };
     let tip_to_target = |bench: &Bench| {
         let session = bench.session();
         let target = session.skeleton_rig().targets[0];

@@ -112,16 +112,16 @@ fn each_tab_shows_its_page_and_the_choice_is_kept_for_each_rig() {
     ] {
         bench.click(Role::Tab, tab.name());
         assert!(bench.says(said), "{said}");
-        assert_eq!(bench.session().tab(), tab);
+        assert_eq!(bench.session().preferences().tab(bench.session().rig()), tab);
         assert!(has_tooltip(&mut bench, Role::Tab, tab.name()), "{tab:?}");
     }
     bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
-    assert_eq!(bench.session().tab(), PanelTab::Solver);
+    assert_eq!(bench.session().preferences().tab(bench.session().rig()), PanelTab::Solver);
     bench.click(Role::Tab, "Race");
     assert!(bench.shows(Role::Button, "Race all solvers"));
     assert!(!bench.shows(Role::Tab, "Triangle") && !bench.shows(Role::Tab, "Skin"));
     bench.apply([DisplayEdit::ShowRig(RigKind::Arm)]);
-    assert_eq!(bench.session().tab(), PanelTab::Pops);
+    assert_eq!(bench.session().preferences().tab(bench.session().rig()), PanelTab::Pops);
 }
 
 #[test]

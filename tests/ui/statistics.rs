@@ -140,10 +140,10 @@ fn the_statistics_request_no_frame_and_do_not_block_the_window() {
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
     assert_ne!(bench.hand(), before, "the hand is dragged");
     bench.apply([
-        Action::from(KeysEdit::Key(bench.session().all_channels())),
+        Action::from(KeysEdit::Key(KeysEdit::all_channels(bench.session().shown()))),
         PlaybackAction::SetTime(1.0).into(),
         ArmEdit::SetHand(Vec3::new(100.0, 200.0, 0.0)).into(),
-        KeysEdit::Key(bench.session().all_channels()).into(),
+        KeysEdit::Key(KeysEdit::all_channels(bench.session().shown())).into(),
     ]);
     bench.key(Key::Space);
     assert!(bench.session().playback().is_playing(), "Space plays");

@@ -230,7 +230,7 @@ fn the_pole_of_a_limb_is_dragged_and_the_elbow_points_at_it() {
     let before = tips(&bench);
     choose(&mut bench, "Elbow reference", "Pole");
     let forearm = bench.joint("left_forearm");
-    let pole = bench.session().target_report(forearm).and_then(|report| report.pole);
+    let pole = bench.session().posed().target_report(forearm).and_then(|report| report.pole);
     let pole = pole.expect("a pole");
     assert!(farthest(&before, &tips(&bench)) <= 2e-2, "the new pole is in front of the elbow");
     let start = bench.on_screen(pole);

@@ -34,7 +34,7 @@ fn target(bench: &Bench) -> Target {
 
 fn error(bench: &Bench) -> f32 {
     let target = target(bench);
-    bench.session().target_report(target.joint).expect("a report").error
+    bench.session().posed().target_report(target.joint).expect("a report").error
 }
 
 /// Number of labels that begin with this text.
@@ -79,7 +79,8 @@ fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
     let hand = bench.joint("left_hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.settle();
-    let tried: Vec<_> = bench.session().why().iter().flat_map(|it| it.remedies.clone()).collect();
+    let tried: Vec<_> =
+        bench.session().why(true).iter().flat_map(|it| it.remedies.clone()).collect();
     assert!(matches!(tried[..], [_, _]), "{tried:?}");
     for tried in tried {
         let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
@@ -148,7 +149,7 @@ fn foot_turned_by(degrees: &str) -> Bench {
 
 fn missing_degrees(bench: &Bench) -> f32 {
     let shin = bench.joint("left_shin");
-    let report = bench.session().target_report(shin).expect("a report");
+    let report = bench.session().posed().target_report(shin).expect("a report");
     report.rotation_error.expect("a rotation").to_degrees()
 }
 
@@ -157,12 +158,18 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
     let [some, more] = ["80", "120"].map(|degrees| {
         let bench = foot_turned_by(degrees);
         let missing = missing_degrees(&bench);
-        let sentence = words::cause(bench.session().skeleton_rig(), &bench.session().why()[0]);
+        let sentence = words::cause(bench.session().skeleton_rig(), &bench.session().why(true)[0]);
         assert!(sentence.starts_with("left_foot is "), "{sentence}");
         assert!(sentence.contains("its limit about x is in the way"), "{sentence}");
         assert_eq!(labels(&bench, &sentence), 4, "as many as for a place that is not reached");
         assert_eq!(
-            bench.session().solver_status().expect("targets").state.to_string(),
+            bench
+                .session()
+                .solvers()
+                .status(bench.session().posed())
+                .expect("targets")
+                .state
+                .to_string(),
             "not reached"
         );
         assert!(bench.count("° of its rotation missing") == 1, "{missing}");
@@ -180,14 +187,14 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
 #[test]
 fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     let mut bench = foot_turned_by("80");
-    let tried = bench.session().why()[0].remedies[0].clone();
+    let tried = bench.session().why(true)[0].remedies[0].clone();
     let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
     assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
     let target = bench.joint("left_shin");
     bench.apply([TargetEdit::ApplyRemedy { target, remedy: tried.remedy }]);
     bench.settle();
     assert!(missing_degrees(&bench) < 0.05);
-    assert!(bench.session().why().is_empty());
+    assert!(bench.session().why(true).is_empty());
     assert!(
         bench.says("left_foot is at its target now"),
         "{:?}",

@@ -107,6 +107,6 @@ fn a_joint_without_targets_below_swings_its_farthest_tip() {
     let joint = |session: &Session, name| session.skeleton().find(name).expect("a joint");
     let (neck, head) = (joint(&session, "neck"), joint(&session, "head"));
     session.apply(SelectAction::Wiggle(Some((neck, RotationAxis::X))));
-    let view = session.wiggle_view().expect("a wiggle");
+    let view = session.view().wiggle_view(session.posed()).expect("a wiggle");
     assert_eq!((view.swing.tip, view.target), (head, None));
 }

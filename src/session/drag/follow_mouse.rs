@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use crate::document::{Channel, Document, Ray, SkeletonRig, Timeline};
+use crate::document::{Channel, Document, Posed, Ray, SkeletonRig, Timeline};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetSpace;
 
@@ -34,9 +34,9 @@ impl FollowMouse {
     /// Label of the undo step.
     pub const LABEL: &'static str = "Follow the mouse";
 
-    /// Lets the heads of a rig that is `solved` follow the mouse from `start` on, in seconds; `None`
-    /// if targets move no heads.
-    pub fn new(rig: &SkeletonRig, solved: &Skeleton, start: f64) -> Option<Self> {
+    /// Lets the heads of a pose follow the mouse from its time on; `None` if targets move no heads.
+    pub fn new(posed: &Posed) -> Option<Self> {
+        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
         let leaders = rig.targets.iter().filter(|it| it.enabled && rig.leads_path(it));
         let mut heads: Vec<_> = leaders
             .filter_map(|target| {
@@ -46,32 +46,26 @@ impl FollowMouse {
             .collect();
         let middle = heads.iter().map(|it| it.beside).sum::<Vec3>() / heads.len().max(1) as f32;
         heads.iter_mut().for_each(|head| head.beside -= middle);
-        (!heads.is_empty()).then_some(Self { at: None, heads, start })
+        (!heads.is_empty()).then_some(Self { at: None, heads, start: posed.time() })
     }
 
-    /// Sets where the mouse is: the heads swim to the point of the ray on their level. `distance` is
-    /// that of the camera from what it looks at.
-    pub fn lead(&mut self, ray: Ray, rig: &SkeletonRig, solved: &Skeleton, distance: f32) {
+    /// Sets where the mouse is: the heads swim to the point of the ray on their level.
+    pub fn lead(&mut self, ray: Ray, posed: &Posed) {
+        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
         let homes = self.heads.iter().filter_map(|head| home_in_world(rig, solved, head.joint));
         let level = homes.sum::<Vec3>() / self.heads.len() as f32;
         // A ray that is nearly level meets the level at the horizon.
-        let farthest = FARTHEST * distance;
+        let farthest = FARTHEST * posed.document().camera.distance;
         let at = ray.meets_plane(level, Vec3::Y).filter(|at| at.distance(level) <= farthest);
         self.at = at.or(self.at);
     }
 
-    /// The shown document with keys of the homes at the playhead `time`, `passed` seconds after
-    /// `before`, nearer to the mouse. The timeline becomes longer instead of repeating.
-    pub fn recorded(
-        &self,
-        shown: &Document,
-        solved: &Skeleton,
-        before: f64,
-        passed: f64,
-        time: f64,
-    ) -> Document {
+    /// The document of a pose with keys of the homes at its time, `passed` seconds after `before`,
+    /// nearer to the mouse. The timeline becomes longer instead of repeating.
+    pub fn recorded(&self, posed: &Posed, before: f64, passed: f64) -> Document {
+        let (time, solved) = (posed.time(), posed.skeleton());
         let way = (1.0 - (-passed / LAG).exp()) as f32;
-        let mut after = shown.clone();
+        let mut after = posed.document().clone();
         for FollowingHead { joint, space, beside } in &self.heads {
             let channel = Channel::Target(*joint);
             let Some(home) = channel.value(&after) else {

@@ -23,7 +23,7 @@ pub(in crate::session) fn grab(
     ray: Ray,
     forward: Vec3,
 ) -> Option<Drag> {
-    let report = |joint| session.target_report(joint);
+    let report = |joint| session.posed().target_report(joint);
     let (handle, at) = match grip {
         Grip::Target(joint, handle) => (handle, report(joint)?.position),
         Grip::LimbPole(joint, handle) => (handle, report(joint)?.pole?),

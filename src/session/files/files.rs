@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use super::action::{Export, ExportJob, FileAction, FileContents, PathDialog};
+use crate::document::Document;
 use crate::io::{FileStamp, Upwards, new_document};
 use crate::session::dialog::Dialog;
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
@@ -103,8 +104,12 @@ impl Files {
         now.is_some() && now != self.stamp
     }
 
-    pub(in crate::session) fn set_recent(&mut self, recent: Vec<PathBuf>) {
-        self.recent = recent;
+    pub(in crate::session) fn restore(
+        &mut self,
+        recent: Vec<PathBuf>,
+        export_folder: Option<PathBuf>,
+    ) {
+        (self.recent, self.export_folder) = (recent, export_folder);
         self.recent.truncate(Self::MOST_RECENT);
     }
 
@@ -114,10 +119,6 @@ impl Files {
         self.recent.retain(|other| *other != path);
         self.recent.insert(0, path);
         self.recent.truncate(Self::MOST_RECENT);
-    }
-
-    pub(in crate::session) fn set_export_folder(&mut self, folder: Option<PathBuf>) {
-        self.export_folder = folder;
     }
 
     /// Remembers the folder of an exported file or picture for the next export.
@@ -162,8 +163,18 @@ impl Files {
         PathDialog::SavePicture { path: format!("{}.png", self.file_stem()) }
     }
 
+    /// The dialog for an export of the document, with default settings.
+    pub fn export_dialog(&self, document: &Document) -> PathDialog {
+        const SIZE: (u32, u32) = (1280, 800);
+        PathDialog::Export(Export {
+            path: format!("{}.glb", self.file_stem()).into(),
+            frame_rate: document.timeline.frame_rate,
+            size: SIZE,
+        })
+    }
+
     /// Name for files of the document, without an extension.
-    pub(in crate::session) fn file_stem(&self) -> String {
+    fn file_stem(&self) -> String {
         let stem = self.origin().and_then(Path::file_stem);
         stem.map_or("ik-arm".into(), |stem| stem.to_string_lossy()).into_owned()
     }

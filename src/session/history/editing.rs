@@ -1,8 +1,11 @@
 use std::collections::BTreeSet;
 
 use super::steps::{History, Overrides, Snapshot, TreeChange};
-use crate::document::{Arm, Camera, Channel, Document, PathKind, Posed, Track, TwistReferenceKind};
+use crate::document::{
+    Arm, Camera, Channel, Document, PathKind, Posed, Ray, Track, TwistReferenceKind,
+};
 use crate::kinematics::angle::wrapped;
+use crate::session::drag::follow_mouse::FollowMouse;
 use crate::session::drag::grip::Drag;
 use crate::session::drag::point::PointDrag;
 use crate::session::playback::Playback;
@@ -45,6 +48,8 @@ struct Transaction {
     /// The label of the latest edit; `None` before the first edit.
     label: Option<&'static str>,
     drag: Option<Drag>,
+    /// Heads that follow the mouse.
+    follow_mouse: Option<FollowMouse>,
 }
 
 /// Consequences of a change of the document.
@@ -142,6 +147,11 @@ impl Editing {
         self.transaction.as_ref().map_or(self.shown(), |transaction| &transaction.shown)
     }
 
+    /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
+    pub fn arm_unit(&self) -> f32 {
+        self.shown_before().arm.grid_cell() * 0.01
+    }
+
     /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
     /// none is open.
     pub(in crate::session) fn posed_before(&self) -> Posed {
@@ -167,6 +177,37 @@ impl Editing {
         let drag = transaction.drag.as_mut()?;
         transaction.label = Some(drag.grip().label());
         Some(drag)
+    }
+
+    /// True if heads follow the mouse.
+    pub fn follows_mouse(&self) -> bool {
+        self.following().is_some()
+    }
+
+    fn following(&self) -> Option<&FollowMouse> {
+        self.transaction.as_ref()?.follow_mouse.as_ref()
+    }
+
+    /// Lets the heads follow the mouse that targets move, in the open transaction.
+    pub(in crate::session) fn follow_mouse(&mut self) {
+        if let Some(transaction) = &mut self.transaction {
+            transaction.label = Some(FollowMouse::LABEL);
+            transaction.follow_mouse = FollowMouse::new(&self.posed);
+        }
+    }
+
+    /// Moves the mouse that heads follow to a ray in world space.
+    pub(in crate::session) fn lead_heads(&mut self, ray: Ray) {
+        let transaction = self.transaction.as_mut();
+        if let Some(follow) = transaction.and_then(|it| it.follow_mouse.as_mut()) {
+            follow.lead(ray, &self.posed);
+        }
+    }
+
+    /// The shown document with keys of the heads that follow the mouse, `passed` seconds after
+    /// `before`; `None` if none do.
+    pub(in crate::session) fn recorded(&self, before: f64, passed: f64) -> Option<Document> {
+        Some(self.following()?.recorded(&self.posed, before, passed))
     }
 
     /// Label of the step that Undo undoes; `None` if there is none.
@@ -446,7 +487,8 @@ impl Editing {
 
     pub(in crate::session) fn begin(&mut self, drag: Option<Drag>, time: f64) {
         let (before, shown) = (self.state(time), self.shown().clone());
-        self.transaction = Some(Transaction { before, shown, label: None, drag });
+        self.transaction =
+            Some(Transaction { before, shown, label: None, drag, follow_mouse: None });
     }
 
     /// Closes the transaction, if one is open, with an undo step.

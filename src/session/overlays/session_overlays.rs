@@ -24,40 +24,40 @@ impl Session {
         overlays.hovered = self.selection().hovered_part();
         overlays.figure = self.selection().figure();
         overlays.concerned.clear();
-        if let (Some(found), true) = (self.known_why().first(), self.solvers().is_idle()) {
+        if let (Some(found), true) = (self.why(false).first(), self.solvers().is_idle()) {
             // The sentence calls a limb's target by its hand.
             overlays.concerned.extend(self.skeleton_rig().end_of_target(found.target));
             overlays.concerned.extend_from_slice(&found.joints);
         }
-        overlays.inside = self.inside();
-        overlays.wiggle = self.wiggle_view();
+        overlays.inside = inside_view(self);
+        overlays.wiggle = self.view().wiggle_view(self.posed());
         let transported = Some(self.evaluated().transport_path().transported());
         overlays.twist_references = twist_reference_poses(self.posed(), transported);
         overlays.trail.clear();
-        overlays.trail.extend_from_slice(self.trail());
+        overlays.trail.extend_from_slice(trail(self));
         write_ghosts(self.solvers().runs(), &mut overlays.ghosts);
         write_onion_skins(self.history().track(), self.posed(), &mut overlays.onion_skins);
     }
+}
 
-    /// The part of the shown iteration that is looked at.
-    fn inside(&self) -> Option<InsideView> {
-        let run = self.solvers().run()?;
-        let shown = run.shown_part()?;
-        let part = run.parts().get(shown)?.clone();
-        let previous = shown.checked_sub(1).and_then(|before| run.parts().get(before)).cloned();
-        let (before, layers) = (run.before_part().clone(), self.view().inside_layers());
-        Some(InsideView { part, previous, before, layers })
-    }
+/// The part of the shown iteration that is looked at.
+fn inside_view(session: &Session) -> Option<InsideView> {
+    let run = session.solvers().run()?;
+    let shown = run.shown_part()?;
+    let part = run.parts().get(shown)?.clone();
+    let previous = shown.checked_sub(1).and_then(|before| run.parts().get(before)).cloned();
+    let (before, layers) = (run.before_part().clone(), session.view().inside_layers());
+    Some(InsideView { part, previous, before, layers })
+}
 
-    /// World positions of the hand or the active joint's tip in all frames; empty if the motion
-    /// trail is hidden.
-    fn trail(&self) -> &[Vec3] {
-        if has_trail(self.document(), self.shown()) {
-            self.evaluated()
-                .trail(|| sample_trail(self.history().track(), self.selection().active()))
-        } else {
-            &[]
-        }
+/// World positions of the hand or the active joint's tip in all frames; empty if the motion trail
+/// is hidden.
+fn trail(session: &Session) -> &[Vec3] {
+    if has_trail(session.document(), session.shown()) {
+        let joint = session.selection().active();
+        session.evaluated().trail(|| sample_trail(session.history().track(), joint))
+    } else {
+        &[]
     }
 }
 

@@ -3,57 +3,71 @@ use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::session::arm::pops::CursorMove;
-use crate::session::dialog::{Dialog, Message};
+use crate::session::dialog::Message;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
-use crate::session::files::action::{FileAction, PathDialog};
 use crate::session::history::steps::{Snapshot, TreeChange};
-use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
+use crate::session::outcome::{Consequence, Effect, Outcome};
 use crate::session::parts::ArmJoint;
-use crate::session::playback::PlaybackAction;
-use crate::session::preferences::{PanelTab, Preferences};
-use crate::session::selection::SelectAction;
+use crate::session::preferences::PanelTab;
 use crate::session::solver::run::SolverInputs;
 use crate::session::solver::solvers::SolverAction;
-use crate::session::tour::state::TourState;
-use crate::session::view::view::ViewAction;
+use crate::session::{Action, Edit};
 
 /// Minimum distance between waypoints of a dragged head, in cells of the grid.
 const WAYPOINT_SPACING: f32 = 0.02;
 
-/// Actions that one part applies.
 impl Session {
-    pub(in crate::session) fn apply_selection(&mut self, action: SelectAction) -> Outcome {
-        let joints = self.evaluated.skeleton_pose().len();
-        self.selection.apply(action, self.editing.document(), joints)
-    }
-
-    pub(in crate::session) fn apply_view(&mut self, action: ViewAction) -> Outcome {
-        self.view.apply(action, self.editing.document().camera, self.preferences)
-    }
-
-    pub(in crate::session) fn apply_playback(&mut self, action: PlaybackAction) -> Outcome {
-        self.playback.apply(action, &self.editing.document().timeline)
-    }
-
-    pub(in crate::session) fn apply_solver(&mut self, action: SolverAction) -> Outcome {
-        self.solvers.apply(action, self.editing.shown(), self.playback.time())
-    }
-
-    pub(in crate::session) fn apply_to_files(
-        &mut self,
-        action: FileAction,
-    ) -> Result<Outcome, FileAction> {
-        self.files.apply(action, self.shell.dialog())
-    }
-
-    /// Makes an undo step of a change, or a part of the open transaction.
-    pub(in crate::session) fn step(&mut self, label: &'static str, change: impl FnOnce(&mut Self)) {
-        if self.editing.label_transaction(label) {
-            return change(self);
+    /// Applies an action and returns the effect that the program must carry out, if any. An invalid
+    /// action changes nothing and is reported by [`Shell::message`](crate::session::Shell::message);
+    /// an action that would lose unsaved changes opens a dialog first.
+    pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
+        let compared = self.shown().compares_skinning();
+        let effect = self.apply_to_part(action.into());
+        if self.shown().compares_skinning() && !compared {
+            self.act(Consequence::ShowTab(PanelTab::Skin));
         }
-        let before = self.editing.state(self.playback.time());
-        change(self);
-        if !self.editing.is_editing() {
+        self.watch_tour();
+        effect
+    }
+
+    fn apply_to_part(&mut self, action: Action) -> Option<Effect> {
+        let document = self.editing.document();
+        let outcome = match action {
+            Action::Edit(edit) => {
+                self.edit(edit);
+                return None;
+            }
+            Action::File(action) => return self.apply_file(action),
+            Action::Bake(action) => action.apply(self),
+            Action::Tour(action) => {
+                self.apply_tour(action);
+                return None;
+            }
+            Action::Transaction(action) => action.apply(self),
+            Action::Select(action) => {
+                let joints = self.evaluated.skeleton_pose().len();
+                self.selection.apply(action, document, joints)
+            }
+            Action::View(action) => self.view.apply(action, document.camera, self.preferences),
+            Action::Playback(action) => self.playback.apply(action, &document.timeline),
+            Action::Solver(action) => self.solvers.apply(action, self.editing.posed()),
+            Action::Shell(action) => {
+                let arm = (self.rig() == RigKind::Arm).then(|| self.arm());
+                action.apply(arm, self.preferences)
+            }
+        };
+        self.act(outcome)
+    }
+
+    /// Applies an edit as an undo step of its own, or as part of the open transaction.
+    pub(in crate::session) fn edit(&mut self, edit: impl Into<Edit>) {
+        let edit = edit.into();
+        let label = edit.label();
+        let is_part = self.editing.label_transaction(label);
+        let before = (!is_part).then(|| self.editing.state(self.playback.time()));
+        let outcome = edit.apply(self);
+        self.act(outcome);
+        if let Some(before) = before.filter(|_| !self.editing.is_editing()) {
             self.editing.remember(label, before, self.playback.time());
         }
     }
@@ -99,7 +113,9 @@ impl Session {
             Consequence::TakeDialog => drop(self.shell.take_dialog()),
             Consequence::SetChoosing(choosing) => self.shell.set_choosing(choosing),
             Consequence::Prefer(preferences) => self.preferences = preferences,
-            Consequence::ShowTab(tab) => self.show_tab(tab),
+            Consequence::ShowTab(tab) => {
+                self.preferences.show_tab(self.editing.document().rig, tab)
+            }
 
             Consequence::Write(after) => self.write(*after),
             Consequence::Refresh => self.refresh(),
@@ -116,7 +132,7 @@ impl Session {
             Consequence::Redo => self.redo(),
             Consequence::Press(grip) => self.press(grip),
             Consequence::FollowMouse(follows) => self.follow_mouse(follows),
-            Consequence::Lead(ray) => self.lead_heads(ray),
+            Consequence::Lead(ray) => self.editing.lead_heads(ray),
 
             Consequence::Select(joints) => self.select(joints),
             Consequence::Hover(part) => {
@@ -150,8 +166,14 @@ impl Session {
                 self.end_glide();
             }
             Consequence::ResetCrowd => self.view.reset_crowd(),
-            Consequence::ResetTransport => self.reset_transport(),
-            Consequence::LookInside => return self.look_inside(),
+            Consequence::ResetTransport => self.evaluated.reset_transport(self.editing.posed()),
+            Consequence::LookInside => {
+                let look = SolverAction::ShowPart { iteration: 1, part: Some(0) };
+                for action in [SolverAction::Step, look] {
+                    let outcome = self.solvers.apply(action, self.editing.posed());
+                    self.act(outcome);
+                }
+            }
             Consequence::EndSolvers => self.solvers.end(),
         }
         None
@@ -184,7 +206,7 @@ impl Session {
         if self.solvers.is_idle() {
             return;
         }
-        let inputs = SolverInputs::of(self.shown(), self.playback.time()).ok();
+        let inputs = SolverInputs::of(self.posed()).ok();
         if let Err(error) = self.solvers.follow(inputs) {
             self.act(Outcome::fail(error.to_string()));
         }
@@ -250,12 +272,10 @@ impl Session {
     }
 
     pub(super) fn commit(&mut self) {
-        self.follow_mouse = None;
         self.editing.commit(self.playback.time());
     }
 
     fn cancel(&mut self) {
-        self.follow_mouse = None;
         if let Some(before) = self.editing.take_transaction() {
             // Playback goes on unless the transaction discarded earlier unkeyed edits.
             self.editing.clear_overrides();
@@ -289,28 +309,9 @@ impl Session {
         };
         self.act(Outcome::say(said));
     }
-
-    /// Replaces the open document; the history starts anew.
-    fn open(&mut self, opening: Opening) {
-        let Opening { document, file, contents, seems_z_up } = opening;
-        let playback = self.playback.restarted(&document.timeline);
-        *self = Self {
-            files: self.files.replaced(file.clone()),
-            editing: self.editing.replaced(document.clone()),
-            playback,
-            ..Self::with_document(self.preferences, document)
-        };
-        self.refresh();
-        self.evaluated.reset_pops(self.editing.posed());
-        self.evaluated.forget_trail();
-        if let Some(file) = file {
-            self.files.remember(file);
-        }
-        self.files.set_origin(contents, seems_z_up);
-    }
 }
 
-/// Selection and dialogs.
+/// Selection.
 impl Session {
     fn select(&mut self, joints: Vec<JointId>) {
         self.selection.select(joints, self.evaluated.skeleton_pose().len());
@@ -322,122 +323,5 @@ impl Session {
         let is_hand = matches!(grip, Grip::Hand(_));
         let kept = self.selection.arm_joint().filter(|joint| is_hand && *joint == ArmJoint::Hand);
         self.selection.set_arm_joint(grip.arm_joint().or(kept));
-    }
-
-    fn open_dialog(&mut self, dialog: Dialog) {
-        // Only the dialogs for saving keep the action that waits for the document to be saved.
-        let is_saving = match &dialog {
-            Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
-            Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
-            Dialog::FileChanged { .. } => true,
-            _ => false,
-        };
-        if !is_saving {
-            self.files.forget_after_save();
-        }
-        self.shell.set_choosing(false);
-        self.shell.open_dialog(dialog);
-    }
-
-    fn close_dialog(&mut self) {
-        self.shell.set_choosing(false);
-        match self.shell.take_dialog() {
-            Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(back.into()),
-            Some(Dialog::Bake { job: Some(job), .. }) => {
-                job.progress.cancel();
-                self.act(Outcome::say("Bake cancelled"));
-            }
-            _ => {
-                self.files.forget_after_save();
-                self.files.set_remark(None);
-            }
-        }
-    }
-
-    fn show_tab(&mut self, tab: PanelTab) {
-        let rig = self.rig();
-        if !PanelTab::of(rig).contains(&tab) {
-            return;
-        }
-        match rig {
-            RigKind::Arm => self.preferences.arm_tab = tab,
-            RigKind::Skeleton => self.preferences.skeleton_tab = tab,
-        }
-    }
-
-    /// Makes one iteration with the solver, and shows its first part.
-    fn look_inside(&mut self) -> Option<Effect> {
-        let stepped = self.apply_solver(SolverAction::Step);
-        self.act(stepped);
-        let shown = self.apply_solver(SolverAction::ShowPart { iteration: 1, part: Some(0) });
-        self.act(shown)
-    }
-
-    fn reset_transport(&mut self) {
-        self.evaluated.reset_transport(self.editing.posed());
-    }
-}
-
-/// The tour.
-impl Session {
-    pub(in crate::session) fn change_tour(&mut self, change: impl FnOnce(&mut TourState)) {
-        if let Some(tour) = &mut self.tour {
-            change(tour);
-        }
-    }
-
-    /// Shows a scene of the tour in place of the user's document, which is kept. `enter` makes the
-    /// state of the tour from the shown scene and from which steps are done.
-    pub(in crate::session) fn enter_scene(
-        &mut self,
-        document: Document,
-        enter: impl FnOnce(Document, Vec<bool>) -> TourState,
-    ) {
-        let done = self.tour.take().map(TourState::done).unwrap_or_default();
-        self.cancel_bake();
-        let own = self.own.take().unwrap_or_else(|| Box::new(self.paused()));
-        let preferences = Preferences { offers_tour: false, ..self.preferences };
-        let playback = self.playback.restarted(&document.timeline);
-        let files = std::mem::take(&mut self.files);
-        *self = Self { files, playback, ..Self::with_document(preferences, document) };
-        self.refresh();
-        self.reset_transport();
-        self.tour = Some(enter(self.shown().clone(), done));
-        self.own = Some(own);
-    }
-
-    /// Ends all changes that are under way, and returns the session as it is then.
-    fn paused(&mut self) -> Self {
-        self.commit();
-        self.end_glide();
-        let paused = self.apply_playback(PlaybackAction::Play(false));
-        self.act(paused);
-        self.clone()
-    }
-
-    /// Puts the user's document back. Files and those preferences that the tour does not set are
-    /// kept as they are now.
-    pub(in crate::session) fn leave_tour(&mut self) {
-        let Some(own) = self.own.take() else { return };
-        self.cancel_bake();
-        let Preferences { explain, arm_tab, skeleton_tab, timeline_open, curves, .. } =
-            own.preferences;
-        let preferences = Preferences {
-            explain,
-            arm_tab,
-            skeleton_tab,
-            timeline_open,
-            curves,
-            ..self.preferences
-        };
-        let files = std::mem::take(&mut self.files);
-        *self = Self { files, preferences, ..*own };
-    }
-
-    /// Cancels a running bake and closes its dialog.
-    fn cancel_bake(&mut self) {
-        if matches!(self.shell.dialog(), Some(Dialog::Bake { .. })) {
-            self.close_dialog();
-        }
     }
 }

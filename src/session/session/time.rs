@@ -1,15 +1,13 @@
 use glam::Vec3;
 
 use super::{ASPECT, Session};
-use crate::document::{Camera, Ray, Timeline};
-use crate::session::drag::follow_mouse::FollowMouse;
+use crate::document::{Camera, Timeline};
 use crate::session::outcome::{Effect, Outcome};
-use crate::session::playback::PlaybackAction;
 
 /// Time.
 impl Session {
     pub(super) fn play(&mut self) -> Option<Effect> {
-        let played = self.apply_playback(PlaybackAction::Play(true));
+        let played = self.playback.play(true, &self.document().timeline);
         self.act(played)
     }
 
@@ -47,7 +45,7 @@ impl Session {
         if !self.playback.is_playing() || passed == 0.0 {
             return;
         }
-        if self.follows_mouse() {
+        if self.editing.follows_mouse() {
             return self.advance_following(passed);
         }
         let (time, goes_on) = self.playback.played(passed, &self.document().timeline);
@@ -66,29 +64,21 @@ impl Session {
 
     /// Opens a transaction in which the heads follow the mouse, and plays; or commits it.
     pub(super) fn follow_mouse(&mut self, follows: bool) {
-        if !follows && self.follows_mouse() {
+        if !follows && self.editing.follows_mouse() {
             return self.commit();
         }
         if !follows || self.editing.is_editing() || !self.can_follow_mouse() {
             return;
         }
         self.begin(None);
-        self.editing.label_transaction(FollowMouse::LABEL);
-        self.follow_mouse = self.following_heads();
+        self.editing.follow_mouse();
         self.record_heads(self.playback.time(), 0.0);
         self.play();
         self.act(Outcome::say("Move the mouse over the view; a click ends it, Esc undoes it"));
     }
 
-    pub(super) fn lead_heads(&mut self, ray: Ray) {
-        let Some(mut follow) = self.follow_mouse.take() else { return };
-        let solved = &self.posed().evaluated_skeleton().solved;
-        follow.lead(ray, self.skeleton_rig(), solved, self.camera().distance);
-        self.follow_mouse = Some(follow);
-    }
-
-    /// Plays on while heads follow the mouse: the timeline becomes longer instead of repeating. A dialog
-    /// ends it.
+    /// Plays on while heads follow the mouse: the timeline becomes longer instead of repeating. A
+    /// dialog ends it.
     fn advance_following(&mut self, passed: f64) {
         if self.shell.dialog().is_some() {
             return self.commit();
@@ -101,9 +91,7 @@ impl Session {
 
     /// Keys the homes at the playhead, `passed` seconds after `before`, nearer to the mouse.
     fn record_heads(&mut self, before: f64, passed: f64) {
-        let Some(follow) = &self.follow_mouse else { return };
-        let solved = &self.posed().evaluated_skeleton().solved;
-        let after = follow.recorded(self.shown(), solved, before, passed, self.playback.time());
+        let Some(after) = self.editing.recorded(before, passed) else { return };
         self.write(after);
         // The user sees keys being set.
         self.playback.has_auto_keyed();

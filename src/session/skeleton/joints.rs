@@ -171,11 +171,11 @@ fn add(session: &Session, parent: Option<JointId>, tip: Option<Vec3>) -> Outcome
 /// Adds a child to the selected joint; without a selection, to the joint with the highest index;
 /// without joints, to a new root.
 fn add_next(session: &mut Session, tip: Option<Vec3>) -> Outcome {
-    if session.next_parent().is_none() {
+    if next_parent(session).is_none() {
         let root = add(session, None, None);
         session.act(root);
     }
-    match session.next_parent() {
+    match next_parent(session) {
         Some(parent) => add(session, Some(parent), tip).and(Consequence::KeepInView),
         None => Outcome::default(),
     }
@@ -239,16 +239,15 @@ pub(in crate::session) fn bind_pose(session: &Session) -> Outcome {
     })
 }
 
-/// The next joint.
-impl Session {
-    fn next_parent(&self) -> Option<JointId> {
-        self.selection().active().or(self.skeleton_pose().ids().next_back())
-    }
+fn next_parent(session: &Session) -> Option<JointId> {
+    session.selection().active().or(session.skeleton_pose().ids().next_back())
+}
 
+impl JointEdit {
     /// Base of the next joint that would be added, in world space.
-    pub fn next_base(&self) -> Vec3 {
-        let origin = self.skeleton().transform().translation.into();
-        self.next_parent().map_or(origin, |parent| self.skeleton_pose().tip(parent))
+    pub fn next_base(session: &Session) -> Vec3 {
+        let origin = session.skeleton().transform().translation.into();
+        next_parent(session).map_or(origin, |parent| session.skeleton_pose().tip(parent))
     }
 }
 

@@ -198,63 +198,50 @@ fn describe_result(session: &Session, rig: &SkeletonRig, index: usize) -> String
 impl Session {
     /// The causes for which the target of the selected joint is not reached, the most likely first;
     /// without such a target, those of the posing target that is farthest from its tip. Empty if all
-    /// are reached, while something is dragged or plays, and for other rigs than skeletons.
-    pub fn why(&self) -> &[Diagnosis] {
-        let index = self.examined_target();
-        index.map_or(&[], |index| self.why_target(index))
-    }
-
-    /// [`Session::why`] without finding it out: empty if it was not called since the last change.
-    pub fn known_why(&self) -> &[Diagnosis] {
-        if !self.evaluated().knows_why() {
+    /// are reached, while something is dragged or plays, and for other rigs than skeletons. Also
+    /// empty if they are not known since the last change, unless `finds_out`.
+    pub fn why(&self, finds_out: bool) -> &[Diagnosis] {
+        if !finds_out && !self.evaluated().knows_why() {
             return &[];
         }
-        self.examined_target().map_or(&[], |index| self.known_why_target(index))
+        examined_target(self).map_or(&[], |index| self.why_target(index, finds_out))
     }
 
     /// The causes for which the target with this index in
-    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached.
-    pub fn why_target(&self, index: usize) -> &[Diagnosis] {
-        let rig = self.skeleton_rig();
-        if !self.can_examine() || index >= rig.targets.len() {
-            return &[];
-        }
+    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached. Empty if they are
+    /// not known since the last change, unless `finds_out`.
+    pub fn why_target(&self, index: usize, finds_out: bool) -> &[Diagnosis] {
+        let (rig, time) = (self.skeleton_rig(), self.playback().time());
         let targets = rig.targets.len();
-        self.evaluated()
-            .why(index, targets, || rig.diagnose_targets(&[index], self.playback().time()))
-    }
-
-    /// [`Session::why_target`] without finding it out.
-    pub fn known_why_target(&self, index: usize) -> &[Diagnosis] {
-        if self.can_examine() { self.evaluated().known_why(index) } else { &[] }
-    }
-
-    fn can_examine(&self) -> bool {
         let is_moving = self.history().is_editing() || self.playback().is_playing();
-        let is_on_path = self.skeleton_rig().is_on_path(self.playback().time());
-        self.rig() == RigKind::Skeleton && !is_moving && !is_on_path
+        if self.rig() != RigKind::Skeleton || is_moving || rig.is_on_path(time) || index >= targets
+        {
+            &[]
+        } else if finds_out {
+            self.evaluated().why(index, targets, || rig.diagnose_targets(&[index], time))
+        } else {
+            self.evaluated().known_why(index)
+        }
     }
+}
 
-    /// The selected joint's target if it is not reached, or else the posing one farthest from its
-    /// tip; if all tips are at their targets, the one whose hand misses most of its rotation.
-    fn examined_target(&self) -> Option<usize> {
-        let rig = self.skeleton_rig();
-        let is_missed = |index: &usize| {
-            let report = self.posed().evaluated_skeleton().targets.get(*index);
-            report.is_some_and(|report| !rig.is_reached(report))
-        };
-        let selected = self.selection().active().and_then(|joint| rig.target_of_end(joint));
-        let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
-        let errors = rig.targets.iter().zip(&self.posed().evaluated_skeleton().targets).enumerate();
-        let posing = errors.filter(|(_, (target, _))| rig.is_solved_for(target));
-        let missed = posing.filter(|(_, (_, report))| !rig.is_reached(report));
-        let most = missed.max_by(|(_, (_, one)), (_, (_, other))| {
-            let [one, other] = [one, other].map(|report| {
-                let distance = if report.error > rig.tolerance() { report.error } else { 0.0 };
-                (distance, report.rotation_error.unwrap_or_default())
-            });
-            one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
+/// The selected joint's target if it is not reached, or else the posing one farthest from its tip; if
+/// all tips are at their targets, the one whose hand misses most of its rotation.
+fn examined_target(session: &Session) -> Option<usize> {
+    let (rig, reports) = (session.skeleton_rig(), session.posed().targets());
+    let is_missed =
+        |index: &usize| reports.get(*index).is_some_and(|report| !rig.is_reached(report));
+    let selected = session.selection().active().and_then(|joint| rig.target_of_end(joint));
+    let selected = selected.filter(|index| rig.targets[*index].enabled).filter(is_missed);
+    let posing =
+        rig.targets.iter().zip(reports).enumerate().filter(|(_, (it, _))| rig.is_solved_for(it));
+    let missed = posing.filter(|(_, (_, report))| !rig.is_reached(report));
+    let most = missed.max_by(|(_, (_, one)), (_, (_, other))| {
+        let [one, other] = [one, other].map(|report| {
+            let distance = if report.error > rig.tolerance() { report.error } else { 0.0 };
+            (distance, report.rotation_error.unwrap_or_default())
         });
-        selected.or(most.map(|(index, _)| index))
-    }
+        one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
+    });
+    selected.or(most.map(|(index, _)| index))
 }

@@ -2,7 +2,7 @@ use std::time::{Duration, Instant};
 
 use super::inside::Inside;
 use super::iterates::{Iterate, Iterates};
-use crate::document::{Document, RigKind};
+use crate::document::{Document, Posed, RigKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{
     ChainSolver, Method, Report, SolveError, SolverOptions, SubStep, TipTarget,
@@ -18,16 +18,17 @@ pub(in crate::session) struct SolverInputs {
 }
 
 impl SolverInputs {
-    /// The inputs of a document that is evaluated at `time`, in seconds.
+    /// The inputs of a pose.
     ///
     /// # Errors
     ///
     /// The reason why there is nothing to solve.
-    pub fn of(shown: &Document, time: f64) -> Result<Self, &'static str> {
-        let rig = &shown.skeleton_rig;
-        if shown.rig != RigKind::Skeleton {
+    pub fn of(posed: &Posed) -> Result<Self, &'static str> {
+        let Document { rig, skeleton_rig, .. } = posed.document();
+        if *rig != RigKind::Skeleton {
             return Err("Show the skeleton to solve it");
         }
+        let (rig, time) = (skeleton_rig, posed.time());
         let targets = rig.targets_at(time);
         if targets.iter().any(|target| rig.is_joint_on_path(target.joint, time)) {
             return Err("A chain that follows a path has nothing to solve");

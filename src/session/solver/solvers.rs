@@ -1,6 +1,6 @@
 use super::comparison::{Comparison, ShownIteration};
 use super::run::{SolverInputs, SolverRun};
-use crate::document::Document;
+use crate::document::Posed;
 use crate::kinematics::chain_ik::SolveError;
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::PanelTab;
@@ -44,15 +44,10 @@ pub enum Solvers {
 }
 
 impl Solvers {
-    /// Applies an action on the shown document at a time in seconds. The page on the right that shows
-    /// what was started comes to the front.
-    pub(in crate::session) fn apply(
-        &mut self,
-        action: SolverAction,
-        shown: &Document,
-        time: f64,
-    ) -> Outcome {
-        let inputs = || SolverInputs::of(shown, time).map_err(Outcome::say);
+    /// Applies an action on a pose. The page on the right that shows what was started comes to the
+    /// front.
+    pub(in crate::session) fn apply(&mut self, action: SolverAction, posed: &Posed) -> Outcome {
+        let inputs = || SolverInputs::of(posed).map_err(Outcome::say);
         match action {
             SolverAction::Run(true) => {
                 let started = inputs().map(|inputs| self.start(inputs));

@@ -1,9 +1,9 @@
 use core::fmt;
 
 use super::run::SolverRun;
+use super::solvers::Solvers;
+use crate::document::Posed;
 use crate::kinematics::chain_ik::Status;
-use crate::rig::TargetReport;
-use crate::session::session::Session;
 
 /// State and residual of the pose that is looked at: the shown iterate of the solver run, or without
 /// a run the evaluated pose.
@@ -64,30 +64,27 @@ impl SolverStatus {
     }
 }
 
-impl Session {
-    /// The enabled target of the evaluated pose that is farthest from its tip: its index in
-    /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets), and the distance in world units.
-    pub fn farthest_target(&self) -> Option<(usize, f32)> {
-        let targets =
-            self.skeleton_rig().targets.iter().zip(&self.posed().evaluated_skeleton().targets);
-        let enabled = targets.enumerate().filter(|(_, (target, _))| target.enabled);
-        let distances = enabled.map(|(index, (_, TargetReport { error, .. }))| (index, *error));
-        distances.max_by(|(_, one), (_, other)| one.total_cmp(other))
-    }
-
-    /// State and residual of the shown iterate of the solver run, or of the evaluated pose; `None`
+impl Solvers {
+    /// State and residual of the shown iterate of the solver run, or without a run of a pose; `None`
     /// without an enabled target.
-    pub fn solver_status(&self) -> Option<SolverStatus> {
-        if let Some(run) = self.solvers().run() {
+    pub fn status(&self, posed: &Posed) -> Option<SolverStatus> {
+        if let Some(run) = self.run() {
             return Some(SolverStatus::of_run(run));
         }
-        let (_, error) = self.farthest_target()?;
-        let rig = self.skeleton_rig();
-        let mut targets = rig.targets.iter().zip(&self.posed().evaluated_skeleton().targets);
-        let state = match targets.all(|(target, it)| !target.enabled || rig.is_reached(it)) {
-            true => SolverState::Reached,
-            false => SolverState::NotReached,
-        };
+        let (_, error) = farthest_target(posed)?;
+        let rig = &posed.document().skeleton_rig;
+        let mut targets = rig.targets.iter().zip(posed.targets());
+        let are_reached = targets.all(|(target, it)| !target.enabled || rig.is_reached(it));
+        let state = if are_reached { SolverState::Reached } else { SolverState::NotReached };
         Some(SolverStatus { state, error, iteration: None })
     }
+}
+
+/// The enabled target of a pose that is farthest from its tip: its index in
+/// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets), and the distance in world units.
+pub(in crate::session) fn farthest_target(posed: &Posed) -> Option<(usize, f32)> {
+    let targets = posed.document().skeleton_rig.targets.iter().zip(posed.targets());
+    let enabled = targets.enumerate().filter(|(_, (target, _))| target.enabled);
+    let distances = enabled.map(|(index, (_, report))| (index, report.error));
+    distances.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }

@@ -7,6 +7,7 @@ use crate::kinematics::soft_reach::SoftReach;
 use crate::session::arm::pops::{PopSampleKind, Spike};
 use crate::session::session::Session;
 use crate::session::solver::run::SolverRun;
+use crate::session::solver::status::farthest_target;
 
 /// A number of the scene, as text; `None` while the scene does not have it.
 type Figure = fn(&Session) -> Option<String>;
@@ -210,7 +211,7 @@ fn distance(session: &Session, distance: f32) -> String {
 
 /// Name of the end that misses its target most, and by how much.
 fn missed(session: &Session) -> Option<(String, String)> {
-    let (index, miss) = session.farthest_target()?;
+    let (index, miss) = farthest_target(session.posed())?;
     let rig = session.skeleton_rig();
     let end = rig.skeleton.joint(rig.end_of(&rig.targets[index]))?;
     (miss > session.skeleton_rig().tolerance())

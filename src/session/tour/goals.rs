@@ -15,6 +15,7 @@ use crate::session::playback::PlaybackAction;
 use crate::session::session::Session;
 use crate::session::skeleton::joints::JointEdit;
 use crate::session::solver::solvers::SolverAction;
+use crate::session::solver::status::farthest_target;
 
 /// Smallest distance that counts as a move, as a fraction of the length of the straight arm.
 const MOVE: f32 = 0.05;
@@ -28,13 +29,13 @@ type Demonstration = fn(&Session) -> Vec<Action>;
 
 impl Goal {
     /// True once the user has done the task of a step that began with the document `start`.
-    pub(super) fn is_met(self, session: &Session, start: &Document) -> bool {
+    pub(in crate::session) fn is_met(self, session: &Session, start: &Document) -> bool {
         let (is_met, _) = self.task();
         is_met(session, start)
     }
 
     /// Actions that do the task, with the scene as it is at the beginning of the step.
-    pub(super) fn demonstration(self, session: &Session) -> Vec<Action> {
+    pub(in crate::session) fn demonstration(self, session: &Session) -> Vec<Action> {
         let (_, demonstration) = self.task();
         demonstration(session)
     }
@@ -192,7 +193,7 @@ fn race_all_solvers(_: &Session) -> Vec<Action> {
 }
 
 fn left_a_target_out_of_reach(session: &Session, _: &Document) -> bool {
-    let farthest = session.farthest_target().map_or(0.0, |(_, miss)| miss);
+    let farthest = farthest_target(session.posed()).map_or(0.0, |(_, miss)| miss);
     farthest > REST * session.skeleton_rig().reach()
 }
 

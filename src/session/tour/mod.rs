@@ -1,7 +1,6 @@
 //! The tour: steps that each show a scene, ask a question, and notice when the user has done a
 //! task.
 
-pub mod apply;
 mod figures;
 mod goals;
 pub mod state;

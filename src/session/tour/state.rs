@@ -31,7 +31,7 @@ pub struct TourState {
 
 impl TourState {
     /// A step of a tour in which the tasks of some steps were `done`.
-    pub(super) fn new(number: usize, start: Document, mut done: Vec<bool>) -> Self {
+    pub(in crate::session) fn new(number: usize, start: Document, mut done: Vec<bool>) -> Self {
         done.resize(TourStep::all().len(), false);
         Self { number, start, guess: None, shows_result: false, done }
     }
@@ -53,7 +53,7 @@ impl TourState {
     }
 
     /// The document with which the step began.
-    pub(super) fn start(&self) -> &Document {
+    pub(in crate::session) fn start(&self) -> &Document {
         &self.start
     }
 
@@ -78,17 +78,17 @@ impl TourState {
         self.done
     }
 
-    pub(super) fn choose(&mut self, answer: usize) {
+    pub(in crate::session) fn choose(&mut self, answer: usize) {
         if self.step().is_some_and(|step| answer < step.guess.answers.len()) {
             self.guess = Some(answer);
         }
     }
 
-    pub(super) fn show_result(&mut self) {
+    pub(in crate::session) fn show_result(&mut self) {
         self.shows_result = true;
     }
 
-    pub(super) fn finish(&mut self) {
+    pub(in crate::session) fn finish(&mut self) {
         self.shows_result = true;
         if let Some(done) = self.done.get_mut(self.number) {
             *done = true;

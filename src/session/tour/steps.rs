@@ -19,7 +19,7 @@ pub struct TourStep {
     /// Section of the left panel that the step opens.
     pub section: Option<&'static str>,
     /// Name of the joint that is selected at first.
-    pub(super) select: Option<&'static str>,
+    pub(in crate::session) select: Option<&'static str>,
     /// Introduction to the scene.
     pub text: &'static str,
     /// The question to think about before the task.

@@ -1,8 +1,7 @@
 use glam::Vec3;
 
-use crate::document::{Camera, Overlay, RigKind};
+use crate::document::{Camera, RigKind};
 use crate::kinematics::skeleton::JointId;
-use crate::session::preferences::PanelTab;
 use crate::session::session::{ASPECT, Session};
 
 /// Cameras that frame the rig, and the open panels.
@@ -36,27 +35,6 @@ impl Session {
             .shown()
             .motion_bounds_by(|posed| (posed.arm().root, posed.arm().reach_limits().outer));
         self.settled_camera().framing(centre, radius, ASPECT)
-    }
-
-    /// The page of the panel on the right.
-    pub fn tab(&self) -> PanelTab {
-        match self.rig() {
-            RigKind::Arm => self.preferences().arm_tab,
-            RigKind::Skeleton => self.preferences().skeleton_tab,
-        }
-    }
-
-    /// True if the skin is shown for each way of blending joints.
-    pub fn compares_skinning(&self) -> bool {
-        let display = self.shown().display;
-        let is_shown = display.shows(Overlay::Skin) && display.shows(Overlay::CompareSkinning);
-        is_shown && self.rig() == RigKind::Skeleton
-    }
-
-    /// True if the timeline is open above the transport bar: by choice, else if the document has keys.
-    pub fn shows_timeline(&self) -> bool {
-        let has_keys = || !self.document().keys.is_empty();
-        self.preferences().timeline_open.unwrap_or_else(has_keys)
     }
 
     /// The point that the camera follows, in the world: the mean of the bases of the selected joints, or

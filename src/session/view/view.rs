@@ -1,14 +1,14 @@
 use glam::{Vec2, Vec3};
 
 use super::drag::{CameraMotion, Glide, ViewDrag};
-use crate::document::Camera;
+use crate::document::{Camera, Document, Posed, RigKind};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{Crowd, Processor};
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::{PanelTab, Preferences};
 use crate::session::solver::inside::{InsideLayer, InsideLayers};
-use crate::session::solver::wiggle::Wiggle;
+use crate::session::solver::wiggle::{Wiggle, WiggleView};
 
 /// Changes the camera, the crowd or the open panels. The camera is saved, but not undone.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,8 +162,11 @@ impl View {
         self.wiggle.map(Wiggle::angle)
     }
 
-    pub(in crate::session) fn wiggle(&self) -> Option<Wiggle> {
-        self.wiggle
+    /// The angle that swings on a pose, with the paths of the tip; `None` if none does.
+    pub fn wiggle_view(&self, posed: &Posed) -> Option<WiggleView> {
+        let Document { rig, skeleton_rig, .. } = posed.document();
+        let wiggle = self.wiggle.filter(|_| *rig == RigKind::Skeleton)?;
+        wiggle.view(skeleton_rig, posed.evaluated_skeleton())
     }
 
     /// What is shown of the part of an iteration that is looked at.

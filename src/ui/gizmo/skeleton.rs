@@ -181,7 +181,7 @@ impl JointHandles {
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
     let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
-    let hides_bones = session.hides_bones();
+    let hides_bones = session.shown().hides_bones();
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
         let has_tip = rig.skeleton[joint].is_root_point() || rig.skeleton[joint].axis != Vec3::ZERO;
@@ -223,7 +223,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let rig = session.skeleton_rig();
     let Some(selected) = session.selection().active() else { return Vec::new() };
     let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
-    let report = target.and_then(|joint| session.target_report(joint));
+    let report = target.and_then(|joint| session.posed().target_report(joint));
     let head = Grip::draggable_heads(session.skeleton_rig()).find(|head| *head == selected);
     let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
     let points: [(JointId, GripOfJoint, Option<Vec3>); 4] = [

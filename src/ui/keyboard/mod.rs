@@ -55,7 +55,9 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         actions.push(FileAction::Open { path, options: OpenOptions::default() });
     }
     if pressed(Modifiers::COMMAND, Key::E) {
-        actions.push(ShellAction::OpenDialog(session.export_dialog().into()));
+        actions.push(ShellAction::OpenDialog(
+            session.files().export_dialog(session.document()).into(),
+        ));
     }
     if pressed(Modifiers::COMMAND, Key::P) {
         actions.push(commands::save_picture(session));

@@ -51,7 +51,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         value: arm.cursor_in_root(),
         default,
         range: arm.reach_limits().outer,
-        step: session.arm_unit(),
+        step: session.history().arm_unit(),
         tooltip: "Move the Cursor, the hand's target, relative to the Root",
         disabled,
         channel: None,
@@ -62,7 +62,7 @@ fn hand(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let pinned = PointSliders {
         value: arm.cursor_in_world(),
         default: arm.root + default,
-        range: arm.reach_limits().outer.max(ROOT_RANGE * session.arm_unit()),
+        range: arm.reach_limits().outer.max(ROOT_RANGE * session.history().arm_unit()),
         tooltip: "Move the Cursor, the hand's target, in world space",
         ..hand
     };
@@ -90,8 +90,8 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         labels: AXES,
         value: session.arm().root,
         default: Vec3::ZERO,
-        range: ROOT_RANGE * session.arm_unit(),
-        step: session.arm_unit(),
+        range: ROOT_RANGE * session.history().arm_unit(),
+        step: session.history().arm_unit(),
         tooltip: "Move the Root, the shoulder, in world space",
         disabled: None,
         channel: None,
@@ -101,7 +101,7 @@ fn root(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn lengths(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let (palette, bones) = (style::palette(ui), session.arm().bones);
-    let (default, unit) = (Arm::default().bones, session.arm_unit());
+    let (default, unit) = (Arm::default().bones, session.history().arm_unit());
     let range = (LENGTH_RANGE.0 * unit, LENGTH_RANGE.1 * unit);
     let upper = Slider {
         name: "Upper length",
@@ -284,7 +284,7 @@ fn pole(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         value: arm.pole,
         default: Arm::default().pole,
         range: arm.bones.outer_limit(),
-        step: session.arm_unit(),
+        step: session.history().arm_unit(),
         tooltip: "Move the Pole, the point that the elbow turns towards",
         disabled: (!arm.uses_ik()).then_some(ANGLES_LEAD),
         channel: None,

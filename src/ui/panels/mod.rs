@@ -117,14 +117,14 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
 
 /// The tabs of the rig. The page of the skin is there while the skin is compared.
 fn tabs(session: &Session) -> impl Iterator<Item = PanelTab> + use<> {
-    let compares = session.compares_skinning();
+    let compares = session.shown().compares_skinning();
     let tabs = PanelTab::of(session.rig()).iter().copied();
     tabs.filter(move |tab| *tab != PanelTab::Skin || compares)
 }
 
 /// The chosen tab, or the first if the chosen one is not there.
 fn shown(session: &Session) -> PanelTab {
-    let chosen = session.tab();
+    let chosen = session.preferences().tab(session.rig());
     let mut all = tabs(session);
     let first = all.next().unwrap_or(chosen);
     if all.any(|tab| tab == chosen) { chosen } else { first }

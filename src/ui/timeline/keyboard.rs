@@ -20,9 +20,9 @@ pub(in crate::ui) fn everywhere(ui: &Ui, session: &Session, actions: &mut Action
     let pressed = |key| ui.input(|input| input.key_pressed(key));
     let modifiers = ui.input(|input| input.modifiers);
     if pressed(Key::K) && modifiers.shift_only() {
-        actions.push(KeysEdit::Key(session.all_channels()));
+        actions.push(KeysEdit::Key(KeysEdit::all_channels(session.shown())));
     } else if pressed(Key::K) && modifiers.is_none() {
-        actions.push(KeysEdit::Key(session.channels_to_key()));
+        actions.push(KeysEdit::Key(KeysEdit::channels_to_key(session)));
     }
     if focus::leaves_letters(ui) && pressed(Key::Space) && modifiers.is_none() {
         if session.playback().is_playing() || session.document().is_moving() {

@@ -22,7 +22,7 @@ use time_scale::TimeScale;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
 pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if session.shows_timeline() {
+    if session.preferences().shows_timeline(session.document()) {
         transport_bar::whole(ui, session, actions);
     } else {
         transport_bar::slim(ui, session, actions);

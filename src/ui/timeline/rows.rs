@@ -140,7 +140,7 @@ impl DopeSheetRow {
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel(channel) => vec![channel],
-            Self::All => session.keyed_channels().collect(),
+            Self::All => KeysEdit::keyed_channels(session.shown()).collect(),
         }
     }
 }

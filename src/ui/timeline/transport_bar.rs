@@ -224,7 +224,7 @@ fn seconds(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let channels = session.channels_to_key();
+    let channels = KeysEdit::channels_to_key(session);
     let nothing = "Nothing to key";
     let why = channels.is_empty().then_some(nothing);
     let tooltip = "Key the selection, else hand and Socket twist (K)";
@@ -233,7 +233,7 @@ fn keying(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
     let tooltip = "Key every channel of the pose (Shift+K)";
     if widgets::button(ui, "Key all", tooltip, None) {
-        actions.push(KeysEdit::Key(session.all_channels()));
+        actions.push(KeysEdit::Key(KeysEdit::all_channels(session.shown())));
     }
     let on = session.playback().is_auto_key();
     let accent = style::accent(ui);

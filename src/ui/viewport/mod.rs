@@ -68,7 +68,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         keys(ui, &response, session, actions);
         return rect;
     };
-    if over && session.follows_mouse() {
+    if over && session.history().follows_mouse() {
         actions.push(TransactionAction::Lead(screen.ray(mouse)));
     }
     let drag = press(ui, &response, session, &screen, &gizmo, actions);
@@ -178,8 +178,8 @@ fn joint_at(
     gizmo: &Gizmo,
     mouse: Pos2,
 ) -> Option<JointId> {
-    let of_bone = gizmo.joint_at(mouse).filter(|_| !session.hides_bones());
-    of_bone.or_else(|| session.joint_on_skin(screen.ray(mouse)))
+    let of_bone = gizmo.joint_at(mouse).filter(|_| !session.shown().hides_bones());
+    of_bone.or_else(|| session.evaluated().joint_on_skin(session.posed(), screen.ray(mouse)))
 }
 
 /// Lets the angle swing whose ring is at the mouse while Alt is held and no button is.
@@ -226,7 +226,7 @@ fn select(
     };
     let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
-        let base = session.next_base();
+        let base = JointEdit::next_base(session);
         let at = screen.ray(mouse).meets_plane(base, screen.projection.forward);
         actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
         return;
@@ -308,7 +308,7 @@ fn press(
             continue;
         }
         response.request_focus();
-        if session.follows_mouse() && button == PointerButton::Primary {
+        if session.history().follows_mouse() && button == PointerButton::Primary {
             actions.push(TransactionAction::FollowMouse(false));
         }
         if session.history().is_editing() || !matches!(drag, ViewportDrag::Nothing) {

@@ -30,7 +30,7 @@ pub(in crate::ui) fn why_not_reached(
         && session.crowd().is_none()
         && session.solvers().runs().next().is_none();
     let Some(found) = pose_summary::found(ui, session).first().filter(|_| is_shown) else { return };
-    let Some(report) = session.target_report(found.target) else { return };
+    let Some(report) = session.posed().target_report(found.target) else { return };
     let Some(target) = screen.place(report.position) else { return };
     let id = Id::unique("why not reached");
     let size = ui.memory(|memory| memory.area_rect(id)).map_or(SIZE, |rect| rect.size());
@@ -117,7 +117,7 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
     let area = Area::new(Id::unique("follow the mouse")).order(Order::Middle);
     area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
-            let follows = session.follows_mouse();
+            let follows = session.history().follows_mouse();
             let tooltip =
                 "Let the heads follow the mouse and record it; a click in the view ends it";
             let changed = widgets::check_box(ui, "Follow the mouse", tooltip, follows, None);

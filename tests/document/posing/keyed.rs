@@ -37,7 +37,7 @@ fn k_keys_an_edit_that_would_be_lost_when_the_time_changes() {
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(ArmEdit::SetInfluence(1.0));
     assert!(session.shell().message().is_some_and(|message| message.contains("press K")));
-    session.apply(KeysEdit::Key(session.channels_to_key()));
+    session.apply(KeysEdit::Key(KeysEdit::channels_to_key(&session)));
     session.apply(PlaybackAction::SetTime(0.0));
     session.apply(PlaybackAction::SetTime(1.0));
     assert_eq!(session.arm().influence, 1.0);

@@ -41,7 +41,7 @@ impl Animator {
     fn edit(&mut self, edits: &[ArmEdit], others: &[Channel]) {
         edits.iter().for_each(|edit| self.apply(edit.clone()));
         if self.keying == Keying::K {
-            let channels = [self.session.channels_to_key(), others.to_vec()].concat();
+            let channels = [KeysEdit::channels_to_key(&self.session), others.to_vec()].concat();
             self.apply(KeysEdit::Key(channels));
         }
     }

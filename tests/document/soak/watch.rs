@@ -320,7 +320,7 @@ impl Before {
             dialog: session.shell().dialog().cloned(),
             revision: session.history().revision(),
             time: session.playback().time(),
-            follows_mouse: session.follows_mouse(),
+            follows_mouse: session.history().follows_mouse(),
         }
     }
 }

@@ -184,7 +184,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Shows the report on the shown iterate or the evaluated pose, at constant height so that nothing
 /// below moves.
 fn report(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let status = session.solver_status();
+    let status = session.solvers().status(session.posed());
     let value = |ui: &mut Ui, text: String| ui.label(RichText::new(text).monospace());
     let none = || "–".to_owned();
     widgets::pair(ui, "Shown", |ui| {

@@ -12,7 +12,7 @@ use super::context_menu;
 use super::rows::{self, DopeSheetRow, ROW, SelectedKeys, TimelineAreas, channels};
 use super::time_scale::TimeScale;
 use crate::document::Channel;
-use crate::session::{Actions, SelectAction, Session};
+use crate::session::{Actions, KeysEdit, SelectAction, Session};
 use crate::ui::widgets::diamond;
 use crate::ui::{labels, style};
 use mouse::DopeSheetView;
@@ -215,7 +215,11 @@ impl DopeSheet<'_> {
         let size = vec2(4.0 * SIZE, ROW);
         let response =
             ui.interact(Rect::from_center_size(at, size).intersect(rect), id, Sense::hover());
-        let key = if self.session.channels_to_key().contains(&channel) { "K" } else { "Shift+K" };
+        let key = if KeysEdit::channels_to_key(self.session).contains(&channel) {
+            "K"
+        } else {
+            "Shift+K"
+        };
         let name = labels::channel(self.session, channel);
         let said =
             format!("{name}: unkeyed change, press {key} or it is lost when the time changes");

@@ -1,7 +1,7 @@
 //! Times, channels and keys.
 
 use ik_arm::document::{Channel, Timeline};
-use ik_arm::session::Key;
+use ik_arm::session::{Key, KeysEdit};
 
 use super::Values;
 
@@ -33,7 +33,7 @@ impl Values<'_> {
     }
 
     pub fn channel(&mut self) -> Channel {
-        let shown = self.session.all_channels();
+        let shown = KeysEdit::all_channels(self.session.shown());
         if !shown.is_empty() && self.chance(0.6) {
             return self.one_of(&shown);
         }
@@ -54,7 +54,7 @@ impl Values<'_> {
     /// None, one or several, with repetitions.
     pub fn channels(&mut self) -> Vec<Channel> {
         match self.random.below(6) {
-            0 => self.session.channels_to_key(),
+            0 => KeysEdit::channels_to_key(&self.session),
             count => (0..count).map(|_| self.channel()).collect(),
         }
     }

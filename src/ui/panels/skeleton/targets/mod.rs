@@ -227,7 +227,7 @@ pub(in crate::ui) fn note_height(panel: f32) -> f32 {
 
 /// Shows the note on a target at constant height.
 pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
-    let Some(report) = session.target_report(target.joint) else { return };
+    let Some(report) = session.posed().target_report(target.joint) else { return };
     let (rig, is_held) =
         (session.skeleton_rig(), pose_summary::is_held(ui) || session.history().is_editing());
     let index = rig.target(target.joint);

@@ -1,24 +1,24 @@
 use glam::Vec3;
 
-use super::action::{Export, FileAction, PathDialog};
+use super::Session;
 use crate::document::{Document, RigKind};
 use crate::io::{Example, ExampleGroup};
 use crate::kinematics::skeleton::JointId;
 use crate::session::dialog::Dialog;
+use crate::session::files::action::{FileAction, PathDialog};
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
-use crate::session::session::Session;
 use crate::session::skin;
 
 /// Actions on files.
 impl Session {
     /// Applies an action; asks first if the action would lose unsaved changes or end an export.
-    pub(in crate::session) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
+    pub(super) fn apply_file(&mut self, action: FileAction) -> Option<Effect> {
         if !self.prepare_tour(&action) {
             return None;
         }
-        let asked = if action == FileAction::Quit && self.files().is_exporting() {
+        let asked = if action == FileAction::Quit && self.files.is_exporting() {
             Dialog::Exporting
-        } else if self.history().is_unsaved() && action.leaves_document() {
+        } else if self.editing.is_unsaved() && action.leaves_document() {
             Dialog::Unsaved { then: Box::new(action) }
         } else {
             return self.apply_confirmed_file(action);
@@ -27,11 +27,8 @@ impl Session {
     }
 
     /// Applies an action without a question.
-    pub(in crate::session) fn apply_confirmed_file(
-        &mut self,
-        action: FileAction,
-    ) -> Option<Effect> {
-        let outcome = match self.apply_to_files(action) {
+    pub(super) fn apply_confirmed_file(&mut self, action: FileAction) -> Option<Effect> {
+        let outcome = match self.files.apply(action, self.shell.dialog()) {
             Ok(outcome) => outcome,
             Err(FileAction::SkinLocated { path, before, read }) => {
                 match skin::located(self, &path, before.as_ref(), *read) {
@@ -53,14 +50,53 @@ impl Session {
         effect
     }
 
-    /// The dialog for an export of the document, with default settings.
-    pub fn export_dialog(&self) -> PathDialog {
-        const SIZE: (u32, u32) = (1280, 800);
-        PathDialog::Export(Export {
-            path: format!("{}.glb", self.files().file_stem()).into(),
-            frame_rate: self.document().timeline.frame_rate,
-            size: SIZE,
-        })
+    /// Replaces the open document; the history starts anew.
+    pub(super) fn open(&mut self, opening: Opening) {
+        let Opening { document, file, contents, seems_z_up } = opening;
+        let playback = self.playback.restarted(&document.timeline);
+        *self = Self {
+            files: self.files.replaced(file.clone()),
+            editing: self.editing.replaced(document.clone()),
+            playback,
+            ..Self::with_document(self.preferences, document)
+        };
+        self.refresh();
+        self.evaluated.reset_pops(self.editing.posed());
+        self.evaluated.forget_trail();
+        if let Some(file) = file {
+            self.files.remember(file);
+        }
+        self.files.set_origin(contents, seems_z_up);
+    }
+
+    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
+        // Only the dialogs for saving keep the action that waits for the document to be saved.
+        let is_saving = match &dialog {
+            Dialog::Path(dialog) => matches!(dialog, PathDialog::SaveAs { .. }),
+            Dialog::Replace { back, .. } => matches!(back, PathDialog::SaveAs { .. }),
+            Dialog::FileChanged { .. } => true,
+            _ => false,
+        };
+        if !is_saving {
+            self.files.forget_after_save();
+        }
+        self.shell.set_choosing(false);
+        self.shell.open_dialog(dialog);
+    }
+
+    pub(super) fn close_dialog(&mut self) {
+        self.shell.set_choosing(false);
+        match self.shell.take_dialog() {
+            Some(Dialog::Replace { back, .. }) => self.shell.open_dialog(back.into()),
+            Some(Dialog::Bake { job: Some(job), .. }) => {
+                job.progress.cancel();
+                self.act(Outcome::say("Bake cancelled"));
+            }
+            _ => {
+                self.files.forget_after_save();
+                self.files.set_remark(None);
+            }
+        }
     }
 }
 
