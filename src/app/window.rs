@@ -1,24 +1,24 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use egui::{Event, FullOutput, RawInput, Rect, ViewportId};
+use egui::{Event, Rect, ViewportId};
 use egui_winit::WindowSettings;
-use winit::dpi::PhysicalSize;
+use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::Window;
+use winit::window::{Icon, Window, WindowAttributes};
 
-use super::background::UserEvent;
-use super::dynamic_resolution::{DynamicResolution, lap_timer};
+use super::background::{self, UserEvent, ViewportPicture};
+use super::dynamic_resolution::DynamicResolution;
 use super::error::{AppError, GraphicsError};
 use super::graphics::{DeviceRetries, Graphics, guarded};
-use super::present::Presented;
 use super::settings::{DebugOptions, Settings};
+use crate::io;
 use crate::scene::{Scene, SceneBuilder};
-use crate::session::{Actions, Effect, Overlays, Session, ShellAction};
-use crate::ui::{self, FrameTime, Machine, style};
+use crate::session::{Action, BakeAction, Effect, FileAction, Overlays, Session, ShellAction};
+use crate::ui::{Machine, style};
 
 /// Name of the program, as in the window's title.
 const TITLE: &str = "ik-arm";

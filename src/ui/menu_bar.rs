@@ -76,7 +76,7 @@ fn explained_item(ui: &mut Ui, button: Button<'_>, tooltip: &str, why_not: Optio
 fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     item(ui, "New", "Ctrl+N", || FileAction::New, actions);
     item(ui, "New skeleton", "Ctrl+Shift+N", || FileAction::NewSkeleton, actions);
-    item(ui, "Open…", "Ctrl+O", || commands::open(), actions);
+    item(ui, "Open…", "Ctrl+O", commands::open, actions);
     ui.add_enabled_ui(!session.files().recent().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| recent(ui, session, actions));
     });
@@ -171,7 +171,7 @@ fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the menu of channels to key; the channels of overlays are in a submenu.
 fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    item(ui, "Selected", "K", || KeysEdit::Key(KeysEdit::channels_to_key(&session)), actions);
+    item(ui, "Selected", "K", || KeysEdit::Key(KeysEdit::channels_to_key(session)), actions);
     item(ui, "All", "Shift+K", || KeysEdit::Key(KeysEdit::all_channels(session.shown())), actions);
     ui.separator();
     let one = |ui: &mut Ui, channel: Channel, actions: &mut Actions| {
@@ -256,7 +256,13 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let explains = session.preferences().explain;
     let explain = widgets::check_box(ui, "Explain panel", "", explains, why_not);
     actions.extend(explain.map(ViewAction::ShowExplain));
-    let timeline = widgets::check_box(ui, "Timeline", "", session.preferences().shows_timeline(session.document()), None);
+    let timeline = widgets::check_box(
+        ui,
+        "Timeline",
+        "",
+        session.preferences().shows_timeline(session.document()),
+        None,
+    );
     actions.extend(timeline.map(ViewAction::ShowTimeline));
     let tooltip = "Show keys as curves instead of a dope sheet";
     let curves = session.preferences().curves;

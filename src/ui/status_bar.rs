@@ -12,8 +12,8 @@ use egui::{
 use super::widgets::{self, text};
 use super::{labels, pose_summary};
 use crate::document::RigKind;
-use crate::kinematics::skeleton::Joint;
 use crate::kinematics::chain_ik::Swing;
+use crate::kinematics::skeleton::Joint;
 use crate::session::{
     Actions, Drag, ExportJob, FileAction, Grip, JointEdit, Navigation, PointDrag, Session,
     ShellAction, TurnDrag, WiggleTarget, WiggleView,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use glam::Vec3;
-use ik_arm::io::{self, Example};
+use ik_arm::io::{self};
 use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::SkinSource;
 use tempfile::TempDir;

@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 
 use crate::common::documents::example;

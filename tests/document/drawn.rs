@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 use ik_arm::document::{Display, Document, Overlay, RigKind, Target, Theme};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};

@@ -4,7 +4,6 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DQuat, Vec3};
 use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 

@@ -7,7 +7,7 @@ use ik_arm::document::{
     Arm, Camera, Channel, Display, Document, HandSpace, Overlay, PathKind, Ray, RigKind,
     SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
-use ik_arm::io::{Example, FileAnimation, OpenOptions};
+use ik_arm::io::{FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -497,7 +497,9 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         let mut session = Session::default();
         if let Some(name) = name {
             session.apply(open_example(name));
-            session.apply(KeysEdit::ClearChannels(KeysEdit::keyed_channels(session.shown()).collect()));
+            session.apply(KeysEdit::ClearChannels(
+                KeysEdit::keyed_channels(session.shown()).collect(),
+            ));
         }
         assert!(!session.playback().is_auto_key() && !session.playback().is_auto_key_news());
         let channels = KeysEdit::channels_to_key(&session);

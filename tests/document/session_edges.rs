@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
-use ik_arm::io::{Example, to_json};
+use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolveError};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};

@@ -6,14 +6,14 @@ use ik_arm::document::{
     Channel, Document, PathKind, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
     WavyRing,
 };
-use ik_arm::io::{Example, to_json};
+use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status, TipTarget};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Comparison, DisplayEdit, Edit, FileAction, JointEdit, KeysEdit, PathEdit,
-    PlaybackAction, Session, ShownIteration, SolverAction, SolverEdit, SolverRun, SolverState,
-    TargetEdit, TransactionAction,
+    Action, Comparison, DisplayEdit, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, Session,
+    ShownIteration, SolverAction, SolverEdit, SolverRun, SolverState, TargetEdit,
+    TransactionAction,
 };
 
 use crate::common::documents::open_example;

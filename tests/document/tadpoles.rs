@@ -2,12 +2,10 @@
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Channel, Document, PathKind, Ray};
-use ik_arm::io::{Example, OpenOptions, parse, to_json};
+use ik_arm::io::{OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{Target, TargetOutcome};
-use ik_arm::session::{
-    FileAction, JointEdit, PathEdit, PlaybackAction, Session, TransactionAction,
-};
+use ik_arm::session::{JointEdit, PathEdit, PlaybackAction, Session, TransactionAction};
 
 use crate::common::Random;
 use crate::common::documents::open_example;

@@ -3,13 +3,12 @@
 
 use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, Target, Theme};
-use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    ArmEdit, ArmFigure, DisplayEdit, FileAction, PlaybackAction, Preferences, SelectAction,
-    Session, SkinEdit, SolverAction, SolverEdit, TargetEdit, ViewAction,
+    ArmEdit, ArmFigure, DisplayEdit, PlaybackAction, Preferences, SelectAction, Session, SkinEdit,
+    SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
 use crate::common::documents::open_example;

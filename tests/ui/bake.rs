@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
 use ik_arm::document::{Bake, Channel, Timeline};
-use ik_arm::io::{Cancelled, Example, Progress};
+use ik_arm::io::{Cancelled, Progress};
 use ik_arm::session::{BakeAction, BakeJob, Dialog, Effect, FileAction};
 
 use crate::bench::Bench;

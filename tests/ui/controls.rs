@@ -8,9 +8,8 @@ use egui::{Key, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::NodeT as _;
 use ik_arm::document::{Channel, RigKind};
-use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, ArmEdit, FileAction, KeysEdit, PanelTab, PlaybackAction, SelectAction, ViewAction,
+    Action, ArmEdit, KeysEdit, PanelTab, PlaybackAction, SelectAction, ViewAction,
 };
 
 use crate::bench::Bench;

@@ -7,7 +7,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::Channel;
-use ik_arm::io::{self, Cancelled, Example, Progress};
+use ik_arm::io::{self, Cancelled, Progress};
 use ik_arm::session::{
     Action, ArmEdit, Effect, Export, ExportJob, FileAction, KeysEdit, PlaybackAction,
 };

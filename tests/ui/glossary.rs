@@ -3,9 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use ik_arm::document::{RigKind, Theme};
-use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::session::{DisplayEdit, FileAction, PanelTab, Preferences, SelectAction, SolverEdit};
+use ik_arm::session::{DisplayEdit, PanelTab, Preferences, SelectAction, SolverEdit};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::common::documents::open_example;

@@ -3,11 +3,10 @@
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{Overlay, RigKind, Target};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    ArmEdit, DisplayEdit, Drag, FileAction, Grip, GripRing, PoseMode, SelectAction, SkinEdit,
-    TargetEdit, TransactionAction,
+    ArmEdit, DisplayEdit, Drag, Grip, GripRing, PoseMode, SelectAction, SkinEdit, TargetEdit,
+    TransactionAction,
 };
 
 use crate::bench::{Bench, bits};

@@ -7,7 +7,6 @@ use egui::{Key, Modifiers, PointerButton, Vec2, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Arm, RigKind};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
     ArmEdit, Dialog, DisplayEdit, FileAction, JointEdit, Preferences, SelectAction, ShellAction,

@@ -2,9 +2,8 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SubStepKind};
-use ik_arm::session::{FileAction, InsideLayer, SelectAction, SolverAction, SolverEdit, SolverRun};
+use ik_arm::session::{InsideLayer, SelectAction, SolverAction, SolverEdit, SolverRun};
 
 use crate::bench::Bench;
 

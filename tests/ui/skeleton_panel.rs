@@ -611,7 +611,7 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
     assert!(bench.session().shell().dialog().is_none(), "there is nothing to choose");
     bench.key(Key::Escape);
     let opened = |contents| FileAction::Opened {
-        document: Box::new(Bench::example("human")),
+        document: Box::new(example("human")),
         file: None,
         contents: Some(contents),
     };
@@ -627,7 +627,7 @@ fn of_several_animations_another_is_chosen_from_the_menu() {
 
 #[test]
 fn a_figure_that_stands_along_z_can_be_turned_or_left() {
-    let human = Bench::example("human");
+    let human = example("human");
     let mut standing_along_z = human.clone();
     (0..3).for_each(|_| standing_along_z.turn_y_up());
     let mut bench = Bench::new();

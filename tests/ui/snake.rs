@@ -5,9 +5,8 @@ use egui::accesskit::Role;
 use egui::vec2;
 use glam::Vec3;
 use ik_arm::document::{Channel, PathKind};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::JointId;
-use ik_arm::session::{FileAction, Grip, KeysEdit, PlaybackAction, SelectAction};
+use ik_arm::session::{Grip, KeysEdit, PlaybackAction, SelectAction};
 
 use crate::bench::Bench;
 

@@ -6,13 +6,11 @@ use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Target};
-use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
+use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::session::{
-    Action, FileAction, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit,
-    TransactionAction,
+    Action, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit, TransactionAction,
 };
 
 use crate::bench::Bench;
@@ -184,7 +182,7 @@ fn a_target_moves_with_the_joint_that_is_chosen_and_not_with_its_own() {
     assert!(farthest(&before, &tips(&bench)) <= 1e-5);
     let on_chest = |bench: &Bench| {
         let pose = &bench.session().posed().evaluated_skeleton().solved;
-        pose.full_transform(chest).inverse().transform_point3(tip(bench, "left_forearm"))
+        pose.full_transform(chest).inverse().transform_point3(bench.tip("left_forearm"))
     };
     let place = on_chest(&bench);
     let spine = bench.joint("spine");

@@ -7,7 +7,6 @@ use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
-use ik_arm::io::Example;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{

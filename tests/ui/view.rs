@@ -6,7 +6,6 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
-use ik_arm::io::Example;
 use ik_arm::session::{
     CameraMotion, FileAction, Navigation, PlaybackAction, ShellAction, ViewAction,
 };

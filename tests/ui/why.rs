@@ -4,12 +4,8 @@ use egui::accesskit::Role;
 use egui::{PointerButton, vec2};
 use glam::Vec3;
 use ik_arm::document::Target;
-use ik_arm::io::Example;
 use ik_arm::kinematics::diagnosis::Remedy;
-use ik_arm::kinematics::skeleton::JointId;
-use ik_arm::session::{
-    FileAction, PlaybackAction, SelectAction, SolverAction, TargetEdit, TransactionAction,
-};
+use ik_arm::session::{PlaybackAction, SelectAction, SolverAction, TargetEdit, TransactionAction};
 use ik_arm::words;
 
 use crate::bench::Bench;

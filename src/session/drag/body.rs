@@ -209,7 +209,9 @@ impl GripRing {
             }
             (Grip::Shoulder(axis), false) => (Vec3::ZERO, turned_axis(arm.fk.shoulder, axis)),
             // The lower limb turns clockwise about the hinge as the bend grows.
-            (Grip::Bend, false) => (pose.elbow, -angle::euler_rotation(arm.fk.shoulder).z_axis.as_vec3()),
+            (Grip::Bend, false) => {
+                (pose.elbow, -angle::euler_rotation(arm.fk.shoulder).z_axis.as_vec3())
+            }
             _ => return None,
         };
         Some(Self { centre: arm.root + along, axis })

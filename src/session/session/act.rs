@@ -114,7 +114,7 @@ impl Session {
             Consequence::SetChoosing(choosing) => self.shell.set_choosing(choosing),
             Consequence::Prefer(preferences) => self.preferences = preferences,
             Consequence::ShowTab(tab) => {
-                self.preferences.show_tab(self.editing.document().rig, tab)
+                self.preferences.show_tab(self.editing.document().rig, tab);
             }
 
             Consequence::Write(after) => self.write(*after),

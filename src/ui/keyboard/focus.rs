@@ -94,7 +94,7 @@ fn edit(ui: &Ui, number: Id) {
 pub(in crate::ui) fn list_number(ui: &Ui, number: &Response) {
     if number.enabled() {
         ui.data_mut(|data| {
-            data.get_temp_mut_or_default::<FrameNumbers>(numbers()).0.push(number.id)
+            data.get_temp_mut_or_default::<FrameNumbers>(numbers()).0.push(number.id);
         });
     }
     let is_stroke = |event: &Event| match event {

@@ -79,7 +79,7 @@ pub(in crate::ui) fn of_curves(area: &Response, session: &Session, actions: &mut
 
 /// The reason why items that act on the selected keys are disabled; `None` if there are any.
 fn none_selected(session: &Session) -> Option<&'static str> {
-    session.selected_keys().is_empty().then_some("Select keys first: click or draw a box")
+    session.selection().keys().is_empty().then_some("Select keys first: click or draw a box")
 }
 
 /// Shows the items that choose the curve after the selected keys and their tangents.

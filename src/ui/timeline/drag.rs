@@ -120,7 +120,7 @@ pub(in crate::ui) fn press_keys(
     values: Option<DraggedValues>,
     actions: &mut Actions,
 ) {
-    let selected = session.selected_keys();
+    let selected = session.selection().keys();
     let picked = |of: &[KeyOf]| {
         let of = SelectedKeys::of(of);
         move |key: &&KeyOf| of.has(DopeSheetRow::Channel(key.0), key.1)
@@ -168,7 +168,7 @@ pub(in crate::ui) fn follow_keys(
     actions: &mut Actions,
     shift: impl FnOnce(&KeyDrag, Vec2) -> KeyShift,
 ) {
-    if is_cancelled(ui) || drag.moved && !session.is_editing() {
+    if is_cancelled(ui) || drag.moved && !session.history().is_editing() {
         actions.push(SelectAction::Keys(drag.keys));
         return clear(ui);
     }

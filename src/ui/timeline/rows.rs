@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::document::Channel;
 use crate::kinematics::spline::Spline;
-use crate::session::{Key, Session};
+use crate::session::{Key, KeysEdit, Session};
 
 /// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;

@@ -5,8 +5,9 @@ use ik_arm::io;
 use ik_arm::kinematics::skeleton::JointId;
 
 use crate::common::damage::{message, mutations};
+use crate::common::documents::example;
 use crate::common::{Random, cases};
-use crate::gltf::documents::{example, glb, keyed_arm};
+use crate::gltf::documents::{glb, keyed_arm};
 use crate::gltf::text;
 
 fn open(bytes: &[u8]) {

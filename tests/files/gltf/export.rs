@@ -11,7 +11,8 @@ use ik_arm::scene::Palette;
 use serde_json::Value;
 
 use crate::common::Random;
-use crate::gltf::documents::{all, example, glb, keyed_arm};
+use crate::common::documents::example;
+use crate::gltf::documents::{all, glb, keyed_arm};
 use crate::gltf::glb::{Glb, floats, index};
 
 fn each(check: impl Fn(&str, &Document, &Glb)) {

@@ -8,7 +8,8 @@ use ik_arm::kinematics::spline::{Interpolation, Knot, Slopes};
 use serde_json::{Value, json};
 
 use crate::common::Random;
-use crate::gltf::documents::{example, glb};
+use crate::common::documents::example;
+use crate::gltf::documents::glb;
 use crate::gltf::glb::{Glb, index};
 use crate::gltf::text::Text;
 

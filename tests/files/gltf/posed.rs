@@ -19,8 +19,9 @@ use ik_arm::session::{Overlays, PlaybackAction, Preferences, Session};
 use serde_json::Value;
 
 use crate::common::Random;
+use crate::common::documents::example;
 use crate::common::skeletons::{forest, transform};
-use crate::gltf::documents::{example, glb};
+use crate::gltf::documents::glb;
 use crate::gltf::glb::{Glb, index};
 
 const FRAMES: u32 = 24;

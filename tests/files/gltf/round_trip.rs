@@ -7,7 +7,8 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::rig::ArmPart;
 
 use crate::common::Random;
-use crate::gltf::documents::{all, example, glb, keyed_arm};
+use crate::common::documents::example;
+use crate::gltf::documents::{all, glb, keyed_arm};
 
 fn reopened(document: &Document) -> Opened {
     let bytes = glb(document);

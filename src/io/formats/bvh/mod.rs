@@ -33,11 +33,8 @@
 //! change over time become keys; constant values are set on the skeleton.
 
 mod hierarchy;
-mod motion;
 mod read;
 mod rig;
-mod text;
-mod transform;
 mod write;
 
 pub use read::{is_bvh, read};

@@ -3,8 +3,8 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
+use super::rig::SkeletonTransform;
 use super::rig::{BvhPose, BvhRig};
-use super::transform::SkeletonTransform;
 use crate::document::{Document, RigKind, Track};
 use crate::io::exported::ExportFrames;
 use crate::io::exported::{BvhUnit, Exported, MotionError, Progress};

@@ -32,14 +32,15 @@ pub struct AnimationExtras {
 }
 
 /// Extras in a file, which may be those of another program.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(untagged)]
-pub enum ReadExtras<T> {
+pub enum Extras<T> {
     Own(T),
+    #[serde(skip_serializing)]
     Other(IgnoredAny),
 }
 
-impl<T> ReadExtras<T> {
+impl<T> Extras<T> {
     pub fn own(&self) -> Option<&T> {
         match self {
             Self::Own(extras) => Some(extras),

@@ -41,11 +41,75 @@
 mod conversions;
 mod export;
 mod extras;
+mod file;
 mod import;
-mod names;
+mod material;
+
+use std::collections::HashMap;
+
+use glam::{DMat3, DVec3};
 
 pub use export::{GlbError, glb};
 pub use import::{former, read};
 
 /// The key by which a file is recognized.
 pub const KEY: &str = "asset";
+
+/// Returns a right-handed orthonormal frame: its y axis is along the vector `y`, its x axis as near
+/// to the vector `x` as possible, and z = x × y. Where zero or parallel vectors leave an axis
+/// undetermined, the axis is arbitrary.
+pub fn frame(y: DVec3, x: DVec3) -> DMat3 {
+    let y = y.try_normalize().unwrap_or(DVec3::Y);
+    let x = perpendicular(x, y).unwrap_or_else(|| y.any_orthonormal_vector());
+    DMat3::from_cols(x, y, x.cross(y))
+}
+
+/// Of all unit vectors perpendicular to the unit vector `y`, returns the one nearest to `x`; `None`
+/// if `x` is zero or parallel to `y`.
+fn perpendicular(x: DVec3, y: DVec3) -> Option<DVec3> {
+    const PARALLEL: f64 = 1e-6;
+    let x = x.try_normalize()?;
+    let perpendicular = x - y * x.dot(y);
+    (perpendicular.length() > PARALLEL).then(|| perpendicular.normalize())
+}
+
+/// Names in use, each with the number to try as the suffix of the next equal name.
+#[derive(Default)]
+pub struct UniqueNames(HashMap<String, usize>);
+
+impl<const N: usize> From<[&str; N]> for UniqueNames {
+    fn from(taken: [&str; N]) -> Self {
+        Self(taken.map(|name| (name.to_owned(), FIRST)).into())
+    }
+}
+
+const FIRST: usize = 2;
+
+impl UniqueNames {
+    /// Returns `name`, with a number as suffix if it is in use already. The result is then in use.
+    pub fn free(&mut self, name: &str) -> String {
+        let mut free = name.to_owned();
+        let mut number = self.0.get(name).copied();
+        while let Some(next) = number.filter(|_| self.0.contains_key(&free)) {
+            free = format!("{name}_{next}");
+            number = Some(next + 1);
+        }
+        if let Some(number) = number {
+            self.0.insert(name.to_owned(), number);
+        }
+        self.0.insert(free.clone(), FIRST);
+        free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::io::formats::gltf::*;
+
+    #[test]
+    fn every_name_is_free() {
+        let mut names = UniqueNames::from(["a", "a_3"]);
+        let all = ["a", "b", "a", "a_2", "b", "a"].map(|name| names.free(name));
+        assert_eq!(all, ["a_2", "b", "a_4", "a_2_2", "b_2", "a_5"]);
+    }
+}

@@ -133,7 +133,7 @@ impl DopeSheet<'_> {
         rows::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();
-            let channels = rows::after_click(ui, session.selected_channels(), channel);
+            let channels = rows::after_click(ui, session.selection().channels(), channel);
             actions.push(SelectAction::Channels(channels));
         }
         context_menu::of_channel(&response, session, channel, actions);

@@ -107,7 +107,7 @@ fn channel_name(
     rows::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
     if response.clicked() {
         ruler.request_focus();
-        let channels = rows::after_click(ui, session.selected_channels(), *channel);
+        let channels = rows::after_click(ui, session.selection().channels(), *channel);
         actions.push(SelectAction::Channels(channels));
     }
     context_menu::of_channel(&response, session, *channel, actions);

@@ -54,7 +54,7 @@ impl Values<'_> {
     /// None, one or several, with repetitions.
     pub fn channels(&mut self) -> Vec<Channel> {
         match self.random.below(6) {
-            0 => KeysEdit::channels_to_key(&self.session),
+            0 => KeysEdit::channels_to_key(self.session),
             count => (0..count).map(|_| self.channel()).collect(),
         }
     }

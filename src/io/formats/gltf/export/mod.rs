@@ -1,55 +1,63 @@
 //! Export of the shown rig as a skinned, animated mesh.
 
-mod error;
-mod file;
-mod joint_track;
-mod kept_tracks;
-mod limbs;
+mod glb;
 mod mesh;
 mod motion;
 mod nodes;
 mod quaternion_spline;
 mod rig;
-mod writer;
 
-use crate::document::{Document, Timeline};
-use crate::io::exported::Progress;
-pub use error::GlbError;
-use kept_tracks::KeptTracks;
-use limbs::LimbMesh;
-use mesh::RigMesh;
-use motion::JointAnimation;
-use nodes::JointNodes;
-use rig::GltfRig;
+use thiserror::Error;
 
-/// Exports the shown rig as a `.glb` file with joints, a skinned mesh and the motion. The mesh is
-/// the skin of the skeleton; without one, cones around the bones. The motion has a key at every
-/// frame. The frame rate is `frames_per_second`, or with `None` that of the timeline, clamped to
-/// the range 0.01 to 1000. With `None`, tracks whose keys glTF can have are written as they are.
-/// Lengths are in metres, and no node has a scale.
-///
-/// # Errors
-///
-/// Fails if the skeleton has no joints, a position overflows, the motion has too many frames, or
-/// the export is cancelled.
-pub fn glb(
-    document: &Document,
-    frames_per_second: Option<f64>,
-    progress: &Progress,
-) -> Result<Vec<u8>, GlbError> {
-    let rate = frames_per_second.unwrap_or(document.timeline.frame_rate);
-    let frame_rate = rate.clamp(Timeline::MIN_FRAME_RATE, Timeline::MAX_FRAME_RATE);
-    let timeline = Timeline { frame_rate, ..document.timeline };
-    let rig = GltfRig::new(document)?;
-    let bones = JointNodes::new(&rig)?;
-    let kept = match frames_per_second {
-        None if timeline.is_valid() => KeptTracks::new(document, &rig, timeline),
-        _ => KeptTracks::default(),
-    };
-    let motion = JointAnimation::new(&rig, &bones, timeline, kept, progress)?;
-    let mesh = match RigMesh::of_skin(document) {
-        Some(skin) => skin,
-        None => LimbMesh::new(&rig, &bones)?.into(),
-    };
-    file::write(&bones, &motion, &mesh, document.animation_name.as_deref())
+use crate::io::exported::Cancelled;
+pub use glb::glb;
+
+/// The reason why a document cannot be exported to glTF.
+#[derive(Debug, Error)]
+pub enum GlbError {
+    /// The skeleton has no joints.
+    #[error("the skeleton must have at least one joint")]
+    NoJoints,
+    /// The position of a joint overflows in metres.
+    #[error(
+        "the position of joint {joint:?} must be within ±3.4028235e38 m{}; bring it nearer, or \
+         make metres_per_unit smaller",
+        at(*time)
+    )]
+    TooFar {
+        /// Name of the joint.
+        joint: String,
+        /// Time in seconds; `None` for the bind pose.
+        time: Option<f64>,
+    },
+    /// The motion has more than [`GlbError::MAX_FRAMES`] frames or [`GlbError::MAX_SAMPLES`]
+    /// samples.
+    #[error(
+        "a motion of {joints} joints must have at most {} frames, got {frames}; export a shorter \
+         time or fewer frames per second",
+        GlbError::MAX_FRAMES.min(GlbError::MAX_SAMPLES / joints)
+    )]
+    TooLong {
+        /// Number of frames.
+        frames: usize,
+        /// Number of joints.
+        joints: usize,
+    },
+    /// The export was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The JSON chunk cannot be serialized.
+    #[error("the file cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl GlbError {
+    /// Maximum number of joint transforms in all frames; each takes 28 bytes.
+    pub const MAX_SAMPLES: usize = 20_000_000;
+    /// Maximum number of frames. Above it, two frames can have the same 32-bit time.
+    pub const MAX_FRAMES: usize = 1 << 23;
+}
+
+fn at(time: Option<f64>) -> String {
+    time.map_or_else(|| " in the bind pose".to_owned(), |time| format!(" at {time} s"))
 }

@@ -1,17 +1,28 @@
+//! The animation. Tracks of joints whose keys glTF can have as they are, or as exact as is needed,
+//! are kept; all others have a key at every frame.
+//!
+//! A node's frame is its joint's space turned by a constant C. Relative to its parent it turns by
+//! C_parentᵀ · R · C with the joint's rotation R, and is moved by a constant matrix times the
+//! joint's offset: a slerp or steps of R, and lines, steps and cubics of the offset, stay what they
+//! are. Curves of angles become splines of quaternions. Of curves that are cubics in the file, the
+//! keys are written, too.
+
 use std::rc::Rc;
 
-use ::gltf::json::animation::Interpolation as Curve;
-use glam::DQuat;
+use glam::{DMat3, DQuat, DVec3, Vec3};
 
-use super::error::GlbError;
-use super::joint_track::{ClipTimes, JointTrack, same_side};
-use super::kept_tracks::{KeptTrack, KeptTracks};
-use super::nodes::{JointNodes, RigidTransform};
+use super::GlbError;
+use super::nodes::{ClipTimes, JointNodes, JointTrack, same_side};
+use super::quaternion_spline::{self, NodeRotation, QuaternionKey};
 use super::rig::GltfRig;
-use crate::document::Timeline;
+use crate::document::{Channel, Document, RigKind, Target, Timeline};
 use crate::io::exported::Progress;
+use crate::io::formats::gltf::file::KeyCurve;
+use crate::kinematics::skeleton::{Joint, JointId};
+use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
 /// The animation: the transforms of all nodes that leave the bind pose.
+#[derive(Default)]
 pub struct JointAnimation {
     /// Rotations relative to the parents, as unit quaternions. Their signs are chosen so that
     /// interpolation takes the shorter arc.
@@ -24,178 +35,243 @@ pub struct JointAnimation {
 }
 
 impl JointAnimation {
-    /// The tracks that are `kept`, and for all other nodes a key at every frame.
-    pub fn new(
+    /// Adds the tracks that can be kept of a skeleton that is posed by its keys alone, and not
+    /// scaled unevenly or mirrored.
+    pub fn keep_tracks(&mut self, document: &Document, rig: &GltfRig) {
+        let skeleton = document.skeleton();
+        let is_posed_by_keys = document.rig == RigKind::Skeleton
+            && !document.follows_path()
+            && !document.skeleton_rig.targets.iter().any(Target::is_posing)
+            && !document.keys.tracks().any(|(channel, _)| channel.target().is_some());
+        let transform = skeleton.transform().matrix3.as_dmat3();
+        if !(is_posed_by_keys && is_even(transform)) {
+            return;
+        }
+        for (joint, own) in skeleton.iter() {
+            let track = |channel| document.keys.track(channel);
+            if let Some(turns) =
+                track(Channel::Rotation(joint)).filter(|_| !own.limits.is_limited())
+            {
+                self.keep_rotation(joint, turns, node_rotation(rig, joint, own, transform));
+            }
+            let is_moved = own.parent.is_none() && document.keys.has(Channel::Translation);
+            if let Some(moves) = track(Channel::Offset(joint)).filter(|_| !is_moved) {
+                let to_node = offset_to_node(rig, own, transform) * rig.metres_per_unit;
+                let mut track = translation(joint, moves, self.timeline, to_node);
+                if let Some(JointTrack { keys, curve: KeyCurve::CubicSpline, .. }) = &mut track {
+                    let origin = match own.parent {
+                        None => skeleton.transform().translation.as_dvec3(),
+                        Some(_) => DVec3::ZERO,
+                    };
+                    *keys = in_metres(moves, transform, origin, rig.metres_per_unit, self.timeline);
+                }
+                self.translations.extend(track);
+            }
+        }
+    }
+
+    fn keep_rotation(&mut self, joint: JointId, track: &Spline<Vec3>, rotation: NodeRotation) {
+        let node = joint.index();
+        let times = padded(track, self.timeline);
+        let (Some(curve), Some(times)) = (curve(track, &[Interpolation::Slerp]), times) else {
+            return;
+        };
+        if curve != KeyCurve::CubicSpline {
+            self.rotations.push(JointTrack::new(node, times.into(), curve));
+            return;
+        }
+        let clip = ClipTimes::new(self.timeline);
+        let spline = quaternion_spline::keys(track, &times, rotation);
+        let in_file = |key: &QuaternionKey| clip.of(key.time) as f32;
+        if !spline.is_sorted_by(|before, after| in_file(before) < in_file(after)) {
+            return;
+        }
+        let rows = spline.iter().flat_map(|key| [key.arriving, key.value, key.leaving]);
+        let keys = track.knots().iter().map(|key| Knot { time: clip.of(key.time), ..*key });
+        self.rotations.push(JointTrack {
+            values: rows.map(|row| row.as_quat().to_array()).collect(),
+            keys: keys.collect(),
+            ..JointTrack::new(node, spline.iter().map(|key| key.time).collect(), curve)
+        });
+        self.frames.push((node, rotation.after.conjugate()));
+    }
+
+    /// Records the values of all tracks that have none, and of the nodes that have no track at every
+    /// frame. Drops the tracks of nodes that stay in the bind pose.
+    pub fn record(
+        &mut self,
         rig: &GltfRig,
         bones: &JointNodes,
-        timeline: Timeline,
-        kept: KeptTracks,
         progress: &Progress,
-    ) -> Result<Self, GlbError> {
-        let is_moving = rig.is_moving() && timeline.is_valid();
-        let frames = if is_moving { timeline.frames() } else { 1 };
+    ) -> Result<(), GlbError> {
+        let is_moving = rig.is_moving() && self.timeline.is_valid();
+        let frames = if is_moving { self.timeline.frames() } else { 1 };
         let joints = bones.nodes.len();
         let too_long = || GlbError::TooLong { frames, joints };
         if frames > GlbError::MAX_FRAMES {
             return Err(too_long());
         }
-        let clip = ClipTimes::new(timeline);
-        let in_file = |time: f64| clip.of(time) as f32;
-        let times = Rc::new((0..frames).map(|frame| in_file(timeline.time(frame))).collect());
-        let KeptTracks { rotations, translations, turns, frames: angle_frames } = kept;
-        let mut recorder = TrackRecorder::new(rotations, translations, joints, &times, in_file);
-        let moments = recorder.moments((0..frames).map(|frame| timeline.time(frame)));
-        let count = moments.len();
-        if count.saturating_mul(joints) > GlbError::MAX_SAMPLES {
+        let at_frames: Rc<[f64]> = (0..frames).map(|frame| self.timeline.time(frame)).collect();
+        let empty = self.rotations.iter().filter(|track| track.values.is_empty());
+        let keys = empty.flat_map(|track| track.times.iter());
+        let keys = keys.chain(self.translations.iter().flat_map(|track| track.times.iter()));
+        let mut times: Vec<f64> = at_frames.iter().chain(keys).copied().collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        if times.len().saturating_mul(joints) > GlbError::MAX_SAMPLES {
             return Err(too_long());
         }
-        let mut previous: Vec<DQuat> =
-            bones.bind_pose.iter().map(|bind_pose| bind_pose.rotation).collect();
-        for (done, Moment { time, is_frame }) in moments.into_iter().enumerate() {
-            progress.step(done, count)?;
-            let mut locals = bones.locals(&rig.at(time), Some(time))?;
-            for (previous, local) in previous.iter_mut().zip(&mut locals) {
-                local.rotation = same_side(*previous, local.rotation);
-                *previous = local.rotation;
+        complete(&mut self.rotations, joints, &at_frames);
+        complete(&mut self.translations, joints, &at_frames);
+        let mut turned: Vec<DQuat> = bones.bind_pose.iter().map(|bind| bind.rotation).collect();
+        for (done, &time) in times.iter().enumerate() {
+            progress.step(done, times.len())?;
+            for (node, local) in bones.locals(&rig.at(time), Some(time))?.iter().enumerate() {
+                turned[node] = same_side(turned[node], local.rotation);
+                self.rotations[node].record(time, turned[node].as_quat().to_array());
+                self.translations[node].record(time, local.translation.as_vec3().to_array());
             }
-            recorder.record(time, is_frame, &locals);
         }
-        let (mut rotations, mut translations) = recorder.tracks();
-        for turn in turns {
-            let node = turn.node;
-            rotations[node] = turn;
-        }
-        rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
-        translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
-        Ok(Self { rotations, translations, frames: angle_frames, timeline })
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.rotations.is_empty() && self.translations.is_empty()
+        self.rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
+        self.translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
+        Ok(())
     }
 }
 
-/// A time at which the rig is posed.
-pub struct Moment {
-    /// In the document, in seconds.
-    pub time: f64,
-    pub is_frame: bool,
+/// Adds a track with keys at every frame for each node that has none, and sorts them by node.
+fn complete<const N: usize>(kept: &mut Vec<JointTrack<N>>, nodes: usize, frames: &Rc<[f64]>) {
+    let track = |node| JointTrack::new(node, frames.clone(), KeyCurve::Linear);
+    let mut all: Vec<JointTrack<N>> = (0..nodes).map(track).collect();
+    for track in kept.drain(..) {
+        let node = track.node;
+        all[node] = track;
+    }
+    *kept = all;
 }
 
-/// Collects the values of all nodes: those of kept tracks at their keys, all others at every frame.
-pub struct TrackRecorder {
-    rotations: Vec<NodeRecord<4>>,
-    translations: Vec<NodeRecord<3>>,
-}
-
-struct NodeRecord<const N: usize> {
-    track: JointTrack<N>,
-    kept: Option<KeptTrack>,
-    /// Number of keys recorded.
-    keys: usize,
-}
-
-impl TrackRecorder {
-    /// A recorder of `nodes` nodes. `times` has the times of the frames in the file, and `in_file`
-    /// turns a time of the document into one of the file.
-    pub fn new(
-        rotations: Vec<KeptTrack>,
-        translations: Vec<KeptTrack>,
-        nodes: usize,
-        times: &Rc<Vec<f32>>,
-        in_file: impl Fn(f64) -> f32,
-    ) -> Self {
-        Self {
-            rotations: records(rotations, nodes, times, &in_file),
-            translations: records(translations, nodes, times, &in_file),
-        }
-    }
-
-    /// The frames and the keys of kept tracks, in the order of time.
-    pub fn moments(&self, frames: impl Iterator<Item = f64>) -> Vec<Moment> {
-        let rotations = self.rotations.iter().filter_map(|record| record.kept.as_ref());
-        let translations = self.translations.iter().filter_map(|record| record.kept.as_ref());
-        let keys = rotations.chain(translations).flat_map(|kept| kept.times.iter().copied());
-        let keys = keys.map(|time| Moment { time, is_frame: false });
-        let mut moments: Vec<Moment> =
-            frames.map(|time| Moment { time, is_frame: true }).chain(keys).collect();
-        // Stable, so that of several at one time the frame comes first and stays.
-        moments.sort_by(|a, b| a.time.total_cmp(&b.time));
-        moments.dedup_by(|later, first| later.time == first.time);
-        moments
-    }
-
-    /// Records the transforms of all nodes at a moment.
-    pub fn record(&mut self, time: f64, is_frame: bool, locals: &[RigidTransform]) {
-        for record in &mut self.rotations {
-            let rotation = locals[record.track.node].rotation;
-            record.add(time, is_frame, rotation.as_quat().to_array(), |_| [0.0; 4]);
-        }
-        for record in &mut self.translations {
-            let translation = locals[record.track.node].translation;
-            record.add(time, is_frame, translation.as_vec3().to_array(), |slope| slope);
-        }
-    }
-
-    pub fn tracks(self) -> (Vec<JointTrack<4>>, Vec<JointTrack<3>>) {
-        let rotations = self.rotations.into_iter().map(|record| record.track).collect();
-        (rotations, self.translations.into_iter().map(|record| record.track).collect())
+/// The rotation of a node by its joint's angles.
+fn node_rotation(rig: &GltfRig, joint: JointId, own: &Joint, transform: DMat3) -> NodeRotation {
+    let world = |index: usize| DQuat::from_mat3(&rig.bind_pose[index].frame()).normalize();
+    let turned = transform * transform.determinant().cbrt().recip();
+    let frame = DQuat::from_mat3(&(turned * own.frame.as_dmat3())).normalize();
+    let parent = own.parent.map_or(DQuat::IDENTITY, |parent| world(parent.index()));
+    NodeRotation {
+        before: parent.conjugate() * frame,
+        after: frame.conjugate() * world(joint.index()),
     }
 }
 
-fn records<const N: usize>(
-    kept: Vec<KeptTrack>,
-    nodes: usize,
-    times: &Rc<Vec<f32>>,
-    in_file: impl Fn(f64) -> f32,
-) -> Vec<NodeRecord<N>> {
-    let at_frames = |node| NodeRecord {
-        track: JointTrack {
-            node,
-            times: times.clone(),
-            curve: Curve::Linear,
-            values: Vec::new(),
-            keys: Vec::new(),
-        },
-        kept: None,
-        keys: 0,
+/// The keys of an offset as the file's scene has it: in metres, turned and scaled by the skeleton's
+/// transform, and moved by `origin`.
+fn in_metres(
+    track: &Spline<Vec3>,
+    transform: DMat3,
+    origin: DVec3,
+    metres_per_unit: f64,
+    timeline: Timeline,
+) -> Vec<Knot<Vec3>> {
+    let slope = |slope: Vec3| (transform * slope.as_dvec3() * metres_per_unit).as_vec3();
+    let clip = ClipTimes::new(timeline);
+    let key = |key: &Knot<Vec3>| Knot {
+        time: clip.of(key.time),
+        value: ((transform * key.value.as_dvec3() + origin) * metres_per_unit).as_vec3(),
+        interpolation: key.interpolation,
+        slopes: key.slopes.map(|slopes| Slopes {
+            arriving: slope(slopes.arriving),
+            leaving: slope(slopes.leaving),
+        }),
     };
-    let mut records: Vec<NodeRecord<N>> = (0..nodes).map(at_frames).collect();
-    for mut kept in kept {
-        let record = &mut records[kept.node];
-        record.track.times = Rc::new(kept.times.iter().map(|time| in_file(*time)).collect());
-        record.track.curve = kept.curve;
-        record.track.keys = std::mem::take(&mut kept.keys);
-        record.kept = Some(kept);
-    }
-    records
+    track.knots().iter().map(key).collect()
 }
 
-impl<const N: usize> NodeRecord<N> {
-    /// Adds the value if the track has a key at this time. `slope` turns a slope into numbers of
-    /// the track.
-    fn add(
-        &mut self,
-        time: f64,
-        is_frame: bool,
-        value: [f32; N],
-        slope: impl Fn([f32; 3]) -> [f32; N],
-    ) {
-        let Some(kept) = &self.kept else {
-            self.track.values.extend(is_frame.then_some(value));
-            return;
-        };
-        if kept.times.get(self.keys) != Some(&time) {
-            return;
-        }
-        match kept.slopes.get(self.keys) {
-            Some(slopes) => {
-                let [arriving, leaving] =
-                    [slopes.arriving, slopes.leaving].map(|it| slope(it.to_array()));
-                self.track.values.extend([arriving, value, leaving]);
-            }
-            None => self.track.values.push(value),
-        }
-        self.keys += 1;
+/// Returns whether a matrix turns and scales evenly, without mirroring.
+fn is_even(matrix: DMat3) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    let scale = matrix.determinant().cbrt();
+    let rest = matrix.transpose() * matrix - DMat3::from_diagonal(DVec3::splat(scale * scale));
+    let is_rounding = |it: f64| it.abs() <= ROUNDING * scale * scale;
+    scale > 0.0 && rest.to_cols_array().into_iter().all(is_rounding)
+}
+
+/// The matrix from a joint's offset to the translation of its node, in units of the scene.
+fn offset_to_node(rig: &GltfRig, joint: &Joint, transform: DMat3) -> DMat3 {
+    match joint.parent {
+        None => transform,
+        Some(parent) => rig.bind_pose[parent.index()].frame().transpose() * transform,
     }
+}
+
+/// The curve of the file: lines for keys that all have one of the `straight` interpolations, steps
+/// for steps, and cubic splines for other curves. `None` if the file needs a key at every frame.
+fn curve(track: &Spline<Vec3>, straight: &[Interpolation]) -> Option<KeyCurve> {
+    let (_, before) = track.knots().split_last()?;
+    let first = before.first()?.interpolation;
+    let is_one = before.iter().all(|knot| knot.interpolation == first);
+    match first {
+        Interpolation::Step if is_one => Some(KeyCurve::Step),
+        _ if is_one && straight.contains(&first) => Some(KeyCurve::Linear),
+        _ if before.iter().any(|knot| knot.interpolation == Interpolation::Step) => None,
+        _ => Some(KeyCurve::CubicSpline),
+    }
+}
+
+fn translation(
+    joint: JointId,
+    track: &Spline<Vec3>,
+    timeline: Timeline,
+    to_node: DMat3,
+) -> Option<JointTrack<3>> {
+    let curve = curve(track, &[Interpolation::Linear, Interpolation::Slerp])?;
+    let times = padded(track, timeline)?;
+    let slopes = match curve {
+        KeyCurve::CubicSpline => {
+            times.iter().map(|time| slopes_at(track, *time, to_node)).collect()
+        }
+        KeyCurve::Linear | KeyCurve::Step => Vec::new(),
+    };
+    Some(JointTrack { slopes, ..JointTrack::new(joint.index(), times.into(), curve) })
+}
+
+/// The slopes of a node's translation at a time, arriving and leaving; level where the curve is
+/// constant, before the track's first key and after its last.
+fn slopes_at(track: &Spline<Vec3>, time: f64, to_node: DMat3) -> [[f32; 3]; 2] {
+    let Some(own) = track.slopes(time) else { return [[0.0; 3]; 2] };
+    let knots = track.knots();
+    let key = knots.partition_point(|knot| knot.time < time);
+    let slope = |segment: Option<&[Knot<Vec3>]>, own: Vec3| {
+        let Some([from, to]) = segment else { return [0.0; 3] };
+        let slope = match from.interpolation {
+            Interpolation::Auto | Interpolation::Smooth => own.as_dvec3(),
+            Interpolation::Linear | Interpolation::Slerp => {
+                (to.value.as_dvec3() - from.value.as_dvec3()) / (to.time - from.time)
+            }
+            Interpolation::Step => DVec3::ZERO,
+        };
+        (to_node * slope).as_vec3().to_array()
+    };
+    [
+        slope(key.checked_sub(1).and_then(|it| knots.get(it..=key)), own.arriving),
+        slope(knots.get(key..=key + 1), own.leaving),
+    ]
+}
+
+/// The times of the keys, with the timeline's ends, where the value is that of the nearest key.
+/// `None` if keys are outside the timeline, or so near to each other that single precision cannot
+/// tell them apart.
+fn padded(track: &Spline<Vec3>, timeline: Timeline) -> Option<Vec<f64>> {
+    let mut times: Vec<f64> = track.knots().iter().map(|knot| knot.time).collect();
+    let (first, last) = (*times.first()?, *times.last()?);
+    /// Part of a frame within which a key is at the end of the timeline.
+    const NEAR: f64 = 1e-3;
+    let near = NEAR / timeline.frame_rate;
+    if first < timeline.start - near || last > timeline.end + near {
+        return None;
+    }
+    if first > timeline.start + near {
+        times.insert(0, timeline.start);
+    }
+    if last < timeline.end - near {
+        times.push(timeline.end);
+    }
+    times.windows(2).all(|pair| (pair[0] as f32) < pair[1] as f32).then_some(times)
 }

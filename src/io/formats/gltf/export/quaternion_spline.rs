@@ -8,7 +8,7 @@ use core::ops::{Add, Mul};
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::joint_track::same_side;
+use super::nodes::same_side;
 use crate::io::formats::gltf::conversions::hermite;
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::spline::{Interpolation, Spline};

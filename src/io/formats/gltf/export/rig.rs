@@ -1,8 +1,8 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
-use super::error::GlbError;
+use super::GlbError;
 use crate::document::{Arm, Channel, Document, Posed, RigKind, Track};
-use crate::io::formats::gltf::conversions::frame;
+use crate::io::formats::gltf::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;

@@ -1,17 +1,18 @@
 //! The animations of a file: what each moves, and its timeline.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::file::GltfFile;
-use super::nodes::NodeTree;
-use super::sampler::tolerance;
-use super::skins::SkinJoints;
-use super::tracks::{self, NodeTracks};
+use super::buffers::GltfBuffers;
+use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
+use super::rows::{at_accessor, buffers_of};
+use super::sampler::{AnimatedPart, KeySampler, UsedChannel, tolerance};
 use crate::document::Timeline;
 use crate::io::error::OpenError;
-use crate::io::formats::gltf::names::UniqueNames;
+use crate::io::formats::gltf::UniqueNames;
+use crate::io::formats::gltf::extras::Extras;
+use crate::io::formats::gltf::file::{GltfAnimation, GltfChannel, GltfFile, KeyCurve, index_rule};
 use crate::io::frame_rate;
-use crate::io::json::{FieldError, FieldWarnings, JsonPath};
+use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::opened::FileAnimation;
 use crate::io::source::Source;
 
@@ -58,9 +59,9 @@ fn scan_one(
 ) -> Result<(BTreeSet<usize>, (f64, f64)), FieldError> {
     let (animation, at) = (&file.animations.0[index], at_animation(index));
     let all = vec![true; nodes.parents.len()];
-    let channels = tracks::used_channels(animation, &at, nodes, &all)?;
-    let buffers = tracks::buffers(source, file, &channels)?;
-    let tracks = NodeTracks::new(file, &buffers, &channels, &mut FieldWarnings::default())?;
+    let channels = used_channels(animation, &at, nodes, &all)?;
+    let buffers = buffers(source, file, &channels)?;
+    let tracks = NodeTracks::new(file, &buffers, &channels, &at, &mut FieldWarnings::default())?;
     let range = time_range(&tracks).unwrap_or_default();
     Ok((tracks.moving().collect(), range))
 }
@@ -133,4 +134,158 @@ pub fn on_frame(time: f64, timeline: Timeline) -> f64 {
 /// Times of the first and the last key in seconds; `None` without keys.
 pub fn time_range(tracks: &NodeTracks<'_>) -> Option<(f64, f64)> {
     tracks.times().map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+}
+
+/// The animated values of all nodes.
+pub struct NodeTracks<'a> {
+    tracks: Vec<KeySampler<'a>>,
+    /// Index of the track of a part of a node.
+    places: HashMap<(usize, AnimatedPart), usize>,
+}
+
+/// Returns those channels of an animation that move a node for which `is_needed` is true.
+pub fn used_channels<'a>(
+    animation: &'a GltfAnimation,
+    at: &JsonPath,
+    nodes: &NodeTree,
+    is_needed: &[bool],
+) -> Result<Vec<UsedChannel<'a>>, FieldError> {
+    let mut seen = HashSet::new();
+    let mut all = Vec::new();
+    for (index, channel) in animation.channels.0.iter().enumerate() {
+        let at_channel = || at.clone().key("channels").index(index);
+        let Some((node, part)) = animated_part(channel) else { continue };
+        let Some(is_needed) = is_needed.get(node) else {
+            let reason = index_rule("nodes", nodes.parents.len(), node);
+            return Err(FieldError::new(at_channel().key("target").key("node"), reason));
+        };
+        if !is_needed {
+            continue;
+        }
+        if let NodeTransform::Matrix(_) = nodes.locals[node] {
+            let reason = "must not be given for an animated node";
+            return Err(FieldError::new(at_node(node).key("matrix"), reason));
+        }
+        if !seen.insert((node, part)) {
+            let reason = format!("target must be unique, got the same part of node {node} twice");
+            return Err(FieldError::new(at_channel(), reason));
+        }
+        let sampler_index = channel.sampler.0 as usize;
+        let Some(sampler) = animation.samplers.0.get(sampler_index) else {
+            let reason = index_rule("samplers", animation.samplers.0.len(), sampler_index);
+            return Err(FieldError::new(at_channel().key("sampler"), reason));
+        };
+        let at_sampler = || at.clone().key("samplers").index(sampler_index);
+        let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
+        let curve = KeyCurve::new(name).ok_or_else(|| {
+            let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
+            FieldError::new(at_sampler().key("interpolation"), reason)
+        })?;
+        let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
+        let own = sampler.extras.as_ref().and_then(Extras::own);
+        all.push(UsedChannel { node, part, curve, input, output, own });
+    }
+    Ok(all)
+}
+
+/// Returns the node that a channel animates, and the part of the node's transform. `None` if the
+/// channel has no node or does not animate a transform.
+fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
+    let JsonObject(target) = &channel.target;
+    let part = match target.path.as_str() {
+        "translation" => AnimatedPart::Translation,
+        "rotation" => AnimatedPart::Rotation,
+        "scale" => AnimatedPart::Scale,
+        _ => return None,
+    };
+    Some((target.node?.0 as usize, part))
+}
+
+/// Reads the buffers that contain the times and values of the channels.
+pub fn buffers<'a>(
+    source: &'a Source,
+    file: &GltfFile<'_>,
+    channels: &[UsedChannel<'_>],
+) -> Result<GltfBuffers<'a>, FieldError> {
+    let accessors: BTreeSet<usize> =
+        channels.iter().flat_map(|channel| [channel.input, channel.output]).collect();
+    let mut needed = BTreeSet::new();
+    for accessor in accessors {
+        needed.extend(buffers_of(file, accessor)?);
+    }
+    GltfBuffers::read(source, file, &needed)
+}
+
+impl<'a> NodeTracks<'a> {
+    pub fn new(
+        file: &GltfFile<'_>,
+        buffers: &'a GltfBuffers<'_>,
+        channels: &[UsedChannel<'a>],
+        at: &JsonPath,
+        warnings: &mut FieldWarnings,
+    ) -> Result<Self, FieldError> {
+        /// Maximum number of keys in all channels together. Bounds the time, because many channels
+        /// can share the same few bytes.
+        const MOST_KEYS: usize = 20_000_000;
+        let mut tracks = Vec::with_capacity(channels.len());
+        let mut keys = 0_usize;
+        for channel in channels {
+            let track = KeySampler::new(file, buffers, *channel)?;
+            keys = keys.saturating_add(track.len());
+            if keys > MOST_KEYS {
+                let reason = format!("must have at most {MOST_KEYS} keys");
+                return Err(FieldError::new(at.clone(), reason));
+            }
+            tracks.push(track);
+        }
+        let mut unsorted = None;
+        for track in &mut tracks {
+            if track.sort()? {
+                unsorted.get_or_insert(track.channel.input);
+            }
+            track.check()?;
+        }
+        if let Some(input) = unsorted {
+            let reason = "times must increase; the keys are sorted, and of several keys at the same \
+                          time the last one counts";
+            warnings.push(at_accessor(input), reason);
+        }
+        let places = tracks.iter().enumerate();
+        let places =
+            places.map(|(place, KeySampler { channel, .. })| ((channel.node, channel.part), place));
+        Ok(Self { places: places.collect(), tracks })
+    }
+
+    /// The keys of a part of a node's transform; `None` if it has none.
+    pub fn track(&self, node: usize, part: AnimatedPart) -> Option<&KeySampler<'a>> {
+        self.tracks.get(*self.places.get(&(node, part))?)
+    }
+
+    /// Returns whether the scale of a node changes.
+    pub fn scales(&self, node: usize) -> bool {
+        self.track(node, AnimatedPart::Scale).is_some_and(KeySampler::varies)
+    }
+
+    /// The nodes that some track moves, unsorted and with repetitions.
+    pub fn moving(&self) -> impl Iterator<Item = usize> + '_ {
+        self.tracks.iter().filter(|track| track.varies()).map(|track| track.channel.node)
+    }
+
+    /// Times of all keys in seconds, unsorted.
+    pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.tracks.iter().flat_map(|track| (0..track.len()).map(|key| track.time(key)))
+    }
+
+    /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.
+    pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
+        for track in &self.tracks {
+            if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(track.channel.node) {
+                match track.channel.part {
+                    AnimatedPart::Translation => parts.translation = track.point(time),
+                    AnimatedPart::Rotation => parts.rotation = track.rotation(time),
+                    AnimatedPart::Scale => parts.scale = track.point(time),
+                }
+            }
+        }
+    }
 }

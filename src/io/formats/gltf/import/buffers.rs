@@ -4,8 +4,9 @@ use std::fs;
 use std::io::Read;
 use std::path::{Component, Path};
 
-use super::file::{GltfBuffer, GltfFile, Uri, index_rule};
 use crate::io::error::{OpenError, system_reason};
+use crate::io::formats::gltf::file::{GltfBuffer, GltfFile, index_rule};
+use crate::io::formats::gltf::material::Uri;
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
 use crate::io::packed;

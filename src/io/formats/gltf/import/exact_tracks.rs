@@ -22,16 +22,16 @@ use core::cell::Cell;
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::animations;
-use super::file::GltfFile;
+use super::animations::NodeTracks;
+use super::joint_tracks::JointPlacement;
 use super::joint_tracks::JointTracks;
-use super::node_poser::JointPlacement;
+use super::nodes::SkinJoints;
 use super::nodes::{NodeTransform, NodeTree};
-use super::sampler::AnimatedPart;
-use super::sampler::{self, KeySampler};
-use super::skins::SkinJoints;
-use super::tracks::NodeTracks;
+use super::sampler::{AnimatedPart, KeySampler};
 use crate::document::{Channel, Keys, Timeline};
-use crate::io::formats::gltf::conversions::{frame, hermite};
+use crate::io::formats::gltf::conversions::hermite;
+use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
+use crate::io::formats::gltf::frame;
 use crate::kinematics::skeleton::{JointId, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
@@ -67,8 +67,7 @@ impl<'a> ExactTracks<'a> {
     ) -> Self {
         let mut is_even = vec![false; nodes.parents.len()];
         for &node in &nodes.order {
-            let scales = tracks.track(node, AnimatedPart::Scale).is_some_and(KeySampler::varies);
-            is_even[node] = !scales
+            is_even[node] = !tracks.scales(node)
                 && is_similarity(nodes.locals[node].affine().matrix3)
                 && nodes.parents[node].is_none_or(|parent| is_even[parent]);
         }
@@ -89,8 +88,7 @@ impl<'a> ExactTracks<'a> {
     pub fn of(&self, joint: usize) -> Option<JointTracks> {
         let node = self.joints.nodes[joint];
         let above = self.nodes.parents[node];
-        let scales = self.tracks.track(node, AnimatedPart::Scale).is_some_and(KeySampler::varies);
-        if scales || above.is_some_and(|above| !self.is_even[above]) {
+        if self.tracks.scales(node) || above.is_some_and(|above| !self.is_even[above]) {
             return None;
         }
         let (rotation, frame) = match self.own_rotation(node) {
@@ -112,11 +110,8 @@ impl<'a> ExactTracks<'a> {
         /// Largest difference in radians, twice that of the export.
         const NEAR: f64 = 1e-4;
         let frame = self.own?.nodes.0.get(node)?.extras.as_ref()?.own()?.frame()?;
-        let keys = self.tracks.own_keys(node, AnimatedPart::Rotation)?;
         let sampler = self.tracks.track(node, AnimatedPart::Rotation)?;
-        if sampler.interpolation() != sampler::Interpolation::CubicSpline {
-            return None;
-        }
+        let keys = sampler.own_keys().filter(|_| sampler.is_cubic())?;
         let NodeTransform::TransformParts(parts) = self.nodes.locals[node] else { return None };
         let bind = parts.rotation.inverse();
         let channel = Channel::Rotation(JointId::default());
@@ -143,7 +138,7 @@ impl<'a> ExactTracks<'a> {
         /// Largest difference of single-precision numbers from each other, relative to the largest.
         const NEAR: f32 = 1e-5;
         self.own?;
-        let keys = self.tracks.own_keys(node, AnimatedPart::Translation)?;
+        let keys = self.tracks.track(node, AnimatedPart::Translation)?.own_keys()?;
         let largest = |track: &Spline<Vec3>| {
             track.knots().iter().map(|knot| knot.value.abs().max_element()).fold(0.0, f32::max)
         };
@@ -193,13 +188,13 @@ impl<'a> ExactTracks<'a> {
             let value = above.transform_point3(sampler.key_point(key)) - base;
             let slope = |tangent: DVec3| above.transform_vector3(tangent).as_vec3();
             let slopes = sampler.tangents(key).map(|[arriving, leaving]| Slopes {
-                arriving: slope(arriving.truncate()),
-                leaving: slope(leaving.truncate()),
+                arriving: slope(arriving),
+                leaving: slope(leaving),
             });
-            let interpolation = match sampler.interpolation() {
-                sampler::Interpolation::Linear => Interpolation::Linear,
-                sampler::Interpolation::Step => Interpolation::Step,
-                sampler::Interpolation::CubicSpline => Interpolation::Smooth,
+            let interpolation = match sampler.channel.curve {
+                KeyCurve::Linear => Interpolation::Linear,
+                KeyCurve::Step => Interpolation::Step,
+                KeyCurve::CubicSpline => Interpolation::Smooth,
             };
             Knot { time: sampler.time(key), value: value.as_vec3(), interpolation, slopes }
         };
@@ -226,10 +221,10 @@ struct RotationTrack<'a> {
 
 impl RotationTrack<'_> {
     fn knots(&self) -> Spline<Vec3> {
-        match self.sampler.interpolation() {
-            sampler::Interpolation::Linear => self.plain(Interpolation::Slerp),
-            sampler::Interpolation::Step => self.plain(Interpolation::Step),
-            sampler::Interpolation::CubicSpline => self.refined(),
+        match self.sampler.channel.curve {
+            KeyCurve::Linear => self.plain(Interpolation::Slerp),
+            KeyCurve::Step => self.plain(Interpolation::Step),
+            KeyCurve::CubicSpline => self.refined(),
         }
     }
 

@@ -3,25 +3,21 @@
 mod animations;
 mod buffers;
 mod exact_tracks;
-mod file;
 mod joint_tracks;
-mod material;
-mod node_poser;
 mod nodes;
 mod primitive;
 mod rig;
 mod rows;
 mod sampler;
 mod skin_mesh;
-mod skins;
-mod tracks;
 
 use std::collections::BTreeSet;
 
 use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::foreign::ForeignFormat;
-use crate::io::formats::gltf::extras::ReadExtras;
+use crate::io::formats::gltf::extras::Extras;
+use crate::io::formats::gltf::file::{GltfFile, GltfSkin, VersionedFile};
 use crate::io::json::JsonObject;
 use crate::io::json::JsonPath;
 use crate::io::json::{FieldError, FieldWarnings};
@@ -32,16 +28,15 @@ use crate::io::opened::attach_skin;
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::SkinFile;
+use animations::NodeTracks;
 use animations::at_animation;
 use exact_tracks::ExactTracks;
-use file::{GltfFile, GltfSkin, VersionedFile};
 use joint_tracks::JointTracks;
-use node_poser::{JointPlacement, NodePoser};
+use joint_tracks::{JointPlacement, NodePoser};
 use nodes::{NodeTree, at_node};
+use nodes::{SkinJoints, at_skin};
 use rig::{BoneEnds, ImportedRig};
 use skin_mesh::MeshImport;
-use skins::{SkinJoints, at_skin};
-use tracks::NodeTracks;
 
 /// Maximum number of node transforms in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
@@ -55,7 +50,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let scans = animations::scan(source, &file, &nodes);
     let moving: BTreeSet<usize> =
         scans.iter().flat_map(|scan| scan.moving.iter().copied()).collect();
-    let names = skins::names(&file, &nodes, &moving);
+    let names = nodes::names(&file, &nodes, &moving);
     let chosen = match &options.skeleton {
         Some(name) => names.iter().position(|other| other == name),
         None => (!names.is_empty()).then_some(0),
@@ -220,14 +215,14 @@ impl GltfImport<'_> {
         let Some(animation) = self.file.animations.0.get(chosen) else {
             return Ok((Vec::new(), None));
         };
-        let channels = tracks::used_channels(animation, &at, self.nodes, &poser.is_needed())?;
-        let buffers = tracks::buffers(self.source, self.file, &channels)?;
-        let tracks = NodeTracks::new(self.file, &buffers, &channels, warnings)?;
+        let channels = animations::used_channels(animation, &at, self.nodes, &poser.is_needed())?;
+        let buffers = animations::buffers(self.source, self.file, &channels)?;
+        let tracks = NodeTracks::new(self.file, &buffers, &channels, &at, warnings)?;
         let Some((start, _)) = animations::time_range(&tracks) else {
             return Ok((Vec::new(), None));
         };
         let is_own = self.file.asset.0.is_of_this_program();
-        let extras = animation.extras.as_ref().and_then(ReadExtras::own).filter(|_| is_own);
+        let extras = animation.extras.as_ref().and_then(Extras::own).filter(|_| is_own);
         let own_rate = extras.and_then(|extras| extras.frame_rate());
         let timeline = animations::timeline(&tracks, own_rate, &at)?;
         let own = is_own.then_some(self.file);

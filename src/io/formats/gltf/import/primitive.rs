@@ -1,12 +1,134 @@
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
-use super::buffers::GltfBuffers;
-use super::file::{GltfFile, GltfPrimitive, index_rule};
-use super::rows::{AccessorRows, at_accessor};
-use crate::io::json::FieldError;
-use crate::io::json::JsonPath;
+use super::buffers::{GltfBuffers, is_file, read_uri};
+use super::rows::{AccessorRows, at_accessor, view_bytes};
+use crate::io::error::OpenError;
+use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
+use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTextureUse, Uri};
+use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
+use crate::io::source::Source;
+use crate::io::texture::TextureReader;
+use crate::kinematics::Shared;
+use crate::rig::SkinTexture;
+
+/// What a skin takes of a material.
+#[derive(Clone)]
+pub struct PartMaterial {
+    /// Colour as sRGB channels from 0 to 1.
+    pub colour: [f32; 3],
+    pub texture: Option<Shared<SkinTexture>>,
+}
+
+impl PartMaterial {
+    /// White, for primitives without a material.
+    pub const WHITE: Self = Self { colour: [1.0; 3], texture: None };
+}
+
+/// Where the images of materials are.
+pub struct MaterialSource<'a> {
+    pub source: &'a Source,
+    pub file: &'a GltfFile<'a>,
+    pub buffers: &'a GltfBuffers<'a>,
+}
+
+/// The images of a skin that were read, by their index; `None` for one that cannot be used.
+#[derive(Default)]
+pub struct ImageCache {
+    images: BTreeMap<usize, Option<Shared<SkinTexture>>>,
+    reader: TextureReader,
+}
+
+impl ImageCache {
+    /// Reads the base colour of a material. A texture that cannot be read is left out, with a warning.
+    pub fn material(
+        &mut self,
+        from: &MaterialSource<'_>,
+        material: &GltfMaterial,
+        checksum: &mut crc32fast::Hasher,
+        warnings: &mut FieldWarnings,
+    ) -> PartMaterial {
+        let Some(JsonObject(roughness)) = &material.roughness else {
+            return PartMaterial::WHITE;
+        };
+        let colour = roughness.colour();
+        let texture = roughness.texture.as_ref().and_then(|JsonObject(used)| {
+            let texture = self.texture(from, used, checksum);
+            texture
+                .map_err(|error| warnings.push(error.field, format!("not read: {}", error.reason)))
+                .ok()
+                .flatten()
+        });
+        PartMaterial { colour, texture }
+    }
+
+    /// The image of a texture; `None` if it has failed before.
+    fn texture(
+        &mut self,
+        from: &MaterialSource<'_>,
+        used: &GltfTextureUse,
+        checksum: &mut crc32fast::Hasher,
+    ) -> Result<Option<Shared<SkinTexture>>, FieldError> {
+        let (index, image) = image(from.file, used)?;
+        if let Some(known) = self.images.get(&index) {
+            return Ok(known.clone());
+        }
+        self.images.insert(index, None);
+        let bytes = image_bytes(from, (index, image))?;
+        if image.uri.as_ref().is_some_and(|Uri(uri)| is_file(uri)) {
+            checksum.update(&bytes);
+        }
+        let error = |reason| FieldError::new(at_image(index), reason);
+        let texture = Some(Shared::from(self.reader.read(bytes).map_err(error)?));
+        self.images.insert(index, texture.clone());
+        Ok(texture)
+    }
+}
+
+fn at_image(index: usize) -> JsonPath {
+    JsonPath::root().key("images").index(index)
+}
+
+/// Buffer view of the image of a material's base colour, if it is in one.
+pub fn image_view(file: &GltfFile<'_>, material: &GltfMaterial) -> Option<usize> {
+    let (_, image) = image(file, material.texture_use()?).ok()?;
+    Some(image.view?.0 as usize)
+}
+
+/// The image of a texture, with its index.
+fn image<'a>(
+    file: &'a GltfFile<'a>,
+    used: &GltfTextureUse,
+) -> Result<(usize, &'a GltfImage<'a>), FieldError> {
+    let index = used.index.0 as usize;
+    let at = JsonPath::root().key("textures").index(index);
+    let Some(texture) = file.textures.0.get(index) else {
+        return Err(FieldError::new(at, index_rule("textures", file.textures.0.len(), index)));
+    };
+    let Some(source) = texture.source else {
+        return Err(FieldError::new(at, "must have an image in PNG or JPEG as its source"));
+    };
+    let image = source.0 as usize;
+    let found = file.images.0.get(image).ok_or_else(|| {
+        FieldError::new(at.key("source"), index_rule("images", file.images.0.len(), image))
+    })?;
+    Ok((image, found))
+}
+
+fn image_bytes(
+    from: &MaterialSource<'_>,
+    (index, image): (usize, &GltfImage<'_>),
+) -> Result<Vec<u8>, FieldError> {
+    let MaterialSource { source, file, buffers } = *from;
+    let at = at_image(index);
+    match (&image.uri, image.view) {
+        (Some(Uri(uri)), _) => read_uri(source, uri, OpenError::MAX_BYTES as usize)
+            .map_err(|reason| FieldError::new(at.key("uri"), reason)),
+        (None, Some(view)) => Ok(view_bytes(file, buffers, view.0 as usize, &at)?.to_vec()),
+        (None, None) => Err(FieldError::new(at, "must have a uri or a buffer view")),
+    }
+}
 
 /// The vertices and triangles of a primitive, as the file has them.
 pub struct PrimitiveMesh {

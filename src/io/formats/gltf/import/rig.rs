@@ -2,14 +2,14 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Mat3, Vec3};
 
-use super::file::{GltfFile, GltfNode};
+use super::joint_tracks::JointPlacement;
 use super::joint_tracks::JointTracks;
-use super::node_poser::JointPlacement;
 use super::nodes::NodeTree;
-use super::skins::SkinJoints;
+use super::nodes::SkinJoints;
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointBone, JointTree};
-use crate::io::formats::gltf::names::UniqueNames;
+use crate::io::formats::gltf::UniqueNames;
+use crate::io::formats::gltf::file::{GltfFile, GltfNode};
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonError};
 use crate::kinematics::spline::Spline;
 

@@ -1,8 +1,10 @@
 use std::borrow::Cow;
 
 use super::buffers::GltfBuffers;
-use super::file::{GltfAccessor, GltfBufferView, GltfFile, GltfSparse, index_rule};
 use crate::io::error::OpenError;
+use crate::io::formats::gltf::file::{
+    Component, GltfAccessor, GltfBufferView, GltfFile, GltfSparse, index_rule,
+};
 use crate::io::json::FieldError;
 use crate::io::json::JsonPath;
 use crate::io::json::{JsonObject, Whole};
@@ -15,65 +17,6 @@ pub struct AccessorRows<'a> {
     count: usize,
     component: Component,
     is_normalized: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
-}
-
-impl Component {
-    fn new(code: u32) -> Option<Self> {
-        Some(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// The little-endian number in as many bytes as the component has.
-    fn number(self, bytes: &[u8]) -> f64 {
-        let mut four = [0; 4];
-        four.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
-        let [a, b, ..] = four;
-        match self {
-            Self::I8 => f64::from(i8::from_le_bytes([a])),
-            Self::U8 => f64::from(a),
-            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
-            Self::U32 => f64::from(u32::from_le_bytes(four)),
-            Self::F32 => f64::from(f32::from_le_bytes(four)),
-        }
-    }
-
-    /// The integer that stands for 1 if numbers are normalized; `None` for floats.
-    fn largest(self) -> Option<f64> {
-        Some(match self {
-            Self::I8 => 127.0,
-            Self::U8 => 255.0,
-            Self::I16 => 32767.0,
-            Self::U16 => 65535.0,
-            Self::U32 => 4_294_967_295.0,
-            Self::F32 => return None,
-        })
-    }
 }
 
 pub fn at_accessor(index: usize) -> JsonPath {
@@ -136,7 +79,7 @@ impl<'a> AccessorRows<'a> {
     ) -> Result<Self, FieldError> {
         let accessor = find_accessor(file, index)?;
         let at = || at_accessor(index);
-        let component = Component::new(accessor.component.0).ok_or_else(|| {
+        let component = Component::new(accessor.component).ok_or_else(|| {
             let code = accessor.component.0;
             let reason = format!("must be 5120 to 5123, 5125 or 5126, got {code}");
             FieldError::new(at().key("componentType"), reason)
@@ -271,7 +214,7 @@ fn overwrite(
     let JsonObject(values) = &sparse.values;
     let listed = sparse.count.0 as usize;
     let at_indices = at.clone().key("indices");
-    let component = Component::new(indices.component.0)
+    let component = Component::new(indices.component)
         .filter(|component| matches!(component, Component::U8 | Component::U16 | Component::U32))
         .ok_or_else(|| {
             let reason = format!("must be 5121, 5123 or 5125, got {}", indices.component.0);

@@ -1,39 +1,44 @@
-use glam::{DQuat, DVec3, DVec4};
+use glam::{DQuat, DVec3, DVec4, Vec3};
 
 use super::buffers::GltfBuffers;
-use super::file::GltfFile;
 use super::nodes::unit;
 use super::rows::{AccessorRows, at_accessor};
 use crate::io::formats::gltf::conversions::hermite;
+use crate::io::formats::gltf::extras::SamplerExtras;
+use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
 use crate::io::json::FieldError;
+use crate::kinematics::spline::Spline;
+
+/// The part of a node's transform that an animation channel changes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub enum AnimatedPart {
+    Translation,
+    Rotation,
+    Scale,
+}
+
+/// A channel of an animation that moves a node.
+#[derive(Clone, Copy)]
+pub struct UsedChannel<'a> {
+    pub node: usize,
+    pub part: AnimatedPart,
+    pub curve: KeyCurve,
+    /// Accessor of the times.
+    pub input: usize,
+    /// Accessor of the values.
+    pub output: usize,
+    /// The keys that this program has written beside the sampler.
+    pub own: Option<&'a SamplerExtras>,
+}
 
 /// The keys of one animated part of a node, with their interpolation.
 pub struct KeySampler<'a> {
+    pub channel: UsedChannel<'a>,
     times: AccessorRows<'a>,
     /// The rows of the keys in the order of their times; `None` if the file has them in this order.
     order: Option<Vec<u32>>,
     /// One row per time, or with cubic splines three rows: in-tangent, value, out-tangent.
     values: AccessorRows<'a>,
-    part: AnimatedPart,
-    interpolation: Interpolation,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interpolation {
-    Linear,
-    Step,
-    CubicSpline,
-}
-
-impl Interpolation {
-    pub fn new(name: &str) -> Option<Self> {
-        Some(match name {
-            "LINEAR" => Self::Linear,
-            "STEP" => Self::Step,
-            "CUBICSPLINE" => Self::CubicSpline,
-            _ => return None,
-        })
-    }
 }
 
 /// Maximum difference, in seconds, at which `time` still counts as the time of a key. Times of keys
@@ -58,10 +63,9 @@ impl<'a> KeySampler<'a> {
     pub fn new(
         file: &GltfFile<'_>,
         buffers: &'a GltfBuffers<'_>,
-        [input, output]: [usize; 2],
-        part: AnimatedPart,
-        interpolation: Interpolation,
+        channel: UsedChannel<'a>,
     ) -> Result<Self, FieldError> {
+        let UsedChannel { part, input, output, .. } = channel;
         let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
         let shape = if part == AnimatedPart::Rotation { "VEC4" } else { "VEC3" };
         let values = AccessorRows::new(file, buffers, output, shape)?;
@@ -80,24 +84,23 @@ impl<'a> KeySampler<'a> {
                 "must be 1 or more, got 0",
             ));
         }
-        let values_per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let values_per_key = channel.curve.values_per_key();
         if values.len() != values_per_key * times.len() {
             let (count, times) = (values.len(), times.len());
             let reason =
                 format!("must be {values_per_key} for each of the {times} times, got {count}");
             return Err(FieldError::new(at_accessor(output).key("count"), reason));
         }
-        Ok(Self { times, order: None, values, part, interpolation })
+        Ok(Self { channel, times, order: None, values })
     }
 
     /// Sorts the keys by time. Of several keys at the same time, the last one counts. Returns
-    /// whether anything changed, or an error that names the accessor `input` if a time is not
-    /// finite.
-    pub fn sort(&mut self, input: usize) -> Result<bool, FieldError> {
+    /// whether anything changed, or an error if a time is not finite.
+    pub fn sort(&mut self) -> Result<bool, FieldError> {
         let times = || (0..self.times.len()).map(|row| self.row_time(row));
         if let Some((key, time)) = times().enumerate().find(|(_, time)| !time.is_finite()) {
             let reason = format!("times must be finite, got {time} as time {key}");
-            return Err(FieldError::new(at_accessor(input), reason));
+            return Err(FieldError::new(at_accessor(self.channel.input), reason));
         }
         if times().is_sorted_by(|before, after| before < after) {
             return Ok(false);
@@ -113,22 +116,21 @@ impl<'a> KeySampler<'a> {
         Ok(true)
     }
 
-    /// Checks all keys. Fails if values are not finite or a rotation is zero. The error names the
-    /// accessor `output`.
-    pub fn check(&self, output: usize) -> Result<(), FieldError> {
+    /// Checks all keys. Fails if values are not finite or a rotation is zero.
+    pub fn check(&self) -> Result<(), FieldError> {
+        let error = |reason| Err(FieldError::new(at_accessor(self.channel.output), reason));
         for row in 0..self.values.len() {
             let value: [f64; 4] = self.values.row(row);
             if !value.into_iter().take(self.width()).all(f64::is_finite) {
                 let reason =
                     format!("value {row} must be finite, got {:?}", &value[..self.width()]);
-                return Err(FieldError::new(at_accessor(output), reason));
+                return error(reason);
             }
         }
-        if self.part == AnimatedPart::Rotation {
+        if self.channel.part == AnimatedPart::Rotation {
             for key in 0..self.len() {
                 if unit(self.row(key, VALUE)).is_none() {
-                    let reason = format!("rotation {key} must not be four zeros");
-                    return Err(FieldError::new(at_accessor(output), reason));
+                    return error(format!("rotation {key} must not be four zeros"));
                 }
             }
         }
@@ -144,7 +146,7 @@ impl<'a> KeySampler<'a> {
             let size = a.iter().take(width).map(|part| part.abs()).fold(1e-3, f64::max);
             (0..width).any(|part| (a[part] - b[part]).abs() > LEAST * size)
         };
-        let is_cubic = self.interpolation == Interpolation::CubicSpline;
+        let is_cubic = self.is_cubic();
         let (each, value) = if is_cubic { (3, VALUE) } else { (1, 0) };
         let keys = self.times.len();
         (1..keys).any(|key| differs(row(value), row(each * key + value)))
@@ -157,8 +159,13 @@ impl<'a> KeySampler<'a> {
                 })
     }
 
-    pub fn interpolation(&self) -> Interpolation {
-        self.interpolation
+    pub fn is_cubic(&self) -> bool {
+        self.channel.curve == KeyCurve::CubicSpline
+    }
+
+    /// The keys that this program has written beside the track; `None` if there are none.
+    pub fn own_keys(&self) -> Option<Spline<Vec3>> {
+        self.channel.own?.spline()
     }
 
     /// Translation or scale of a key.
@@ -172,13 +179,9 @@ impl<'a> KeySampler<'a> {
     }
 
     /// In-tangent and out-tangent of a key, per second; `None` without cubic splines.
-    pub fn tangents(&self, key: usize) -> Option<[DVec4; 2]> {
-        let row = |which| {
-            let [x, y, z]: [f64; 3] = self.row(key, which);
-            DVec4::new(x, y, z, 0.0)
-        };
-        let is_cubic = self.interpolation == Interpolation::CubicSpline;
-        is_cubic.then(|| [row(IN_TANGENT), row(OUT_TANGENT)])
+    pub fn tangents(&self, key: usize) -> Option<[DVec3; 2]> {
+        let tangent = |which| DVec3::from_array(self.row(key, which));
+        self.is_cubic().then(|| [IN_TANGENT, OUT_TANGENT].map(tangent))
     }
 
     /// Rotation on the cubic spline from a key to the next one, at a part of the way.
@@ -208,25 +211,21 @@ impl<'a> KeySampler<'a> {
 
     pub fn point(&self, time: f64) -> DVec3 {
         let (key, fraction) = self.locate(time);
-        let at = |key| self.key_point(key);
         match fraction {
-            None => at(key),
-            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
-                self.cubic(key, fraction).truncate()
-            }
-            Some(fraction) => at(key).lerp(at(key + 1), fraction),
+            None => self.key_point(key),
+            Some(fraction) if self.is_cubic() => self.cubic(key, fraction).truncate(),
+            Some(fraction) => self.key_point(key).lerp(self.key_point(key + 1), fraction),
         }
     }
 
     pub fn rotation(&self, time: f64) -> DQuat {
         let (key, fraction) = self.locate(time);
-        let at = |key| self.key_rotation(key);
         match fraction {
-            None => at(key),
-            Some(fraction) if self.interpolation == Interpolation::CubicSpline => {
-                unit(self.cubic(key, fraction).to_array()).unwrap_or_else(|| at(key))
+            None => self.key_rotation(key),
+            Some(fraction) if self.is_cubic() => self.spline_rotation(key, fraction),
+            Some(fraction) => {
+                self.key_rotation(key).slerp(self.key_rotation(key + 1), fraction).normalize()
             }
-            Some(fraction) => at(key).slerp(at(key + 1), fraction).normalize(),
         }
     }
 
@@ -247,7 +246,7 @@ impl<'a> KeySampler<'a> {
         let Some(key) = until.checked_sub(1) else { return (0, None) };
         let start = self.time(key);
         let is_between = key + 1 < self.len() && time - start > near;
-        if !is_between || self.interpolation == Interpolation::Step {
+        if !is_between || self.channel.curve == KeyCurve::Step {
             return (key, None);
         }
         (key, Some((time - start) / (self.time(key + 1) - start)))
@@ -257,10 +256,7 @@ impl<'a> KeySampler<'a> {
     /// Hermite polynomial in appendix C of the glTF specification.
     fn cubic(&self, key: usize, s: f64) -> DVec4 {
         let span = self.time(key + 1) - self.time(key);
-        let row = |key, which| {
-            let value: [f64; 4] = self.row(key, which);
-            DVec4::from_array(value)
-        };
+        let row = |key, which| DVec4::from_array(self.row(key, which));
         let [of_from, of_leaving, of_to, of_arriving] = hermite(s);
         row(key, VALUE) * of_from
             + row(key, OUT_TANGENT) * (span * of_leaving)
@@ -272,21 +268,10 @@ impl<'a> KeySampler<'a> {
     /// row.
     fn row<const N: usize>(&self, key: usize, which: usize) -> [f64; N] {
         let row = self.row_of(key);
-        self.values.row(match self.interpolation {
-            Interpolation::CubicSpline => 3 * row + which,
-            Interpolation::Linear | Interpolation::Step => row,
-        })
+        self.values.row(if self.is_cubic() { 3 * row + which } else { row })
     }
 
     fn width(&self) -> usize {
-        if self.part == AnimatedPart::Rotation { 4 } else { 3 }
+        if self.channel.part == AnimatedPart::Rotation { 4 } else { 3 }
     }
-}
-
-/// The part of a node's transform that an animation channel changes.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub enum AnimatedPart {
-    Translation,
-    Rotation,
-    Scale,
 }

@@ -12,13 +12,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
-use super::file::{GltfFile, GltfMaterial, GltfMesh, GltfPrimitive, GltfSkin, Uri, index_rule};
-use super::material::{ImageCache, MaterialSource, PartMaterial};
-use super::node_poser::JointPlacement;
+use super::joint_tracks::JointPlacement;
 use super::nodes::{NodeTree, at_node};
+use super::nodes::{SkinJoints, at_skin};
 use super::primitive::PrimitiveMesh;
+use super::primitive::{ImageCache, MaterialSource, PartMaterial, image_view};
 use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
-use super::skins::{SkinJoints, at_skin};
+use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, GltfSkin, index_rule};
+use crate::io::formats::gltf::material::{GltfMaterial, Uri};
 use crate::io::json::JsonPath;
 use crate::io::json::Whole;
 use crate::io::json::{FieldError, FieldWarnings};
@@ -209,7 +210,7 @@ impl MeshImport<'_> {
             let material = self.material(primitive, &at)?;
             let set = material.map_or(0, |(_, material)| material.coordinates());
             accessors.extend(primitive.accessors(set));
-            if let Some(view) = material.and_then(|(_, material)| material.image_view(file)) {
+            if let Some(view) = material.and_then(|(_, material)| image_view(file, material)) {
                 buffers.extend(buffer_of_view(file, view, JsonPath::root().key("images")));
             }
         }

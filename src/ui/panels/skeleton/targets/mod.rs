@@ -231,9 +231,7 @@ pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: &Target, actio
     let (rig, is_held) =
         (session.skeleton_rig(), pose_summary::is_held(ui) || session.history().is_editing());
     let index = rig.target(target.joint);
-    let why = index.map_or(&[][..], |index| {
-        if is_held { session.known_why_target(index) } else { session.why_target(index) }
-    });
+    let why = index.map_or(&[][..], |index| session.why_target(index, !is_held));
     ui.separator();
     ScrollArea::vertical().id_salt("note").auto_shrink(false).show(ui, |ui| {
         let end = end(rig, target).map_or("", |end| end.1);
