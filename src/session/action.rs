@@ -1,21 +1,19 @@
-use super::arm::edits::ArmEdit;
-use super::bake::BakeAction;
-use super::display::DisplayEdit;
-use super::edit::Edit;
-use super::files::action::FileAction;
-use super::history::transaction::TransactionAction;
-use super::keys::KeysEdit;
-use super::playback::PlaybackAction;
-use super::selection::SelectAction;
-use super::shell::ShellAction;
-use super::skeleton::joints::JointEdit;
-use super::skeleton::path::PathEdit;
-use super::skeleton::targets::TargetEdit;
-use super::skin::SkinEdit;
-use super::solver::edits::SolverEdit;
-use super::solver::solvers::SolverAction;
-use super::tour::state::TourAction;
-use super::view::view::ViewAction;
+use crate::session::arm::edits::ArmEdit;
+use crate::session::display::DisplayEdit;
+use crate::session::files::action::FileAction;
+use crate::session::history::transaction::TransactionAction;
+use crate::session::keys::{BakeAction, KeysEdit};
+use crate::session::outcome::Outcome;
+use crate::session::playback::PlaybackAction;
+use crate::session::selection::SelectAction;
+use crate::session::session::Session;
+use crate::session::shell::ShellAction;
+use crate::session::skeleton::joints::JointEdit;
+use crate::session::skeleton::targets::{PathEdit, TargetEdit};
+use crate::session::skin::SkinEdit;
+use crate::session::solver::solvers::{SolverAction, SolverEdit};
+use crate::session::tour::state::TourAction;
+use crate::session::view::ViewAction;
 
 /// A change of a [`Session`](super::Session), grouped by the part of the session that it changes.
 /// Values are absolute, so that setting the same value twice is harmless.
@@ -123,4 +121,55 @@ impl IntoIterator for Actions {
     fn into_iter(self) -> Self::IntoIter {
         self.0.into_iter()
     }
+}
+
+macro_rules! edits {
+    ($($(#[doc = $doc:literal])+ $part:ident($edit:ident)),* $(,)?) => {
+        /// A change of the document. Outside a transaction, each change is one undo step with its own
+        /// label.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Edit {
+            $($(#[doc = $doc])+ $part($edit),)*
+        }
+
+        impl Edit {
+            /// Label of the edit's undo step, as in "Undo Move hand".
+            pub fn label(&self) -> &'static str {
+                match self {
+                    $(Self::$part(edit) => edit.label(),)*
+                }
+            }
+
+            pub(super) fn apply(self, session: &mut Session) -> Outcome {
+                match self {
+                    $(Self::$part(edit) => edit.apply(session),)*
+                }
+            }
+        }
+
+        $(impl From<$edit> for Edit {
+            fn from(edit: $edit) -> Self {
+                Self::$part(edit)
+            }
+        })*
+    };
+}
+
+edits! {
+    /// Of the arm.
+    Arm(ArmEdit),
+    /// Of the skeleton's joints.
+    Joint(JointEdit),
+    /// Of the path that a chain follows.
+    Path(PathEdit),
+    /// Of targets.
+    Target(TargetEdit),
+    /// Of the solver.
+    Solver(SolverEdit),
+    /// Of the skin.
+    Skin(SkinEdit),
+    /// Of keys and timeline.
+    Keys(KeysEdit),
+    /// Of the display and of both rigs alike.
+    Display(DisplayEdit),
 }

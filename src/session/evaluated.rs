@@ -1,13 +1,14 @@
+use std::cell::OnceCell;
+
 use glam::Vec3;
 
-use super::arm::pops::{CursorMove, Pops};
-use super::arm::transport::TransportPath;
-use super::cached::Cached;
-use super::skin_areas::SkinAreas;
 use crate::document::{Document, Overlay, Posed, Ray};
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::kinematics::skin::TriangleMesh;
+use crate::session::arm::edits::TransportPath;
+use crate::session::arm::pops::{CursorMove, Pops};
+use crate::session::skin::SkinAreas;
 
 /// Values derived from the poses at the playhead.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,5 +126,38 @@ impl Evaluated {
     pub(super) fn forget_trail(&mut self) {
         self.trail.clear();
         self.skin_areas.clear();
+    }
+}
+
+/// A value derived from other state, computed when it is first read. All cached values compare
+/// equal, so that comparing sessions ignores them.
+#[derive(Clone, Debug)]
+pub(super) struct Cached<T>(OnceCell<T>);
+
+impl<T> Cached<T> {
+    pub fn get(&self, compute: impl FnOnce() -> T) -> &T {
+        self.0.get_or_init(compute)
+    }
+
+    /// The value, if it was computed.
+    pub fn known(&self) -> Option<&T> {
+        self.0.get()
+    }
+
+    /// Discards the value; the next [`Self::get`] computes it again.
+    pub fn clear(&mut self) {
+        self.0.take();
+    }
+}
+
+impl<T> Default for Cached<T> {
+    fn default() -> Self {
+        Self(OnceCell::new())
+    }
+}
+
+impl<T> PartialEq for Cached<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
     }
 }

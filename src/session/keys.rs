@@ -2,11 +2,12 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::outcome::{Consequence, Outcome};
-use super::parts::{Clipboard, Key};
-use super::session::Session;
-use crate::document::{Baked, Channel, Document, Keys, Quantity, RigKind, Timeline};
+use crate::document::{Bake, Baked, Channel, Document, Keys, Quantity, RigKind, Timeline};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes};
+use crate::session::outcome::{Consequence, Effect, Outcome};
+use crate::session::parts::{Clipboard, Key};
+use crate::session::session::Session;
+use crate::session::shell::{BakeJob, Dialog};
 
 /// A change of the keys or of the timeline.
 #[derive(Clone, Debug, PartialEq)]
@@ -272,4 +273,66 @@ fn posing_channels(Document { arm, keys, .. }: &Document) -> impl Iterator<Item 
     hand.chain(Channel::FK).filter(|channel| {
         channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
     })
+}
+
+/// Starts and ends bakes, which run on a thread of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BakeAction {
+    /// Starts a bake; the bake dialog shows its progress.
+    Start(Bake),
+    /// A bake has started.
+    Started(BakeJob),
+    /// A bake has ended, with its result or an error. The result of a bake whose dialog was closed is
+    /// dropped.
+    Ended(BakeJob, Result<Box<Baked>, String>),
+}
+
+impl BakeAction {
+    pub(super) fn apply(self, session: &mut Session) -> Outcome {
+        match (self, session.shell().dialog()) {
+            (Self::Start(settings), _) => start(session, settings),
+            (Self::Started(job), Some(Dialog::Bake { settings, job: None })) => {
+                let dialog = Dialog::Bake { settings: *settings, job: Some(job) };
+                Consequence::ShowDialog(Box::new(dialog)).into()
+            }
+            (Self::Started(job), _) => {
+                job.progress.cancel();
+                Outcome::default()
+            }
+            (Self::Ended(job, result), Some(Dialog::Bake { job: Some(own), .. }))
+                if *own == job =>
+            {
+                session.act(Consequence::TakeDialog);
+                match result {
+                    Ok(baked) => {
+                        let message = describe(&baked);
+                        session.edit(KeysEdit::Bake(baked));
+                        Outcome::say(message)
+                    }
+                    Err(error) => Outcome::fail(format!("not baked: {error}")),
+                }
+            }
+            (Self::Ended(..), _) => Outcome::default(),
+        }
+    }
+}
+
+fn start(session: &Session, settings: Bake) -> Outcome {
+    match settings.check(session.document()) {
+        Ok(()) => {
+            let dialog = Dialog::Bake { settings, job: None };
+            Outcome::from(Consequence::OpenDialog(Box::new(dialog))).and(Effect::Bake(settings))
+        }
+        Err(error) => Outcome::fail(error.to_string()),
+    }
+}
+
+/// The number of keys, and what is not kept.
+fn describe(Baked { keys_at_frames, keys, shortened, .. }: &Baked) -> String {
+    let kept = format!("Baked: {keys} of {keys_at_frames} keys left");
+    match shortened.len() {
+        0 => kept,
+        1 => format!("{kept}; the stretch of one bone has no keys"),
+        bones => format!("{kept}; the stretch of {bones} bones has no keys"),
+    }
 }

@@ -1,7 +1,6 @@
 use core::fmt::Display;
 use std::path::PathBuf;
 
-use super::dialog::{Dialog, Message};
 use super::drag::grip::{Drag, Grip};
 use super::files::action::{Export, FileAction, FileContents, PathDialog};
 use super::parts::{BodyPart, Key, SelectedKeys};
@@ -10,6 +9,8 @@ use crate::document::{Bake, Camera, Channel, Document, Keys, Ray, SkeletonRig};
 use crate::io::OpenOptions;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, RotationAxis, SkeletonError};
 use crate::kinematics::two_bone::TwoBonePose;
+use crate::session::shell::Dialog;
+use crate::session::shell::Message;
 
 /// A request from the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]

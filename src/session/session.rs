@@ -1,6 +1,5 @@
 use std::path::PathBuf;
 
-use super::drag::follow_mouse::FollowMouse;
 use super::evaluated::Evaluated;
 use super::files::files::Files;
 use super::history::editing::Editing;
@@ -10,12 +9,13 @@ use super::selection::Selection;
 use super::shell::Shell;
 use super::solver::solvers::Solvers;
 use super::tour::state::TourState;
-use super::view::view::View;
+use super::view::View;
 use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
 use crate::io;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::Crowd;
+use crate::session::drag::turn::FollowMouse;
 
 mod act;
 mod files;

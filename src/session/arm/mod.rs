@@ -3,5 +3,3 @@
 pub mod drag;
 pub mod edits;
 pub mod pops;
-pub mod pose_line;
-pub mod transport;

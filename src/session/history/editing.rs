@@ -1,14 +1,11 @@
-use std::collections::BTreeSet;
+mod write;
 
 use super::steps::{History, Overrides, Snapshot, TreeChange};
-use crate::document::{
-    Arm, Camera, Channel, Document, PathKind, Posed, Ray, Track, TwistReferenceKind,
-};
+use crate::document::{Camera, Channel, Document, Posed, Ray, Track};
 use crate::kinematics::angle::wrapped;
-use crate::session::drag::follow_mouse::FollowMouse;
 use crate::session::drag::grip::Drag;
 use crate::session::drag::point::PointDrag;
-use crate::session::playback::Playback;
+use crate::session::drag::turn::FollowMouse;
 
 /// Label of a transaction without edits.
 const CHANGE: &str = "Change";
@@ -50,15 +47,6 @@ struct Transaction {
     drag: Option<Drag>,
     /// Heads that follow the mouse.
     follow_mouse: Option<FollowMouse>,
-}
-
-/// Consequences of a change of the document.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::session) struct WriteOutcome {
-    /// True if the change made unkeyed edits of keyed channels.
-    pub has_overridden: bool,
-    /// True if auto-key set keys.
-    pub has_auto_keyed: bool,
 }
 
 impl Editing {
@@ -290,154 +278,6 @@ impl Editing {
         self.posed = self.track.pose(shown, time);
     }
 
-    /// Replaces the shown document. With auto-key, changed channels get keys; otherwise, changed
-    /// channels with keys get unkeyed edits. Returns `None` if nothing has changed.
-    pub(in crate::session) fn write(
-        &mut self,
-        mut after: Document,
-        playback: &Playback,
-    ) -> Option<WriteOutcome> {
-        if after == *self.shown() {
-            return None;
-        }
-        let [joints_before, joints] = [self.shown(), &after].map(|it| it.skeleton().joints().len());
-        let change = TreeChange::between(self.shown().skeleton(), after.skeleton());
-        let is_rebuilt = change != TreeChange::Kept;
-        let has_other_joints = is_rebuilt || joints != joints_before;
-        let mut outcome = WriteOutcome::default();
-        if is_rebuilt {
-            self.overrides.clear();
-        } else {
-            outcome = self.key_or_override(&mut after, playback);
-            self.keep_unkeyed_values(&mut after);
-        }
-        self.overrides.retain(|channel, _| {
-            let is_transported = *channel == Channel::Twist && is_transported(&after);
-            is_transported || after.keys.has(*channel)
-        });
-        after.skeleton_rig.head_tracks.clear();
-        if !self.is_editing() {
-            after.skeleton_rig.refresh_skin();
-        }
-        self.document = after;
-        self.evaluate(playback.time());
-        self.update_transaction(has_other_joints);
-        Some(outcome)
-    }
-
-    /// Adapts the open transaction to a change of the document. The drag ends if joints were added,
-    /// removed or attached to other parents; otherwise, the document from which it starts gets the
-    /// changed keys.
-    fn update_transaction(&mut self, has_other_joints: bool) {
-        let Some(transaction) = &mut self.transaction else { return };
-        if has_other_joints {
-            transaction.drag = None;
-            transaction.shown.clone_from(self.posed.document());
-        } else if transaction.shown.keys != self.document.keys {
-            transaction.shown.keys.clone_from(&self.document.keys);
-        }
-    }
-
-    /// Sets the keys from which the next [`KeysEdit::MoveKeys`](crate::session::KeysEdit::MoveKeys) of
-    /// the open transaction starts.
-    pub(in crate::session) fn restart_keys_from(&mut self, keys: crate::document::Keys) {
-        if let Some(transaction) = &mut self.transaction {
-            transaction.shown.keys = keys;
-        }
-    }
-
-    /// Keys the channels that `after` changes, if auto-key is on; otherwise, records unkeyed edits
-    /// of the changed channels that have keys.
-    fn key_or_override(&mut self, after: &mut Document, playback: &Playback) -> WriteOutcome {
-        let changed = |channel: &Channel| {
-            let value = channel.value(after);
-            value.is_some() && value != channel.value(self.shown())
-        };
-        let channels: Vec<Channel> = if playback.is_auto_key() {
-            self.channels_to_auto_key(after)
-        } else {
-            after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
-        };
-        if !playback.is_auto_key() && is_transported(after) {
-            if after.arm.cursor_in_root() != self.shown().arm.cursor_in_root() {
-                // The transported twist is an unkeyed edit, too, discarded together with that of
-                // the hand.
-                let twist = Channel::Twist.value(after).unwrap_or_default();
-                self.overrides.insert(Channel::Twist, twist);
-            } else if changed(&Channel::Twist) {
-                self.overrides.remove(&Channel::Twist);
-            }
-        }
-        let mut outcome = WriteOutcome::default();
-        for channel in channels {
-            if playback.is_auto_key() {
-                after.key_before_switch(channel, self.shown(), playback.time());
-                after.key(channel, playback.time());
-                self.overrides.remove(&channel);
-                outcome.has_auto_keyed = true;
-            } else if let Some(value) = channel.value(after) {
-                self.overrides.insert(channel, value);
-                outcome.has_overridden = true;
-            }
-        }
-        outcome
-    }
-
-    /// Channels that auto-key keys for a change of the shown document to `after`: changed channels
-    /// that shape the rig before or after it, and changed switches that have keys. A switch between
-    /// FK and IK keys the channels of both; a switch of the pin keys the point that comes into use.
-    fn channels_to_auto_key(&self, after: &Document) -> Vec<Channel> {
-        let changed = |channel: &Channel| channel.value(after) != channel.value(self.shown());
-        let (has_mode, has_pinned) = (changed(&Channel::Influence), changed(&Channel::Pinned));
-        let comes_into_use = |channel: &Channel| {
-            let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
-            has_mode && is_posing || has_pinned && *channel == Channel::of_cursor(&after.arm)
-        };
-        let switches = after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
-        let all: BTreeSet<Channel> = [after, self.shown()]
-            .into_iter()
-            .flat_map(Channel::of_rig)
-            .chain(switches)
-            .filter(|channel| changed(channel) || comes_into_use(channel))
-            .filter(|channel| !is_start_of_body(after, *channel))
-            .collect();
-        all.into_iter().collect()
-    }
-
-    /// Restores the document's own values of keyed channels in `after`, since their values at the
-    /// playhead are not saved.
-    fn keep_unkeyed_values(&self, after: &mut Document) {
-        let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
-        let skeleton = &mut after.skeleton_rig.skeleton;
-        let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
-        if skeleton.is_same(&self.shown().skeleton_rig.skeleton)
-            && keyed_before.all(|channel| after.keys.has(channel))
-        {
-            *skeleton = self.document.skeleton_rig.skeleton.clone();
-        }
-        let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
-        for channel in keyed.collect::<Vec<_>>() {
-            if let Some(value) = channel.value(&self.document) {
-                channel.set(after, value);
-            }
-            if matches!(channel, Channel::Hand | Channel::Pin) {
-                after.arm.ik_state.pointer = self.document.arm.ik_state.pointer;
-            }
-        }
-        let is_overridden = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
-        if is_overridden || is_keyed(&Channel::Twist) {
-            let unkeyed = self.document.arm.with_twist_reference(after.arm.twist_reference);
-            after.arm.twist = unkeyed.twist;
-            after.arm.ik_state.transported = unkeyed.ik_state.transported;
-        }
-        if is_keyed(&Channel::HandOrientation) {
-            let Arm { hand_orientation, .. } = self.document.arm;
-            let space = after.arm.hand_orientation.space;
-            after.arm.hand_orientation.angles =
-                hand_orientation.in_space(space, &self.document.arm.pose()).angles;
-        }
-    }
-
     /// The present state, for undo; `time` is the playhead in seconds.
     pub(in crate::session) fn state(&self, time: f64) -> Snapshot {
         Snapshot::new(&self.document, &self.overrides, time, self.revision, self.content)
@@ -518,22 +358,4 @@ impl Editing {
     pub(in crate::session) fn redo(&mut self, time: f64) -> Option<(&'static str, Snapshot)> {
         self.history.redo(self.state(time))
     }
-}
-
-/// True if the twist is transported along a keyed hand and has no keys of its own.
-fn is_transported(document: &Document) -> bool {
-    let Document { arm, keys, .. } = document;
-    arm.twist_reference == TwistReferenceKind::Transport
-        && keys.has(Channel::of_cursor(arm))
-        && !keys.has(Channel::Twist)
-}
-
-/// True if a channel has an angle of the body that a head with keys has at its first key: such an angle
-/// is not keyed automatically.
-fn is_start_of_body(document: &Document, channel: Channel) -> bool {
-    let rig = &document.skeleton_rig;
-    let Channel::Rotation(joint) = channel else { return false };
-    let heads = rig.follow_paths.iter().filter(|path| path.kind == PathKind::Head);
-    !document.keys.has(channel)
-        && heads.flat_map(|path| rig.path_joints(path.root)).any(|of_chain| of_chain == joint)
 }

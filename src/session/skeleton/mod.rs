@@ -1,5 +1,4 @@
 //! Edits of joints, targets and paths, each with its label.
 
 pub mod joints;
-pub mod path;
 pub mod targets;

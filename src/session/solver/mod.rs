@@ -1,8 +1,5 @@
 //! Solver runs, their comparison, and what an iteration does inside.
 
-pub mod comparison;
-pub mod edits;
-pub mod inside;
 pub mod iterates;
 pub mod run;
 pub mod solvers;

@@ -1,13 +1,13 @@
 use glam::{Vec2, Vec3};
 
-use super::drag::{CameraMotion, Glide, ViewDrag};
 use crate::document::{Camera, Document, Posed, RigKind};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{Crowd, Processor};
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::{PanelTab, Preferences};
-use crate::session::solver::inside::{InsideLayer, InsideLayers};
+use crate::session::session::{ASPECT, Session};
+use crate::session::solver::iterates::{InsideLayer, InsideLayers};
 use crate::session::solver::wiggle::{Wiggle, WiggleView};
 
 /// Changes the camera, the crowd or the open panels. The camera is saved, but not undone.
@@ -263,5 +263,141 @@ impl View {
     pub(in crate::session) fn reset_crowd(&mut self) {
         let Self { drag, glide, follows_selection, wiggle, .. } = *self;
         *self = Self { drag, glide, follows_selection, wiggle, ..Self::default() };
+    }
+}
+
+/// Kind of motion of the camera in a drag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraMotion {
+    /// Around the camera's target.
+    Orbit,
+    /// Parallel to the plane of the picture.
+    Pan,
+    /// Towards the camera's target, or away from it.
+    Zoom,
+}
+
+/// A drag of the camera. Positions of the mouse are in the picture, −1 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewDrag {
+    /// Kind of motion of the camera.
+    pub motion: CameraMotion,
+    pub(in crate::session) before: Camera,
+    pressed: Vec2,
+}
+
+/// A smooth move from one camera to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::session) struct Glide {
+    from: Camera,
+    to: Camera,
+    /// Start on the window's clock, in seconds; `None` before the first frame.
+    started: Option<f64>,
+}
+
+impl ViewDrag {
+    /// Angle in radians by which a drag over half the height of the picture orbits.
+    const TURN: f32 = 2.2;
+    /// Factor by which a drag over half the height of the picture zooms.
+    const ZOOM: f32 = 4.0;
+
+    pub(in crate::session) fn new(motion: CameraMotion, before: Camera, pressed: Vec2) -> Self {
+        Self { motion, before, pressed }
+    }
+
+    /// The camera for the mouse at `now`; `aspect` is the ratio of the picture's width to its
+    /// height.
+    pub(in crate::session) fn camera(&self, now: Vec2, aspect: f32) -> Camera {
+        let moved = now - self.pressed;
+        if moved == Vec2::ZERO {
+            return self.before;
+        }
+        match self.motion {
+            CameraMotion::Orbit => {
+                self.before.orbited(-moved.x * aspect * Self::TURN, -moved.y * Self::TURN)
+            }
+            CameraMotion::Pan => self.before.panned(self.pressed, now, aspect),
+            CameraMotion::Zoom => {
+                self.before.zoomed(Self::ZOOM.powf(-moved.y), self.pressed, aspect)
+            }
+        }
+    }
+}
+
+impl Glide {
+    const SECONDS: f64 = 0.2;
+
+    pub(in crate::session) fn new(from: Camera, to: Camera) -> Self {
+        Self { from, to, started: None }
+    }
+
+    pub(in crate::session) fn target(&self) -> Camera {
+        self.to
+    }
+
+    /// Moves both cameras, in the world.
+    pub(in crate::session) fn translate(&mut self, by: Vec3) {
+        self.from.target += by;
+        self.to.target += by;
+    }
+
+    /// The camera at `seconds` on the window's clock, and whether the glide has ended. The first
+    /// call starts the glide.
+    pub(in crate::session) fn at(&mut self, seconds: f64) -> (Camera, bool) {
+        let started = *self.started.get_or_insert(seconds);
+        let fraction = ((seconds - started) / Self::SECONDS).clamp(0.0, 1.0) as f32;
+        let eased = fraction * fraction * (3.0 - 2.0 * fraction);
+        (self.from.interpolated(self.to, eased), fraction >= 1.0)
+    }
+}
+
+/// Cameras that frame the rig, and the open panels.
+impl Session {
+    /// A camera that frames the selected joints; without a selection, the whole rig. If the crowd
+    /// is shown, the camera frames the crowd.
+    pub fn framing_selection(&self) -> Camera {
+        if self.crowd().is_some() {
+            return self.framing_all();
+        }
+        let (centre, radius) = match self.rig() {
+            RigKind::Arm => self.arm().bounds(self.pose()),
+            RigKind::Skeleton => self
+                .skeleton_rig()
+                .bounds_of(self.skeleton_pose(), self.selection().joints())
+                .unwrap_or_else(|| {
+                    self.skeleton_rig().bounds(self.skeleton_pose(), self.playback().time())
+                }),
+        };
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// A camera that frames what is shown, over the whole timeline: all points in reach of the arm, the
+    /// skeleton with its targets, or the crowd.
+    pub fn framing_all(&self) -> Camera {
+        if let Some(crowd) = self.crowd() {
+            let (centre, radius) = crowd.bounds();
+            return self.settled_camera().framing(centre, radius, ASPECT);
+        }
+        let (centre, radius) = self
+            .shown()
+            .motion_bounds_by(|posed| (posed.arm().root, posed.arm().reach_limits().outer));
+        self.settled_camera().framing(centre, radius, ASPECT)
+    }
+
+    /// The point that the camera follows, in the world: the mean of the bases of the selected joints, or
+    /// without a selection of all joints. For the arm it is the Root.
+    pub(in crate::session) fn followed_point(&self) -> Vec3 {
+        let pose = self.skeleton_pose();
+        let bases = |joints: &[JointId]| {
+            let weight = 1.0 / joints.len() as f32;
+            joints.iter().map(|joint| pose.base(*joint) * weight).sum()
+        };
+        match self.rig() {
+            RigKind::Arm => self.arm().root,
+            RigKind::Skeleton if self.selection().joints().is_empty() => {
+                bases(&pose.ids().collect::<Vec<_>>())
+            }
+            RigKind::Skeleton => bases(self.selection().joints()),
+        }
     }
 }

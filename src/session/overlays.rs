@@ -1,0 +1,274 @@
+use glam::Vec3;
+
+use crate::document::{Document, Overlay, Posed, RigKind, Track, TwistReferenceKind};
+use crate::kinematics::Shared;
+use crate::kinematics::chain_ik::{ChainSolver, Method, SubStep, TipTarget};
+use crate::kinematics::skeleton::{JointId, SkeletonPose};
+use crate::kinematics::twist::TransportedFrame;
+use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::{ArmPart, Crowd};
+use crate::session::parts::{ArmFigure, BodyPart};
+use crate::session::session::Session;
+use crate::session::solver::iterates::InsideLayers;
+use crate::session::solver::run::SolverRun;
+use crate::session::solver::wiggle::WiggleView;
+
+/// State that a picture shows in addition to the document.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overlays {
+    /// Selected joints; the last of them is the active joint.
+    pub selection: Vec<JointId>,
+    /// The part of a body under the mouse, which lights up.
+    pub hovered: Option<BodyPart>,
+    /// The line of the arm's figures that lights up.
+    pub figure: Option<ArmFigure>,
+    /// The joints that keep a tip from its target.
+    pub concerned: Vec<JointId>,
+    /// Shown iterates of the solver run or of the comparison.
+    pub ghosts: Vec<SolverGhost>,
+    /// The part of an iteration that is looked at.
+    pub inside: Option<InsideView>,
+    /// An angle that swings.
+    pub wiggle: Option<WiggleView>,
+    /// Poses of the arm with the same twist, measured from references of each kind; `None` if twist
+    /// references are hidden or FK alone poses the arm.
+    pub twist_references: Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]>,
+    /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
+    /// is hidden.
+    pub trail: Vec<Vec3>,
+    /// The rig in frames before and after the playhead.
+    pub onion_skins: Vec<OnionSkin>,
+    /// True if handles are drawn over the picture. Names that they would cover are left out.
+    pub has_handles: bool,
+    /// The crowd that is shown instead of the rig; `None` to show the rig.
+    pub crowd: Option<Crowd>,
+}
+
+/// The arm's pose by IK with its twist measured from a reference of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistReferencePose {
+    /// Kind of the twist reference.
+    pub kind: TwistReferenceKind,
+    /// The pose.
+    pub pose: TwoBonePose,
+}
+
+/// A part of an iteration, as the view shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InsideView {
+    /// The part.
+    pub part: Shared<SubStep>,
+    /// The part before it; `None` for the first one of an iteration.
+    pub previous: Option<Shared<SubStep>>,
+    /// The pose before the part, in world space.
+    pub before: Shared<SkeletonPose>,
+    /// Layers of it that are shown.
+    pub layers: InsideLayers,
+}
+
+/// The shown iterate of a solver.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolverGhost {
+    /// The solver.
+    pub method: Method,
+    /// Number of iterations made to the iterate.
+    pub iteration: u32,
+    /// The part of the iteration that is looked at, counted from 1, and the number of its parts.
+    pub part: Option<[usize; 2]>,
+    /// The targets that are solved for.
+    pub targets: Vec<TipTarget>,
+    /// The pose, in world space.
+    pub pose: SkeletonPose,
+}
+
+impl Overlays {
+    /// Overlays for a pose of a track: its motion trail, onion skins and twist references, if its
+    /// display shows them.
+    pub fn new(track: &Track, posed: &Posed) -> Self {
+        let has_trail = has_trail(track.document(), posed.document());
+        let mut overlays = Self {
+            trail: if has_trail { sample_trail(track, None) } else { Vec::new() },
+            ..Self::default()
+        };
+        overlays.follow(track, posed);
+        overlays
+    }
+
+    /// Updates onion skins and twist references to another pose of the track.
+    pub fn follow(&mut self, track: &Track, posed: &Posed) {
+        write_onion_skins(track, posed, &mut self.onion_skins);
+        self.twist_references = twist_reference_poses(posed, None);
+    }
+}
+
+/// Poses of the arm for [`Overlays::twist_references`]. A pose with transport that is not the arm's
+/// own continues from the frame `transported`.
+pub(in crate::session) fn twist_reference_poses(
+    posed: &Posed,
+    transported: Option<TransportedFrame>,
+) -> Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]> {
+    let arm = posed.arm();
+    let is_shown = posed.document().display.shows(Overlay::TwistReferences) && arm.uses_ik();
+    let pose = |kind| {
+        if kind == arm.twist_reference {
+            posed.arm_solution().pose
+        } else {
+            arm.pose_with_reference(kind, transported)
+        }
+    };
+    is_shown
+        .then(|| TwistReferenceKind::ALL.map(|kind| TwistReferencePose { kind, pose: pose(kind) }))
+}
+
+/// The rig in a frame before or after the playhead.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OnionSkin {
+    /// Shoulder, elbow and hand of the arm, in the world.
+    pub arm: [Vec3; 3],
+    /// The skeleton's pose, in world space.
+    pub pose: SkeletonPose,
+    /// True if the frame is before the playhead.
+    pub past: bool,
+    /// Opacity: 1 nearest to the playhead, less farther away.
+    pub opacity: f32,
+}
+
+/// Writes into `skins` the rig in frames before and after those of `posed` that are on the
+/// timeline, or nothing if onion skins are hidden. Reuses the memory of `skins`.
+pub(in crate::session) fn write_onion_skins(
+    track: &Track,
+    posed: &Posed,
+    skins: &mut Vec<OnionSkin>,
+) {
+    /// Number of onion skins on each side of the playhead.
+    const MOST: isize = 3;
+    /// Number of frames from one skin to the next.
+    const FRAMES: f64 = 5.0;
+    /// Work of a pose above which only the nearest skins are shown: they are posed in every frame.
+    const MOST_WORK: u64 = ChainSolver::POSE_WORK / 16;
+    let document = track.document();
+    if !posed.document().display.shows(Overlay::OnionSkins) || !document.is_animated() {
+        return skins.clear();
+    }
+    let count = if posed.evaluated_skeleton().work() > MOST_WORK { 1 } else { MOST };
+    let timeline = document.timeline;
+    let step = FRAMES / timeline.frame_rate;
+    let is_played = |time: f64| time >= timeline.start - 1e-9 && time <= timeline.end + 1e-9;
+    let all = (-count..=count).filter(|place| *place != 0);
+    let times = all.map(|place| (place, posed.time() + place as f64 * step));
+    let mut made = 0;
+    for (place, time) in times.filter(|(_, time)| is_played(*time)) {
+        let posed = track.at(time);
+        if made == skins.len() {
+            skins.push(OnionSkin::default());
+        }
+        let skin = &mut skins[made];
+        let rig = posed.arm().rig(posed.arm_pose());
+        skin.arm = [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+        posed.skeleton().write_pose(&mut skin.pose);
+        (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
+        made += 1;
+    }
+    skins.truncate(made);
+}
+
+/// True if a document is animated and shows its motion trail.
+pub(in crate::session) fn has_trail(document: &Document, shown: &Document) -> bool {
+    document.is_animated() && shown.display.shows(Overlay::Trail)
+}
+
+/// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
+/// frames for a long timeline, a large skeleton or poses that take much work. Empty for a skeleton
+/// without a `joint`.
+pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
+    const MOST_POINTS: usize = 2000;
+    /// Maximum of the number of joints times the number of points.
+    const MOST_POSES: usize = 100_000;
+    let document = track.document();
+    let timeline = document.timeline;
+    let joints = match (document.rig, joint) {
+        (RigKind::Arm, _) => 1,
+        (RigKind::Skeleton, Some(_)) => document.skeleton().joints().len(),
+        (RigKind::Skeleton, None) => return Vec::new(),
+    };
+    let frames = timeline.frames();
+    let stride = frames.div_ceil((MOST_POSES / joints.max(1)).clamp(1, MOST_POINTS));
+    let point = |posed: &Posed| match document.rig {
+        RigKind::Arm => Some(posed.arm().root + posed.arm_pose().hand),
+        RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
+    };
+    let time = |index| timeline.time(index * stride);
+    track.sample(frames.div_ceil(stride), time, point).into_iter().flatten().collect()
+}
+
+/// Overlays of the viewport.
+impl Session {
+    /// State that the viewport shows beside the document: selection, drags, trails, solver ghosts.
+    pub fn overlays(&self) -> Overlays {
+        let mut overlays = Overlays::default();
+        self.write_overlays(&mut overlays);
+        overlays
+    }
+
+    /// Writes [`Session::overlays`] into `overlays` and reuses its memory. Allocates nothing,
+    /// except for onion skins, which copy a document with keys.
+    pub fn write_overlays(&self, overlays: &mut Overlays) {
+        overlays.crowd = self.crowd();
+        overlays.selection.clear();
+        overlays.selection.extend_from_slice(self.selection().joints());
+        overlays.hovered = self.selection().hovered_part();
+        overlays.figure = self.selection().figure();
+        overlays.concerned.clear();
+        if let (Some(found), true) = (self.why(false).first(), self.solvers().is_idle()) {
+            // The sentence calls a limb's target by its hand.
+            overlays.concerned.extend(self.skeleton_rig().end_of_target(found.target));
+            overlays.concerned.extend_from_slice(&found.joints);
+        }
+        overlays.inside = inside_view(self);
+        overlays.wiggle = self.view().wiggle_view(self.posed());
+        let transported = Some(self.evaluated().transport_path().transported());
+        overlays.twist_references = twist_reference_poses(self.posed(), transported);
+        overlays.trail.clear();
+        overlays.trail.extend_from_slice(trail(self));
+        write_ghosts(self.solvers().runs(), &mut overlays.ghosts);
+        write_onion_skins(self.history().track(), self.posed(), &mut overlays.onion_skins);
+    }
+}
+
+/// The part of the shown iteration that is looked at.
+fn inside_view(session: &Session) -> Option<InsideView> {
+    let run = session.solvers().run()?;
+    let shown = run.shown_part()?;
+    let part = run.parts().get(shown)?.clone();
+    let previous = shown.checked_sub(1).and_then(|before| run.parts().get(before)).cloned();
+    let (before, layers) = (run.before_part().clone(), session.view().inside_layers());
+    Some(InsideView { part, previous, before, layers })
+}
+
+/// World positions of the hand or the active joint's tip in all frames; empty if the motion trail
+/// is hidden.
+fn trail(session: &Session) -> &[Vec3] {
+    if has_trail(session.document(), session.shown()) {
+        let joint = session.selection().active();
+        session.evaluated().trail(|| sample_trail(session.history().track(), joint))
+    } else {
+        &[]
+    }
+}
+
+fn write_ghosts<'a>(runs: impl Iterator<Item = &'a SolverRun>, ghosts: &mut Vec<SolverGhost>) {
+    let mut count = 0;
+    for run in runs {
+        if count == ghosts.len() {
+            ghosts.push(SolverGhost::default());
+        }
+        let ghost = &mut ghosts[count];
+        (ghost.method, ghost.iteration) = (run.method(), run.shown().iteration);
+        ghost.part = run.shown_part().map(|part| [part + 1, run.parts().len()]);
+        ghost.targets.clear();
+        ghost.targets.extend_from_slice(run.targets());
+        run.skeleton().write_pose(&mut ghost.pose);
+        count += 1;
+    }
+    ghosts.truncate(count);
+}
