@@ -252,8 +252,8 @@ fn percent(fraction: f32) -> String {
     format!("{} %", (100.0 * fraction).ceil())
 }
 
-/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`, and in
-/// scientific notation if it is very large.
+/// A number with three significant digits, without trailing zeros, such as `0.0123` or `150`, and
+/// in scientific notation if it is very large.
 pub fn significant(value: f32) -> String {
     const LARGE: f32 = 1e9;
     match value.abs() {

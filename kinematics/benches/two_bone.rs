@@ -1,6 +1,6 @@
 //! Times of `TwoBone::solve` (with the sine and cosine of the twist), of the textbook solution by
-//! angles, and of `TwoBoneJob::run` and `job::batch`, on one thread and on all cores. Ends with a table
-//! of the fastest passes, relative to `TwoBone::solve`.
+//! angles, and of `TwoBoneJob::run` and `job::batch`, on one thread and on all cores. Ends with a
+//! table of the fastest passes, relative to `TwoBone::solve`.
 
 use core::hint::black_box;
 use std::time::Instant;
@@ -139,8 +139,8 @@ fn two_bone(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Prints the fastest of many passes of each case, and its ratio to the solve. The cases take turns,
-/// so that all of them meet the same changes of the machine's clock.
+/// Prints the fastest of many passes of each case, and its ratio to the solve. The cases take
+/// turns, so that all of them meet the same changes of the machine's clock.
 fn print_ratios() {
     const PASSES: usize = 2_000;
     let inputs = Inputs::new();

@@ -1,9 +1,9 @@
-//! Wrapped and equivalent angles, and Euler angles, in radians. Angles that differ by full turns are
-//! equivalent.
+//! Wrapped and equivalent angles, and Euler angles, in radians. Angles that differ by full turns
+//! are equivalent.
 //!
-//! The Euler angles are those of the arm's ball joints: R = R_y · R_z · R_x, so that y is the yaw, z
-//! the pitch and x the roll about the bone, which lies along +x. (Skeletons use another order: see
-//! [`skeleton`](super::skeleton).)
+//! The Euler angles are those of the arm's ball joints: R = R_y · R_z · R_x, so that y is the yaw,
+//! z the pitch and x the roll about the bone, which lies along +x. (Skeletons use another order:
+//! see [`skeleton`](super::skeleton).)
 
 use core::array;
 use core::f32::consts::TAU;
@@ -44,9 +44,9 @@ pub fn euler_rotation(angles: Vec3) -> DMat3 {
 }
 
 /// Converts a rotation to Euler angles in radians. Of all equivalent angles, it returns those
-/// nearest to `last`, the previous angles, so that angles continue past ±180° without a jump. If the
-/// bone points straight up or down, its yaw is undetermined and taken from `last`. Angles in `last`
-/// beyond ±540° are first reduced by full turns, so that f32 stays precise.
+/// nearest to `last`, the previous angles, so that angles continue past ±180° without a jump. If
+/// the bone points straight up or down, its yaw is undetermined and taken from `last`. Angles in
+/// `last` beyond ±540° are first reduced by full turns, so that f32 stays precise.
 pub fn euler_angles(rotation: DMat3, last: Vec3) -> Vec3 {
     const VERTICAL: f64 = 1e-7;
     let (x, last) = (rotation.x_axis, last.as_dvec3().map(few_turns));

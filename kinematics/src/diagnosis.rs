@@ -1,9 +1,10 @@
 //! Why a tip is not at its target, and what would bring it there.
 //!
-//! A [`Diagnosis`] names a [`Cause`] and the joints concerned. Its remedies have been tried: each is
-//! told with the residual that it leaves. [`chain_ik::diagnose`](super::chain_ik::diagnose) finds the
-//! causes for the solvers of chains; [`SkeletonRig::diagnose`](crate::rig::SkeletonRig::diagnose)
-//! adds those of limbs and of targets that share a pose with FK.
+//! A [`Diagnosis`] names a [`Cause`] and the joints concerned. Its remedies have been tried: each
+//! is told with the residual that it leaves. [`chain_ik::diagnose`](super::chain_ik::diagnose)
+//! finds the causes for the solvers of chains;
+//! [`SkeletonRig::diagnose`](crate::rig::SkeletonRig::diagnose) adds those of limbs and of targets
+//! that share a pose with FK.
 
 use glam::Vec3;
 
@@ -68,7 +69,7 @@ pub enum Cause {
         shortest: f32,
         /// The farthest distance of the tip from the base.
         longest: f32,
-        /// What bounds the reach.
+        /// The bound of the reach.
         boundary: Boundary,
     },
     /// The joints are at limits, and the target pulls them outwards.
@@ -91,8 +92,8 @@ pub enum Cause {
     Stalled,
     /// No joint moves the tip in the direction in which the target is.
     Singular {
-        /// Speed of the tip towards the target, as a fraction of its speed in the direction in which
-        /// it moves best, for the same angular speed of all joints.
+        /// Speed of the tip towards the target, as a fraction of its speed in the direction in
+        /// which it moves best, for the same angular speed of all joints.
         mobility: f32,
     },
     /// The tip was still coming nearer when the solver stopped.
@@ -107,7 +108,7 @@ pub enum Cause {
     },
 }
 
-/// What bounds the reach of a chain.
+/// A bound of the reach of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boundary {
     /// The lengths of the bones.
@@ -301,8 +302,8 @@ pub(crate) fn remove_limits(skeleton: &mut Skeleton, angles: &[Angle]) {
     }
 }
 
-/// The least widening, in whole degrees, of limits of `skeleton` that contains the angles of `pose`;
-/// `None` if they contain these already.
+/// The least widening, in whole degrees, of limits of `skeleton` that contains the angles of
+/// `pose`; `None` if they contain these already.
 pub(crate) fn widen_to_contain(
     skeleton: &Skeleton,
     pose: &Skeleton,

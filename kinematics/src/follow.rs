@@ -24,8 +24,8 @@ pub fn along(
 }
 
 /// Positions of the joints behind the first point of a line of straight segments, one for each of
-/// `lengths`. The line leads away from the head; beyond its end, the joints go straight on. Takes as many
-/// points of the line as the joints need.
+/// `lengths`. The line leads away from the head; beyond its end, the joints go straight on. Takes
+/// as many points of the line as the joints need.
 pub fn along_line(
     line: impl IntoIterator<Item = Vec3>,
     lengths: impl IntoIterator<Item = f32>,
@@ -75,9 +75,9 @@ pub(crate) fn behind(
     })
 }
 
-/// Steps back from `start` by `stride` until `excess` is positive, then bisects the last step; returns
-/// the path's parameter there. Each step is counted off `left`, the number of steps still allowed;
-/// without a positive `excess`, the result is where the steps end.
+/// Steps back from `start` by `stride` until `excess` is positive, then bisects the last step;
+/// returns the path's parameter there. Each step is counted off `left`, the number of steps still
+/// allowed; without a positive `excess`, the result is where the steps end.
 fn first_before(excess: impl Fn(f64) -> f32, start: f64, stride: f64, left: &mut usize) -> f64 {
     const MOST_STRIDES: usize = 10_000;
     const HALVINGS: usize = 40;

@@ -15,8 +15,8 @@
 //!
 //! # Architecture
 //!
-//! Each module uses only modules of its own row and of the rows above. Imports between files form no
-//! circle. A test of the repository checks both.
+//! Each module uses only modules of its own row and of the rows above. Imports between files form
+//! no circle. A test of the repository checks both.
 //!
 //! | modules | contents |
 //! | --- | --- |
@@ -37,8 +37,8 @@
 //!
 //! # Features
 //!
-//! `parallel` solves batches on all cores (rayon). `serde` implements `Serialize` and `Deserialize` for
-//! skeletons, targets, options of solvers and their reports.
+//! `parallel` solves batches on all cores (rayon). `serde` implements `Serialize` and `Deserialize`
+//! for skeletons, targets, options of solvers and their reports.
 
 pub mod angle;
 pub mod batch;

@@ -209,8 +209,8 @@ impl SoftReach {
         }
     }
 
-    /// Distance of the hand before the limbs are lengthened, and the factor by which they are, for a
-    /// cursor at `distance` and an unstretched hand that can be from `least` to `most` away.
+    /// Distance of the hand before the limbs are lengthened, and the factor by which they are, for
+    /// a cursor at `distance` and an unstretched hand that can be from `least` to `most` away.
     pub(crate) fn between(self, least: f64, most: f64, distance: f64) -> (f64, f64) {
         let limits = SoftLimits::between(self, least, most);
         let (softened, _) = limits.soften(distance);

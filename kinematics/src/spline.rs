@@ -19,9 +19,9 @@
 //! knots, and equal knots hold their value. At a knot between an automatic and a smooth curve, both
 //! have the automatic slope.
 //!
-//! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can be a
-//! straight line or a step instead. Whoever knows that the values are the angles of a rotation can turn
-//! the shortest way instead: see [`Spline::segment`].
+//! A knot can have slopes of its own in place of m, and the curve from a knot to the next one can
+//! be a straight line or a step instead. Whoever knows that the values are the angles of a rotation
+//! can turn the shortest way instead: see [`Spline::segment`].
 //!
 //! A missing outer neighbour is mirrored: p₀ = p₁ − (p₂ − p₁) and t₀ = t₁ − (t₂ − t₁). Before the
 //! first knot and after the last, the curve is constant. Between smooth and automatic curves it is
@@ -200,8 +200,8 @@ impl<V: Copy> Spline<V> {
         self.knots.is_empty()
     }
 
-    /// Inserts a knot, or sets the value of the knot at this time, which keeps its interpolation and
-    /// slopes. Does nothing if the time is not finite.
+    /// Inserts a knot, or sets the value of the knot at this time, which keeps its interpolation
+    /// and slopes. Does nothing if the time is not finite.
     pub fn insert(&mut self, time: f64, value: V) {
         let knot = self.knot(time).copied().unwrap_or(Knot::new(time, value));
         self.insert_knot(Knot { value, ..knot });
@@ -380,8 +380,10 @@ fn catmull_rom_tangent<V: SplineValue>(
     (after.value - before.value) * part as f32
 }
 
-/// Weights of p₁, h·m₁, p₂ and h·m₂ at s from 0 to 1.
-fn hermite(s: f64) -> [f64; 4] {
+/// Weights of the cubic Hermite polynomial between two values, p₁ and p₂, with the slopes m₁ and m₂
+/// over a span of time h: p(s) = a·p₁ + b·h·m₁ + c·p₂ + d·h·m₂ for the weights [a, b, c, d]. `s` is
+/// the part of the span that has passed, from 0 to 1; beyond it, the polynomial goes on.
+pub fn hermite(s: f64) -> [f64; 4] {
     let (s2, s3) = (s * s, s * s * s);
     [2.0 * s3 - 3.0 * s2 + 1.0, s3 - 2.0 * s2 + s, 3.0 * s2 - 2.0 * s3, s3 - s2]
 }

@@ -99,8 +99,8 @@ impl fmt::Display for TwistReferenceKind {
 impl FromStr for TwistReferenceKind {
     type Err = UnknownTwistReference;
 
-    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display). `limb`, the former name
-    /// of `up`, is read too.
+    /// Reads the name in lower case: the inverse of [`Display`](fmt::Display). `limb`, the former
+    /// name of `up`, is read too.
     fn from_str(text: &str) -> Result<Self, UnknownTwistReference> {
         let name = if text == "limb" { "up" } else { text };
         Self::ALL.into_iter().find(|kind| kind.names().1 == name).ok_or(UnknownTwistReference)

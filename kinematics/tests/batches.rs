@@ -1,5 +1,5 @@
-//! Batches of arms: bit-identical to solving each arm alone, on all cores with the feature `parallel` and
-//! on one without it.
+//! Batches of arms: bit-identical to solving each arm alone, on all cores with the feature
+//! `parallel` and on one without it.
 
 mod common;
 

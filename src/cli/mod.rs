@@ -170,7 +170,8 @@ fn restart_without_device_select() {
     let (Ok(program), mut arguments) = (env::current_exe(), env::args_os()) else { return };
     let name = arguments.next().unwrap_or_default();
     let mut restarted = process::Command::new(program);
-    // `exec` returns only if it fails. This process then continues, and the layer prints its errors.
+    // `exec` returns only if it fails. This process then continues, and the layer prints its
+    // errors.
     let error = restarted.arg0(name).args(arguments).env(SWITCH, "1").exec();
     log::debug!("cannot restart: {error}");
 }

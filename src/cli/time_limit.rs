@@ -76,8 +76,8 @@ impl TimeLimit {
         started
     }
 
-    /// Runs a job on a thread of its own; Ctrl+C and the end of the time cancel its progress. Shows the
-    /// progress on standard error if standard error is a terminal.
+    /// Runs a job on a thread of its own; Ctrl+C and the end of the time cancel its progress. Shows
+    /// the progress on standard error if standard error is a terminal.
     ///
     /// # Errors
     ///

@@ -132,7 +132,7 @@ impl Document {
 /// that no number is rounded.
 const TURN: Mat3A = Mat3A::from_cols(Vec3A::X, Vec3A::NEG_Z, Vec3A::Y);
 
-/// Which axis points up.
+/// The axis that points up.
 impl Document {
     /// True if the figure stands along the z axis in its bind pose, and not along the y axis at the
     /// start of its motion.

@@ -75,8 +75,8 @@ impl Track {
     /// Maximum work of [`Track::sample`], beyond the pose that exceeds it.
     const SAMPLED_WORK: u64 = ChainSolver::POSE_WORK;
 
-    /// Poses the document at `count` times or, where that is too much work, at every second, fourth …
-    /// of them. Returns the results of `take` in the order of the times.
+    /// Poses the document at `count` times or, where that is too much work, at every second, fourth
+    /// … of them. Returns the results of `take` in the order of the times.
     pub fn sample<T>(
         &self,
         count: usize,
@@ -90,8 +90,8 @@ impl Track {
     }
 }
 
-/// Values of `take` at all indices below `count`, or at multiples of the least power of two for which
-/// no value is taken after the work, which `take` returns, has exceeded `most_work`.
+/// Values of `take` at all indices below `count`, or at multiples of the least power of two for
+/// which no value is taken after the work, which `take` returns, has exceeded `most_work`.
 fn coarse_to_fine<T>(count: usize, most_work: u64, take: impl Fn(usize) -> (T, u64)) -> Vec<T> {
     let mut taken: BTreeMap<usize, T> = BTreeMap::new();
     let (mut stride, mut work) = (count.next_power_of_two(), 0);

@@ -97,8 +97,8 @@ impl Renderer {
 
     /// Sends the changes since the last scene, for a canvas with `scale` pixels per point. Once all
     /// lists are large enough, the renderer allocates nothing itself unless a label's text changes;
-    /// `wgpu` allocates a constant amount for each list that has changed, of which there are at most
-    /// [`Renderer::LISTS`].
+    /// `wgpu` allocates a constant amount for each list that has changed, of which there are at
+    /// most [`Renderer::LISTS`].
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         let size = canvas.drawn_size();
         let uploaded = self.view.upload(gpu, scene, size, scale * canvas.resolution_scale())

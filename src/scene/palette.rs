@@ -127,7 +127,8 @@ impl Palette {
         })
     }
 
-    /// Colour of a curve or part of a diagram, from a series of seven that differ in hue or brightness.
+    /// Colour of a curve or part of a diagram, from a series of seven that differ in hue or
+    /// brightness.
     pub fn series(&self, index: usize) -> Colour {
         /// For the dark and the light theme.
         const SERIES: [[u32; 2]; 7] = [

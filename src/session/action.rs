@@ -125,8 +125,8 @@ impl IntoIterator for Actions {
 
 macro_rules! edits {
     ($($(#[doc = $doc:literal])+ $part:ident($edit:ident)),* $(,)?) => {
-        /// A change of the document. Outside a transaction, each change is one undo step with its own
-        /// label.
+        /// A change of the document. Outside a transaction, each change is one undo step with its
+        /// own label.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Edit {
             $($(#[doc = $doc])+ $part($edit),)*

@@ -77,12 +77,12 @@ impl Evaluated {
     }
 
     /// The joint with the greatest weight at the point of the shown skin that a ray meets first, in
-    /// the pose at the playhead; `None` if the skin is hidden or the ray meets none. A root without a
-    /// bone, such as a pelvis, shares its skin with the bones on it, and wins where it has at least
-    /// half of their weight.
+    /// the pose at the playhead; `None` if the skin is hidden or the ray meets none. A root without
+    /// a bone, such as a pelvis, shares its skin with the bones on it, and wins where it has at
+    /// least half of their weight.
     pub fn joint_on_skin(&self, posed: &Posed, ray: Ray) -> Option<JointId> {
-        /// Weight of a root without a bone, as a fraction of the greatest one, from which the skin is
-        /// its own.
+        /// Weight of a root without a bone, as a fraction of the greatest one, from which the skin
+        /// is its own.
         const SHARED: f32 = 0.5;
         let Document { skeleton_rig, display, .. } = posed.document();
         let skin = skeleton_rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;

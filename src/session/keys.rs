@@ -115,8 +115,8 @@ pub(super) fn key(session: &mut Session, channels: &[Channel]) -> Outcome {
     }))
 }
 
-/// Moves `keys`, given with their times before the transaction, by `by` seconds, and adds `raise` to
-/// their values. Replaces other keys at the new times.
+/// Moves `keys`, given with their times before the transaction, by `by` seconds, and adds `raise`
+/// to their values. Replaces other keys at the new times.
 fn move_keys(session: &Session, keys: &[Key], by: f64, raise: Vec3) -> Outcome {
     let farthest = Timeline::MAX_TIME;
     let by = if by.is_finite() { by.clamp(-farthest, farthest) } else { 0.0 };
@@ -183,8 +183,8 @@ fn bake(session: &mut Session, baked: &Baked) -> Outcome {
     })
 }
 
-/// The time of a key after a move by `by`, in seconds. A move from one frame to another ends exactly
-/// on the frame.
+/// The time of a key after a move by `by`, in seconds. A move from one frame to another ends
+/// exactly on the frame.
 fn moved_to(timeline: Timeline, time: f64, by: f64) -> f64 {
     let (from, to) = (timeline.snapped(time), timeline.snapped(time + by));
     let is_on_frame = |time: f64, frame: f64| (time - frame).abs() < 1e-9;
@@ -282,8 +282,8 @@ pub enum BakeAction {
     Start(Bake),
     /// A bake has started.
     Started(BakeJob),
-    /// A bake has ended, with its result or an error. The result of a bake whose dialog was closed is
-    /// dropped.
+    /// A bake has ended, with its result or an error. The result of a bake whose dialog was closed
+    /// is dropped.
     Ended(BakeJob, Result<Box<Baked>, String>),
 }
 

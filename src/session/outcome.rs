@@ -93,8 +93,8 @@ pub(super) enum Consequence {
     Play,
     /// Lets time pass, to a time in seconds on the window's clock.
     Advance(f64),
-    /// Forgets the previous frame unless the timeline plays, so that a crowd continues from where it
-    /// paused.
+    /// Forgets the previous frame unless the timeline plays, so that a crowd continues from where
+    /// it paused.
     ForgetPause,
     /// Sets the camera at once.
     SetCamera(Camera),
@@ -154,7 +154,7 @@ pub(super) struct Opening {
     pub document: Document,
     /// The file that Save overwrites; `None` if Save must ask for a path.
     pub file: Option<PathBuf>,
-    /// What else the file of another program has.
+    /// Further contents of a file of another program.
     pub contents: Option<Box<FileContents>>,
     /// True if z seems to point up in the file.
     pub seems_z_up: bool,
@@ -182,8 +182,8 @@ impl Outcome {
         Self(vec![Consequence::Message(None), Consequence::Write(Box::new(after))])
     }
 
-    /// Changes a copy of the shown document and writes it; after an error, reports that. An edit after
-    /// which a target could not be evaluated is an error.
+    /// Changes a copy of the shown document and writes it; after an error, reports that. An edit
+    /// after which a target could not be evaluated is an error.
     pub fn edit<E: Display>(
         shown: &Document,
         change: impl FnOnce(&mut Document) -> Result<(), E>,

@@ -115,7 +115,7 @@ impl FrameBudget {
         }
     }
 
-    /// What it does, for the menu.
+    /// A description for the menu.
     pub fn help(self) -> &'static str {
         match self {
             Self::Unlimited => "Keep every frame sharp, even if the picture moves in steps",

@@ -78,8 +78,8 @@ fn pack(session: &Session) -> Outcome {
     packed.map(|packed| set(session, Some(packed))).into()
 }
 
-/// Replaces the skin, with its colour clamped to valid channels. During a drag its mesh stays; otherwise
-/// it is made at once.
+/// Replaces the skin, with its colour clamped to valid channels. During a drag its mesh stays;
+/// otherwise it is made at once.
 fn set(session: &Session, skin: Option<Skin>) -> Outcome {
     let skin = skin.map(|skin| Skin {
         colour: skin.colour.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }),
@@ -102,8 +102,8 @@ fn set(session: &Session, skin: Option<Skin>) -> Outcome {
     })
 }
 
-/// The edit that replaces the mesh of the skin by that of a file, unless the skin is no longer that of
-/// the file `before`.
+/// The edit that replaces the mesh of the skin by that of a file, unless the skin is no longer that
+/// of the file `before`.
 ///
 /// # Errors
 ///
@@ -131,31 +131,31 @@ pub(super) fn located(
 
 /// The skin under the mouse.
 impl Session {
-    /// Areas of the cross-section of the compared skins at the active joint over the timeline; `None` if
-    /// skins are not compared or have no section there.
+    /// Areas of the cross-section of the compared skins at the active joint over the timeline;
+    /// `None` if skins are not compared or have no section there.
     pub fn skin_areas(&self) -> Option<&SkinAreas> {
         self.evaluated()
             .skin_areas(|| SkinAreas::new(self.history().track(), self.selection().active()))
     }
 }
 
-/// Area of the cross-section of a skin at the base of a joint over the timeline, once for each way of
-/// blending joints.
+/// Area of the cross-section of a skin at the base of a joint over the timeline, once for each way
+/// of blending joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinAreas {
     /// The joint.
     pub joint: JointId,
     /// Times in seconds.
     pub times: Vec<f64>,
-    /// For each way of blending, in the order of [`Skinning::ALL`], the areas at these times as fractions
-    /// of that in the pose in which the skin was attached.
+    /// For each way of blending, in the order of [`Skinning::ALL`], the areas at these times as
+    /// fractions of that in the pose in which the skin was attached.
     pub areas: [Vec<f32>; Skinning::ALL.len()],
 }
 
 impl SkinAreas {
-    /// The areas of the skin of a document; `None` if the display does not compare ways of blending, or
-    /// there is no closed section. Without a joint, the section is at the one with the greatest roll in the
-    /// timeline.
+    /// The areas of the skin of a document; `None` if the display does not compare ways of
+    /// blending, or there is no closed section. Without a joint, the section is at the one with the
+    /// greatest roll in the timeline.
     pub(super) fn new(track: &Track, joint: Option<JointId>) -> Option<Self> {
         const MOST_TIMES: usize = 121;
         let document = track.document();

@@ -30,8 +30,8 @@ pub enum ViewAction {
     Drop,
     /// Ends the drag and restores the camera from before it.
     Cancel,
-    /// Keeps the camera at its distance and direction from the selected joints, or from the middle of all
-    /// joints, while the time changes; or lets it stand again.
+    /// Keeps the camera at its distance and direction from the selected joints, or from the middle
+    /// of all joints, while the time changes; or lets it stand again.
     FollowSelection(bool),
     /// Shows or hides something of the part of an iteration that is looked at.
     ShowInside(InsideLayer, bool),
@@ -61,7 +61,7 @@ pub struct View {
     drag: Option<ViewDrag>,
     glide: Option<Glide>,
     follows_selection: bool,
-    /// What is shown of a part of an iteration.
+    /// The layers that are shown of a part of an iteration.
     inside_layers: InsideLayers,
     wiggle: Option<Wiggle>,
     crowd_shown: bool,
@@ -169,7 +169,7 @@ impl View {
         wiggle.view(skeleton_rig, posed.evaluated_skeleton())
     }
 
-    /// What is shown of the part of an iteration that is looked at.
+    /// The layers that are shown of the chosen part of an iteration.
     pub fn inside_layers(&self) -> InsideLayers {
         self.inside_layers
     }
@@ -371,8 +371,8 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
-    /// A camera that frames what is shown, over the whole timeline: all points in reach of the arm, the
-    /// skeleton with its targets, or the crowd.
+    /// A camera that frames what is shown, over the whole timeline: all points in reach of the arm,
+    /// the skeleton with its targets, or the crowd.
     pub fn framing_all(&self) -> Camera {
         if let Some(crowd) = self.crowd() {
             let (centre, radius) = crowd.bounds();
@@ -384,8 +384,8 @@ impl Session {
         self.settled_camera().framing(centre, radius, ASPECT)
     }
 
-    /// The point that the camera follows, in the world: the mean of the bases of the selected joints, or
-    /// without a selection of all joints. For the arm it is the Root.
+    /// The point that the camera follows, in the world: the mean of the bases of the selected
+    /// joints, or without a selection of all joints. For the arm it is the Root.
     pub(in crate::session) fn followed_point(&self) -> Vec3 {
         let pose = self.skeleton_pose();
         let bases = |joints: &[JointId]| {

@@ -385,7 +385,8 @@ fn a_target_at_a_tip_that_overflows_is_refused() {
     assert_eq!(session.document(), &before);
 }
 
-/// A star with a target at the end of each ray, which asks for as many iterations as there are numbers.
+/// A star with a target at the end of each ray, which asks for as many iterations as there are
+/// numbers.
 fn star(rays: u16, method: Method) -> Document {
     let mut skeleton = Skeleton::with_root("centre");
     let mut targets = Vec::new();

@@ -101,8 +101,8 @@ impl Wrenches {
         self.apply_transpose(problem, config, force, descent);
     }
 
-    /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F at
-    /// the tip of an end effector.
+    /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F
+    /// at the tip of an end effector.
     pub fn apply_transpose(
         &mut self,
         problem: &Problem,

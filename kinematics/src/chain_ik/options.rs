@@ -29,7 +29,7 @@ pub struct SolverOptions {
     /// Step length of [`Method::TransposeFixed`], in units of 1/Σ w r², with the weights w of the
     /// targets and the distances r from joints to tips in the bind pose.
     pub step: f32,
-    /// What solvers may change of roots.
+    /// The inputs of roots that solvers may change.
     pub root: Root,
 }
 
@@ -156,7 +156,8 @@ pub enum SolveError {
         /// The weight.
         weight: f32,
     },
-    /// One iteration is more work than [`ChainSolver::bounded`](super::ChainSolver::bounded) allows.
+    /// One iteration is more work than [`ChainSolver::bounded`](super::ChainSolver::bounded)
+    /// allows.
     #[error(
         "{targets} targets and {links} joints are more work for {method} than a pose may take; \
          fabrik takes the least"

@@ -2,8 +2,8 @@
 //!
 //! A straight chain whose target is on its line has no moment at any joint. A straight chain whose
 //! joints are at limits stays straight if the moments push the joints against their limits: a knee
-//! limited to 0 … 143°, with the target in front of the leg. [`bend`] bends both so that the chain is
-//! as long as its target is far. Where limits hold a chain at another local minimum,
+//! limited to 0 … 143°, with the target in front of the leg. [`bend`] bends both so that the chain
+//! is as long as its target is far. Where limits hold a chain at another local minimum,
 //! [`leave_limits`] moves angles away from their limits.
 
 use glam::{Vec3, Vec3A};
@@ -58,8 +58,8 @@ const FRACTIONS: [f32; 3] = [0.5, 0.25, 0.75];
 /// Number of different starts that [`leave_limits`] knows.
 pub(super) const STARTS_INSIDE: u32 = 2 * FRACTIONS.len() as u32;
 
-/// Moves angles inside their limits: the angles at limits or, for odd numbers `start`, all that have
-/// limits. Returns whether any angle has changed.
+/// Moves angles inside their limits: the angles at limits or, for odd numbers `start`, all that
+/// have limits. Returns whether any angle has changed.
 pub(super) fn leave_limits(problem: &Problem, config: &mut Configuration, start: u32) -> bool {
     let fraction = FRACTIONS[start as usize / 2 % FRACTIONS.len()];
     let mut any = false;

@@ -46,8 +46,8 @@ pub struct ChainSolver {
 }
 
 impl ChainSolver {
-    /// Maximum work for one pose of a rig, in the units of [`ChainSolver::bounded`]: less than about
-    /// a third of a second.
+    /// Maximum work for one pose of a rig, in the units of [`ChainSolver::bounded`]: less than
+    /// about a third of a second.
     pub const POSE_WORK: u64 = 1 << 23;
 
     /// Prepares a solver without making an iteration.
@@ -148,10 +148,10 @@ impl ChainSolver {
         self.step_with(&mut Recorder::off())
     }
 
-    /// Makes one iteration like [`ChainSolver::step`], with the same bits, and returns what the method
-    /// computed in it, in the order in which it did; the last sub-step has the pose after the
-    /// iteration, as [`ChainSolver::write`] writes it to `skeleton`: the skeleton for which the solver
-    /// was made, in the FK pose.
+    /// Makes one iteration like [`ChainSolver::step`], with the same bits, and returns what the
+    /// method computed in it, in the order in which it did; the last sub-step has the pose after
+    /// the iteration, as [`ChainSolver::write`] writes it to `skeleton`: the skeleton for which the
+    /// solver was made, in the FK pose.
     pub fn step_inside(&mut self, skeleton: &Skeleton) -> (Report, Vec<SubStep>) {
         let mut recorder = Recorder::on();
         let report = self.step_with(&mut recorder);
@@ -187,8 +187,8 @@ impl ChainSolver {
         self.report
     }
 
-    /// Iterates until the solver has converged, has stalled, is out of iterations or has come to its
-    /// bound.
+    /// Iterates until the solver has converged, has stalled, is out of iterations or has come to
+    /// its bound.
     pub fn run(&mut self) -> Report {
         while !self.is_over() {
             self.step();
@@ -196,7 +196,8 @@ impl ChainSolver {
         self.report
     }
 
-    /// True if the solver has converged, has stalled, is out of iterations or has come to its bound.
+    /// True if the solver has converged, has stalled, is out of iterations or has come to its
+    /// bound.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.report.status != Status::Iterating
@@ -285,7 +286,8 @@ impl ChainSolver {
         };
     }
 
-    /// Bends straight chains that no method can bend. Without any, the configuration keeps its bits.
+    /// Bends straight chains that no method can bend. Without any, the configuration keeps its
+    /// bits.
     fn start(&mut self, recorder: &mut Recorder) {
         self.escape.best.copy_from(&self.config);
         if self.bend() {
@@ -377,7 +379,7 @@ pub struct Report {
     pub iterations: u32,
     /// Largest distance from a tip to its target, in world units.
     pub error: f32,
-    /// Whether and why the run has ended.
+    /// The state of the run: running, or the reason for its end.
     pub status: Status,
 }
 

@@ -1,8 +1,8 @@
 use super::configuration::Configuration;
 use super::problem::Problem;
 
-/// Number of iterations without an improvement after which a method has stalled, and the decrease of
-/// the distance that is an improvement.
+/// Number of iterations without an improvement after which a method has stalled, and the decrease
+/// of the distance that is an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Patience {
     iterations: u32,
@@ -18,8 +18,8 @@ impl Patience {
         Self { iterations, repeats_steps: true, least_moving: f64::INFINITY }
     }
 
-    /// Of a method that works on orientations. Written angles are rounded, and another run from them
-    /// takes other steps. For that run to find no improvement, almost none may be left.
+    /// Of a method that works on orientations. Written angles are rounded, and another run from
+    /// them takes other steps. For that run to find no improvement, almost none may be left.
     pub const fn of_orientations(iterations: u32, least_moving: f64) -> Self {
         Self { iterations, repeats_steps: false, least_moving }
     }
@@ -139,8 +139,8 @@ impl Escape {
         }
     }
 
-    /// Makes `config` the best configuration if it is nearer to the targets. All attempts may be made
-    /// again if it is much nearer, and the first one if it is nearer at all.
+    /// Makes `config` the best configuration if it is nearer to the targets. All attempts may be
+    /// made again if it is much nearer, and the first one if it is nearer at all.
     pub fn observe(&mut self, problem: &Problem, config: &Configuration) {
         // Relative decrease of the distance that is worth the same attempts again.
         const WORTH: f64 = 1e-3;

@@ -127,17 +127,17 @@ impl JointChain {
         (self.can_turn && (is_jointed || hand_ss != DVec3::ZERO)).then_some(limb)
     }
 
-    /// The direction in start joint space of an axis of turns in middle joint space. (A mirrored turn
-    /// about an axis is the opposite turn about the mirrored axis.)
+    /// The direction in start joint space of an axis of turns in middle joint space. (A mirrored
+    /// turn about an axis is the opposite turn about the mirrored axis.)
     pub fn axis_ss(&self, axis: DVec3) -> DVec3 {
         self.middle_ss * axis * 1.0_f64.copysign(self.middle_scale)
     }
 
-    /// Converts the axis of a turn from start joint space to middle joint space, without changing its
-    /// length.
+    /// Converts the axis of a turn from start joint space to middle joint space, without changing
+    /// its length.
     ///
-    /// The rotation Q nearest to M = M_s⁻¹·M_m is the polar decomposition of M; for a similarity up to
-    /// rounding, one step of Newton's iteration is exact: Q = (M/s + (M/s)⁻ᵀ) / 2.
+    /// The rotation Q nearest to M = M_s⁻¹·M_m is the polar decomposition of M; for a similarity up
+    /// to rounding, one step of Newton's iteration is exact: Q = (M/s + (M/s)⁻ᵀ) / 2.
     pub fn axis_in_middle(&self, axis_ss: DVec3) -> DVec3 {
         if self.middle_scale == 0.0 || axis_ss == DVec3::ZERO {
             return axis_ss;

@@ -101,8 +101,8 @@ impl fmt::Display for JobField {
 /// Largest difference of lengths, and largest cosine between axes, of a similarity.
 const DIFFERENT: f64 = 1e-3;
 
-/// The scale of a matrix. Refuses one that is not a similarity: a rotation with an even scale (or 0),
-/// mirrored or not.
+/// The scale of a matrix. Refuses one that is not a similarity: a rotation with an even scale (or
+/// 0), mirrored or not.
 pub(super) fn similarity_scale(field: JobField, axes: DMat3) -> Result<f64, JobError> {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = axes;
     let squares = DVec3::new(x.length_squared(), y.length_squared(), z.length_squared());

@@ -1,4 +1,5 @@
-//! Stages of a job of any kind. Vectors are in start joint space, lengths in units of the chain's length.
+//! Stages of a job of any kind. Vectors are in start joint space, lengths in units of the chain's
+//! length.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -50,7 +51,7 @@ pub(super) fn middle_joint(
         let hand_ss = limb.hand_ss.normalize();
         return BentLimb { turn_ss: DQuat::IDENTITY, hand_ss, axis_ss: None };
     }
-    let bend = Bend::new(limb, distance);
+    let bend = ClosedBend::new(limb, distance);
     let (axis_ss, turn_ss) = match normal(limb) {
         Some((normal_ss, sin)) => {
             let side = side(normal_ss, 1.0, hinge_ss.unwrap_or_default());
@@ -75,7 +76,7 @@ pub(super) fn middle_joint(
 }
 
 /// The closed form of the bent limb.
-struct Bend {
+struct ClosedBend {
     /// φ/2, half of the inner angle of the middle joint.
     inner_angle: HalfAngle,
     /// hₑ and oₑ, divided by d₁.
@@ -83,7 +84,7 @@ struct Bend {
     out: f64,
 }
 
-impl Bend {
+impl ClosedBend {
     fn new(limb: &LimbBones, distance: f64) -> Self {
         let (upper, lower) = (limb.upper, limb.lower);
         // L is 1.
@@ -141,8 +142,8 @@ pub(super) fn weight(turn: DQuat, part: f64) -> DQuat {
     DQuat::from_vec4((axis * sin).extend(cos))
 }
 
-/// Unit normal of the plane of the bones, about which a positive turn opens the limb, and the sine of
-/// the inner angle; `None` if the bones are in one line, to within rounding.
+/// Unit normal of the plane of the bones, about which a positive turn opens the limb, and the sine
+/// of the inner angle; `None` if the bones are in one line, to within rounding.
 fn normal(limb: &LimbBones) -> Option<(DVec3, f64)> {
     let shorter = limb.upper.min(limb.lower);
     let normal_ss = limb.lower_ss.cross(limb.upper_ss);

@@ -83,8 +83,8 @@ impl TwoBoneJob {
         }
     }
 
-    /// The correction by the fast path, with the bits that a batch gives; `None` for a job that does
-    /// not fit it.
+    /// The correction by the fast path, with the bits that a batch gives; `None` for a job that
+    /// does not fit it.
     fn solve_on_fast_path(&self) -> Option<TwoBoneCorrection> {
         if self.softness != 0.0 || self.weight != 1.0 {
             return None;
@@ -252,8 +252,8 @@ mod tests {
 
     use super::*;
 
-    /// A limb that is bent, with bones of similar lengths, under a scaled and mirrored joint. `turn`
-    /// is any number.
+    /// A limb that is bent, with bones of similar lengths, under a scaled and mirrored joint.
+    /// `turn` is any number.
     fn regular_job(turn: f32) -> TwoBoneJob {
         let local = |turn: f32, along: f32, scale: Vec3| {
             let rotation = Quat::from_euler(EulerRot::XYZ, turn, 0.3 * turn, 0.9);

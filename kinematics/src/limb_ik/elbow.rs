@@ -29,8 +29,8 @@ impl Bend {
         self.upper + DMat3::from_axis_angle(self.axis, angle) * self.lower
     }
 
-    /// Minimum and maximum distance of the tip from the base of the upper bone, over the angles that
-    /// the limits allow.
+    /// Minimum and maximum distance of the tip from the base of the upper bone, over the angles
+    /// that the limits allow.
     pub fn reach(&self) -> (f64, f64) {
         let (from, to) = self.limits;
         let Law { straight, .. } = self.law;
@@ -43,9 +43,10 @@ impl Bend {
         (self.distance_at(least), self.distance_at(most))
     }
 
-    /// The two angles β at which the tip is at `distance`, which [`Self::reach`] contains, clamped to the
-    /// limits; the one within the limits first. If both are, the first is the one on the side of
-    /// `near`, or, if the limb is straight at `near`, on the side towards which it may bend farther.
+    /// The two angles β at which the tip is at `distance`, which [`Self::reach`] contains, clamped
+    /// to the limits; the one within the limits first. If both are, the first is the one on the
+    /// side of `near`, or, if the limb is straight at `near`, on the side towards which it may bend
+    /// farther.
     pub fn angles_at(&self, distance: f64, near: f64) -> [f64; 2] {
         const ROUNDING: f64 = 1e-9;
         let Law { squares, half_range, straight } = self.law;
@@ -60,15 +61,15 @@ impl Bend {
         if second.1 + ROUNDING < first.1 { [second.0, first.0] } else { [first.0, second.0] }
     }
 
-    /// Direction in which the base of the lower bone moves, seen from the Pointer, if the limb bends from
-    /// `angle` farther to the side of `near`.
+    /// Direction in which the base of the lower bone moves, seen from the Pointer, if the limb
+    /// bends from `angle` farther to the side of `near`.
     pub fn bending(&self, angle: f64, near: f64) -> DVec3 {
         let lower = DMat3::from_axis_angle(self.axis, angle) * self.lower;
         -self.side(near) * self.axis.cross(lower)
     }
 
-    /// The side of straight on which the limb is bent at `near`, or to which it may bend farther: 1 for
-    /// a positive rotation, else −1.
+    /// The side of straight on which the limb is bent at `near`, or to which it may bend farther: 1
+    /// for a positive rotation, else −1.
     pub fn side(&self, near: f64) -> f64 {
         const STRAIGHT: f64 = 1e-6;
         let straight = angle::nearest_f64(self.law.straight, near);
@@ -124,9 +125,10 @@ pub(super) struct Aim {
 }
 
 impl Aim {
-    /// The Pointer and elbow of a bent limb with the upper bone `upper` and the vector `tip` from the
-    /// upper joint to the tip. `bending` is the direction in which the elbow would move if the limb bent
-    /// farther: it replaces the elbow's own direction where the limb is straight or folded.
+    /// The Pointer and elbow of a bent limb with the upper bone `upper` and the vector `tip` from
+    /// the upper joint to the tip. `bending` is the direction in which the elbow would move if the
+    /// limb bent farther: it replaces the elbow's own direction where the limb is straight or
+    /// folded.
     pub fn of_limb(upper: DVec3, tip: DVec3, bending: impl Fn() -> DVec3) -> Self {
         // Sine of the angle at the upper joint below which the elbow's direction is rounding.
         const STRAIGHT: f64 = 1e-6;
@@ -144,8 +146,8 @@ impl Aim {
         Self { pointer, outward }
     }
 
-    /// This elbow direction, carried to another Pointer by the least rotation. For the opposite Pointer
-    /// the direction stays.
+    /// This elbow direction, carried to another Pointer by the least rotation. For the opposite
+    /// Pointer the direction stays.
     pub fn carried_to(self, pointer: DVec3) -> Self {
         let turned = DQuat::from_rotation_arc(self.pointer, pointer) * self.outward;
         let opposite = self.pointer.dot(pointer) < -1.0 + 1e-12;
@@ -160,8 +162,8 @@ impl Aim {
         Self { outward: orthonormal(cos * self.outward + sin * side, self.pointer), ..self }
     }
 
-    /// Angle in radians about the Pointer from the elbow of `from` to this one's; both have the same
-    /// Pointer.
+    /// Angle in radians about the Pointer from the elbow of `from` to this one's; both have the
+    /// same Pointer.
     pub fn twist_from(self, from: Self) -> f64 {
         let side = from.pointer.cross(from.outward);
         self.outward.dot(side).atan2(self.outward.dot(from.outward))

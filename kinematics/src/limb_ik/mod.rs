@@ -1,5 +1,5 @@
-//! Closed-form inverse kinematics for a limb of a skeleton: two bones with limits, between any other
-//! joints.
+//! Closed-form inverse kinematics for a limb of a skeleton: two bones with limits, between any
+//! other joints.
 //!
 //! The lower joint turns about one axis until the tip of the lower bone is as far from the upper
 //! joint as the target is (*bend*); the upper joint then turns the bent limb to the target (*aim*).
@@ -20,12 +20,13 @@
 //! reach; they take the place of |δ| and L in [soft limits](super::soft_reach).
 //!
 //! The axis is the free one of a hinge (a joint with two fixed angles); otherwise the normal of the
-//! plane in which the limb is bent; for a straight limb, the axis about which its limits allow most.
+//! plane in which the limb is bent; for a straight limb, the axis about which its limits allow
+//! most.
 //!
 //! # Aim
 //!
-//! The elbow's direction from the Pointer, the axis from the upper joint to the target, is e₀ turned
-//! by the twist; e₀ follows from the [`ElbowReference`].
+//! The elbow's direction from the Pointer, the axis from the upper joint to the target, is e₀
+//! turned by the twist; e₀ follows from the [`ElbowReference`].
 //!
 //! # What breaks
 //!
@@ -100,12 +101,13 @@ impl Limb {
         Err(NoLimb::NoUpperJoint)
     }
 
-    /// The limb for a target of `joint`, the last of an unbranched chain or the bone below which a hand
-    /// or foot is the last.
+    /// The limb for a target of `joint`, the last of an unbranched chain or the bone below which a
+    /// hand or foot is the last.
     ///
-    /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body, the
-    /// last is the hand or foot, and the limb ends at its base. Any other chain is better posed as a
-    /// whole, and so is one whose lower joint cannot bend through a right angle, such as a neck: `None`.
+    /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body,
+    /// the last is the hand or foot, and the limb ends at its base. Any other chain is better posed
+    /// as a whole, and so is one whose lower joint cannot bend through a right angle, such as a
+    /// neck: `None`.
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
@@ -166,8 +168,8 @@ impl JointSpace {
         Self::from_top(skeleton, joint.into_iter().flat_map(|joint| skeleton.ancestors(joint)))
     }
 
-    /// The own space of the first of `joints`, each the parent of the one before, in the space of the
-    /// last one's parent.
+    /// The own space of the first of `joints`, each the parent of the one before, in the space of
+    /// the last one's parent.
     pub fn from_top(skeleton: &Skeleton, joints: impl Iterator<Item = JointId>) -> Self {
         joints.fold(Self::IDENTITY, |space, joint| {
             let joint = &skeleton[joint];

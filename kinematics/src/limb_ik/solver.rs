@@ -82,11 +82,12 @@ pub enum LimbReach {
     Limited(JointId),
 }
 
-/// Poses a limb for its target: writes the angles of its joints and, with stretch, the lengths of its
-/// bones. The angles that the skeleton has are the FK pose. With an influence of 0 nothing changes.
+/// Poses a limb for its target: writes the angles of its joints and, with stretch, the lengths of
+/// its bones. The angles that the skeleton has are the FK pose. With an influence of 0 nothing
+/// changes.
 ///
-/// Returns `None`, and changes nothing, if the skeleton's transform is singular or the skeleton has no
-/// such joints.
+/// Returns `None`, and changes nothing, if the skeleton's transform is singular or the skeleton has
+/// no such joints.
 pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option<LimbReport> {
     let fk = FkLimb::new(skeleton, limb)?;
     let local = LocalTarget::new(skeleton, target, &fk)?;
@@ -170,8 +171,8 @@ impl<'a> LocalTarget<'a> {
     }
 }
 
-/// True if a target is the tip of a limb, computed in f32. Rounding of a target would turn the elbow of
-/// a straight limb by its square root.
+/// True if a target is the tip of a limb, computed in f32. Rounding of a target would turn the
+/// elbow of a straight limb by its square root.
 fn is_rounded([tip, base]: [DVec3; 2], target: Vec3) -> bool {
     const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
     tip.distance(target.as_dvec3()) <= ROUNDING * tip.abs().max(base.abs()).max_element()
@@ -355,8 +356,8 @@ struct LowerAngles {
 }
 
 impl FkLimb {
-    /// The angles of the lower joint for which the tip is at `distance` from the upper joint, nearest to
-    /// the FK pose within the limits.
+    /// The angles of the lower joint for which the tip is at `distance` from the upper joint,
+    /// nearest to the FK pose within the limits.
     fn lower_angles(&self, lower: &Joint, distance: f64) -> LowerAngles {
         let angles_at = |bend: f64| {
             if let Some(angle) = self.free_angle {

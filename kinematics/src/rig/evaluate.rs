@@ -20,8 +20,8 @@ pub struct EvaluatedSkeleton {
 }
 
 impl EvaluatedSkeleton {
-    /// About the work of the pose, in the unit of [`ChainSolver::bounded`]: the number of joints, once
-    /// and for each iteration of the whole-body targets' solver.
+    /// About the work of the pose, in the unit of [`ChainSolver::bounded`]: the number of joints,
+    /// once and for each iteration of the whole-body targets' solver.
     pub fn work(&self) -> u64 {
         let iterations = self.targets.iter().find_map(|target| match &target.outcome {
             TargetOutcome::WholeBody(report) => Some(report.iterations),
@@ -38,13 +38,13 @@ pub struct TargetReport {
     pub position: Vec3,
     /// Position of the limb's pole, in the world; `None` for another elbow reference.
     pub pole: Option<Vec3>,
-    /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a head
-    /// that the target leads.
+    /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a
+    /// head that the target leads.
     pub error: f32,
     /// Angle in radians from the rotation of the hand to that which the target asks for, in the
     /// evaluated pose; `None` for a hand that follows its bone and for a target without a hand.
     pub rotation_error: Option<f32>,
-    /// What the solver reports.
+    /// The solver's report.
     pub outcome: TargetOutcome,
 }
 
@@ -79,10 +79,10 @@ impl SkeletonRig {
 
     /// The skeleton at a time in seconds, as a function of the rig and the time alone.
     ///
-    /// The whole-body targets are solved together, from the FK pose; the limb targets then one after
-    /// the other, in the order of their joints, but each after those that move the joints that it is
-    /// on. The work of the solver is bounded: see [`Status::Bounded`](crate::chain_ik::Status::Bounded)
-    /// and [`SolveError::TooMuchWork`].
+    /// The whole-body targets are solved together, from the FK pose; the limb targets then one
+    /// after the other, in the order of their joints, but each after those that move the joints
+    /// that it is on. The work of the solver is bounded: see
+    /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
@@ -120,8 +120,8 @@ impl SkeletonRig {
         report.error <= self.tolerance() && !report.misses_rotation()
     }
 
-    /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without the
-    /// reports.
+    /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
+    /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
         let mut skeleton = self.fk_at(time);
         self.solve_targets(&mut skeleton, time);
@@ -214,8 +214,8 @@ impl Target {
     }
 }
 
-/// Turns the joints of a pose towards those of `full`, each by the greatest influence of the targets
-/// that move it.
+/// Turns the joints of a pose towards those of `full`, each by the greatest influence of the
+/// targets that move it.
 fn blend(pose: &mut Shared<Skeleton>, full: &Skeleton, targets: &[&Target]) {
     let mut influences = vec![0.0_f32; full.joints().len()];
     for target in targets {

@@ -7,30 +7,30 @@ use super::target::Target;
 use crate::skeleton::{JointId, Skeleton};
 use crate::spline::{Knot, Spline};
 
-/// A path that a chain of joints follows, as a snake follows its head. The chain is a root, called the
-/// head, that root's first child, and so on.
+/// A path that a chain of joints follows, as a snake follows its head. The chain is a root, called
+/// the head, that root's first child, and so on.
 ///
-/// If limits keep a joint's tip off the path, the next joint starts at that tip and turns back towards the
-/// path. Locked joints follow, too.
+/// If limits keep a joint's tip off the path, the next joint starts at that tip and turns back
+/// towards the path. Locked joints follow, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowPath {
     /// The head: a joint without a parent.
     pub root: JointId,
-    /// What moves the head.
+    /// The cause of the head's motion.
     pub kind: PathKind,
 }
 
-/// What moves the head of a chain that follows a path.
+/// The cause of the motion of a head whose chain follows a path.
 ///
-/// Behind the path that a key or a target gives, the joints' own angles give the line of the body. A
-/// joint keeps its roll as far as the least rotation from its own direction to the path does; where the
-/// path turns back in space, the roll can turn quickly.
+/// Behind the path that a key or a target gives, the joints' own angles give the line of the body.
+/// A joint keeps its roll as far as the least rotation from its own direction to the path does;
+/// where the path turns back in space, the roll can turn quickly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathKind {
     /// The head moves around a ring.
     Ring(WavyRing),
-    /// The keys of the head move it, and the chain follows the path that the head has travelled since its
-    /// first key. Until then, or without keys, the joints keep their own angles.
+    /// The keys of the head move it, and the chain follows the path that the head has travelled
+    /// since its first key. Until then, or without keys, the joints keep their own angles.
     Head,
     /// The enabled target of the head moves it, and the chain follows the path that the target has
     /// travelled. That target moves nothing else, whatever its influence. Without such a target the
@@ -111,9 +111,9 @@ impl WavyRing {
     }
 }
 
-/// The path that a head with keys has travelled until a time, as points in skeleton space, the newest
-/// first: where the head is; the spline through its keys, from the time back to the first key; and the
-/// body behind the first key, given by the vectors from joint to joint.
+/// The path that a head with keys has travelled until a time, as points in skeleton space, the
+/// newest first: where the head is; the spline through its keys, from the time back to the first
+/// key; and the body behind the first key, given by the vectors from joint to joint.
 ///
 /// The head is beside the spline if an edit without a key has moved it.
 pub(super) fn travelled_by_head<'a>(
@@ -127,9 +127,9 @@ pub(super) fn travelled_by_head<'a>(
     once(head).chain(on_spline(keys, time, length)).chain(body_behind(first, body))
 }
 
-/// The path that a target has travelled until a time, as points in the target's space, the newest first:
-/// where the target is; the way back that its motion and the keys of its home give; and the body behind
-/// that, given by the vectors from joint to joint.
+/// The path that a target has travelled until a time, as points in the target's space, the newest
+/// first: where the target is; the way back that its motion and the keys of its home give; and the
+/// body behind that, given by the vectors from joint to joint.
 ///
 /// The target is beside the path if an edit without a key has moved it.
 pub(super) fn travelled_by_target<'a>(
@@ -179,8 +179,8 @@ fn steps_back(
     })
 }
 
-/// Number of parts of a piece of a path: so many that a body of this length covers at least 256, but at
-/// most 64.
+/// Number of parts of a piece of a path: so many that a body of this length covers at least 256,
+/// but at most 64.
 fn parts(distance: f32, length: f32) -> usize {
     const ON_BODY: f32 = 256.0;
     const MOST: f32 = 64.0;

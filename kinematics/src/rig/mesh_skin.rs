@@ -54,9 +54,9 @@ struct LoadedMesh {
 }
 
 impl MeshSkin {
-    /// Attaches a mesh to a skeleton. `joints` has for each joint of the file the joint of the skeleton; the
-    /// weights of joints without one go to their nearest ancestor that has one. Without `file`, documents
-    /// contain the mesh.
+    /// Attaches a mesh to a skeleton. `joints` has for each joint of the file the joint of the
+    /// skeleton; the weights of joints without one go to their nearest ancestor that has one.
+    /// Without `file`, documents contain the mesh.
     pub fn new(
         mesh: Shared<FileMesh>,
         file: Option<SkinFile>,
@@ -149,26 +149,28 @@ impl PartialEq for LoadedMesh {
     }
 }
 
-/// A skinned mesh on the joints of a skeleton, with its materials and its thickness around each bone.
+/// A skinned mesh on the joints of a skeleton, with its materials and its thickness around each
+/// bone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedMesh {
     /// The mesh.
     pub mesh: SkinnedMesh,
     /// The parts of the mesh in the order of its triangles, one after the other.
     pub parts: Vec<SkinPart>,
-    /// For each joint, how thick the mesh is around its bone: the mean distance from the bone to the vertices
-    /// whose greatest weight is this joint's, in skeleton units; 0 for a joint without such vertices.
+    /// For each joint, how thick the mesh is around its bone: the mean distance from the bone to
+    /// the vertices whose greatest weight is this joint's, in skeleton units; 0 for a joint without
+    /// such vertices.
     pub radii: Vec<f32>,
-    /// For each joint, the box around those vertices in the joint's own space in the bind pose: its lowest and its
-    /// highest corner; `None` for a joint without such vertices.
+    /// For each joint, the box around those vertices in the joint's own space in the bind pose: its
+    /// lowest and its highest corner; `None` for a joint without such vertices.
     pub boxes: Vec<Option<[Vec3; 2]>>,
     /// The bones on which the thickness was measured: the axis of each joint.
     axes: Vec<Vec3>,
 }
 
 impl AttachedMesh {
-    /// Measures the thickness of a mesh around the bones of its skeleton. Triangles after the last of `parts`
-    /// become a white part.
+    /// Measures the thickness of a mesh around the bones of its skeleton. Triangles after the last
+    /// of `parts` become a white part.
     pub fn new(mesh: SkinnedMesh, mut parts: Vec<SkinPart>, skeleton: &Skeleton) -> Self {
         let listed: usize = parts.iter().map(|part| part.triangles).sum();
         let rest = mesh.mesh().triangles.len().saturating_sub(listed);
@@ -242,8 +244,9 @@ impl SkinPart {
     }
 }
 
-/// An image on a skin, kept as the file that holds it. Most of what a program does with a skin needs no
-/// pixels, and a small file can hold many of them, so they are decoded when they are first needed.
+/// An image on a skin, kept as the file that holds it. Most of what a program does with a skin
+/// needs no pixels, and a small file can hold many of them, so they are decoded when they are first
+/// needed.
 #[derive(Clone)]
 pub struct SkinTexture {
     /// The content of the PNG or JPEG file that holds the image.
@@ -259,8 +262,8 @@ impl SkinTexture {
         Self { file, size, pixels: OnceLock::new() }
     }
 
-    /// Pixels as sRGB with opacity, row by row from the top. The first call decodes them from the file
-    /// by `decode`; later ones give the same result again.
+    /// Pixels as sRGB with opacity, row by row from the top. The first call decodes them from the
+    /// file by `decode`; later ones give the same result again.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! What is posed: the arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and guides,
-//! the skeleton with its targets and its skin, and crowds of arms.
+//! Rigs: the arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and
+//! guides, the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
 mod crowd;

@@ -12,15 +12,15 @@ use crate::{Shared, follow, rotation_between};
 /// The chain of a root, to be laid along a path behind its head. Locked joints follow, too.
 struct PathChain<'a> {
     skeleton: &'a Skeleton,
-    /// The joints, the head first, each with the vector to the next joint in its own space; the last
-    /// with its bone.
+    /// The joints, the head first, each with the vector to the next joint in its own space; the
+    /// last with its bone.
     bones: Vec<(JointId, Vec3)>,
     /// Position of the head in skeleton space.
     head: Vec3,
     /// Points of the path at which the bones end.
     tips: Vec<Vec3>,
-    /// True if joints keep their roll: they are turned onto the path from their own rotation, not from
-    /// the bind pose.
+    /// True if joints keep their roll: they are turned onto the path from their own rotation, not
+    /// from the bind pose.
     keeps_roll: bool,
 }
 
@@ -35,8 +35,8 @@ impl<'a> PathChain<'a> {
         Self { skeleton, bones, head: point(turns), tips, keeps_roll: false }
     }
 
-    /// The chain behind a head with keys at a time in seconds; `None` if its own angles pose it because
-    /// the head has not left its first key yet, or if a point of the body is not finite.
+    /// The chain behind a head with keys at a time in seconds; `None` if its own angles pose it
+    /// because the head has not left its first key yet, or if a point of the body is not finite.
     fn behind_keys(
         skeleton: &'a Skeleton,
         root: JointId,
@@ -77,8 +77,8 @@ impl<'a> PathChain<'a> {
         keys.knots().first().is_some_and(|first| time > first.time || head != first.value)
     }
 
-    /// The chain after its head has moved through `points` of skeleton space; `None` without points, or
-    /// if a point of the body is not finite.
+    /// The chain after its head has moved through `points` of skeleton space; `None` without
+    /// points, or if a point of the body is not finite.
     fn pulled_through(skeleton: &'a Skeleton, root: JointId, points: &[Vec3]) -> Option<Self> {
         let start = skeleton[root].offset;
         points.first()?;
@@ -127,8 +127,8 @@ impl<'a> PathChain<'a> {
                 (offset, rotation) = (joint.offset, joint.rotation);
             }
             above *= joint.rotation_by(rotation);
-            // Limits, or a bone longer than the ring is wide, can leave the tip off the path. The next
-            // joint starts where this bone ends.
+            // Limits, or a bone longer than the ring is wide, can leave the tip off the path. The
+            // next joint starts where this bone ends.
             let end = base + Vec3::from(above * bone);
             base = if end.is_finite() { end } else { tip };
             (index, offset, rotation)
@@ -136,8 +136,8 @@ impl<'a> PathChain<'a> {
     }
 }
 
-/// The joints of the chain of a root, the head first, each with the vector to the next joint in its own
-/// space; the last with its bone.
+/// The joints of the chain of a root, the head first, each with the vector to the next joint in its
+/// own space; the last with its bone.
 fn bones(skeleton: &Skeleton, root: JointId) -> Vec<(JointId, Vec3)> {
     let (mut bones, mut last, mut bone) = (Vec::new(), root, skeleton[root].axis);
     // Children come after their parents, the first child first.
@@ -151,7 +151,8 @@ fn bones(skeleton: &Skeleton, root: JointId) -> Vec<(JointId, Vec3)> {
     bones
 }
 
-/// The bones of a chain in skeleton space, posed by the joints' own angles; `None` if one is not finite.
+/// The bones of a chain in skeleton space, posed by the joints' own angles; `None` if one is not
+/// finite.
 fn posed(skeleton: &Skeleton, bones: &[(JointId, Vec3)]) -> Option<Vec<Vec3>> {
     let posed = bones.iter().scan(Mat3A::IDENTITY, |above, (joint, bone)| {
         *above *= skeleton[*joint].rotation_by(skeleton[*joint].rotation);
@@ -162,7 +163,7 @@ fn posed(skeleton: &Skeleton, bones: &[(JointId, Vec3)]) -> Option<Vec<Vec3>> {
 
 /// A skeleton of which chains follow paths.
 impl SkeletonRig {
-    /// What moves the chain of a root along a path; `None` if no path does.
+    /// The path that moves the chain of a root; `None` if no path does.
     pub fn path_kind(&self, root: JointId) -> Option<PathKind> {
         Some(self.follow_paths.iter().find(|path| path.root == root)?.kind)
     }
@@ -182,8 +183,9 @@ impl SkeletonRig {
         self.skeleton.ancestors(joint).last()
     }
 
-    /// True if any chain follows a path at a time in seconds, so that its own angles do not pose it: on
-    /// a ring always, behind a target while it is enabled, behind a head from its first key on.
+    /// True if any chain follows a path at a time in seconds, so that its own angles do not pose
+    /// it: on a ring always, behind a target while it is enabled, behind a head from its first key
+    /// on.
     pub fn is_on_path(&self, time: f64) -> bool {
         self.paths_at(time).next().is_some()
     }
@@ -203,8 +205,8 @@ impl SkeletonRig {
         target.is_posing() && !self.leads_path(target)
     }
 
-    /// The FK pose at a time in seconds: on the followed paths if there are any, else by the skeleton's
-    /// own angles.
+    /// The FK pose at a time in seconds: on the followed paths if there are any, else by the
+    /// skeleton's own angles.
     pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
         let mut fk = self.skeleton.clone();
         self.chains_at(time).for_each(|chain| chain.write(fk.make_mut()));
@@ -276,8 +278,8 @@ impl SkeletonRig {
         self.targets.iter().find(|target| target.joint == root && target.enabled)
     }
 
-    /// Moves the head of a chain through points of skeleton space. With [`PathKind::Head`] and without
-    /// keys, the chain follows; otherwise only the head moves.
+    /// Moves the head of a chain through points of skeleton space. With [`PathKind::Head`] and
+    /// without keys, the chain follows; otherwise only the head moves.
     pub fn pull_head(&mut self, root: JointId, points: &[Vec3]) {
         let (Some(_), Some(last)) = (self.skeleton.joint(root), points.last()) else { return };
         let is_pulled =

@@ -22,12 +22,12 @@ pub struct SkeletonRig {
     pub solver: SolverOptions,
     /// Number of solver iterations per displayed frame during a solver run.
     pub iterations_per_frame: u32,
-    /// Paths that the chains of roots follow over time, instead of their own angles; at most one per
-    /// root.
+    /// Paths that the chains of roots follow over time, instead of their own angles; at most one
+    /// per root.
     pub follow_paths: Vec<FollowPath>,
     /// By root, the keys of a head's offset with [`PathKind::Head`], of the target's home with
-    /// [`PathKind::Target`]. The evaluation of a document sets them; there are none in a document that
-    /// is not evaluated, and they are never saved.
+    /// [`PathKind::Target`]. The evaluation of a document sets them; there are none in a document
+    /// that is not evaluated, and they are never saved.
     pub head_tracks: BTreeMap<JointId, Shared<Spline<Vec3>>>,
     /// The mesh that follows the joints; `None` for bones alone.
     pub skin: Option<Skin>,
@@ -65,8 +65,8 @@ impl SkeletonRig {
         self.targets.iter().position(|target| target.joint == joint)
     }
 
-    /// For each joint the greatest influence of the targets that turn it; 0 for a joint that has its FK
-    /// angles.
+    /// For each joint the greatest influence of the targets that turn it; 0 for a joint that has
+    /// its FK angles.
     pub fn influences(&self) -> Vec<f32> {
         let mut influences = Vec::new();
         self.write_influences(&mut influences);
@@ -85,8 +85,8 @@ impl SkeletonRig {
         }
     }
 
-    /// The posing target that turns a joint, of several the one with the greatest influence; `None` if the
-    /// joint has its FK angles.
+    /// The posing target that turns a joint, of several the one with the greatest influence; `None`
+    /// if the joint has its FK angles.
     pub fn target_that_turns(&self, joint: JointId) -> Option<&Target> {
         let turns = |target: &&Target| {
             self.is_solved_for(target) && self.moved_by(target).turned.contains(&joint)
@@ -100,8 +100,8 @@ impl SkeletonRig {
         MovedJoints::new(&self.skeleton, self.solver.root, target)
     }
 
-    /// The joint that a target is named after: the hand of its limb, or the joint whose tip it brings to
-    /// the target.
+    /// The joint that a target is named after: the hand of its limb, or the joint whose tip it
+    /// brings to the target.
     pub fn end_of(&self, target: &Target) -> JointId {
         let limb = target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
         limb.and_then(|limb| limb.hand).unwrap_or(target.joint)
@@ -112,16 +112,16 @@ impl SkeletonRig {
         self.target(joint).map(|index| self.end_of(&self.targets[index]))
     }
 
-    /// Index in [`Self::targets`] of the target that a joint is posed by as an end: the joint's own, or
-    /// that of the limb whose hand it is.
+    /// Index in [`Self::targets`] of the target that a joint is posed by as an end: the joint's
+    /// own, or that of the limb whose hand it is.
     pub fn target_of_end(&self, joint: JointId) -> Option<usize> {
         let ends_at = |target: &Target| self.end_of(target) == joint;
         self.target(joint).or_else(|| self.targets.iter().position(ends_at))
     }
 
-    /// A target with full influence at the tip of a joint in a pose: for a hand or
-    /// foot, or the bone above it, of the limb of two bones that ends there; otherwise for the whole
-    /// body. `None` if the joint is missing or has a target.
+    /// A target with full influence at the tip of a joint in a pose: for a hand or foot, or the
+    /// bone above it, of the limb of two bones that ends there; otherwise for the whole body.
+    /// `None` if the joint is missing or has a target.
     pub fn new_target(&self, joint: JointId, pose: &Skeleton) -> Option<Target> {
         self.skeleton.joint(joint)?;
         let limb = Limb::for_end(&self.skeleton, joint);
@@ -133,8 +133,8 @@ impl SkeletonRig {
         self.target(joint).is_none().then_some(Target { kind, influence: 1.0, ..target })
     }
 
-    /// The enabled targets at a time in seconds, for a solver, without those that lead a path; those on joints are where the FK pose
-    /// has them.
+    /// The enabled targets at a time in seconds, for a solver, without those that lead a path;
+    /// those on joints are where the FK pose has them.
     pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
         let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
@@ -178,8 +178,8 @@ impl SkeletonRig {
             .collect();
     }
 
-    /// Makes a skin from bones again if the bind pose or its shape have changed since it was made, and
-    /// measures one from a file again if the bones have.
+    /// Makes a skin from bones again if the bind pose or its shape have changed since it was made,
+    /// and measures one from a file again if the bones have.
     pub fn refresh_skin(&mut self) {
         let refreshed = self.skin.as_ref().and_then(|skin| skin.refreshed(&self.skeleton));
         if refreshed.is_some() {
@@ -228,7 +228,8 @@ impl SkeletonRig {
     }
 
     /// Centre and radius of a bounding sphere of a pose, the targets at a time in seconds, the
-    /// followed path and a skin from a file, in the world. The radius is at least a quarter of the reach.
+    /// followed path and a skin from a file, in the world. The radius is at least a quarter of the
+    /// reach.
     pub fn bounds(&self, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
         self.bounds_with_reach(self.reach(), pose, time)
     }

@@ -12,9 +12,10 @@ use crate::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning};
 pub struct Skin {
     /// Where the mesh comes from.
     pub source: SkinSource,
-    /// How the joints of a vertex are blended.
+    /// The way of blending the joints of a vertex.
     pub skinning: Skinning,
-    /// Colour as sRGB channels from 0 to 1. For a mesh from a file, it multiplies the file's colours.
+    /// Colour as sRGB channels from 0 to 1. For a mesh from a file, it multiplies the file's
+    /// colours.
     pub colour: [f32; 3],
 }
 
@@ -47,8 +48,8 @@ impl Skin {
         Self::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), Default::default())))
     }
 
-    /// A skin from bones in the default colour with dual quaternions, or a mesh in the colours of its file
-    /// with linear blending, which most programs have.
+    /// A skin from bones in the default colour with dual quaternions, or a mesh in the colours of
+    /// its file with linear blending, which most programs have.
     pub fn new(source: SkinSource) -> Self {
         let (skinning, colour) = match &source {
             SkinSource::Bones(_) => (Skinning::default(), Self::DEFAULT_COLOUR),
@@ -57,12 +58,13 @@ impl Skin {
         Self { source, skinning, colour }
     }
 
-    /// The mesh. That of a skin from bones is made when it is first needed, in about ten milliseconds per
-    /// thousand vertices, and then kept.
+    /// The mesh. That of a skin from bones is made when it is first needed, in about ten
+    /// milliseconds per thousand vertices, and then kept.
     ///
     /// # Errors
     ///
-    /// [`SkinMeshError`] if no mesh can be made from the bones, or the file of the mesh cannot be read.
+    /// [`SkinMeshError`] if no mesh can be made from the bones, or the file of the mesh cannot be
+    /// read.
     pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinMeshError> {
         Ok(match &self.source {
             SkinSource::Bones(bones) => bones.mesh()?,
@@ -86,14 +88,15 @@ impl Skin {
         }
     }
 
-    /// True if the mesh of the skin is from the file `before`, and follows the same joints as `mesh`.
+    /// True if the mesh of the skin is from the file `before`, and follows the same joints as
+    /// `mesh`.
     pub fn can_become(&self, mesh: &MeshSkin, before: Option<&SkinFile>) -> bool {
         let SkinSource::Mesh(own) = &self.source else { return false };
         own.joints() == mesh.joints() && own.file() == before
     }
 
-    /// The skin with its mesh made or measured again, if the bones, or the shape of a skin from bones, have
-    /// changed since; otherwise `None`.
+    /// The skin with its mesh made or measured again, if the bones, or the shape of a skin from
+    /// bones, have changed since; otherwise `None`.
     pub(super) fn refreshed(&self, skeleton: &Shared<Skeleton>) -> Option<Self> {
         let source = match &self.source {
             SkinSource::Bones(bones) => SkinSource::Bones(bones.refreshed(skeleton)?),
@@ -113,8 +116,8 @@ impl Skin {
     }
 }
 
-/// A skin from the bones of a skeleton. Its mesh follows from the bind pose and the shape; it is made when
-/// it is first needed, and clones share it.
+/// A skin from the bones of a skeleton. Its mesh follows from the bind pose and the shape; it is
+/// made when it is first needed, and clones share it.
 #[derive(Clone, Debug)]
 pub struct BoneSkin {
     shape: SkinShape,
@@ -136,7 +139,7 @@ impl BoneSkin {
         Self { shape, made: Arc::new(made) }
     }
 
-    /// What it is made of beside the bones.
+    /// Its parameters beside the bones.
     pub fn shape(&self) -> &SkinShape {
         &self.shape
     }

@@ -41,8 +41,8 @@ pub enum TargetKind {
 }
 
 impl Target {
-    /// An enabled whole-body target in the world, without influence, that stays at its home. `radius`
-    /// is the radius of the path that it will have once it moves.
+    /// An enabled whole-body target in the world, without influence, that stays at its home.
+    /// `radius` is the radius of the path that it will have once it moves.
     pub fn new(joint: JointId, home: Vec3, radius: f32) -> Self {
         let motion = TargetMotion { path: TargetPath::Still, radius, period: 4.0 };
         Self {
@@ -110,8 +110,9 @@ impl Target {
         Self { home, ..self }
     }
 
-    /// The target in another space, where it is in the world at `time`, in seconds; the hand keeps its
-    /// orientation. Its angles are the equivalent ones nearest to `near`, or to those that it has.
+    /// The target in another space, where it is in the world at `time`, in seconds; the hand keeps
+    /// its orientation. Its angles are the equivalent ones nearest to `near`, or to those that it
+    /// has.
     #[must_use]
     pub fn in_space(
         self,
@@ -211,12 +212,13 @@ impl TargetMotion {
 pub struct LimbSettings {
     /// Direction of the elbow at twist 0.
     pub reference: ElbowReference,
-    /// Angle in radians by which the elbow is turned about the axis from the limb's base to the target.
+    /// Angle in radians by which the elbow is turned about the axis from the limb's base to the
+    /// target.
     pub twist: f32,
     /// Behaviour near the limits of the reach.
     pub soft_reach: SoftReach,
-    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x; `None` for
-    /// a hand that follows the lower bone.
+    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x; `None`
+    /// for a hand that follows the lower bone.
     pub orientation: Option<Vec3>,
     /// The space of the point of [`ElbowReference::Pole`].
     pub pole_space: TargetSpace,
@@ -275,15 +277,15 @@ impl TargetSpace {
         }
     }
 
-    /// Transform from this space to the world, for a pose of the skeleton. A joint that the skeleton
-    /// does not have counts as the world.
+    /// Transform from this space to the world, for a pose of the skeleton. A joint that the
+    /// skeleton does not have counts as the world.
     pub fn to_world(self, pose: &Skeleton) -> Affine3A {
         let joint = self.joint().filter(|joint| pose.joint(*joint).is_some());
         joint.map_or(Affine3A::IDENTITY, |joint| pose.full_transform(joint))
     }
 
-    /// Transform from this space to skeleton space, for a pose of the skeleton. That of the world is not
-    /// finite if the skeleton's own transform is singular.
+    /// Transform from this space to skeleton space, for a pose of the skeleton. That of the world
+    /// is not finite if the skeleton's own transform is singular.
     pub(super) fn to_skeleton(self, pose: &Skeleton) -> Affine3A {
         let Some(joint) = self.joint().filter(|joint| pose.joint(*joint).is_some()) else {
             return pose.transform().inverse();
@@ -298,8 +300,8 @@ impl TargetSpace {
         joint.map_or(Quat::IDENTITY, |joint| pose.rotation_in_world(joint).as_quat())
     }
 
-    /// Point in this space that is at `point`, in the world. Where the space is singular (a scale of
-    /// 0) or the result overflows, returns `point`.
+    /// Point in this space that is at `point`, in the world. Where the space is singular (a scale
+    /// of 0) or the result overflows, returns `point`.
     pub fn point_from_world(self, pose: &Skeleton, point: Vec3) -> Vec3 {
         if self == Self::World {
             return point;
@@ -354,8 +356,8 @@ impl MovedJoints {
         skeleton.ancestors(joint).any(|above| self.turned.contains(&above))
     }
 
-    /// True if `target`, which moves these joints, must be solved after a target that moves the joints
-    /// of `other`: because it is on one of them, or because its limb is attached to one.
+    /// True if `target`, which moves these joints, must be solved after a target that moves the
+    /// joints of `other`: because it is on one of them, or because its limb is attached to one.
     pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
         let base = self.upper.and_then(|upper| skeleton[upper].parent);
         let spaces = target.spaces().filter_map(TargetSpace::joint);

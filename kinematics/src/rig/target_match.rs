@@ -9,8 +9,9 @@ use crate::{Shared, angle};
 /// Matches between the FK pose and the pose that a target solves for.
 impl SkeletonRig {
     /// Moves a target to where the skeleton at `time`, in seconds, has the tip without it. A limb's
-    /// target also takes over the hand's orientation, if it keeps one, and the elbow's side: by moving
-    /// the pole, or by its twist. At any influence the skeleton is then posed as without the target.
+    /// target also takes over the hand's orientation, if it keeps one, and the elbow's side: by
+    /// moving the pole, or by its twist. At any influence the skeleton is then posed as without the
+    /// target.
     pub fn match_target_to_fk(&mut self, index: usize, time: f64) {
         let pose = self.skeleton_at_without(index, time);
         let target = self.targets[index];
@@ -26,9 +27,9 @@ impl SkeletonRig {
         self.targets[index] = target;
     }
 
-    /// Writes the pose at `time`, in seconds, to the FK angles of the joints that a target moves. With
-    /// an influence between 0 and 1, the target then moves to the tip, where FK and IK agree. The
-    /// skeleton does not move, unless a part of a stretch is blended in: FK has no stretch.
+    /// Writes the pose at `time`, in seconds, to the FK angles of the joints that a target moves.
+    /// With an influence between 0 and 1, the target then moves to the tip, where FK and IK agree.
+    /// The skeleton does not move, unless a part of a stretch is blended in: FK has no stretch.
     pub fn match_fk_to_pose(&mut self, index: usize, time: f64) {
         let solved = self.skeleton_at(time);
         let target = self.targets[index];
@@ -73,7 +74,8 @@ impl LimbSettings {
         self
     }
 
-    /// Turns the pole about the limb, or sets the twist, so that the elbow stays where a pose has it.
+    /// Turns the pole about the limb, or sets the twist, so that the elbow stays where a pose has
+    /// it.
     fn match_elbow(&mut self, pose: &Skeleton, limb: Limb) {
         // Radians; rounding turns no pole and no twist.
         const SAME: f32 = 1e-5;
@@ -89,8 +91,8 @@ impl LimbSettings {
         }
     }
 
-    /// The pole, in its space, turned by an angle in radians about the line from the limb's base to its
-    /// tip. `None` without a pole, and for one so near to that line that it gives no direction.
+    /// The pole, in its space, turned by an angle in radians about the line from the limb's base to
+    /// its tip. `None` without a pole, and for one so near to that line that it gives no direction.
     fn turned_pole(&self, pose: &Skeleton, limb: Limb, angle: f32) -> Option<Vec3> {
         // Sine of the angle between the line and the pole.
         const NEAR: f64 = 1e-2;

@@ -12,12 +12,12 @@ pub enum UpAxis {
 }
 
 impl UpAxis {
-    /// The axis that points from the feet of a figure to its body in a pose; `None` if the figure has no
-    /// legs, or lies.
+    /// The axis that points from the feet of a figure to its body in a pose; `None` if the figure
+    /// has no legs, or lies.
     ///
-    /// Feet are joints whose names say so. Without any, they are at least two leaves that are the lowest
-    /// points along an axis and stand apart along x, of a figure that is twice as high as it is deep; and the
-    /// highest points are leaves above the middle between them.
+    /// Feet are joints whose names say so. Without any, they are at least two leaves that are the
+    /// lowest points along an axis and stand apart along x, of a figure that is twice as high as it
+    /// is deep; and the highest points are leaves above the middle between them.
     pub fn of(skeleton: &Skeleton, pose: &SkeletonPose) -> Option<Self> {
         let feet: Vec<JointId> =
             skeleton.iter().filter(|(_, joint)| is_foot(&joint.name)).map(|(id, _)| id).collect();
@@ -83,7 +83,8 @@ fn is_foot(name: &str) -> bool {
     WORDS.iter().any(|word| name.contains(word))
 }
 
-/// The joint from which the leg of a foot starts: the nearest ancestor with other children, or the root.
+/// The joint from which the leg of a foot starts: the nearest ancestor with other children, or the
+/// root.
 fn hip(skeleton: &Skeleton, foot: JointId) -> JointId {
     let mut above = skeleton.ancestors(foot).skip_while(|joint| is_foot(&skeleton[*joint].name));
     let branches = |joint: &JointId| skeleton.children(*joint).nth(1).is_some();

@@ -36,8 +36,8 @@ pub fn matrix(angles: DVec3) -> DMat3 {
         * DMat3::from_rotation_x(angles.x)
 }
 
-/// Angles between those of two rotations, at the part `s` of the way along the shortest turn: the ones
-/// nearest to the straight line from `from` to `to`. All in radians.
+/// Angles between those of two rotations, at the part `s` of the way along the shortest turn: the
+/// ones nearest to the straight line from `from` to `to`. All in radians.
 pub fn slerp(from: DVec3, to: DVec3, s: f64) -> DVec3 {
     let [start, end] = [from, to].map(|angles| DQuat::from_mat3(&matrix(angles)));
     let between = start.slerp(end, s).normalize();

@@ -88,8 +88,8 @@ pub struct Joint {
     pub limits: JointLimits,
     /// True if solvers leave the rotation unchanged.
     pub locked: bool,
-    /// True if keys that move this joint also move the tip of its parent's bone, so that the bone ends
-    /// here at every time.
+    /// True if keys that move this joint also move the tip of its parent's bone, so that the bone
+    /// ends here at every time.
     pub connected: bool,
     /// Radius with which the bone is drawn, in skeleton units.
     pub radius: f32,
@@ -245,8 +245,8 @@ impl Joint {
         self.frame.as_dmat3() * DMat3::from_cols(about_zy.x_axis, about_z.y_axis, DVec3::Z)
     }
 
-    /// The angles for a rotation in the space of the joint's base: of all equivalent angles those that
-    /// the limits change least, then those nearest to the joint's own; clamped to the limits.
+    /// The angles for a rotation in the space of the joint's base: of all equivalent angles those
+    /// that the limits change least, then those nearest to the joint's own; clamped to the limits.
     pub(crate) fn angles_within(&self, rotation: DMat3) -> AnglesWithin {
         const ROUNDING: f32 = 1e-5;
         let rotation = Mat3A::from(rotation.as_mat3());
@@ -260,8 +260,8 @@ impl Joint {
         if second.1 + ROUNDING < first.1 { second.0 } else { first.0 }
     }
 
-    /// The joint's angles turned towards other angles by a fraction of the shortest rotation between
-    /// the two. A fraction of 1 gives `angles` bit for bit.
+    /// The joint's angles turned towards other angles by a fraction of the shortest rotation
+    /// between the two. A fraction of 1 gives `angles` bit for bit.
     pub(crate) fn angles_towards(&self, angles: Vec3, fraction: f32) -> Vec3 {
         if fraction >= 1.0 {
             return angles;

@@ -187,8 +187,8 @@ impl JointLimits {
         })
     }
 
-    /// Moves angles to a fraction of the way through their ranges: those at an end or, with `all`, all
-    /// that have limits.
+    /// Moves angles to a fraction of the way through their ranges: those at an end or, with `all`,
+    /// all that have limits.
     pub(crate) fn moved_inside(&self, angles: Vec3, fraction: f32, all: bool) -> Vec3 {
         let mut inside = angles;
         for axis in RotationAxis::ALL {

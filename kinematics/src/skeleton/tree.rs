@@ -189,8 +189,8 @@ impl Skeleton {
         self.transform.transform_point3(self.ancestors(joint).fold(self[joint].axis, in_parent))
     }
 
-    /// Rotation of the joint's own space in the world: that of the skeleton's transform, without its
-    /// scale, times those of the joints down to this one.
+    /// Rotation of the joint's own space in the world: that of the skeleton's transform, without
+    /// its scale, times those of the joints down to this one.
     ///
     /// # Panics
     ///
@@ -230,8 +230,8 @@ impl Skeleton {
         SkeletonPose::new(&self.joints, self.transform, |_, joint| joint.local_in_bind_pose())
     }
 
-    /// Writes [`Skeleton::pose_in_skeleton`] into an existing pose. Allocates only if that pose has too
-    /// little memory.
+    /// Writes [`Skeleton::pose_in_skeleton`] into an existing pose. Allocates only if that pose has
+    /// too little memory.
     pub fn write_pose_in_skeleton(&self, pose: &mut SkeletonPose) {
         pose.refill(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local());
     }

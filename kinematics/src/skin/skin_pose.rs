@@ -6,7 +6,7 @@ use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Quat, Vec3, Vec4};
 use super::vertex_weights::VertexWeights;
 use crate::skeleton::{Joint, Skeleton, SkeletonPose};
 
-/// How the joints of a vertex are blended. See [the module](super).
+/// A way of blending the joints of a vertex. See [the module](super).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -58,7 +58,7 @@ impl FromStr for Skinning {
     }
 }
 
-/// How each joint of a posed skeleton moves a mesh, for all ways of blending.
+/// The motion that each joint of a posed skeleton gives to a mesh, for all ways of blending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinPose {
     joints: Vec<JointDeform>,
@@ -67,7 +67,7 @@ pub struct SkinPose {
     spaces: SkeletonPose,
 }
 
-/// How one joint moves a mesh.
+/// The motion that one joint gives to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointDeform {
     /// J = X·B⁻¹ from mesh space to skeleton space.
@@ -89,8 +89,8 @@ pub struct JointDeform {
 }
 
 impl SkinPose {
-    /// Writes the joints of a posed skeleton, with their inverse bind transforms. Joints beyond these, which
-    /// no vertex follows, are left out.
+    /// Writes the joints of a posed skeleton, with their inverse bind transforms. Joints beyond
+    /// these, which no vertex follows, are left out.
     pub(super) fn refill(&mut self, inverse_binds: &[Affine3A], skeleton: &Skeleton) {
         skeleton.write_pose_in_skeleton(&mut self.spaces);
         let deform = |((joint, parameters), inverse_bind)| {
@@ -199,8 +199,9 @@ impl JointDeform {
         }
     }
 
-    /// J with the roll t·τ instead of τ, where t is the fraction of the bone at a point of mesh space:
-    /// X·Rot(â, φ)·B⁻¹ with φ = −(1 − t)·τ, by Rodrigues' formula Rot = 1 + sin φ·K + (1 − cos φ)·K².
+    /// J with the roll t·τ instead of τ, where t is the fraction of the bone at a point of mesh
+    /// space: X·Rot(â, φ)·B⁻¹ with φ = −(1 − t)·τ, by Rodrigues' formula Rot = 1 + sin φ·K + (1 −
+    /// cos φ)·K².
     fn with_spread_roll(&self, vertex: Vec3) -> Affine3A {
         let fraction = self.along.dot(vertex.extend(1.0)).clamp(0.0, 1.0);
         let (sin, cos) = (-(1.0 - fraction) * self.roll).sin_cos();
@@ -250,15 +251,16 @@ impl DualQuaternion {
     /// The zero of [`DualQuaternion::add`]; not a motion.
     pub const ZERO: Self = Self { real: Vec4::ZERO, dual: Vec4::ZERO };
 
-    /// Adds a weighted motion; with a negative weight if its rotation is in the other hemisphere than
-    /// `near`. q and −q are the same motion.
+    /// Adds a weighted motion; with a negative weight if its rotation is in the other hemisphere
+    /// than `near`. q and −q are the same motion.
     pub fn add(&mut self, weight: f32, other: &Self, near: Vec4) {
         let weight = if other.real.dot(near) < 0.0 { -weight } else { weight };
         self.real += weight * other.real;
         self.dual += weight * other.dual;
     }
 
-    /// The rigid motion of a sum, scaled to unit length. Rotations in one hemisphere do not cancel out.
+    /// The rigid motion of a sum, scaled to unit length. Rotations in one hemisphere do not cancel
+    /// out.
     pub fn motion(&self) -> Affine3A {
         let length = self.real.length();
         if length == 0.0 {
@@ -272,8 +274,8 @@ impl DualQuaternion {
     }
 }
 
-/// A transform as a rigid motion after a scale: `motion · scale`. The polar decomposition of the linear
-/// part; a mirroring transform has a mirroring scale. A singular transform has no rotation.
+/// A transform as a rigid motion after a scale: `motion · scale`. The polar decomposition of the
+/// linear part; a mirroring transform has a mirroring scale. A singular transform has no rotation.
 pub fn motion_and_scale(transform: Affine3A) -> (DualQuaternion, Mat3A) {
     let DAffine3 { matrix3, translation } = transform.as_daffine3();
     let rotation = nearest_rotation(matrix3);
@@ -284,8 +286,8 @@ pub fn motion_and_scale(transform: Affine3A) -> (DualQuaternion, Mat3A) {
     (motion, Mat3A::from(scale.as_mat3()))
 }
 
-/// The rotation nearest to a matrix, by Newton's iteration R ← (R + R⁻ᵀ)/2 (Higham 1986), which squares
-/// the error in each step.
+/// The rotation nearest to a matrix, by Newton's iteration R ← (R + R⁻ᵀ)/2 (Higham 1986), which
+/// squares the error in each step.
 fn nearest_rotation(matrix: DMat3) -> DMat3 {
     let determinant = matrix.determinant();
     let size = determinant.abs().cbrt();
@@ -307,9 +309,9 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
     rotation
 }
 
-/// The roll τ of a rotation about a unit axis, in (−π, π]: the rotation is a swing of the axis after a
-/// rotation about the axis by τ. It is 0 where the rotation turns the axis around by 180°, where any roll
-/// would do.
+/// The roll τ of a rotation about a unit axis, in (−π, π]: the rotation is a swing of the axis
+/// after a rotation about the axis by τ. It is 0 where the rotation turns the axis around by 180°,
+/// where any roll would do.
 pub fn roll(rotation: DQuat, axis: DVec3) -> f64 {
     let (cos, sin) = (rotation.w, rotation.xyz().dot(axis));
     let sign = if cos < 0.0 { -1.0 } else { 1.0 };

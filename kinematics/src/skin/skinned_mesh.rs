@@ -19,8 +19,8 @@ impl SkinnedMesh {
     /// Maximum number of triangles.
     pub const MOST_TRIANGLES: usize = 5_000_000;
 
-    /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹ from
-    /// mesh space to the joint's own space.
+    /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹
+    /// from mesh space to the joint's own space.
     ///
     /// # Errors
     ///
@@ -122,9 +122,9 @@ impl SkinnedMesh {
         VertexWeights::heaviest(weights).0
     }
 
-    /// The same mesh with its joints renumbered: `joints[i]` is the new index of joint i, and the weights of
-    /// joints without one go to their nearest ancestor that has one, or else to the new joint 0. `parents`
-    /// are the parents of the old joints, which precede their children.
+    /// The same mesh with its joints renumbered: `joints[i]` is the new index of joint i, and the
+    /// weights of joints without one go to their nearest ancestor that has one, or else to the new
+    /// joint 0. `parents` are the parents of the old joints, which precede their children.
     #[must_use]
     pub fn renumbered(&self, joints: &[Option<JointId>], parents: &[Option<JointId>]) -> Self {
         let mut heirs: Vec<Option<JointId>> = Vec::with_capacity(parents.len());
@@ -158,7 +158,7 @@ impl SkinnedMesh {
             + size_of_val(&self.inverse_binds[..])
     }
 
-    /// How the joints of a posed skeleton move the mesh.
+    /// The motion that each joint of a posed skeleton gives to the mesh.
     pub fn pose(&self, skeleton: &Skeleton) -> SkinPose {
         let mut pose = SkinPose::default();
         self.write_pose(skeleton, &mut pose);
@@ -170,8 +170,8 @@ impl SkinnedMesh {
         pose.refill(&self.inverse_binds, skeleton);
     }
 
-    /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from outside
-    /// also if the skeleton's transform mirrors.
+    /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from
+    /// outside also if the skeleton's transform mirrors.
     pub fn posed(&self, pose: &SkinPose, skinning: Skinning) -> TriangleMesh {
         let mut posed = self.mesh.clone();
         self.write_posed(pose, skinning, &mut posed.positions, &mut posed.normals);
@@ -202,8 +202,8 @@ impl SkinnedMesh {
     }
 }
 
-/// A normal under the linear part of a transform: the inverse transpose, computed by cofactors so that
-/// a collapsed mesh has normals too. Without a direction, the original normal.
+/// A normal under the linear part of a transform: the inverse transpose, computed by cofactors so
+/// that a collapsed mesh has normals too. Without a direction, the original normal.
 fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
     let Mat3A { x_axis, y_axis, z_axis } = linear;
     let cofactors =
@@ -229,7 +229,7 @@ pub enum SkinError {
     /// There are too many vertices or triangles.
     #[error("a skin must have at most {most} {list}, got {got}")]
     TooMany {
-        /// What there are too many of.
+        /// The things of which there are too many.
         list: &'static str,
         /// The greatest number.
         most: usize,

@@ -9,7 +9,8 @@ pub struct TriangleMesh {
     pub positions: Vec<Vec3>,
     /// Unit normals of the vertices, as many as positions.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates of the vertices, origin at the upper left; empty or as many as positions.
+    /// Texture coordinates of the vertices, origin at the upper left; empty or as many as
+    /// positions.
     pub texture_coordinates: Vec<Vec2>,
     /// Indices of the corners, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -34,8 +35,8 @@ impl TriangleMesh {
         low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
     }
 
-    /// The first triangle that a ray meets, from either side; `None` if it meets none. `direction` may have
-    /// any length.
+    /// The first triangle that a ray meets, from either side; `None` if it meets none. `direction`
+    /// may have any length.
     pub fn hit(&self, origin: Vec3, direction: Vec3) -> Option<MeshHit> {
         let hits = self.triangles.iter().filter_map(|corners| {
             let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
@@ -46,8 +47,8 @@ impl TriangleMesh {
     }
 }
 
-/// Distance along a ray at which it meets a triangle, and the barycentric coordinates there (T. Möller,
-/// B. Trumbore, *Fast, minimum storage ray/triangle intersection*, 1997).
+/// Distance along a ray at which it meets a triangle, and the barycentric coordinates there (T.
+/// Möller, B. Trumbore, *Fast, minimum storage ray/triangle intersection*, 1997).
 fn meet(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, [f32; 3])> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
@@ -81,8 +82,8 @@ struct EdgePoint {
 }
 
 impl MeshSection {
-    /// The section by the plane through `point` across `normal`, both in the mesh's space; of several
-    /// curves the one nearest to the point. `None` if the plane cuts no closed curve.
+    /// The section by the plane through `point` across `normal`, both in the mesh's space; of
+    /// several curves the one nearest to the point. `None` if the plane cuts no closed curve.
     pub fn new(mesh: &TriangleMesh, point: Vec3, normal: Vec3) -> Option<Self> {
         let height = |vertex: u32| (mesh.positions[vertex as usize] - point).dot(normal);
         let mut next: HashMap<(u32, u32), (u32, u32)> = HashMap::new();
@@ -136,8 +137,8 @@ impl MeshSection {
         vertices
     }
 
-    /// Area that the curve encloses: the length of its vector area, for a plane curve its plain area.
-    /// `position` gives the positions of the vertices.
+    /// Area that the curve encloses: the length of its vector area, for a plane curve its plain
+    /// area. `position` gives the positions of the vertices.
     pub fn area(&self, position: impl Fn(u32) -> Vec3) -> f32 {
         let at = |point: &EdgePoint| {
             position(point.from).as_dvec3().lerp(position(point.to).as_dvec3(), point.share.into())

@@ -1,7 +1,7 @@
 use crate::skeleton::JointId;
 
-/// The joints that a vertex follows, at most four, with their weights: above 0, the heaviest first, their
-/// sum 1.
+/// The joints that a vertex follows, at most four, with their weights: above 0, the heaviest first,
+/// their sum 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexWeights {
     joints: [u16; 4],
@@ -14,8 +14,8 @@ impl VertexWeights {
         Self::heaviest([(joint, 1.0)]).0
     }
 
-    /// Weights in the form of [`VertexWeights::joints`] and [`VertexWeights::weights`], unchanged if they are
-    /// valid; otherwise as [`VertexWeights::heaviest`].
+    /// Weights in the form of [`VertexWeights::joints`] and [`VertexWeights::weights`], unchanged
+    /// if they are valid; otherwise as [`VertexWeights::heaviest`].
     pub fn listed(joints: [u16; 4], weights: [f32; 4]) -> Self {
         const ROUNDING: f32 = 1e-5;
         let sum: f32 = weights.iter().sum();
@@ -27,9 +27,9 @@ impl VertexWeights {
         Self::heaviest(joints.into_iter().zip(weights)).0
     }
 
-    /// The four heaviest of any number of weights, scaled to the sum 1, and the part of the original sum
-    /// that was cut. Weights of the same joint are added; weights that are not finite or not above 0 count
-    /// as 0. Without any weight above 0 the vertex follows joint 0.
+    /// The four heaviest of any number of weights, scaled to the sum 1, and the part of the
+    /// original sum that was cut. Weights of the same joint are added; weights that are not finite
+    /// or not above 0 count as 0. Without any weight above 0 the vertex follows joint 0.
     pub fn heaviest(weights: impl IntoIterator<Item = (JointId, f32)>) -> (Self, f32) {
         let merged = merged(weights);
         let all: f64 = merged.iter().map(|(_, weight)| weight).sum();
@@ -37,9 +37,9 @@ impl VertexWeights {
         (Self::of_heaviest(&merged), if all > 0.0 { (1.0 - kept / all) as f32 } else { 0.0 })
     }
 
-    /// The four heaviest of any number of weights, after the fifth, if there is one, is subtracted from
-    /// each: so the weights change evenly where another joint becomes one of the four. Otherwise as
-    /// [`VertexWeights::heaviest`].
+    /// The four heaviest of any number of weights, after the fifth, if there is one, is subtracted
+    /// from each: so the weights change evenly where another joint becomes one of the four.
+    /// Otherwise as [`VertexWeights::heaviest`].
     pub(super) fn heaviest_evenly(weights: impl IntoIterator<Item = (JointId, f32)>) -> Self {
         let mut merged = merged(weights);
         // Not all of it: five equal weights would leave nothing.

@@ -8,13 +8,13 @@ pub mod strategies;
 
 pub use random::Random;
 
-/// Number of cases that a long test tries: a tenth of `all`, or all of them where `IK_ARM_ALL_CASES` is
-/// set, as `scripts/soak.sh` does.
+/// Number of cases that a long test tries: a tenth of `all`, or all of them where
+/// `IK_ARM_ALL_CASES` is set, as `scripts/soak.sh` does.
 pub fn cases(all: usize) -> usize {
     if all_cases() { all } else { all.div_ceil(10) }
 }
 
-/// Whether long tests try all their cases.
+/// True if long tests try all their cases.
 pub fn all_cases() -> bool {
     std::env::var_os("IK_ARM_ALL_CASES").is_some()
 }

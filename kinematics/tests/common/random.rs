@@ -3,7 +3,8 @@ use std::ops::Range;
 
 use glam::{EulerRot, Mat3, Quat, Vec3};
 
-/// A generator of numbers (SplitMix64), and of what is made of numbers alone. Its field is the seed.
+/// A generator of numbers (SplitMix64), and of what is made of numbers alone. Its field is the
+/// seed.
 pub struct Random(pub u64);
 
 impl Random {

@@ -36,8 +36,8 @@ pub fn chain(random: &mut Random, joints: usize, unit: f32) -> Skeleton {
     skeleton
 }
 
-/// A trunk and `ends` branches of two to five joints, each from any joint before it; one joint in five
-/// is away from its parent's tip. Returns the skeleton and the last joint of each branch.
+/// A trunk and `ends` branches of two to five joints, each from any joint before it; one joint in
+/// five is away from its parent's tip. Returns the skeleton and the last joint of each branch.
 pub fn tree(random: &mut Random, ends: usize, unit: f32) -> (Skeleton, Vec<JointId>) {
     let mut skeleton = chain(random, 2, unit);
     let mut tips = Vec::new();

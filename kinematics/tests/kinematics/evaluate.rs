@@ -57,7 +57,8 @@ impl Figure {
         Self { rig, pelvis, lower }
     }
 
-    /// Least and greatest distance of the tip from the upper joint, with hinges that bend by 2.5 rad.
+    /// Least and greatest distance of the tip from the upper joint, with hinges that bend by 2.5
+    /// rad.
     fn reach(&self, joint: JointId) -> [f32; 2] {
         let skeleton = &self.rig.skeleton;
         let (upper, lower) = (skeleton[joint].offset.length(), skeleton[joint].axis.length());

@@ -1,5 +1,5 @@
-//! Limbs of random skeletons: reach, hinges, limits, elbow references, influence and stretch, seen by
-//! forward kinematics alone.
+//! Limbs of random skeletons: reach, hinges, limits, elbow references, influence and stretch, seen
+//! by forward kinematics alone.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm_kinematics::limb_ik::{
@@ -97,7 +97,7 @@ fn length(skeleton: &Skeleton, limb: Limb) -> f32 {
     hip.distance(knee) + knee.distance(tip)
 }
 
-/// How much each movable angle of the lower joint, increased by 0.01, changes the tip's distance.
+/// The change of the tip's distance as each movable angle of the lower joint grows by 0.01.
 fn changes_of_distance(skeleton: &Skeleton, limb: Limb) -> impl Iterator<Item = f32> + '_ {
     let distance =
         move |skeleton: &Skeleton| skeleton.base(limb.upper).distance(skeleton.tip(limb.lower));

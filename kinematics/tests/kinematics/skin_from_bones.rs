@@ -10,8 +10,9 @@ use crate::common::{Random, cases};
 
 const TREES: usize = 200;
 
-/// A skeleton of 1 to 60 joints with radii from 1 to 10, straight, crooked, folded or with joints away from
-/// their parents' tips; one bone in ten has no length, one joint in thirty is another root.
+/// A skeleton of 1 to 60 joints with radii from 1 to 10, straight, crooked, folded or with joints
+/// away from their parents' tips; one bone in ten has no length, one joint in thirty is another
+/// root.
 fn any_skeleton(random: &mut Random) -> Skeleton {
     #[derive(Clone, Copy, PartialEq)]
     enum Style {
@@ -60,8 +61,8 @@ fn roots(skeleton: &Skeleton) -> usize {
 
 // Independent measures
 
-/// Signed distance of the round cone from `base` to `tip`: the least over the spheres between its ends,
-/// by golden-section search.
+/// Signed distance of the round cone from `base` to `tip`: the least over the spheres between its
+/// ends, by golden-section search.
 fn cone_distance(point: DVec3, ends: [(DVec3, f64); 2]) -> f64 {
     let [(base, base_radius), (tip, tip_radius)] = ends;
     let at =

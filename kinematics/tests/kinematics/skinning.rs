@@ -73,8 +73,8 @@ impl Case {
         DMat4::from(self.skeleton.transform().as_daffine3())
     }
 
-    /// Compares positions and normals with a twin that gives the deformed position for a vertex, and the
-    /// transform whose inverse transpose its normal has.
+    /// Compares positions and normals with a twin that gives the deformed position for a vertex,
+    /// and the transform whose inverse transpose its normal has.
     fn compare(&self, skinning: Skinning, twin: impl Fn(&VertexWeights, DVec3) -> (DVec3, DMat3)) {
         let posed = self.mesh.posed(&self.mesh.pose(&self.skeleton), skinning);
         let to_world = self.to_world();
@@ -193,8 +193,8 @@ fn product(a: [Dual; 4], b: [Dual; 4]) -> [Dual; 4] {
     ]
 }
 
-/// The blend as products of quaternions of dual numbers: q̂ v̂ q̂* with v̂ = 1 + ε·v, where * conjugates
-/// both the quaternion and the dual numbers.
+/// The blend as products of quaternions of dual numbers: q̂ v̂ q̂* with v̂ = 1 + ε·v, where *
+/// conjugates both the quaternion and the dual numbers.
 fn dual_blend(case: &Case, weights: &VertexWeights, position: DVec3) -> (DVec3, DMat3) {
     let mut scale = DMat3::ZERO;
     let mut sum = [Dual(0.0, 0.0); 4];
@@ -239,8 +239,8 @@ fn spread_twist_gives_each_vertex_its_fraction_of_the_roll_of_the_bone() {
     }
 }
 
-/// J of a joint whose rotation R = swing · roll(τ) is replaced by swing · roll(t·τ). The swing is the least
-/// rotation that takes the bone to where R takes it, and the roll is what is left of R.
+/// J of a joint whose rotation R = swing · roll(τ) is replaced by swing · roll(t·τ). The swing is
+/// the least rotation that takes the bone to where R takes it, and the roll is what is left of R.
 fn spread(case: &Case, joint: JointId, position: DVec3) -> DMat4 {
     let Joint { parent, offset, axis, .. } = case.skeleton[joint];
     let Some(axis) = axis.as_dvec3().try_normalize() else { return case.joint(joint) };

@@ -21,7 +21,8 @@ struct Case {
     is_limited: bool,
 }
 
-/// Random cases of a method: trees, or limbs of two bones; mirrored, scaled, limited, with free roots.
+/// Random cases of a method: trees, or limbs of two bones; mirrored, scaled, limited, with free
+/// roots.
 fn cases(method: Method, mut check: impl FnMut(&mut Random, Case)) {
     let mut random = Random(190);
     for case in 0..CASES {
@@ -184,7 +185,7 @@ fn damping_takes_away_less_along_short_axes() {
     assert!(cases > 100);
 }
 
-/// Whether a transform scales all directions alike.
+/// True if a transform scales all directions alike.
 fn is_even(transform: Affine3A) -> bool {
     let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(glam::Vec3A::length);
     (x - y).abs() < 1e-4 * x && (x - z).abs() < 1e-4 * x

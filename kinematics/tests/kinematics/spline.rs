@@ -286,7 +286,8 @@ fn a_new_value_at_a_knot_keeps_its_shape() {
     assert_eq!(spline.slopes(1.5), None);
 }
 
-/// The automatic slope at the knot at a time, in f64, as a mean of the secants weighted by their times.
+/// The automatic slope at the knot at a time, in f64, as a mean of the secants weighted by their
+/// times.
 fn auto_slope(knots: &[(f64, f32)], time: f64) -> f64 {
     let secant = |pair: &[(f64, f32)]| {
         let rise = f64::from(pair[1].1) - f64::from(pair[0].1);

@@ -1,4 +1,4 @@
-//! What the command prints: a pose or the list of what a file has.
+//! Output of the command: a pose or the list of what a file has.
 
 use glam::{Mat4, Vec3};
 use serde::Serialize;

@@ -8,8 +8,8 @@ use crate::kinematics::skeleton::{JointId, Skeleton};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///
-/// Each row is a frame: the frame's number from 0, its time in seconds as in the document, and world
-/// positions in units of the scene. A skeleton has the positions of all joints' bases, then
+/// Each row is a frame: the frame's number from 0, its time in seconds as in the document, and
+/// world positions in units of the scene. A skeleton has the positions of all joints' bases, then
 /// those of all leaf bones' tips. The arm has the positions of shoulder, elbow and hand.
 ///
 /// # Errors

@@ -113,7 +113,8 @@ impl ArmEdit {
     }
 }
 
-/// Replaces the arm; its solve state (facing, transported frame, roll) continues from the present arm.
+/// Replaces the arm; its solve state (facing, transported frame, roll) continues from the present
+/// arm.
 pub(in crate::session) fn replace(session: &Session, arm: Arm) -> Outcome {
     let shown = session.shown();
     let arm = arm.transported_from(&shown.arm).with_solve_state();

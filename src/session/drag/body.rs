@@ -141,7 +141,7 @@ fn is_bent(posed: &Posed) -> bool {
     posed.arm_pose().out > LEAST * posed.arm().bones.outer_limit()
 }
 
-/// What a joint is to the targets of its skeleton.
+/// The role of a joint for the targets of its skeleton.
 #[derive(Clone, Copy, Debug)]
 enum Role {
     /// The end of the target of a joint, such as a hand or foot.
@@ -189,9 +189,9 @@ pub(in crate::session) fn is_elbow(skeleton: &Skeleton, target: &Target, joint: 
 
 /// Rings of a pose.
 impl GripRing {
-    /// The ring of a grip of the arm. With IK it is the ring of the Socket twist, around the Pointer
-    /// at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with both those of
-    /// the hand's angles. `None` for other grips.
+    /// The ring of a grip of the arm. With IK it is the ring of the Socket twist, around the
+    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with
+    /// both those of the hand's angles. `None` for other grips.
     pub fn of_arm(posed: &Posed, grip: Grip) -> Option<Self> {
         let (arm, pose) = (posed.arm(), posed.arm_pose());
         let (along, axis) = match (grip, arm.uses_ik()) {

@@ -172,9 +172,9 @@ impl Drag {
         &self.waypoints
     }
 
-    /// Adds the dragged point to [`Drag::waypoints`]; it replaces the last one if that was nearer than
-    /// `spacing` to the one before it. A typed offset discards the others: the head moves straight to
-    /// its point. There are none before the mouse moves.
+    /// Adds the dragged point to [`Drag::waypoints`]; it replaces the last one if that was nearer
+    /// than `spacing` to the one before it. A typed offset discards the others: the head moves
+    /// straight to its point. There are none before the mouse moves.
     fn add_waypoint(&mut self, spacing: f32) {
         let DragKind::Point(drag) = &mut self.kind else {
             return;

@@ -14,8 +14,8 @@ use crate::session::outcome::Outcome;
 use crate::session::session::Session;
 use crate::session::skeleton::targets;
 
-/// Smallest slope of the view, as the height that it loses per length, for which a head is dragged on
-/// its level.
+/// Smallest slope of the view, as the height that it loses per length, for which a head is dragged
+/// on its level.
 const EDGE_ON: f32 = 0.1;
 
 /// The drag that a press on a grip of the skeleton begins; `None` if it cannot be dragged.
@@ -124,8 +124,8 @@ fn drag_orientation(session: &Session, joint: JointId, axis: RotationAxis, angle
     targets::set_target(session, target)
 }
 
-/// Moves a head from where it was at the press through the points of its drag; back without points. A
-/// head with keys gets one at the playhead.
+/// Moves a head from where it was at the press through the points of its drag; back without points.
+/// A head with keys gets one at the playhead.
 fn drag_head(session: &mut Session, root: JointId) -> Outcome {
     let before = session.history().shown_before().skeleton_rig.clone();
     let to_skeleton = before.skeleton.transform().inverse();
@@ -233,8 +233,8 @@ fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Out
     })
 }
 
-/// The pose from which a drag solves for FK angles: that of FK and of the targets with full influence,
-/// with the joints that such a target turns locked.
+/// The pose from which a drag solves for FK angles: that of FK and of the targets with full
+/// influence, with the joints that such a target turns locked.
 fn fk_start(track: &Track, before: &Posed) -> Skeleton {
     let mut document = before.document().clone();
     document.skeleton_rig.targets.retain(|target| target.influence >= 1.0);

@@ -214,8 +214,9 @@ const LAG: f64 = 0.3;
 /// Farthest place to which heads swim, in distances of the camera from what it looks at.
 const FARTHEST: f32 = 4.0;
 
-/// Heads that follow the mouse: a drag without a button. While time passes, the targets of the heads
-/// swim after the mouse, and keys record their way, so that the tails follow it by the document alone.
+/// Heads that follow the mouse: a drag without a button. While time passes, the targets of the
+/// heads swim after the mouse, and keys record their way, so that the tails follow it by the
+/// document alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::session) struct FollowMouse {
     /// The mouse on the level of the heads, in world space; `None` until it is in the view.
@@ -289,8 +290,8 @@ fn home_in_world(rig: &SkeletonRig, solved: &Skeleton, joint: JointId) -> Option
     Some(target.space.to_world(solved).transform_point3(target.home))
 }
 
-/// Removes the keys of a channel that a recording from `before` to `time` replaces: those between, and
-/// the latest recorded one if it is within a frame of the one before it.
+/// Removes the keys of a channel that a recording from `before` to `time` replaces: those between,
+/// and the latest recorded one if it is within a frame of the one before it.
 fn thin_out(document: &mut Document, channel: Channel, start: f64, before: f64, time: f64) {
     let frame = 1.0 / document.timeline.frame_rate;
     let knots = document.keys.track(channel).map_or(&[][..], |track| track.knots());

@@ -30,7 +30,7 @@ pub enum FileAction {
         document: Box<Document>,
         /// The file that Save overwrites; `None` if Save must ask for a path.
         file: Option<PathBuf>,
-        /// What else the file has; `None` for a document of this program.
+        /// Further contents of the file; `None` for a document of this program.
         contents: Option<Box<FileContents>>,
     },
     /// Reports why a file cannot be opened.
@@ -155,7 +155,7 @@ impl FileAction {
 pub struct FileContents {
     /// The file.
     pub path: PathBuf,
-    /// What was chosen when the file was opened.
+    /// The choices with which the file was opened.
     pub options: OpenOptions,
     /// Names of the skeletons.
     pub skeletons: Vec<String>,

@@ -17,11 +17,11 @@ pub struct Files {
     job: Option<ExportJob>,
     /// True if an earlier run's unsaved document was opened or declined.
     recovery_settled: bool,
-    /// What to say once the file is open that was read.
+    /// The message once the file that was read is open.
     remark: Option<String>,
     /// The file that the user chose to open, with its stamp from before it was read.
     opening_stamp: Option<(PathBuf, FileStamp)>,
-    /// What else the file of another program has that the document comes from.
+    /// Further contents of the other program's file from which the document comes.
     contents: Option<Box<FileContents>>,
     /// True if z seems to point up in the document's file, and this was not settled yet.
     seems_z_up: bool,
@@ -145,8 +145,8 @@ impl Files {
         self.remark = remark;
     }
 
-    /// Name of the document: its file's, or without the extension that of the file of another program
-    /// that it was imported from; `None` for a new document.
+    /// Name of the document: its file's, or without the extension that of the file of another
+    /// program that it was imported from; `None` for a new document.
     pub fn name(&self) -> Option<String> {
         let own = self.file().and_then(Path::file_name);
         let imported = || self.origin().and_then(Path::file_stem);
@@ -231,8 +231,8 @@ impl Files {
 
 /// Actions on files.
 impl Files {
-    /// Applies an action; `dialog` is the open one. Actions for which the document, the skeleton or an
-    /// example is needed are returned.
+    /// Applies an action; `dialog` is the open one. Actions for which the document, the skeleton or
+    /// an example is needed are returned.
     pub(in crate::session) fn apply(
         &mut self,
         action: FileAction,
@@ -360,8 +360,8 @@ impl Files {
         Outcome::default()
     }
 
-    /// Saves the document to its file, or asks for a path if the document has no file. Asks first if
-    /// another program has changed the file.
+    /// Saves the document to its file, or asks for a path if the document has no file. Asks first
+    /// if another program has changed the file.
     fn save(&self) -> Outcome {
         let settled = Outcome::from(Consequence::EndGlide);
         match self.file.clone() {
@@ -389,8 +389,8 @@ fn closed() -> Outcome {
     Consequence::TakeDialog.into()
 }
 
-/// Opens the program's own dialog, because the system has no file dialog. If a dialog of the program
-/// is open already, asks to type the path there.
+/// Opens the program's own dialog, because the system has no file dialog. If a dialog of the
+/// program is open already, asks to type the path there.
 fn ask_in_program(asked: PathDialog, dialog: Option<&Dialog>) -> Outcome {
     if dialog.is_some() {
         Outcome::from(Consequence::SetChoosing(false))

@@ -110,7 +110,8 @@ impl Editing {
         self.overrides.keys().copied()
     }
 
-    /// Number of the document's state: equal numbers mean equal documents, except for their cameras.
+    /// Number of the document's state: equal numbers mean equal documents, except for their
+    /// cameras.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -237,8 +238,8 @@ impl Editing {
         self.overrides.remove(&channel);
     }
 
-    /// Removes the twist's unkeyed edit if the keys give the same twist at `time`, in seconds; returns
-    /// whether they do.
+    /// Removes the twist's unkeyed edit if the keys give the same twist at `time`, in seconds;
+    /// returns whether they do.
     pub(in crate::session) fn forget_twist_like_keys(&mut self, time: f64) -> bool {
         const SAME: f32 = 1e-4;
         let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;

@@ -171,7 +171,8 @@ impl Snapshot {
             + self.document.keys.unshared_bytes(other.map(|other| &other.keys))
     }
 
-    /// Bytes of the mesh of a skin from a file. That of a skin from bones is made again when it is needed.
+    /// Bytes of the mesh of a skin from a file. That of a skin from bones is made again when it is
+    /// needed.
     fn unshared_mesh_bytes(&self, other: Option<&Document>) -> usize {
         let mesh = |document: &Document| match &document.skeleton_rig.skin.as_ref()?.source {
             SkinSource::Mesh(mesh) => mesh.mesh().ok().cloned(),

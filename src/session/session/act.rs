@@ -18,8 +18,9 @@ const WAYPOINT_SPACING: f32 = 0.02;
 
 impl Session {
     /// Applies an action and returns the effect that the program must carry out, if any. An invalid
-    /// action changes nothing and is reported by [`Shell::message`](crate::session::Shell::message);
-    /// an action that would lose unsaved changes opens a dialog first.
+    /// action changes nothing and is reported by
+    /// [`Shell::message`](crate::session::Shell::message); an action that would lose unsaved
+    /// changes opens a dialog first.
     pub fn apply(&mut self, action: impl Into<Action>) -> Option<Effect> {
         let compared = self.shown().compares_skinning();
         let effect = self.apply_to_part(action.into());
@@ -72,7 +73,8 @@ impl Session {
         }
     }
 
-    /// Changes the open drag; returns the grip and where it is now, or `None` if nothing is dragged.
+    /// Changes the open drag; returns the grip and where it is now, or `None` if nothing is
+    /// dragged.
     pub(in crate::session) fn change_drag(
         &mut self,
         change: impl FnOnce(&mut Drag),

@@ -53,8 +53,8 @@ impl Session {
         self.playback.set_playing(goes_on);
     }
 
-    /// Makes one frame's iterations of the solver run or of the comparison, `passed` seconds after the
-    /// last frame.
+    /// Makes one frame's iterations of the solver run or of the comparison, `passed` seconds after
+    /// the last frame.
     fn advance_solvers(&mut self, passed: f64) {
         self.solvers.advance_walk(passed);
         let plays = self.playback.is_playing() && self.document().is_moving();
@@ -140,7 +140,8 @@ impl Session {
         }
     }
 
-    /// Changes the pose by `change`. If the camera follows the selection, it moves as far as that does.
+    /// Changes the pose by `change`. If the camera follows the selection, it moves as far as that
+    /// does.
     fn with_camera_following(&mut self, change: impl FnOnce(&mut Self)) {
         if !self.view.follows_selection() || self.crowd().is_some() {
             return change(self);

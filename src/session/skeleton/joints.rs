@@ -140,8 +140,9 @@ impl JointEdit {
     }
 }
 
-/// Adds a child at the tip of `parent` and selects it. The child's bone ends at `tip` in world space;
-/// if `tip` is `None`, it continues the parent's bone. Without a parent, adds a root without a bone.
+/// Adds a child at the tip of `parent` and selects it. The child's bone ends at `tip` in world
+/// space; if `tip` is `None`, it continues the parent's bone. Without a parent, adds a root without
+/// a bone.
 fn add(session: &Session, parent: Option<JointId>, tip: Option<Vec3>) -> Outcome {
     let added = Outcome::edit_with(session.shown(), |document| {
         let skeleton = document.skeleton_rig.skeleton_mut();
@@ -223,8 +224,8 @@ fn reparent(session: &Session, joint: JointId, parent: Option<JointId>) -> Outco
         .and(Consequence::Select(selected))
 }
 
-/// Turns the skeleton so that y points up in place of z, and frames it. Other animations of its file
-/// will be turned, too.
+/// Turns the skeleton so that y points up in place of z, and frames it. Other animations of its
+/// file will be turned, too.
 fn turn_y_up(session: &mut Session) -> Outcome {
     session.act(Outcome::from(Consequence::DiscardUnkeyed).and(Consequence::Refresh));
     let framed = (session.rig() == RigKind::Skeleton).then_some(Consequence::FrameAll);

@@ -31,8 +31,8 @@ pub enum TargetEdit {
         /// The space.
         space: TargetSpace,
     },
-    /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation and the
-    /// elbow's side.
+    /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation
+    /// and the elbow's side.
     MatchTargetToFk(JointId),
     /// Writes the shown pose to the FK angles of the joints that the target of a joint moves.
     MatchFkToPose(JointId),
@@ -199,9 +199,9 @@ fn describe_result(session: &Session, rig: &SkeletonRig, index: usize) -> String
 /// Why targets are not reached.
 impl Session {
     /// The causes for which the target of the selected joint is not reached, the most likely first;
-    /// without such a target, those of the posing target that is farthest from its tip. Empty if all
-    /// are reached, while something is dragged or plays, and for other rigs than skeletons. Also
-    /// empty if they are not known since the last change, unless `finds_out`.
+    /// without such a target, those of the posing target that is farthest from its tip. Empty if
+    /// all are reached, while something is dragged or plays, and for other rigs than skeletons.
+    /// Also empty if they are not known since the last change, unless `finds_out`.
     pub fn why(&self, finds_out: bool) -> &[Diagnosis] {
         if !finds_out && !self.evaluated().knows_why() {
             return &[];
@@ -227,8 +227,8 @@ impl Session {
     }
 }
 
-/// The selected joint's target if it is not reached, or else the posing one farthest from its tip; if
-/// all tips are at their targets, the one whose hand misses most of its rotation.
+/// The selected joint's target if it is not reached, or else the posing one farthest from its tip;
+/// if all tips are at their targets, the one whose hand misses most of its rotation.
 fn examined_target(session: &Session) -> Option<usize> {
     let (rig, reports) = (session.skeleton_rig(), session.posed().targets());
     let is_missed =
@@ -255,7 +255,7 @@ pub enum PathEdit {
     SetFollowPath {
         /// The root.
         root: JointId,
-        /// What moves it.
+        /// The cause of its motion.
         kind: Option<PathKind>,
     },
     /// Moves a root to a point of skeleton space. With

@@ -165,7 +165,7 @@ mod tests {
     }
 }
 
-/// What is looked at within the shown iteration of a solver run.
+/// The part of the shown iteration of a solver run that the view shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::session) struct Inside {
     /// Index of the shown part; `None` if the iteration is shown as a whole.

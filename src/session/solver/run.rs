@@ -9,7 +9,7 @@ use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::session::solver::iterates::Inside;
 use crate::session::solver::iterates::{Iterate, Iterates};
 
-/// What a solver run solves: the FK pose, the targets and the options of a document at a time.
+/// Inputs of a solver run: the FK pose, the targets and the options of a document at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::session) struct SolverInputs {
     pub fk: Shared<Skeleton>,
@@ -46,8 +46,8 @@ impl SolverInputs {
     }
 }
 
-/// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of them
-/// is shown. The document does not change.
+/// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of
+/// them is shown. The document does not change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
     inputs: SolverInputs,
@@ -147,15 +147,16 @@ impl SolverRun {
         &self.skeleton
     }
 
-    /// Shows the latest kept iterate of at most `held` iterations; for `None`, each iterate as it is
-    /// made.
+    /// Shows the latest kept iterate of at most `held` iterations; for `None`, each iterate as it
+    /// is made.
     pub(in crate::session) fn hold(&mut self, held: Option<u32>) {
         self.held = held;
         self.inside.clear();
         self.write_shown();
     }
 
-    /// What the method computes in the shown iteration, part by part; empty for iteration 0.
+    /// The parts of the shown iteration, in the order in which the method computes them; empty for
+    /// iteration 0.
     pub fn parts(&self) -> &[Shared<SubStep>] {
         self.inside.parts(|| self.replay(self.shown().iteration))
     }
@@ -189,8 +190,8 @@ impl SolverRun {
         solver.step_inside(&self.inputs.fk).1
     }
 
-    /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at the
-    /// whole iteration.
+    /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at
+    /// the whole iteration.
     pub(in crate::session) fn show_part(&mut self, part: Option<usize>) {
         self.inside.show(part);
         self.write_shown();
@@ -212,8 +213,8 @@ impl SolverRun {
         }
     }
 
-    /// Shows the next part; after the last part of an iteration, the first one of the next, which is
-    /// made if need be. At the end of the run, the parts no longer follow each other.
+    /// Shows the next part; after the last part of an iteration, the first one of the next, which
+    /// is made if need be. At the end of the run, the parts no longer follow each other.
     fn next_part(&mut self) {
         let next = self.shown_part().map_or(0, |part| part + 1);
         if next < self.parts().len() {
@@ -297,8 +298,8 @@ impl SolverRun {
     }
 }
 
-/// A comparison of all solvers, run side by side from the FK pose to the same targets. Like a single
-/// [`SolverRun`], it does not change the document.
+/// A comparison of all solvers, run side by side from the FK pose to the same targets. Like a
+/// single [`SolverRun`], it does not change the document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     inputs: SolverInputs,

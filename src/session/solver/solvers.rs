@@ -25,8 +25,8 @@ pub enum SolverAction {
     },
     /// Shows the parts of the iterations one after the other, or stops that.
     Walk(bool),
-    /// Shows the latest kept iterate of at most this number of iterations: 0 is the FK pose. From the
-    /// number of the latest on, each iterate is shown as it is made.
+    /// Shows the latest kept iterate of at most this number of iterations: 0 is the FK pose. From
+    /// the number of the latest on, each iterate is shown as it is made.
     Show(u32),
 }
 
@@ -226,8 +226,8 @@ impl Solvers {
     }
 
     /// Adopts the present inputs: if they have changed, the run or the comparison is made anew from
-    /// the FK pose, with as many iterations. It ends if there are no inputs, or if the solver refuses
-    /// them.
+    /// the FK pose, with as many iterations. It ends if there are no inputs, or if the solver
+    /// refuses them.
     pub(in crate::session) fn follow(
         &mut self,
         inputs: Option<SolverInputs>,
@@ -264,8 +264,8 @@ pub enum SolverEdit {
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.
     SetIterationsPerFrame(u32),
-    /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the
-    /// run.
+    /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends
+    /// the run.
     ApplyPose,
 }
 
@@ -305,7 +305,8 @@ fn is_valid(solver: &SolverOptions) -> bool {
         && solver.iterations.is_none_or(|iterations| iterations > 0)
 }
 
-/// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the run.
+/// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the
+/// run.
 fn apply_pose(session: &Session) -> Outcome {
     let Some(posed) = session.solvers().run().map(SolverRun::skeleton) else {
         return Outcome::say("Run or step the solver first");

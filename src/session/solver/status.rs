@@ -5,8 +5,8 @@ use super::solvers::Solvers;
 use crate::document::Posed;
 use crate::kinematics::chain_ik::Status;
 
-/// State and residual of the pose that is looked at: the shown iterate of the solver run, or without
-/// a run the evaluated pose.
+/// State and residual of the pose that is looked at: the shown iterate of the solver run, or
+/// without a run the evaluated pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverStatus {
     /// State of the run or of the evaluated pose.
@@ -65,8 +65,8 @@ impl SolverStatus {
 }
 
 impl Solvers {
-    /// State and residual of the shown iterate of the solver run, or without a run of a pose; `None`
-    /// without an enabled target.
+    /// State and residual of the shown iterate of the solver run, or without a run of a pose;
+    /// `None` without an enabled target.
     pub fn status(&self, posed: &Posed) -> Option<SolverStatus> {
         if let Some(run) = self.run() {
             return Some(SolverStatus::of_run(run));

@@ -29,7 +29,7 @@ pub struct WiggleView {
     pub predicted: [Vec3; 2],
     /// The change of the angle at this moment, in radians.
     pub by: f32,
-    /// What the tip is to reach; `None` without a target.
+    /// The point that the tip should reach; `None` without a target.
     pub target: Option<WiggleTarget>,
 }
 

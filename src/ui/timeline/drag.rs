@@ -3,7 +3,7 @@
 use egui::{Id, Key, Pos2, Ui, Vec2};
 use glam::Vec3;
 
-use super::rows::{DopeSheetRow, SelectedKeys};
+use super::rows::{DopeSheetRow, KeySet};
 use super::time_scale::{TimeScale, span};
 use super::value_scale::{ValueKind, ValueScales};
 use crate::document::Timeline;
@@ -122,7 +122,7 @@ pub(in crate::ui) fn press_keys(
 ) {
     let selected = session.selection().keys();
     let picked = |of: &[KeyOf]| {
-        let of = SelectedKeys::of(of);
+        let of = KeySet::of(of);
         move |key: &&KeyOf| of.has(DopeSheetRow::Channel(key.0), key.1)
     };
     let (is_selected, is_pointed) = (picked(selected), picked(&pointed));

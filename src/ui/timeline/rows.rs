@@ -167,12 +167,12 @@ pub(in crate::ui) fn after_click<'a, T: Copy + PartialEq + 'a, C: FromIterator<T
 }
 
 /// A set of keys with fast lookup.
-pub(in crate::ui) struct SelectedKeys {
+pub(in crate::ui) struct KeySet {
     keys: HashSet<(Channel, u64)>,
     times: HashSet<u64>,
 }
 
-impl SelectedKeys {
+impl KeySet {
     pub fn new(session: &Session) -> Self {
         Self::of(session.selection().keys())
     }

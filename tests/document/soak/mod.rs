@@ -40,7 +40,8 @@ fn a_session_stays_valid_when_all_is_checked_after_every_action() {
     run.run();
 }
 
-/// `IK_ARM_SOAK_ACTIONS` actions from the seed `IK_ARM_SOAK_SEED`; all checks after each of the last 2 %.
+/// `IK_ARM_SOAK_ACTIONS` actions from the seed `IK_ARM_SOAK_SEED`; all checks after each of the
+/// last 2 %.
 #[test]
 #[ignore = "takes a quarter of an hour: scripts/soak.sh"]
 fn a_session_stays_valid_under_a_million_random_actions() {

@@ -13,7 +13,7 @@ pub(super) struct SolveInputs {
 }
 
 /// The pose that a solve comes to.
-pub(super) struct Solved {
+pub(super) struct SettledPose {
     pub skeleton: Skeleton,
     pub report: Report,
     pub tolerance: f32,
@@ -22,14 +22,14 @@ pub(super) struct Solved {
 }
 
 impl SolveInputs {
-    pub fn solve(&self) -> Result<Solved, SolveError> {
+    pub fn solve(&self) -> Result<SettledPose, SolveError> {
         let Self { skeleton, targets, options } = self;
         let most = ChainSolver::POSE_WORK;
         let mut solver = ChainSolver::bounded(skeleton, targets, options, most)?;
         let report = solver.run();
         let mut skeleton = self.skeleton.clone();
         solver.write(&mut skeleton);
-        Ok(Solved { skeleton, report, tolerance: solver.tolerance(), work: solver.work() })
+        Ok(SettledPose { skeleton, report, tolerance: solver.tolerance(), work: solver.work() })
     }
 
     /// These inputs after a remedy; `None` if it cannot be applied.
@@ -52,7 +52,7 @@ impl SolveInputs {
     }
 }
 
-impl Solved {
+impl SettledPose {
     /// Distance in the world from a joint's tip to its target; 0 without a target.
     pub fn residual(&self, inputs: &SolveInputs, joint: JointId) -> f32 {
         inputs
@@ -61,8 +61,8 @@ impl Solved {
     }
 }
 
-/// Distances that the tip of a chain can have from the base of its root, whatever the joints turn, in
-/// skeleton space.
+/// Distances that the tip of a chain can have from the base of its root, whatever the joints turn,
+/// in skeleton space.
 struct ChainReach {
     root: JointId,
     base: Vec3,
@@ -130,7 +130,7 @@ impl OutOfReach {
         Some(Self { cause, point: in_world(inside), factor, target: *target })
     }
 
-    /// What could bring the tip to the target.
+    /// Remedies that could bring the tip to the target.
     pub fn remedies(&self) -> impl Iterator<Item = Remedy> {
         // Longer than needed: solvers are slow where the chain is straight.
         const LONGER: f32 = 1.01;
@@ -200,8 +200,8 @@ impl Pulls {
         })
     }
 
-    /// Joints between the root and the tip, the most strongly pulled first; those that are not pulled,
-    /// as in a straight chain, from the tip to the root.
+    /// Joints between the root and the tip, the most strongly pulled first; those that are not
+    /// pulled, as in a straight chain, from the tip to the root.
     pub fn joints(&self) -> Vec<JointId> {
         let mut joints = Vec::new();
         for Pull { joint, .. } in &self.all {

@@ -28,7 +28,7 @@ mod evidence;
 
 use glam::Vec3;
 
-use self::evidence::{OutOfReach, Pulls, SolveInputs, Solved, opponent};
+use self::evidence::{OutOfReach, Pulls, SettledPose, SolveInputs, opponent};
 use super::{SolveError, SolverOptions, TipTarget};
 use crate::chain_ik::{Method, Root, Status};
 use crate::diagnosis::{
@@ -117,13 +117,14 @@ struct Examination {
     /// The inputs with so many iterations that the solver ends by itself.
     settled: SolveInputs,
     /// The pose to which the settled inputs come.
-    pose: Solved,
-    /// Number of iterations after which the solver of the inputs stopped; `None` if it ended by itself.
+    pose: SettledPose,
+    /// Number of iterations after which the solver of the inputs stopped; `None` if it ended by
+    /// itself.
     stopped_at: Option<u32>,
 }
 
 impl Examination {
-    pub fn new(inputs: SolveInputs, solved: Solved) -> Self {
+    pub fn new(inputs: SolveInputs, solved: SettledPose) -> Self {
         // Multiple of the iterations that a solver may take to end by itself.
         const PATIENCE: u32 = 10;
         let report = solved.report;
@@ -138,7 +139,7 @@ impl Examination {
 
     /// The causes for which a tip is `residual` from its target, the most likely first.
     pub fn examine(&self, joint: JointId, residual: f32) -> Vec<Diagnosis> {
-        let case = Case::new(self, joint, residual);
+        let case = ChainCase::new(self, joint, residual);
         if let Some(found) = case.out_of_reach() {
             return vec![found];
         }
@@ -168,15 +169,15 @@ impl Examination {
 }
 
 /// One target that is not reached.
-struct Case<'a> {
+struct ChainCase<'a> {
     examination: &'a Examination,
     joint: JointId,
     residual: f32,
-    /// How the target pulls at the joints in the settled pose.
+    /// Moments with which the target pulls at the joints in the settled pose.
     pulls: Pulls,
 }
 
-impl<'a> Case<'a> {
+impl<'a> ChainCase<'a> {
     fn new(examination: &'a Examination, joint: JointId, residual: f32) -> Self {
         let target = examination.inputs.target_of(joint).copied();
         let pulls = target.map(|target| Pulls::new(&examination.pose.skeleton, &target));
@@ -290,7 +291,8 @@ impl<'a> Case<'a> {
         self.try_remedy(widen_to_contain(&settled.skeleton, &pose.skeleton, angles)?)
     }
 
-    /// Tries to reach the target with the most strongly pulled locked joint unlocked, then with all.
+    /// Tries to reach the target with the most strongly pulled locked joint unlocked, then with
+    /// all.
     fn locked(&self) -> Option<Diagnosis> {
         let inputs = &self.examination.inputs;
         let keeps_roots = inputs.options.root == Root::Locked;
@@ -314,7 +316,7 @@ impl<'a> Case<'a> {
         Some(self.diagnosis(Cause::Locked, joints, vec![tried]))
     }
 
-    /// What the evidence says where nothing that was tried helps.
+    /// The cause by the evidence alone, where nothing that was tried helps.
     fn unexplained(&self) -> Diagnosis {
         let pose = &self.examination.pose.skeleton;
         let mut pushed: Vec<_> = self.pulls.against_limits(pose).map(|pull| pull.joint).collect();

@@ -12,7 +12,7 @@ pub(super) use recorder::{Event, LinkSegment, Recorder, sub_steps};
 /// A part of an iteration. Positions and lengths are in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SubStep {
-    /// What was computed.
+    /// The computed part.
     pub kind: SubStepKind,
     /// The skeleton in the pose after it.
     pub pose: Skeleton,
@@ -20,7 +20,7 @@ pub struct SubStep {
     pub error: f32,
 }
 
-/// What is computed in a part of an iteration.
+/// A part of an iteration, with its results.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SubStepKind {
@@ -34,8 +34,8 @@ pub enum SubStepKind {
     Turn(Turn),
     /// Free roots are moved.
     MoveRoots,
-    /// FABRIK: the pass from the targets to the roots, as segments from joints to points. The pose is
-    /// unchanged.
+    /// FABRIK: the pass from the targets to the roots, as segments from joints to points. The pose
+    /// is unchanged.
     Backward(Vec<[Vec3; 2]>),
     /// FABRIK: the pass back from the roots, as segments from joints to points.
     Forward(Vec<[Vec3; 2]>),
@@ -48,8 +48,8 @@ pub enum SubStepKind {
     LaidOut(Vec<[Vec3; 2]>),
     /// FABRIK and relaxation: the passes raised the error and are undone; a sweep of CCD follows.
     Undo,
-    /// Two-bone: the upper joint of the limb that ends with this joint is turned, so that the elbow is
-    /// at its place.
+    /// Two-bone: the upper joint of the limb that ends with this joint is turned, so that the elbow
+    /// is at its place.
     PlaceElbow(JointId),
     /// Two-bone: this joint is turned to the target.
     Aim(JointId),
@@ -142,7 +142,7 @@ pub struct Turn {
 }
 
 impl SubStepKind {
-    /// What is done, in a few words.
+    /// A short description of the part.
     pub fn title(&self) -> &'static str {
         match self {
             Self::Bend => "Bend the straight chain",

@@ -23,8 +23,8 @@ pub(in crate::chain_ik) enum Event {
     Bend,
     /// The gradient was computed; with damped least squares, for this λ.
     Gradient { descent: Coordinates, damping: Option<f32> },
-    /// The angles were changed by `factor` times `by`, within the limits, after `tries` longer or less
-    /// damped steps that were refused.
+    /// The angles were changed by `factor` times `by`, within the limits, after `tries` longer or
+    /// less damped steps that were refused.
     Step { by: Coordinates, factor: f32, tries: u32, damping: Option<f32> },
     /// One link was rotated; `pairs` are the tips below it before, and their targets.
     Turn { link: usize, rotation: Quat, pairs: Vec<[Vec3A; 2]> },
@@ -89,8 +89,9 @@ impl Recorder {
     }
 }
 
-/// Appends a record. Where a method has a part for each of very many links, the last record takes the
-/// place of the one before it: otherwise memory would grow with the square of the number of links.
+/// Appends a record. Where a method has a part for each of very many links, the last record takes
+/// the place of the one before it: otherwise memory would grow with the square of the number of
+/// links.
 fn push(records: &mut Vec<Record>, record: Record) {
     /// Maximum number of links in all records.
     const MOST: usize = 1 << 18;

@@ -88,8 +88,8 @@ impl Ccd {
         recorder.record(&turned, || Event::Turn { link: index, rotation, pairs: pairs.collect() });
     }
 
-    /// Finds the rotation of one link that brings the tips below it nearest to their targets, applies
-    /// it to these tips, and returns it.
+    /// Finds the rotation of one link that brings the tips below it nearest to their targets,
+    /// applies it to these tips, and returns it.
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) -> Quat {
         let (link, base) = (&problem.links[index], config.bases[index]);
         let below = problem.below(link);

@@ -233,8 +233,8 @@ impl DampedLeastSquares {
     }
 }
 
-/// Work of the pairs of targets at each joint, and of the factorization of a matrix with three rows for
-/// each target.
+/// Work of the pairs of targets at each joint, and of the factorization of a matrix with three rows
+/// for each target.
 pub(super) fn work(problem: &Problem) -> u64 {
     /// Multiplications that take as long as a visit of a joint.
     const MULTIPLICATIONS: u64 = 64;

@@ -123,7 +123,8 @@ const METHODS: [MethodRow; 7] = [
         // The fixed step overshoots for longer before it settles.
         patience: Patience::of_repeated_steps(100),
         uses_step: true,
-        // Up to about twice the distance; the direction is all that counts of a target out of reach.
+        // Up to about twice the distance; the direction is all that counts of a target out of
+        // reach.
         stable_distance: 1.25,
         ..MethodRow::new(Method::TransposeFixed, "transpose-fixed", 4_000, |it| {
             Ok(MethodState::TransposeFixed(TransposeFixed::new(it.problem, it.step)))
@@ -235,7 +236,7 @@ impl Method {
         self.row().short_title
     }
 
-    /// What it does, in a few words that begin with a verb.
+    /// A short description that begins with a verb.
     pub const fn summary(self) -> &'static str {
         self.row().summary
     }
@@ -260,7 +261,8 @@ impl Method {
         self.row().uses_step
     }
 
-    /// True if one iteration is all: the method solves limbs of two bones at once and refuses others.
+    /// True if one iteration is all: the method solves limbs of two bones at once and refuses
+    /// others.
     pub const fn is_closed_form(self) -> bool {
         self.row().is_closed_form
     }

@@ -1,17 +1,17 @@
 //! Methods that move points of links instead of angles: FABRIK and relaxation.
 //!
-//! A pass from the targets to the roots sets a destination for each point ([`InwardPass`]); then the
-//! links are laid out from the roots: each link keeps the distance of its points from its joint and
-//! points at their destinations. A link with several points (a bone with children away from its tip,
-//! or a locked fork) rotates as a whole, to the best fit. If any link has limits, every link rotates
-//! as a whole, and limited links angle by angle within their limits.
+//! A pass from the targets to the roots sets a destination for each point ([`InwardPass`]); then
+//! the links are laid out from the roots: each link keeps the distance of its points from its joint
+//! and points at their destinations. A link with several points (a bone with children away from its
+//! tip, or a locked fork) rotates as a whole, to the best fit. If any link has limits, every link
+//! rotates as a whole, and limited links angle by angle within their limits.
 //!
 //! Orientations of links with one point and no limits are computed on demand, by the smallest
 //! rotation.
 //!
 //! A chain whose only target is out of reach is laid out straight towards the target. The inward
-//! pass ignores limits. If any link has limits, a sweep of CCD follows where the passes do not halve
-//! the cost, after passes that do not lower it are undone.
+//! pass ignores limits. If any link has limits, a sweep of CCD follows where the passes do not
+//! halve the cost, after passes that do not lower it are undone.
 
 use core::ops::Range;
 

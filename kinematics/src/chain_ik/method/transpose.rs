@@ -148,8 +148,8 @@ impl Transpose {
         self.search(problem, config, recorder)
     }
 
-    /// The step length that fits the curvature along the last step. Without curvature, the last step
-    /// length is doubled.
+    /// The step length that fits the curvature along the last step. Without curvature, the last
+    /// step length is doubled.
     fn fit_step(&self, problem: &Problem, config: &Configuration) -> f32 {
         // Range of steps, as multiples of the first one.
         const LEAST: f32 = 1e-3;

@@ -119,8 +119,8 @@ impl Problem {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
             let axis = self.scaled(skeleton[target.joint].axis);
             let reach = attachment.path as f32 + axis.length();
-            // Of a target out of reach only the direction counts, unless it loses the tip's position
-            // to rounding or the method is not stable that far away.
+            // Of a target out of reach only the direction counts, unless it loses the tip's
+            // position to rounding or the method is not stable that far away.
             let stable_distance = method.row().stable_distance;
             let max_distance = if stable_distance.is_finite() && !self.free_roots {
                 stable_distance * f64::from(reach)

@@ -39,7 +39,7 @@ pub(super) struct Results {
     pub outcome: Numbers,
 }
 
-/// What became of a limb, as a number that is as wide as the others in a vector.
+/// The outcome for a limb, as a number that is as wide as the others in a vector.
 pub(super) mod outcome {
     pub const REACHED: f32 = 0.0;
     pub const TOO_FAR: f32 = 1.0;

@@ -47,7 +47,8 @@ impl StartAxes {
 impl MiddleAxes {
     #[inline(always)]
     pub fn new(axes_ds: DMat3) -> Self {
-        // Root of the sum of the squared relative deviations of the singular values from their mean.
+        // Root of the sum of the squared relative deviations of the singular values from their
+        // mean.
         const MAX_DEVIATION: f64 = 5e-6;
         const MIN_SQUARE: f64 = 1e-60;
         const MAX_SQUARE: f64 = 1e60;
@@ -83,8 +84,8 @@ impl MiddleAxes {
     }
 
     /// Converts a unit axis of turns to middle joint space: see
-    /// [`JointChain::axis_in_middle`](crate::job::chain::JointChain::axis_in_middle).
-    /// For regular axes, its length stays 1 to about the square of their deviation from a similarity.
+    /// [`JointChain::axis_in_middle`](crate::job::chain::JointChain::axis_in_middle). For regular
+    /// axes, its length stays 1 to about the square of their deviation from a similarity.
     #[inline(always)]
     pub fn to_middle_space(&self, axis: DVec3) -> DVec3 {
         let doubled = self.axes_ds * self.scale + self.cofactors;

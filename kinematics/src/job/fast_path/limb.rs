@@ -9,7 +9,7 @@ pub const ON_LINE: f64 = 1e-6;
 pub const IN_LINE: f64 = 1e-3;
 
 /// The bones and their target.
-pub struct Limb {
+pub struct FastLimb {
     pub upper_ds: DVec3,
     pub lower_ds: DVec3,
     pub target_ds: DVec3,
@@ -24,7 +24,7 @@ pub struct Limb {
 }
 
 /// The limb after the middle joint is turned.
-pub struct BentLimb {
+pub struct FastBentLimb {
     /// k, the unit axis about which a positive turn opens the limb.
     pub axis: DVec3,
     /// Half of the middle joint's turn about k.
@@ -36,7 +36,7 @@ pub struct BentLimb {
     pub is_regular: bool,
 }
 
-impl Limb {
+impl FastLimb {
     #[inline(always)]
     pub fn new([start, middle, end]: [DVec3; 3], target: DVec3, axes: &StartAxes) -> Self {
         const EPSILON: f64 = f32::EPSILON as f64;
@@ -52,7 +52,7 @@ impl Limb {
 
     /// Turns the lower bone until the hand is at the distance D, on the side of the hinge.
     #[inline(always)]
-    pub fn bend(&self, hinge: DVec3) -> BentLimb {
+    pub fn bend(&self, hinge: DVec3) -> FastBentLimb {
         let &Self { upper_ds, lower_ds, upper, lower, distance, .. } = self;
         let (length, difference, product) = (upper + lower, upper - lower, upper * lower);
         // Not normalised, so that a CPU can compute these and their lengths in parallel with the
@@ -67,8 +67,8 @@ impl Limb {
         let (inv_sine, inv_product) = (inv_both * product * side, inv_both * sine);
         let inv_upper = lower * inv_product;
 
-        // Sine and cosine of φ/2, half of the inner angle between the bones: in the given pose, times
-        // √(2 d₁d₂), and in the solved pose, times √(4 d₁d₂).
+        // Sine and cosine of φ/2, half of the inner angle between the bones: in the given pose,
+        // times √(2 d₁d₂), and in the solved pose, times √(4 d₁d₂).
         let along = upper_ds.dot(lower_ds);
         let given =
             HalfAngle { sin: (product + along).sqrt() * side, cos: (product - along).sqrt() };
@@ -82,7 +82,7 @@ impl Limb {
         let inv_distance = inv_upper * (1.0 / distance);
         let cos = (upper - (closed - open) * quarter) * inv_distance;
         let sin = solved.sin * solved.cos * (2.0 * quarter * inv_distance);
-        BentLimb {
+        FastBentLimb {
             axis: normal * inv_sine,
             half_turn,
             hand_ds: upper_ds * cos - aside * (sin * inv_sine),
@@ -113,12 +113,17 @@ impl Limb {
     }
 }
 
-impl BentLimb {
+impl FastBentLimb {
     /// The start joint's rotation that brings the hand onto the line to the target and the elbow to
     /// the side of the pole, and turns the limb by the twist; and whether this is regular.
     #[inline(always)]
-    pub fn aim_by_pole(&self, limb: &Limb, pole_ds: DVec3, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
-        let &Limb { target_ds, target, .. } = limb;
+    pub fn aim_by_pole(
+        &self,
+        limb: &FastLimb,
+        pole_ds: DVec3,
+        [sin, cos]: [f64; 2],
+    ) -> (DQuat, bool) {
+        let &FastLimb { target_ds, target, .. } = limb;
         let across = target_ds.cross(pole_ds);
         let aside = across.cross(target_ds);
         let square = across.length_squared();
@@ -138,7 +143,7 @@ impl BentLimb {
     /// The start joint's smallest rotation that brings the hand onto the line to the target, with
     /// the twist after it; and whether this is regular.
     #[inline(always)]
-    pub fn aim(&self, limb: &Limb, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
+    pub fn aim(&self, limb: &FastLimb, [sin, cos]: [f64; 2]) -> (DQuat, bool) {
         let towards_ds = limb.target_ds * (1.0 / limb.target);
         let (turn, cos_plus_one) = least_rotation(self.hand_ds, towards_ds);
         (HalfAngle::of(sin, cos).about(towards_ds) * turn, cos_plus_one > OPPOSITE)
@@ -243,17 +248,18 @@ mod tests {
 
     /// A limb with its start joint far from the origin.
     #[derive(Clone, Copy)]
-    struct Case {
+    struct FarLimb {
         bones: [f64; 2],
         inner_angle: f64,
         target: f64,
         far: f64,
     }
 
-    const REGULAR: Case = Case { bones: [2.0, 3.0], inner_angle: FRAC_PI_2, target: 4.0, far: 0.0 };
+    const REGULAR: FarLimb =
+        FarLimb { bones: [2.0, 3.0], inner_angle: FRAC_PI_2, target: 4.0, far: 0.0 };
 
-    impl Case {
-        fn limb(self, scale: f64) -> Limb {
+    impl FarLimb {
+        fn limb(self, scale: f64) -> FastLimb {
             let [upper, lower] = self.bones;
             let (sin, cos) = self.inner_angle.sin_cos();
             let start = DVec3::X * self.far;
@@ -261,7 +267,7 @@ mod tests {
             let end = middle + DVec3::new(sin, -cos, 0.0) * lower;
             let target = start + DVec3::Z * self.target;
             let joints = [start, middle, end].map(|joint| joint * scale);
-            Limb::new(joints, target * scale, &StartAxes::new(DMat3::IDENTITY))
+            FastLimb::new(joints, target * scale, &StartAxes::new(DMat3::IDENTITY))
         }
 
         fn is_regular(self, scale: f64) -> bool {
@@ -270,7 +276,7 @@ mod tests {
     }
 
     /// Checks that a case is regular 1 % above a limit, and not 1 % below it.
-    fn check(what: &str, scales: &[f64], limit: f64, case: impl Fn(f64) -> Case) {
+    fn check(what: &str, scales: &[f64], limit: f64, case: impl Fn(f64) -> FarLimb) {
         for scale in scales {
             assert!(case(1.01 * limit).is_regular(*scale), "{what}, scaled by {scale}");
             assert!(!case(0.99 * limit).is_regular(*scale), "{what} missed, scaled by {scale}");
@@ -280,33 +286,33 @@ mod tests {
     #[test]
     fn a_limb_is_regular_up_to_each_limit_whatever_its_size() {
         let scales = [1e-20, 1e-3, 1.0, 1e3, 1e20];
-        let bent = |sine: f64| Case { inner_angle: sine.asin(), ..REGULAR };
+        let bent = |sine: f64| FarLimb { inner_angle: sine.asin(), ..REGULAR };
         check("folded", &scales, IN_LINE, bent);
-        let bent = |sine: f64| Case { inner_angle: PI - sine.asin(), ..REGULAR };
+        let bent = |sine: f64| FarLimb { inner_angle: PI - sine.asin(), ..REGULAR };
         check("straight", &scales, IN_LINE, bent);
         for bones in [[1.0, 10.0], [10.0, 1.0]] {
             // The rounding of three far joints, along three axes, against the shorter bone.
             let near = (1.0 - IN_LINE) / (2.0 * 3.0 * f64::from(f32::EPSILON));
-            let case = |limit: f64| Case { bones, target: 9.5, far: near / limit, ..REGULAR };
+            let case = |limit: f64| FarLimb { bones, target: 9.5, far: near / limit, ..REGULAR };
             check("coordinates", &scales, 1.0, case);
         }
         for swaps in [false, true] {
             let bones = |ratio: f64| if swaps { [1.0, ratio] } else { [ratio, 1.0] };
-            let case = |ratio: f64| Case { bones: bones(ratio), target: 1.0, ..REGULAR };
+            let case = |ratio: f64| FarLimb { bones: bones(ratio), target: 1.0, ..REGULAR };
             check("ratio of the bones", &scales, 1e-6, case);
         }
-        let equal = Case { bones: [1.0, 1.0], ..REGULAR };
-        check("hand at the start joint", &scales, 2e-3, |target| Case { target, ..equal });
+        let equal = FarLimb { bones: [1.0, 1.0], ..REGULAR };
+        check("hand at the start joint", &scales, 2e-3, |target| FarLimb { target, ..equal });
     }
 
     #[test]
     fn a_limb_is_regular_for_numbers_whose_squares_and_cubes_are_finite() {
-        let half = |length: f64| Case { bones: [0.5 * length; 2], target: 0.5, ..REGULAR };
+        let half = |length: f64| FarLimb { bones: [0.5 * length; 2], target: 0.5, ..REGULAR };
         check("least length", &[1.0], 1e-30, half);
-        let most = |per_length: f64| Case { target: 0.5 / per_length, ..half(1.0 / per_length) };
+        let most = |per_length: f64| FarLimb { target: 0.5 / per_length, ..half(1.0 / per_length) };
         check("greatest length", &[1.0], 1e-30, most);
-        check("least distance", &[1.0], 1e-30, |target| Case { target, ..REGULAR });
-        let case = |inv_target: f64| Case { target: 1.0 / inv_target, ..REGULAR };
+        check("least distance", &[1.0], 1e-30, |target| FarLimb { target, ..REGULAR });
+        let case = |inv_target: f64| FarLimb { target: 1.0 / inv_target, ..REGULAR };
         check("greatest distance", &[1.0], 1e-30, case);
     }
 

@@ -1,13 +1,13 @@
 //! The fast path: corrections in straight-line code, with no call, no loop, and no branch that a
 //! compiler cannot turn into a select, so that [`batch`](super::batch) can vectorise it.
 //!
-//! It solves jobs without softness, with a weight of 1, that are *regular*: the limb is bent, no bone
-//! is negligible, the hand is away from the start joint, the rotations are not near half a turn, and
-//! no number overflows. [`Solved::is_regular`] tells. All other jobs are solved by
+//! It solves jobs without softness, with a weight of 1, that are *regular*: the limb is bent, no
+//! bone is negligible, the hand is away from the start joint, the rotations are not near half a
+//! turn, and no number overflows. [`Solved::is_regular`] tells. All other jobs are solved by
 //! [`stages`](super::stages).
 //!
-//! Vectors are in start joint space *times det M_s* (`_ds`): M_s⁻¹ is the adjugate of M_s divided by
-//! det M_s, and since only ratios of lengths count, nothing has to be divided. Under a negative
+//! Vectors are in start joint space *times det M_s* (`_ds`): M_s⁻¹ is the adjugate of M_s divided
+//! by det M_s, and since only ratios of lengths count, nothing has to be divided. Under a negative
 //! det M_s these vectors are reflected at the start joint. Rotations and cross products are those
 //! of start joint space all the same; only a turn about a reflected vector changes its sense.
 
@@ -17,7 +17,7 @@ mod limb;
 use glam::{DMat3, DQuat, DVec3};
 
 use self::joint_axes::{MiddleAxes, StartAxes, sign};
-use self::limb::Limb;
+use self::limb::FastLimb;
 use crate::two_bone::Reach;
 
 pub(super) use joint_axes::cofactors;
@@ -48,7 +48,7 @@ impl FastPathJob {
         let [start_axes, middle_axes] = self.axes;
         let start = StartAxes::new(start_axes);
         let middle = MiddleAxes::new(start.adjugate * middle_axes);
-        let limb = Limb::new(self.joints, self.target, &start);
+        let limb = FastLimb::new(self.joints, self.target, &start);
         let bent = limb.bend(middle.axis(self.hinge));
 
         let [sin, cos] = self.twist;
@@ -72,7 +72,7 @@ impl FastPathJob {
         corrections: [[f32; 4]; 2],
         start: &StartAxes,
         middle: &MiddleAxes,
-        limb: &Limb,
+        limb: &FastLimb,
     ) -> Solved {
         let [start_correction, middle_correction] = corrections;
         let (start_turn, middle_turn) = (widened(start_correction), widened(middle_correction));
@@ -110,12 +110,12 @@ fn widened([x, y, z, w]: [f32; 4]) -> DQuat {
     DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into())
 }
 
-/// Maximum distance, in chain lengths, of a hand that counts as being at its target: the rounding of
-/// the middle joint's axes and of the rotations to f32.
+/// Maximum distance, in chain lengths, of a hand that counts as being at its target: the rounding
+/// of the middle joint's axes and of the rotations to f32.
 pub const NEAR: f64 = 7e-7;
 
-/// Maximum distance, in chain lengths, from a target to the reach [|d₁ − d₂|, d₁ + d₂], if the target
-/// still counts as reached: the rounding of these two bounds.
+/// Maximum distance, in chain lengths, from a target to the reach [|d₁ − d₂|, d₁ + d₂], if the
+/// target still counts as reached: the rounding of these two bounds.
 pub const AT_LIMIT: f64 = 2e-7;
 
 /// The two corrections (x, y, z, w), and whether the hand reaches the target with them. Meaningless

@@ -127,7 +127,8 @@ impl RigCase<'_> {
         Some(self.diagnosis(span.cause(boundary), limb.joints().collect(), tried))
     }
 
-    /// Tries to reach the target without the limits of the joint that the solver names, then of both.
+    /// Tries to reach the target without the limits of the joint that the solver names, then of
+    /// both.
     fn limb_limits(&self, limb: Limb, reach: LimbReach) -> Option<Diagnosis> {
         let skeleton = &self.full.skeleton;
         let of = |joints: &[JointId]| limited_angles(skeleton, joints.iter().copied());

@@ -106,8 +106,8 @@ type Changed = Result<SoftReach, SoftReachError>;
 /// A remedy that cannot be applied.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RemedyError {
-    /// It names a joint that the skeleton does not have, or changes an angle or a length to an invalid
-    /// one.
+    /// It names a joint that the skeleton does not have, or changes an angle or a length to an
+    /// invalid one.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
     /// It changes a target to an invalid one.
@@ -199,7 +199,7 @@ struct RigCase<'a> {
     pub rotation_residual: f32,
 }
 
-/// What a pose leaves between a target and what it moves.
+/// The rest of a target that a pose leaves: distance and rotation.
 struct Left {
     /// In the world.
     distance: f32,

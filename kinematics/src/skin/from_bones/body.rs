@@ -1,5 +1,6 @@
-//! The round cones that a skin is made of, and which of them blend: those of a joint with those of its
-//! parent, and siblings that start at one point. All others do not, so that fingers do not melt together.
+//! The round cones that a skin is made of, and which of them blend: those of a joint with those of
+//! its parent, and siblings that start at one point. All others do not, so that fingers do not melt
+//! together.
 
 use glam::{DVec3, Vec3};
 
@@ -7,7 +8,7 @@ use super::round_cone::RoundCone;
 use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::skin::SkinError;
 
-/// What a skin from bones is made of beside the skeleton.
+/// Parameters of a skin from bones beside the skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinShape {
     /// Cells of the grid on the smallest radius, from [`SkinShape::LEAST_DETAIL`] to
@@ -165,7 +166,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any part.
+    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any
+    /// part.
     pub fn all(skeleton: &Skeleton, shape: &SkinShape) -> Result<Vec<Self>, SkinShapeError> {
         shape.check(skeleton)?;
         let pose = skeleton.bind_pose_in_skeleton();
@@ -209,8 +211,8 @@ impl Body {
     }
 }
 
-/// A bone has its joint's radius at its base. At its tip it has the radius of the one joint that continues
-/// it; otherwise its own.
+/// A bone has its joint's radius at its base. At its tip it has the radius of the one joint that
+/// continues it; otherwise its own.
 fn bones(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
     let with_radius = skeleton.iter().filter(|(_, joint)| joint.radius > 0.0);
     let bone = |(id, joint): (JointId, &Joint)| {
@@ -303,15 +305,15 @@ fn forks(parts: &[Part], skeleton: &Skeleton) -> Vec<Group> {
     forks
 }
 
-/// Width of the blend of two bones, at most half of their smaller radius: the more, the sharper the bend,
-/// since bones in line would swell where they meet.
+/// Width of the blend of two bones, at most half of their smaller radius: the more, the sharper the
+/// bend, since bones in line would swell where they meet.
 fn bend_width(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
     let most = 0.5 * one.least_radius().min(other.least_radius());
     most * sharpness(one, other, are_siblings)
 }
 
-/// How sharply two bones meet: 0 if they go straight on with one radius, 1 for a bend by 90° or more or if
-/// one is twice as thick. 0 for bones that do not meet.
+/// The sharpness of the bend between two bones: 0 if they go straight on with one radius, 1 for a
+/// bend by 90° or more or if one is twice as thick. 0 for bones that do not meet.
 fn sharpness(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
     let direction = |cone: &RoundCone| cone.direction().try_normalize();
     let cosine = direction(one).zip(direction(other)).map(|(one, other)| one.dot(other));

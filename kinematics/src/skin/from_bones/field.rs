@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::body::{Body, Group, Member, Part};
 use super::round_cone::{RoundCone, Sighting};
 
-/// The parts of a body that shape its surface near a point, so that the distance costs as much as there
-/// are parts nearby. Equal to the field of all parts in its range, but for rounding.
+/// The parts of a body that shape its surface near a point, so that the distance costs as much as
+/// there are parts nearby. Equal to the field of all parts in its range, but for rounding.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// Indices of the parts in the body.
@@ -53,10 +53,11 @@ impl Field {
         }
     }
 
-    /// The field for points at most `radius` away from a point, which must be in the range of this field.
+    /// The field for points at most `radius` away from a point, which must be in the range of this
+    /// field.
     pub fn near(&self, point: DVec3, radius: f64) -> Self {
-        // Each distance changes by at most `radius` on the way, that of a group by a little more where its
-        // members have different widths.
+        // Each distance changes by at most `radius` on the way, that of a group by a little more
+        // where its members have different widths.
         let reach = 2.2 * radius;
         let distances: Vec<f64> = self.cones.iter().map(|cone| cone.distance(point)).collect();
         let mut members = Vec::new();
@@ -100,7 +101,8 @@ impl Field {
         &self.parts
     }
 
-    /// Signed distance: the least over all groups. It changes by no more than the way, but for a tenth.
+    /// Signed distance: the least over all groups. It changes by no more than the way, but for a
+    /// tenth.
     pub fn distance(&self, point: DVec3, scratch: &mut FieldScratch) -> f64 {
         let FieldScratch { distances, members, .. } = scratch;
         distances.clear();
@@ -167,8 +169,8 @@ fn without_subsets(groups: Vec<(f64, Group)>) -> Vec<Group> {
         one.members.iter().all(|member| other.members.contains(member))
     };
     let mut kept: Vec<Option<Group>> = Vec::new();
-    // Only groups with a member in common are compared: comparing each with each takes most of the time
-    // for a long chain.
+    // Only groups with a member in common are compared: comparing each with each takes most of the
+    // time for a long chain.
     let mut with_part: HashMap<usize, Vec<usize>> = HashMap::new();
     for (_, group) in groups {
         let parts = || group.members.iter().filter_map(|member| member.parts().last());
@@ -199,21 +201,21 @@ fn smooth_minimum(a: f64, b: f64, width: f64) -> (f64, f64) {
     (a.min(b) - 0.25 * width * overlap * overlap, share_of_b)
 }
 
-/// Width of two bones that meet: that of the nearer one, changing evenly from one to the other where both
-/// are near.
+/// Width of two bones that meet: that of the nearer one, changing evenly from one to the other
+/// where both are near.
 fn width_at_bend(first: NearMember, second: NearMember) -> f64 {
     let farther = (first.distance - second.distance) / first.width.min(second.width);
     let share = (0.5 + 0.5 * farther).clamp(0.0, 1.0);
     first.width + (second.width - first.width) * share
 }
 
-/// Distance of the members of a group: the f with Σ x_i² = 1, where x_i = max(0, f + k_i − d_i)/k_i for a
-/// member with the distance d_i and the width k_i. It is d_i where no other member is near, at most the
-/// smallest width below the least d_i however many members meet, and smooth.
+/// Distance of the members of a group: the f with Σ x_i² = 1, where x_i = max(0, f + k_i − d_i)/k_i
+/// for a member with the distance d_i and the width k_i. It is d_i where no other member is near,
+/// at most the smallest width below the least d_i however many members meet, and smooth.
 fn blended_distance(members: &[NearMember]) -> f64 {
     let mut f = members.iter().map(|near| near.distance).fold(f64::INFINITY, f64::min);
-    // Newton's method from above; the sum is convex in f, so that it converges from one side. The first
-    // step finds nothing to do where one member alone is near.
+    // Newton's method from above; the sum is convex in f, so that it converges from one side. The
+    // first step finds nothing to do where one member alone is near.
     for _ in 0..12 {
         let (mut sum, mut slope) = (-1.0, 0.0);
         for near in members.iter().filter(|near| f + near.width > near.distance) {

@@ -7,7 +7,8 @@ use glam::{DVec3, IVec3};
 
 use super::field::{Field, FieldScratch};
 
-/// Distances at the corners of a cell; corner c has the coordinates of its bits: 1 for x, 2 for y, 4 for z.
+/// Distances at the corners of a cell; corner c has the coordinates of its bits: 1 for x, 2 for y,
+/// 4 for z.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     /// Integer coordinates of the lowest corner.
@@ -17,8 +18,8 @@ pub struct Cell {
     pub block: u32,
 }
 
-/// The cells of a grid that the surface passes through, found by an octree of cubes whose centre is nearer
-/// to the surface than their corners are.
+/// The cells of a grid that the surface passes through, found by an octree of cubes whose centre is
+/// nearer to the surface than their corners are.
 pub struct Grid {
     lattice: Lattice,
     /// The cells, in the order of the octree.
@@ -44,7 +45,7 @@ struct Cube {
 }
 
 /// The cells of a block.
-struct Block {
+struct CellBlock {
     field: Field,
     cells: Vec<(IVec3, [f64; 8])>,
 }
@@ -76,7 +77,7 @@ impl Grid {
         let of_branch = |branch: &Cube| {
             let mut cubes = Vec::new();
             lattice.visit(&branch.field, branch.low, large, BLOCK, &mut cubes);
-            cubes.into_iter().map(|cube| lattice.block(cube)).collect::<Vec<Block>>()
+            cubes.into_iter().map(|cube| lattice.block(cube)).collect::<Vec<CellBlock>>()
         };
         let mut grid =
             Self { lattice, cells: Vec::new(), index: HashMap::new(), blocks: Vec::new() };
@@ -86,7 +87,7 @@ impl Grid {
         grid
     }
 
-    fn add(&mut self, Block { field, cells }: Block) {
+    fn add(&mut self, CellBlock { field, cells }: CellBlock) {
         let block = self.blocks.len() as u32;
         for (at, corners) in cells {
             self.index.insert(at, self.cells.len() as u32);
@@ -116,8 +117,8 @@ impl Lattice {
         self.origin + corner.as_dvec3() * self.cell
     }
 
-    /// Adds the cubes of `least` cells along the edge that the surface may pass through, of those in the cube of
-    /// `cells` cells at `low`.
+    /// Adds the cubes of `least` cells along the edge that the surface may pass through, of those
+    /// in the cube of `cells` cells at `low`.
     fn visit(self, field: &Field, low: IVec3, cells: i32, least: i32, found: &mut Vec<Cube>) {
         let half = 0.5 * f64::from(cells) * self.cell;
         let centre = self.corner(low) + half;
@@ -137,7 +138,7 @@ impl Lattice {
     }
 
     /// The cells of a block that the surface passes through.
-    fn block(self, Cube { field, low }: Cube) -> Block {
+    fn block(self, Cube { field, low }: Cube) -> CellBlock {
         let mut corners = BlockCorners::default();
         let mut cells = Vec::new();
         let mut distance = |at: IVec3| {
@@ -160,7 +161,7 @@ impl Lattice {
                 }
             }
         }
-        Block { field, cells }
+        CellBlock { field, cells }
     }
 }
 

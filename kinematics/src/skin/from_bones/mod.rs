@@ -1,9 +1,10 @@
 //! Skins made from the bones of a skeleton.
 //!
-//! Each bone is a round cone with the radii of its joint. The signed distances of the parts of a joint and
-//! of its parent blend smoothly, two bones the more the sharper the bend between them; all others by the
-//! minimum. The surface of that field is meshed by dual marching cubes, a form of surface nets whose meshes
-//! are closed manifolds, one for each tree; its vertices are then moved onto the surface.
+//! Each bone is a round cone with the radii of its joint. The signed distances of the parts of a
+//! joint and of its parent blend smoothly, two bones the more the sharper the bend between them;
+//! all others by the minimum. The surface of that field is meshed by dual marching cubes, a form of
+//! surface nets whose meshes are closed manifolds, one for each tree; its vertices are then moved
+//! onto the surface.
 
 mod body;
 mod field;
@@ -26,14 +27,14 @@ use surface_nets::SurfaceNet;
 use weights::Weights;
 
 impl SkinnedMesh {
-    /// A skin around the bones of a skeleton in its bind pose, in skeleton space. Each tree of joints with
-    /// radii above 0 gets one closed surface. Parts thinner than a cell of the grid, which only a skeleton
-    /// of very different sizes has, become as thick as a cell.
+    /// A skin around the bones of a skeleton in its bind pose, in skeleton space. Each tree of
+    /// joints with radii above 0 gets one closed surface. Parts thinner than a cell of the grid,
+    /// which only a skeleton of very different sizes has, become as thick as a cell.
     ///
     /// # Errors
     ///
-    /// [`SkinShapeError`] if no joint has a radius, if the shape is invalid, or if the bones are so long
-    /// that the surface has numbers that are not finite.
+    /// [`SkinShapeError`] if no joint has a radius, if the shape is invalid, or if the bones are so
+    /// long that the surface has numbers that are not finite.
     pub fn from_bones(skeleton: &Skeleton, shape: &SkinShape) -> Result<Self, SkinShapeError> {
         let mut bodies = Body::all(skeleton, shape)?;
         let cell = cell_size(&bodies, shape.detail)?;

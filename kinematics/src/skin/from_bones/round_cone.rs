@@ -84,9 +84,9 @@ impl RoundCone {
         Self::new(self.base, self.tip, self.base_radius.max(radius), self.tip_radius.max(radius))
     }
 
-    /// Signed distance from a point: the least over all spheres between the two ends. Of the sphere at x
-    /// along the axis, |p − c(x)| − r(x) has its minimum where the direction to the point is normal to the
-    /// side.
+    /// Signed distance from a point: the least over all spheres between the two ends. Of the sphere
+    /// at x along the axis, |p − c(x)| − r(x) has its minimum where the direction to the point is
+    /// normal to the side.
     pub fn distance(&self, point: DVec3) -> f64 {
         let (centre, radius) = self.nearest_sphere(point);
         point.distance(centre) - radius

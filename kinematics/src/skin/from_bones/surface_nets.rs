@@ -7,7 +7,8 @@ use super::field::{Field, FieldScratch};
 use super::grid::{self, Cell, Grid, MARGIN, corner_offset};
 use super::round_cone::Sighting;
 
-/// Vertices, with the block of the grid that each is in, and quads, counter-clockwise seen from outside.
+/// Vertices, with the block of the grid that each is in, and quads, counter-clockwise seen from
+/// outside.
 #[derive(Default)]
 pub struct SurfaceNet {
     pub vertices: Vec<DVec3>,
@@ -110,8 +111,8 @@ fn centres(grid: &Grid, cell: &Cell, patches: &Patches) -> impl Iterator<Item = 
     sums.into_iter().map(|(sum, count)| sum / count)
 }
 
-/// The quad around the edge from the lowest corner of a cell along an axis; `None` if the surface does
-/// not cross it.
+/// The quad around the edge from the lowest corner of a cell along an axis; `None` if the surface
+/// does not cross it.
 fn quad(
     grid: &Grid,
     patches: &[Patches],
@@ -142,7 +143,8 @@ fn quad(
 const FACES: [[u8; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
-/// Edges of a cell, by axis and lower corner: three axes with eight corners, of which four are used.
+/// Edges of a cell, by axis and lower corner: three axes with eight corners, of which four are
+/// used.
 pub const EDGES: usize = 24;
 
 /// Index of the edge between two corners.
@@ -159,16 +161,16 @@ pub fn edge_corners(edge: usize) -> [u8; 2] {
 
 /// The pieces of surface in a cell: for each crossed edge the patch that it belongs to.
 ///
-/// Where the corners of a cell are inside and outside, the surface crosses the edges between them. On
-/// each face of the cell the crossed edges are joined by segments; the segments of all faces form
-/// cycles, and each cycle is the border of one patch. Naive surface nets have one vertex per cell and
-/// tie different patches of it together; with one vertex per patch the mesh is a closed manifold
-/// (G. Nielson, *Dual marching cubes*, IEEE Visualization 2004).
+/// Where the corners of a cell are inside and outside, the surface crosses the edges between them.
+/// On each face of the cell the crossed edges are joined by segments; the segments of all faces
+/// form cycles, and each cycle is the border of one patch. Naive surface nets have one vertex per
+/// cell and tie different patches of it together; with one vertex per patch the mesh is a closed
+/// manifold (G. Nielson, *Dual marching cubes*, IEEE Visualization 2004).
 ///
 /// A face with two opposite corners inside has four crossed edges, which can be joined in two ways.
-/// They are joined so that the inside corners are separate, except on faces where one patch on either
-/// side would then have both segments, that is, where two patches would share two edges of the mesh:
-/// there the outside corners are separate. This splits both patches in two.
+/// They are joined so that the inside corners are separate, except on faces where one patch on
+/// either side would then have both segments, that is, where two patches would share two edges of
+/// the mesh: there the outside corners are separate. This splits both patches in two.
 #[derive(Clone, Copy, Debug)]
 pub struct Patches {
     patch: [u8; EDGES],
@@ -224,8 +226,8 @@ impl Patches {
     }
 }
 
-/// For each crossed edge the next one around its patch. Each segment starts where the border of its face,
-/// counter-clockwise seen from outside, goes in, and ends where it goes out.
+/// For each crossed edge the next one around its patch. Each segment starts where the border of its
+/// face, counter-clockwise seen from outside, goes in, and ends where it goes out.
 fn segments(cell: &Cell, flipped: u8) -> [u8; EDGES] {
     let is_inside = |corner: u8| cell.corners[usize::from(corner)] < 0.0;
     let mut next = [NONE; EDGES];
@@ -250,9 +252,9 @@ fn segments(cell: &Cell, flipped: u8) -> [u8; EDGES] {
 /// Greatest distance from the surface, in local radii.
 const TOLERANCE: f64 = 2e-4;
 
-/// Spreads the vertices evenly over the surface: each moves to the mean of its neighbours, along the
-/// surface, and back onto it. A vertex stays near the cell that it was made in, where the field of its block
-/// is exact. Returns the unit normals of the vertices.
+/// Spreads the vertices evenly over the surface: each moves to the mean of its neighbours, along
+/// the surface, and back onto it. A vertex stays near the cell that it was made in, where the field
+/// of its block is exact. Returns the unit normals of the vertices.
 pub fn relax(net: &mut SurfaceNet, grid: &Grid, rounds: usize) -> Vec<DVec3> {
     let directed =
         net.quads.iter().flat_map(|[a, b, c, d]| [[*a, *b], [*b, *c], [*c, *d], [*d, *a]]);
@@ -309,8 +311,9 @@ fn newton_step(seen: &Sighting) -> DVec3 {
     seen.gradient * (seen.distance / seen.gradient.length_squared().max(0.25))
 }
 
-/// The point of the surface that Newton steps along the gradient lead to, and the normal there. Where the
-/// steps go back and forth across a crease, the surface is between the last points on either side.
+/// The point of the surface that Newton steps along the gradient lead to, and the normal there.
+/// Where the steps go back and forth across a crease, the surface is between the last points on
+/// either side.
 fn onto_surface(field: &Field, start: DVec3, scratch: &mut FieldScratch) -> (DVec3, DVec3) {
     let mut point = start;
     let mut sides: [Option<DVec3>; 2] = [None, None];

@@ -28,8 +28,8 @@ impl<'a> Weights<'a> {
         Self { body, near: skeleton.ids().map(near).collect() }
     }
 
-    /// The weights at a point. The nearest joint has the greatest one. Those of the joints around it
-    /// fall to 0 where they are farther away by [`REACH`] times the smaller radius of the two.
+    /// The weights at a point. The nearest joint has the greatest one. Those of the joints around
+    /// it fall to 0 where they are farther away by [`REACH`] times the smaller radius of the two.
     /// `candidates` are parts, among them the nearest one.
     pub fn at(&self, point: DVec3, candidates: &[usize]) -> VertexWeights {
         let (joint, own) = self.nearest(point, candidates);
@@ -53,8 +53,8 @@ impl<'a> Weights<'a> {
     }
 }
 
-/// The nearest of some parts. Behind its base a part counts as farther away, so that where many bones
-/// start at one point the surface behind them follows the bone that they start from.
+/// The nearest of some parts. Behind its base a part counts as farther away, so that where many
+/// bones start at one point the surface behind them follows the bone that they start from.
 fn nearest_of(body: &Body, point: DVec3, parts: &[usize]) -> Sighting {
     let seen = parts.iter().map(|part| {
         let cone = &body.parts[*part].cone;
@@ -72,8 +72,8 @@ fn falloff(far: f64) -> f64 {
     near / (2.0 - near)
 }
 
-/// Distance in local radii, beyond the nearest joint's, at which weights become 0. In the middle third of a
-/// straight bone longer than six radii it is √5 − 1 = 1.236 to the next bone.
+/// Distance in local radii, beyond the nearest joint's, at which weights become 0. In the middle
+/// third of a straight bone longer than six radii it is √5 − 1 = 1.236 to the next bone.
 const REACH: f64 = 1.2;
 
 fn within_two_steps(skeleton: &Skeleton, joint: JointId) -> Vec<JointId> {
@@ -96,9 +96,9 @@ fn within_two_steps(skeleton: &Skeleton, joint: JointId) -> Vec<JointId> {
 /// Greatest change of any joint's weight along an edge that [`smooth`] leaves.
 const GREATEST_JUMP: f32 = 0.3;
 
-/// Smooths weights along the edges that they jump along, such as creases between bones that are far apart
-/// in the tree: the two ends of such an edge come closer and follow the same four joints, one edge after
-/// the other, until no edge has a jump. All other weights stay.
+/// Smooths weights along the edges that they jump along, such as creases between bones that are far
+/// apart in the tree: the two ends of such an edge come closer and follow the same four joints, one
+/// edge after the other, until no edge has a jump. All other weights stay.
 pub fn smooth(weights: &mut [VertexWeights], edges: &[[u32; 2]]) {
     const MOST_ROUNDS: usize = 500;
     /// Part of its own weights that an end keeps; the rest is the mean of both.

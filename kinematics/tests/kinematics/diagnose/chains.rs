@@ -22,7 +22,8 @@ fn residual_with(rig: &MissedTargets, remedy: &Remedy, joint: JointId) -> f32 {
     skeleton.tip(joint).distance(target.point)
 }
 
-/// Diagnoses rigs and counts those whose first cause is `cause`; checks the residuals of all remedies.
+/// Diagnoses rigs and counts those whose first cause is `cause`; checks the residuals of all
+/// remedies.
 fn first_causes(cause: &str, mut rig: impl FnMut(&mut Random) -> MissedTargets) {
     let mut random = Random(19);
     let mut others = Vec::new();

@@ -42,7 +42,7 @@ fn first_causes(
     assert!(remedied >= ENOUGH, "{remedied} of {CASES} remedies reach the target");
 }
 
-/// Whether a cause has this name on the command line.
+/// True if a cause has this name on the command line.
 fn is(cause: &str) -> impl Fn(&Diagnosis) -> bool {
     move |found| found.cause.name() == cause
 }

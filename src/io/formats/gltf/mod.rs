@@ -38,7 +38,6 @@
 //!
 //! *glTF 2.0 Specification*, The Khronos Group, 2021.
 
-mod conversions;
 mod export;
 mod extras;
 mod file;

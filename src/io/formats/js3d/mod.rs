@@ -60,7 +60,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         });
     };
     let mut warnings = FieldWarnings::default();
-    let ImportedRig { rig, order, handles, transform } =
+    let Js3dRig { rig, order, handles, transform } =
         rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
     let mut document =
         Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
@@ -129,7 +129,7 @@ fn no_skeleton() -> FieldError {
 }
 
 /// A skeleton with its targets.
-struct ImportedRig {
+struct Js3dRig {
     rig: SkeletonRig,
     /// For each bone of the file its joint.
     order: Vec<JointId>,
@@ -144,7 +144,7 @@ fn rig(
     name: &str,
     file: &Js3dSkeleton,
     warnings: &mut FieldWarnings,
-) -> Result<ImportedRig, FieldError> {
+) -> Result<Js3dRig, FieldError> {
     let at = JsonPath::root().key("scene").key("skinned_meshes").key(name).key("skeleton");
     let transform = bones::world_of_mesh(scene, name, warnings)?;
     let SkeletonWithOrder { mut skeleton, order } = bones::read(&at, file)?;
@@ -155,7 +155,7 @@ fn rig(
     let targets = targets(&at, file, transform, &order, rig.default_path_radius(), warnings)?;
     let handles = targets.iter().map(|(handle, _)| *handle).collect();
     rig.targets = targets.into_iter().map(|(_, target)| target).collect();
-    Ok(ImportedRig { rig, order, handles, transform })
+    Ok(Js3dRig { rig, order, handles, transform })
 }
 
 /// Converts handles to targets, each with the index of its handle. Of several handles on the same

@@ -65,8 +65,8 @@ impl Editing {
         }
     }
 
-    /// Sets the keys from which the next [`KeysEdit::MoveKeys`](crate::session::KeysEdit::MoveKeys) of
-    /// the open transaction starts.
+    /// Sets the keys from which the next [`KeysEdit::MoveKeys`](crate::session::KeysEdit::MoveKeys)
+    /// of the open transaction starts.
     pub(in crate::session) fn restart_keys_from(&mut self, keys: Keys) {
         if let Some(transaction) = &mut self.transaction {
             transaction.shown.keys = keys;
@@ -174,8 +174,8 @@ fn is_transported(document: &Document) -> bool {
         && !keys.has(Channel::Twist)
 }
 
-/// True if a channel has an angle of the body that a head with keys has at its first key: such an angle
-/// is not keyed automatically.
+/// True if a channel has an angle of the body that a head with keys has at its first key: such an
+/// angle is not keyed automatically.
 fn is_start_of_body(document: &Document, channel: Channel) -> bool {
     let rig = &document.skeleton_rig;
     let Channel::Rotation(joint) = channel else { return false };

@@ -176,8 +176,8 @@ fn target_mark(painter: &Painter, at: Pos2, colour: Color32) {
 fn legend(ui: &mut Ui) {
     let palette = style::palette(ui);
     let [free, posed, locked] = [palette.upper, palette.accent, palette.joint].map(style::colour);
-    type Mark = fn(&Painter, Pos2, Color32);
-    let marks: [(Mark, Color32, &str); 4] = [
+    type MarkPainter = fn(&Painter, Pos2, Color32);
+    let marks: [(MarkPainter, Color32, &str); 4] = [
         (free_dot, free, "by angles"),
         (free_dot, posed, "by target"),
         (locked_dot, locked, "locked"),

@@ -9,7 +9,7 @@ use egui::{
 };
 
 use super::context_menu;
-use super::rows::{self, DopeSheetRow, ROW, SelectedKeys, TimelineAreas, channels};
+use super::rows::{self, DopeSheetRow, KeySet, ROW, TimelineAreas, channels};
 use super::time_scale::TimeScale;
 use crate::document::Channel;
 use crate::session::{Actions, KeysEdit, SelectAction, Session};
@@ -40,7 +40,7 @@ pub(in crate::ui) fn ui(
     }
     let body = ui.interact(areas.keys, Id::unique("timeline rows"), Sense::click_and_drag());
     body.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Dope sheet"));
-    let shown = DopeSheet { session, scale, picked: SelectedKeys::new(session), areas, ruler };
+    let shown = DopeSheet { session, scale, picked: KeySet::new(session), areas, ruler };
 
     let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
     shown.row(ui, DopeSheetRow::All, first, actions);
@@ -57,7 +57,7 @@ pub(in crate::ui) fn ui(
 struct DopeSheet<'a> {
     session: &'a Session,
     scale: TimeScale,
-    picked: SelectedKeys,
+    picked: KeySet,
     areas: &'a TimelineAreas,
     ruler: &'a Response,
 }

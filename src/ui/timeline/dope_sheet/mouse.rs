@@ -6,7 +6,7 @@ use glam::Vec3;
 use crate::document::Channel;
 use crate::session::{Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session};
 use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, KeyShift, Press, TimelineDrag};
-use crate::ui::timeline::rows::{DopeSheetRow, SelectedKeys};
+use crate::ui::timeline::rows::{DopeSheetRow, KeySet};
 use crate::ui::timeline::rows::{ROW, take_keyboard};
 use crate::ui::timeline::time_scale::TimeScale;
 use crate::ui::{labels, style};
@@ -101,7 +101,7 @@ pub(in crate::ui) fn press(
             PointerButton::Middle => drag::set(ui, TimelineDrag::Pan),
             PointerButton::Secondary => {
                 if let Some((row, time)) = sheet.key(pos)
-                    && !SelectedKeys::new(sheet.session).has(row, time)
+                    && !KeySet::new(sheet.session).has(row, time)
                 {
                     actions.push(SelectAction::Keys(row.keys(sheet.session, time)));
                 }
@@ -173,7 +173,7 @@ fn draw_box(
         let (time, y) = (sheet.scale.time(mouse.x), sheet.content_y(mouse));
         let times = (drag.time.min(time), drag.time.max(time));
         let inside = sheet.keys_in(times, (drag.y.min(y), drag.y.max(y)));
-        let picked = SelectedKeys::of(&keys);
+        let picked = KeySet::of(&keys);
         keys.extend(
             inside.into_iter().filter(|(it, at)| !picked.has(DopeSheetRow::Channel(*it), *at)),
         );

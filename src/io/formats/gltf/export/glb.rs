@@ -96,8 +96,8 @@ impl GltfWriter {
         .concat())
     }
 
-    /// Adds the nodes of the joints, with the same indices as in `bones`, then a node above them and
-    /// the node of the mesh. `frames` has nodes with the frames of their joints' angles.
+    /// Adds the nodes of the joints, with the same indices as in `bones`, then a node above them
+    /// and the node of the mesh. `frames` has nodes with the frames of their joints' angles.
     fn add_nodes(
         &mut self,
         bones: &JointNodes,

@@ -96,8 +96,8 @@ impl JointAnimation {
         self.frames.push((node, rotation.after.conjugate()));
     }
 
-    /// Records the values of all tracks that have none, and of the nodes that have no track at every
-    /// frame. Drops the tracks of nodes that stay in the bind pose.
+    /// Records the values of all tracks that have none, and of the nodes that have no track at
+    /// every frame. Drops the tracks of nodes that stay in the bind pose.
     pub fn record(
         &mut self,
         rig: &GltfRig,

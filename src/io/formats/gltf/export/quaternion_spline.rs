@@ -9,9 +9,8 @@ use core::ops::{Add, Mul};
 use glam::{DQuat, DVec3, Vec3};
 
 use super::nodes::same_side;
-use crate::io::formats::gltf::conversions::hermite;
 use crate::kinematics::skeleton::exact_angles;
-use crate::kinematics::spline::{Interpolation, Spline};
+use crate::kinematics::spline::{Interpolation, Spline, hermite};
 
 /// Largest angle in radians between the spline and the curve.
 const EXACT: f64 = 5e-5;
@@ -40,7 +39,7 @@ pub struct QuaternionKey {
 pub fn keys(track: &Spline<Vec3>, times: &[f64], node: NodeRotation) -> Vec<QuaternionKey> {
     let mut keys: Vec<QuaternionKey> = Vec::new();
     for pair in times.windows(2) {
-        let turn = Turn::new(track, pair[0], pair[1], node);
+        let turn = AngleCurve::new(track, pair[0], pair[1], node);
         let mut value = keys.last().map_or_else(|| turn.rotation(0.0), |key| key.value);
         let pieces = turn.pieces(value);
         for index in 0..pieces {
@@ -63,7 +62,7 @@ pub fn keys(track: &Spline<Vec3>, times: &[f64], node: NodeRotation) -> Vec<Quat
 const ZERO: DQuat = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
 
 /// The curve of angles between two times.
-struct Turn {
+struct AngleCurve {
     node: NodeRotation,
     interpolation: Interpolation,
     start: f64,
@@ -75,7 +74,7 @@ struct Turn {
     arriving: DVec3,
 }
 
-impl Turn {
+impl AngleCurve {
     fn new(track: &Spline<Vec3>, start: f64, end: f64, node: NodeRotation) -> Self {
         let Some(segment) = track.segment(start) else {
             let value = track.at(start).unwrap_or_default().as_dvec3();

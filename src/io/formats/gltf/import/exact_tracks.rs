@@ -29,11 +29,10 @@ use super::nodes::SkinJoints;
 use super::nodes::{NodeTransform, NodeTree};
 use super::sampler::{AnimatedPart, KeySampler};
 use crate::document::{Channel, Keys, Timeline};
-use crate::io::formats::gltf::conversions::hermite;
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
 use crate::io::formats::gltf::frame;
 use crate::kinematics::skeleton::{JointId, exact_angles};
-use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
+use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline, hermite};
 
 /// Maximum number of pieces of curves that are tried in one file.
 const MOST_PIECES: usize = 2_000_000;

@@ -13,7 +13,7 @@ use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
 
-/// What a skin takes of a material.
+/// The part of a material that a skin uses.
 #[derive(Clone)]
 pub struct PartMaterial {
     /// Colour as sRGB channels from 0 to 1.
@@ -41,7 +41,8 @@ pub struct ImageCache {
 }
 
 impl ImageCache {
-    /// Reads the base colour of a material. A texture that cannot be read is left out, with a warning.
+    /// Reads the base colour of a material. A texture that cannot be read is left out, with a
+    /// warning.
     pub fn material(
         &mut self,
         from: &MaterialSource<'_>,

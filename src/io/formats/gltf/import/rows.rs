@@ -94,8 +94,8 @@ impl<'a> AccessorRows<'a> {
             Some(view) => {
                 let offset = accessor.offset.map_or(0, |offset| offset.0 as usize);
                 let view = view.0 as usize;
-                let Block { bytes, stride } =
-                    Block::new(file, buffers, view, offset, (count, row), &at())?;
+                let RowBlock { bytes, stride } =
+                    RowBlock::new(file, buffers, view, offset, (count, row), &at())?;
                 (Cow::Borrowed(bytes), stride)
             }
             None if count.saturating_mul(row) as u64 > OpenError::MAX_BYTES => {
@@ -156,14 +156,14 @@ fn width(shape: &str) -> usize {
 }
 
 /// Rows within a buffer view.
-struct Block<'a> {
+struct RowBlock<'a> {
     /// From the first row to the end of the last one.
     bytes: &'a [u8],
     /// Bytes from one row to the next.
     stride: usize,
 }
 
-impl<'a> Block<'a> {
+impl<'a> RowBlock<'a> {
     /// Finds `count` rows of `row` bytes that begin at byte `offset` of the view `index`. `at` is
     /// the path of what has these rows.
     fn new(
@@ -222,9 +222,9 @@ fn overwrite(
         })?;
     let offset = |offset: Option<Whole>| offset.map_or(0, |offset| offset.0 as usize);
     let (view, from) = (indices.view.0 as usize, offset(indices.offset));
-    let places = Block::new(file, buffers, view, from, (listed, component.size()), at)?;
+    let places = RowBlock::new(file, buffers, view, from, (listed, component.size()), at)?;
     let (view, from) = (values.view.0 as usize, offset(values.offset));
-    let rows = Block::new(file, buffers, view, from, (listed, row), at)?;
+    let rows = RowBlock::new(file, buffers, view, from, (listed, row), at)?;
     for entry in 0..listed {
         let place = &places.bytes[entry * places.stride..][..component.size()];
         let place = component.number(place) as usize;

@@ -3,11 +3,10 @@ use glam::{DQuat, DVec3, DVec4, Vec3};
 use super::buffers::GltfBuffers;
 use super::nodes::unit;
 use super::rows::{AccessorRows, at_accessor};
-use crate::io::formats::gltf::conversions::hermite;
 use crate::io::formats::gltf::extras::SamplerExtras;
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
 use crate::io::json::FieldError;
-use crate::kinematics::spline::Spline;
+use crate::kinematics::spline::{Spline, hermite};
 
 /// The part of a node's transform that an animation channel changes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,5 +1,5 @@
-//! The list of targets with their distances; the target of the selected joint, and a note on whether
-//! it is reached and, if not, why, with what helps.
+//! The list of targets with their distances; the target of the selected joint, and a note on
+//! whether it is reached and, if not, why, with what helps.
 
 mod limb;
 
