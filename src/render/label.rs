@@ -4,17 +4,18 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use egui::epaint::text::{
     Fonts, Galley, Glyph, GlyphBitmap, GlyphRasterizer, GlyphRasterizerRequest, LayoutJob,
-    RasterizedGlyph, TextOptions, ViewportKey,
+    RasterizedGlyph, TextFormat, TextOptions, ViewportKey,
 };
 use egui::epaint::{ColorImage, FontColorTransferFunction};
 use egui::{Color32, FontDefinitions, FontFamily, FontId, vec2};
 use glam::Vec2;
+use unicode_segmentation::UnicodeSegmentation as _;
 
 use super::Gpu;
 use super::instances::{QuadDescriptor, Quads};
 use super::label_places::{LINE_HEIGHT, LabelPlaces};
 use super::pipeline::PipelineOutput;
-use super::system_fonts::system_fonts;
+use super::system_fonts::{FamilyFonts, family_of};
 use super::texture::{PaintTexture, TextureSampler};
 use crate::scene::Scene;
 
@@ -70,8 +71,8 @@ impl LabelPainter {
                 output: PipelineOutput::Overlay(format),
             },
         );
-        let fonts = LabelText::fonts().with_font_providers(vec![system_fonts()]);
-        let (text, places) = (LabelText::new(fonts), LabelPlaces::default());
+        let fonts = LabelText::fonts().with_font_providers(vec![Arc::new(FamilyFonts)]);
+        let (text, places) = (LabelText::new(fonts, family_of), LabelPlaces::default());
         Self { glyphs, sampler, text, places, atlas: None }
     }
 
@@ -93,7 +94,6 @@ impl LabelPainter {
 
         let halo = scene.palette.sky_bottom.with_opacity(0.55).channels();
         let around = HALO.map(|offset| (offset * scale, halo));
-        let atlas = Vec2::from(text.fonts.font_image_size().map(|side| side as f32));
         let pens = labels.zip(self.places.pens());
         let placed = pens.filter_map(|((label, galley), pen)| Some((label, galley, (*pen)?)));
         let instances = placed.flat_map(|(label, galley, pen)| {
@@ -101,7 +101,7 @@ impl LabelPainter {
             layers.flat_map(move |(offset, colour)| {
                 glyphs(galley).map(move |glyph| {
                     let corner = pen.round() + (corner(glyph) * scale).round() + offset;
-                    glyph_instance(glyph, corner, scale, size, atlas, colour)
+                    glyph_instance(glyph, corner, scale, size, colour)
                 })
             })
         });
@@ -125,13 +125,12 @@ fn glyph_instance(
     corner: Vec2,
     scale: f32,
     size: Vec2,
-    atlas: Vec2,
     colour: [f32; 4],
 ) -> GlyphInstance {
     let corner = corner * Vec2::new(2.0, -2.0) / size + Vec2::new(-1.0, 1.0);
     let extent = extent(glyph) * scale * Vec2::new(2.0, -2.0) / size;
-    let [from, to] = [glyph.uv_rect.min, glyph.uv_rect.max]
-        .map(|corner| Vec2::from(corner.map(f32::from)) / atlas);
+    let [from, to] =
+        [glyph.uv_rect.min, glyph.uv_rect.max].map(|corner| Vec2::from(corner.map(f32::from)));
     GlyphInstance {
         target: [corner.x, corner.y, extent.x, extent.y],
         source: [from.x, from.y, to.x - from.x, to.y - from.y],
@@ -165,6 +164,8 @@ fn width(galley: &Galley) -> f32 {
 /// The texts of labels, each laid out on one line by epaint, and the atlas of their glyphs.
 struct LabelText {
     fonts: Fonts,
+    /// The family of a letter that the built-in fonts lack.
+    family_of: fn(char) -> Option<FontFamily>,
     /// Pixels per point that were asked for.
     scale: f32,
     galleys: Vec<Arc<Galley>>,
@@ -183,8 +184,8 @@ impl LabelText {
         subpixel_binning: false,
     };
 
-    fn new(fonts: Fonts) -> Self {
-        Self { fonts, scale: 0.0, galleys: Vec::new() }
+    fn new(fonts: Fonts, family_of: fn(char) -> Option<FontFamily>) -> Self {
+        Self { fonts, family_of, scale: 0.0, galleys: Vec::new() }
     }
 
     /// The built-in fonts, with a box for letters that no font has.
@@ -215,20 +216,35 @@ impl LabelText {
         for scale in core::iter::once(full).chain(core::iter::successors(Some(full), halved)) {
             // Empties an atlas that is nearly full.
             self.fonts.begin_pass(Self::OPTIONS, ViewportKey::default());
-            let mut fonts = self.fonts.with_pixels_per_point(scale);
             self.galleys.clear();
             for text in texts.clone() {
-                let (text, font) = (visible(text).collect(), FontId::proportional(Self::FONT_SIZE));
-                let job = LayoutJob::simple_singleline(text, font, Color32::WHITE);
+                let job = self.job(&visible(text).collect::<String>());
+                let mut fonts = self.fonts.with_pixels_per_point(scale);
                 self.galleys.push(fonts.layout_job(job));
                 if fonts.font_atlas_fill_ratio() >= 1.0 {
                     break;
                 }
             }
-            if fonts.font_atlas_fill_ratio() < 1.0 {
+            if self.fonts.font_atlas_fill_ratio() < 1.0 {
                 break;
             }
         }
+    }
+
+    /// A line in which each letter is of the built-in fonts or, if these lack it, of its family.
+    fn job(&mut self, text: &str) -> LayoutJob {
+        let built_in = FontId::proportional(Self::FONT_SIZE);
+        let mut job = LayoutJob { break_on_newline: false, ..LayoutJob::default() };
+        // Marks stay with the letter that they are on.
+        for cluster in text.graphemes(true) {
+            let Some(letter) = cluster.chars().next() else { continue };
+            let is_lacking = !self.fonts.has_glyph(&built_in, letter);
+            let family = is_lacking.then(|| (self.family_of)(letter)).flatten();
+            let font = FontId { family: family.unwrap_or_default(), ..built_in.clone() };
+            let format = TextFormat::simple(font, Color32::WHITE);
+            job.append(cluster, 0.0, format);
+        }
+        job
     }
 }
 
@@ -257,9 +273,6 @@ fn missing_letter(request: &GlyphRasterizerRequest<'_>) -> Option<RasterizedGlyp
 
 #[cfg(test)]
 mod tests {
-    use egui::FontData;
-    use egui::epaint::text::{FallbackRequest, FontInsert};
-
     use super::*;
 
     const SCALES: [f32; 4] = [0.6, 1.0, 2.0, 4.5];
@@ -267,7 +280,7 @@ mod tests {
     const NO_LETTER: &str = "\u{10fffd}";
 
     fn without_system_fonts() -> LabelText {
-        LabelText::new(LabelText::fonts())
+        LabelText::new(LabelText::fonts(), |_| None)
     }
 
     /// Corners and sizes of the glyphs of a text in points, and their places in the atlas.
@@ -320,21 +333,20 @@ mod tests {
     #[test]
     fn a_letter_that_the_program_lacks_comes_from_a_font_that_is_found() {
         const SQUARE: &str = "\u{25a2}";
-        let find = |request: &FallbackRequest<'_>| {
-            let found = request.cluster == SQUARE;
-            // Only the first font of the definitions has it.
-            let font = FontDefinitions::default().font_data["Hack"].font.clone();
-            found.then(|| FontInsert::new("found", FontData::from_blob(font, 0), Vec::new()))
-        };
+        const HACK: &str = "Hack";
         let mut definitions = FontDefinitions::default();
-        definitions.families.insert(FontFamily::Proportional, vec!["Ubuntu-Light".to_owned()]);
+        let families = &mut definitions.families;
+        families.insert(FontFamily::Proportional, vec!["Ubuntu-Light".to_owned()]);
+        // Only the first font of the definitions has it.
+        families.insert(FontFamily::Name(HACK.into()), vec![HACK.to_owned()]);
         let fonts = || Fonts::new(LabelText::OPTIONS, definitions.clone());
-        let mut without = LabelText::new(fonts());
-        let mut with = LabelText::new(fonts().with_font_providers(vec![Arc::new(find)]));
+        let mut without = LabelText::new(fonts(), |_| None);
+        let mut with = LabelText::new(fonts(), |letter| {
+            SQUARE.contains(letter).then(|| FontFamily::Name(HACK.into()))
+        });
         let sizes = |labels: &mut LabelText, text| lay_out(labels, text, 2.0)[0].1;
         assert_ne!(sizes(&mut without, SQUARE), sizes(&mut with, SQUARE));
         assert_eq!(sizes(&mut without, NO_LETTER), sizes(&mut with, NO_LETTER));
-        assert_eq!(with.fonts.discovered_fonts().len(), 1);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
-use egui::FontData;
 use egui::epaint::text::{Blob, FallbackRequest, FontInsert, FontProvider};
+use egui::{FontData, FontFamily};
 use fontdb::{Database, FaceInfo, Family, ID, Source, Stretch, Style, Weight};
 use skrifa::MetadataProvider as _;
 use skrifa::instance::{LocationRef, Size};
@@ -13,18 +13,37 @@ use skrifa::outline::pen::PathElement;
 /// Finds fonts installed on this system, for letters that the built-in fonts lack.
 ///
 /// The first search reads the character maps of all installed fonts, which may take a tenth of a
-/// second; later ones look the letter up in a table. The result depends only on the installed
-/// fonts.
+/// second; later ones look the letter up in a table. Once a font is found, it serves for all of its
+/// letters, also where another font is preferred: pictures depend on the letters drawn before.
 pub fn system_fonts() -> Arc<dyn FontProvider> {
+    Arc::new(|request: &FallbackRequest<'_>| installed().find(request.cluster.chars().next()?))
+}
+
+/// The family of the most preferred installed font that has a letter; `None` if no installed font
+/// has it. Only [`FamilyFonts`] knows these families.
+pub(super) fn family_of(letter: char) -> Option<FontFamily> {
+    installed().number(letter).map(|number| FontFamily::Name(number.to_string().into()))
+}
+
+/// Gives each family of [`family_of`] its font. What is drawn depends only on the text and on the
+/// installed fonts.
+pub(super) struct FamilyFonts;
+
+impl FontProvider for FamilyFonts {
+    fn fonts_for_family(&self, family: &FontFamily) -> Vec<FontInsert> {
+        let FontFamily::Name(name) = family else { return Vec::new() };
+        let number = name.parse::<usize>().ok();
+        number.and_then(|number| installed().face(number)).into_iter().collect()
+    }
+}
+
+fn installed() -> MutexGuard<'static, SystemFonts> {
     static INSTALLED: LazyLock<Mutex<SystemFonts>> = LazyLock::new(|| {
         let mut database = Database::new();
         database.load_system_fonts();
         Mutex::new(SystemFonts::new(database))
     });
-    Arc::new(|request: &FallbackRequest<'_>| {
-        let letter = request.cluster.chars().next()?;
-        INSTALLED.lock().unwrap_or_else(PoisonError::into_inner).find(letter)
-    })
+    INSTALLED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// All faces in order of preference, with a table of their letters.
@@ -57,10 +76,21 @@ impl SystemFonts {
     /// The most preferred face that has a letter; `None` if no installed face has it, or its file
     /// cannot be loaded.
     fn find(&mut self, letter: char) -> Option<FontInsert> {
-        let number = self.first[letter as usize].checked_sub(1)?;
-        let (source, index) = self.database.face_source(self.faces[usize::from(number)])?;
-        let data = FontData::from_blob(self.load(source)?, index);
-        Some(FontInsert::new(&format!("system {number}"), data, Vec::new()))
+        self.face(self.number(letter)?)
+    }
+
+    /// Index of the most preferred face that has a letter; `None` if no installed face has it.
+    fn number(&self, letter: char) -> Option<usize> {
+        self.first[letter as usize].checked_sub(1).map(usize::from)
+    }
+
+    /// The face with an index; `None` without such a face, or if its file cannot be loaded.
+    fn face(&mut self, number: usize) -> Option<FontInsert> {
+        let (source, index) = self.database.face_source(*self.faces.get(number)?)?;
+        let data = self.load(source)?;
+        // Epaint panics at the font of a family that cannot be parsed.
+        skrifa::FontRef::from_index(data.as_ref().as_ref(), index).ok()?;
+        Some(FontInsert::new(&format!("system {number}"), FontData::from_blob(data, index), vec![]))
     }
 
     /// Contents of a font file, which are read once and shared by all faces of the file; `None` if
