@@ -10,7 +10,7 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
+use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
@@ -95,10 +95,9 @@ examples! {
         ReparentJoint: [JointEdit::ReparentJoint { joint: JointId::new(AIMED), parent: None }];
         SetRotation: [JointEdit::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.2) }];
         SetAxis: [JointEdit::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
-        SetLimit: [JointEdit::SetLimit {
+        SetLimits: [JointEdit::SetLimits {
             joint: JointId::new(INNER),
-            axis: RotationAxis::Y,
-            limit: Some(Limit { min: -0.1, max: 0.1 }),
+            limits: JointLimits::new([None, Some(Limit { min: -0.1, max: 0.1 }), None]),
         }];
         SetLocked: [
             JointEdit::SetLocked { joint: JointId::new(INNER), locked: true },

@@ -9,7 +9,7 @@ use ik_arm::document::{
 };
 use ik_arm::io::{FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
+use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
@@ -93,7 +93,8 @@ fn building() -> impl Strategy<Value = Action> {
             .prop_map(|(joint, parent)| Action::from(JointEdit::ReparentJoint { joint, parent })),
         1 => (joints(), points()).prop_map(|(joint, axis)| Action::from(JointEdit::SetAxis { joint, axis })),
         1 => (joints(), rotation_axes(), numbers(), numbers()).prop_map(|(joint, axis, min, max)| {
-            Action::from(JointEdit::SetLimit { joint, axis, limit: Some(Limit { min, max }) })
+            let limits = JointLimits::NONE.with_range(axis, Some(Limit { min, max }));
+            Action::from(JointEdit::SetLimits { joint, limits })
         }),
         1 => (joints(), any::<bool>())
             .prop_map(|(joint, locked)| Action::from(JointEdit::SetLocked { joint, locked })),

@@ -8,7 +8,7 @@ use egui::{DroppedFile, Event, Key, Modifiers};
 use glam::Vec3;
 use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::Method;
-use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
+use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::session::{
     Action, Edit, Effect, FileAction, JointEdit, PanelTab, PlaybackAction, SelectAction,
     SolverAction, SolverEdit, TargetEdit,
@@ -104,10 +104,9 @@ fn focusing_a_number_field_changes_no_bit_of_its_value() {
             joint,
             axis: Vec3::new(0.123_456_7, 1.000_000_1, -0.333_333_3),
         }),
-        Edit::from(JointEdit::SetLimit {
+        Edit::from(JointEdit::SetLimits {
             joint,
-            axis: RotationAxis::X,
-            limit: Some(Limit { min: -1.234_567, max: 0.7654 }),
+            limits: JointLimits::new([Some(Limit { min: -1.234_567, max: 0.7654 }), None, None]),
         }),
         Edit::from(TargetEdit::SetTarget(ik_arm::document::Target {
             weight: 0.123_456_7,

@@ -113,6 +113,13 @@ impl JointLimits {
         self.ranges[axis.index()]
     }
 
+    /// These limits with another range of the angle about an axis.
+    #[must_use]
+    pub const fn with_range(mut self, axis: RotationAxis, range: Option<Limit>) -> Self {
+        self.set_range(axis, range);
+        self
+    }
+
     /// Replaces the range of the angle about an axis.
     pub const fn set_range(&mut self, axis: RotationAxis, range: Option<Limit>) {
         self.ranges[axis.index()] = range;

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::{
-    Joint, JointId, JointRemap, Limit, RotationAxis, Skeleton, SkeletonError,
+    Joint, JointId, JointLimits, JointRemap, Skeleton, SkeletonError,
 };
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::parts::BodyPart;
@@ -58,14 +58,12 @@ pub enum JointEdit {
         /// The vector, in the joint's own space.
         axis: Vec3,
     },
-    /// Sets or removes the limit of one of a joint's Euler angles.
-    SetLimit {
+    /// Sets the limits of a joint's rotation.
+    SetLimits {
         /// The joint.
         joint: JointId,
-        /// Axis of the angle.
-        axis: RotationAxis,
-        /// The limit, in radians; `None` for an unlimited angle.
-        limit: Option<Limit>,
+        /// All of its limits.
+        limits: JointLimits,
     },
     /// Locks or unlocks a joint: solvers do not turn locked joints.
     SetLocked {
@@ -94,7 +92,7 @@ impl JointEdit {
             Self::ReparentJoint { .. } => "Re-parent joint",
             Self::SetRotation { .. } => "Turn joint",
             Self::SetAxis { .. } => "Change bone",
-            Self::SetLimit { .. } => "Change limit",
+            Self::SetLimits { .. } => "Change limit",
             Self::SetLocked { locked: true, .. } => "Lock joint",
             Self::SetLocked { locked: false, .. } => "Unlock joint",
             Self::SetTranslation(_) => "Move skeleton",
@@ -122,10 +120,8 @@ impl JointEdit {
             Self::SetAxis { joint, axis } => {
                 Outcome::edit_rig(session.shown(), |rig| rig.skeleton_mut().set_axis(joint, axis))
             }
-            Self::SetLimit { joint, axis, limit } => {
-                Outcome::edit_joint(session.shown(), joint, |joint| {
-                    joint.limits.set_range(axis, limit);
-                })
+            Self::SetLimits { joint, limits } => {
+                Outcome::edit_joint(session.shown(), joint, |joint| joint.limits = limits)
             }
             Self::SetLocked { joint, locked } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.locked = locked)

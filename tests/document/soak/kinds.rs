@@ -130,7 +130,7 @@ kinds! {
         };
         SetRotation: Build 6, |v| JointEdit::SetRotation { joint: v.joint(), rotation: v.angles() };
         SetAxis: Build 3, |v| JointEdit::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
-        SetLimit: Build 3, |v| JointEdit::SetLimit { joint: v.joint(), axis: v.rotation_axis(), limit: v.limit() };
+        SetLimits: Build 3, |v| JointEdit::SetLimits { joint: v.joint(), limits: v.limits() };
         SetLocked: Build 2, |v| JointEdit::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
     }
     Edit (Skin) (SkinEdit) {

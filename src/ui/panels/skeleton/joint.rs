@@ -74,7 +74,10 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
 fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     for axis in RotationAxis::ALL {
         let (label, limit) = (axis.name(), joint.limits.range(axis));
-        let set = |limit| JointEdit::SetLimit { joint: index, axis, limit };
+        let set = |limit| JointEdit::SetLimits {
+            joint: index,
+            limits: joint.limits.with_range(axis, limit),
+        };
         ui.horizontal(|ui| {
             ui.set_height(22.0);
             let (name, tooltip) =

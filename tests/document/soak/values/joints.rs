@@ -5,7 +5,7 @@ use ik_arm::document::{PathKind, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
 use ik_arm::kinematics::limb_ik::ElbowReference;
-use ik_arm::kinematics::skeleton::{JointId, Limit, RotationAxis};
+use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
     Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
@@ -139,6 +139,10 @@ impl Values<'_> {
             2 => Some(Limit { min: a, max: b }),
             _ => Some(Limit { min: a.min(b), max: a.max(b) }),
         }
+    }
+
+    pub fn limits(&mut self) -> JointLimits {
+        JointLimits::new([self.limit(), self.limit(), self.limit()])
     }
 
     pub fn name(&mut self) -> String {
