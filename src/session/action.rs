@@ -11,7 +11,8 @@ use crate::session::shell::ShellAction;
 use crate::session::skeleton::joints::JointEdit;
 use crate::session::skeleton::targets::{PathEdit, TargetEdit};
 use crate::session::skin::SkinEdit;
-use crate::session::solver::solvers::{SolverAction, SolverEdit};
+use crate::session::solver::edits::SolverEdit;
+use crate::session::solver::solvers::SolverAction;
 use crate::session::tour::state::TourAction;
 use crate::session::view::ViewAction;
 

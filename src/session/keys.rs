@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use crate::document::{Bake, Baked, Channel, Document, Keys, Quantity, RigKind, Timeline};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes};
+use crate::session::dialog::{BakeJob, Dialog};
 use crate::session::outcome::{Consequence, Effect, Outcome};
 use crate::session::parts::{Clipboard, Key};
 use crate::session::session::Session;
-use crate::session::shell::{BakeJob, Dialog};
 
 /// A change of the keys or of the timeline.
 #[derive(Clone, Debug, PartialEq)]

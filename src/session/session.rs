@@ -19,6 +19,7 @@ use crate::session::drag::turn::FollowMouse;
 
 mod act;
 mod files;
+mod framing;
 mod time;
 mod tour;
 

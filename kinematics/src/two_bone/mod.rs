@@ -30,9 +30,9 @@
 //! oₑ are both computed from the smaller of a and b, so that hₑ² + oₑ² = d₁² whatever the rounding
 //! of that number. The pose is therefore as exact near a straight or folded arm as anywhere else:
 //! limb lengths and the hand's position are within 3e-7·L. With the textbook form,
-//! hₑ = (d₁² − d₂² + D²)/2D and oₑ = √(d₁² − hₑ²), oₑ is off by 5e-4·L when the upper bone is thirty times as long
-//! as the lower. The elbow itself is ill-conditioned where the arm is nearly straight or folded,
-//! whatever the formula: there oₑ moves like √(L − D).
+//! hₑ = (d₁² − d₂² + D²)/2D and oₑ = √(d₁² − hₑ²), oₑ is off by 5e-4·L when the upper bone is
+//! thirty times as long as the lower. The elbow itself is ill-conditioned where the arm is nearly
+//! straight or folded, whatever the formula: there oₑ moves like √(L − D).
 //!
 //! # What breaks
 //!

@@ -3,8 +3,8 @@ use std::path::{Path, PathBuf};
 use super::action::{Export, ExportJob, FileAction, FileContents, PathDialog};
 use crate::document::Document;
 use crate::io::{FileStamp, Upwards, new_document};
+use crate::session::dialog::Dialog;
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
-use crate::session::shell::Dialog;
 
 /// The document's file, recent files, the running export and pending requests.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,9 +4,9 @@ use super::Session;
 use crate::document::{Document, RigKind};
 use crate::io::{Example, ExampleGroup};
 use crate::kinematics::skeleton::JointId;
+use crate::session::dialog::Dialog;
 use crate::session::files::action::{FileAction, PathDialog};
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
-use crate::session::shell::Dialog;
 use crate::session::skin;
 
 /// Actions on files.

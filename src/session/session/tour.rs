@@ -1,9 +1,9 @@
 use super::Session;
 use crate::session::action::Action;
+use crate::session::dialog::Dialog;
 use crate::session::files::action::FileAction;
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::Preferences;
-use crate::session::shell::Dialog;
 use crate::session::tour::state::{TourAction, TourState};
 use crate::session::tour::steps::TourStep;
 

@@ -3,7 +3,7 @@ use glam::Vec3;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{Report, SubStep};
 use crate::kinematics::skeleton::Skeleton;
-use crate::session::evaluated::Cached;
+use crate::session::cached::Cached;
 
 /// Iterates of a solver run, oldest first. Iterate 0 is the FK pose.
 ///

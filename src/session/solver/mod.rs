@@ -1,5 +1,6 @@
 //! Solver runs, their comparison, and what an iteration does inside.
 
+pub mod edits;
 pub mod iterates;
 pub mod run;
 pub mod solvers;

@@ -1,0 +1,73 @@
+use super::run::SolverRun;
+use crate::document::SkeletonRig;
+use crate::kinematics::chain_ik::SolverOptions;
+use crate::session::outcome::{Consequence, Outcome};
+use crate::session::session::Session;
+
+/// A change of the solver's settings, or of the pose by a solver run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SolverEdit {
+    /// Sets the solver and its options.
+    SetSolver(SolverOptions),
+    /// Sets the number of iterations that a solver run makes per frame.
+    SetIterationsPerFrame(u32),
+    /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends
+    /// the run.
+    ApplyPose,
+}
+
+impl SolverEdit {
+    /// Label of the edit's undo step.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",
+            Self::ApplyPose => "Apply pose",
+        }
+    }
+
+    pub(in crate::session) fn apply(self, session: &Session) -> Outcome {
+        match self {
+            Self::SetSolver(solver) if is_valid(&solver) => {
+                Outcome::change(session.shown(), |document| document.skeleton_rig.solver = solver)
+            }
+            Self::SetSolver(_) => {
+                Outcome::fail("Tolerance, damping, step and iterations must be above 0")
+            }
+            Self::SetIterationsPerFrame(iterations) => {
+                let iterations = iterations.clamp(1, SkeletonRig::MAX_ITERATIONS_PER_FRAME);
+                Outcome::change(session.shown(), |document| {
+                    document.skeleton_rig.iterations_per_frame = iterations;
+                })
+            }
+            Self::ApplyPose => apply_pose(session),
+        }
+    }
+}
+
+fn is_valid(solver: &SolverOptions) -> bool {
+    let above_0 = |value: f32| value.is_finite() && value > 0.0;
+    above_0(solver.damping)
+        && above_0(solver.step)
+        && solver.tolerance.is_none_or(above_0)
+        && solver.iterations.is_none_or(|iterations| iterations > 0)
+}
+
+/// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends the
+/// run.
+fn apply_pose(session: &Session) -> Outcome {
+    let Some(posed) = session.solvers().run().map(SolverRun::skeleton) else {
+        return Outcome::say("Run or step the solver first");
+    };
+    let written = Outcome::edit_rig(session.shown(), |rig| {
+        for (joint, posed) in posed.iter() {
+            let present = &rig.skeleton[joint];
+            if (present.rotation, present.offset) != (posed.rotation, posed.offset) {
+                rig.skeleton_mut().change(joint, |joint| {
+                    (joint.rotation, joint.offset) = (posed.rotation, posed.offset);
+                })?;
+            }
+        }
+        Ok(())
+    });
+    Outcome::from(Consequence::EndSolvers).and(written)
+}
