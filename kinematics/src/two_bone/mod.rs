@@ -257,7 +257,7 @@ pub struct TwoBonePose {
     /// Factor by which the bones are lengthened; 1 without stretch.
     pub stretch: f32,
     /// Direction and yaw of the Pointer. Pass it to the next
-    /// [`TwoBone::solve_from`](super::TwoBone::solve_from).
+    /// [`TwoBone::solve_from`].
     pub pointer: Pointer,
 }
 
