@@ -62,7 +62,7 @@ impl Program {
             .env("XDG_DATA_HOME", settings)
             .env("IK_ARM_DEBUG", debug)
             .env("DISPLAY", display.name())
-            .env("RUST_LOG", "error,ik_arm::app::window=trace")
+            .env("RUST_LOG", "error,ik_arm::app::frame=trace")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("XDG_RUNTIME_DIR")
             // Forces the program's own file dialogs instead of the desktop's.
