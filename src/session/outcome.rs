@@ -9,8 +9,7 @@ use crate::document::{Bake, Camera, Channel, Document, Keys, Ray, SkeletonRig};
 use crate::io::OpenOptions;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, RotationAxis, SkeletonError};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::session::dialog::Dialog;
-use crate::session::dialog::Message;
+use crate::session::dialog::{Dialog, Message};
 
 /// A request from the session to the program around it.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,7 +15,7 @@ use crate::io;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::Crowd;
-use crate::session::drag::turn::FollowMouse;
+use crate::session::drag::follow_mouse::FollowMouse;
 
 mod act;
 mod files;

@@ -1,10 +1,8 @@
 use glam::Vec3;
 
 use crate::document::{Document, Posed, RigKind, Track};
-use crate::io::exported::ExportFrames;
-use crate::io::exported::{Exported, MotionError, Progress};
-use crate::kinematics::skeleton::is_within_numbers;
-use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::io::exported::{ExportFrames, Exported, MotionError, Progress};
+use crate::kinematics::skeleton::{JointId, Skeleton, is_within_numbers};
 
 /// Joint positions of the shown rig over time, as a table of comma-separated values.
 ///

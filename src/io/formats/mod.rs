@@ -19,8 +19,9 @@ use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
 use thiserror::Error;
 
 use super::error::OpenError;
-use super::exported::{Cancelled, ExportKind, ExportOption, ExportOptions};
-use super::exported::{Exported, MotionError, Progress};
+use super::exported::{
+    Cancelled, ExportKind, ExportOption, ExportOptions, Exported, MotionError, Progress,
+};
 use super::foreign::ForeignFormat;
 use super::json::{FieldError, JsonPath, Whole};
 use super::opened::{OpenOptions, Opened};

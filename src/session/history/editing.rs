@@ -3,9 +3,9 @@ mod write;
 use super::steps::{History, Overrides, Snapshot, TreeChange};
 use crate::document::{Camera, Channel, Document, Posed, Ray, Track};
 use crate::kinematics::angle::wrapped;
+use crate::session::drag::follow_mouse::FollowMouse;
 use crate::session::drag::grip::Drag;
 use crate::session::drag::point::PointDrag;
-use crate::session::drag::turn::FollowMouse;
 
 /// Label of a transaction without edits.
 const CHANGE: &str = "Change";

@@ -6,8 +6,7 @@ use crate::kinematics::chain_ik::{
     ChainSolver, Method, Report, SolveError, SolverOptions, SubStep, TipTarget,
 };
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
-use crate::session::solver::iterates::Inside;
-use crate::session::solver::iterates::{Iterate, Iterates};
+use crate::session::solver::iterates::{Inside, Iterate, Iterates};
 
 /// Inputs of a solver run: the FK pose, the targets and the options of a document at a time.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,7 @@
 
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 
-use super::handles::TranslateHandles;
-use super::handles::{OUTER_RADIUS, RADIUS, RotateRing};
+use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
 use super::screen::{ScreenProjection, bright};
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::kinematics::skeleton::RotationAxis;

@@ -4,8 +4,7 @@
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
-use super::handles::TranslateHandles;
-use super::handles::{OUTER_RADIUS, RADIUS, RotateRing};
+use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
 use super::screen::{ScreenProjection, bright, to_segment};
 use crate::document::Target;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};

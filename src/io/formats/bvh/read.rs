@@ -1,7 +1,6 @@
 use glam::{DMat3, DVec3, Vec3};
 
-use super::hierarchy::{self, BvhChannel, BvhNode};
-use super::hierarchy::{Scanner, TextError, Token};
+use super::hierarchy::{self, BvhChannel, BvhNode, Scanner, TextError, Token};
 use super::rig::distinct;
 use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointTree};

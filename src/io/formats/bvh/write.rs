@@ -3,11 +3,9 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::rig::SkeletonTransform;
-use super::rig::{BvhPose, BvhRig};
+use super::rig::{BvhPose, BvhRig, SkeletonTransform};
 use crate::document::{Document, RigKind, Track};
-use crate::io::exported::ExportFrames;
-use crate::io::exported::{BvhUnit, Exported, MotionError, Progress};
+use crate::io::exported::{BvhUnit, ExportFrames, Exported, MotionError, Progress};
 use crate::kinematics::skeleton::exact_angles;
 
 /// Numbers of a node in a frame: its offset, and its angles about x, y and z.

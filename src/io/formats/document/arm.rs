@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::targets::SoftReachFields;
 use crate::document::{Arm, Cursor, HandOrientation, HandSpace, TwistReferenceKind};
-use crate::io::json::{Above0, AtField, FieldError, Fraction, value_or};
-use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint};
+use crate::io::json::{
+    Above0, AtField, FieldError, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, value_or,
+};
 use crate::kinematics::fk::Fk;
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone};

@@ -12,8 +12,9 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::skeleton::joint;
 use crate::document::{Channel, Document, Keys, Overlay, Quantity, Timeline};
-use crate::io::json::{AtField, FieldError, value_or};
-use crate::io::json::{JsonNumber, JsonObject, JsonSeconds, KeyRow, Whole};
+use crate::io::json::{
+    AtField, FieldError, JsonNumber, JsonObject, JsonSeconds, KeyRow, Whole, value_or,
+};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 

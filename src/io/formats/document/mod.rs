@@ -20,8 +20,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig, Skin};
 use crate::io::error::{OpenError, SaveError};
-use crate::io::json::{Above0, JsonNumber, JsonObject, JsonPoint, Whole};
-use crate::io::json::{AtField, FieldError, FieldWarnings, to_styled_json, value_or};
+use crate::io::json::{
+    Above0, AtField, FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPoint, Whole,
+    to_styled_json, value_or,
+};
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::io::write::write;

@@ -4,8 +4,10 @@
 use glam::{Affine3A, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::io::json::{AtField, FieldError, FieldWarnings, JsonPath, value_or};
-use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::io::json::{
+    AtField, FieldError, FieldWarnings, JsonNumber, JsonNumbers, JsonObject, JsonPath, JsonPoint,
+    Whole, value_or,
+};
 use crate::kinematics::skeleton::{
     Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
 };

@@ -9,8 +9,10 @@ use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::skeleton::joint;
-use crate::io::json::{AtField, FieldError, converted, value_or};
-use crate::io::json::{Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::io::json::{
+    AtField, FieldError, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole,
+    converted, value_or,
+};
 use crate::io::packed;
 use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::skeleton::joint;
 use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
-use crate::io::json::{Above0, Fraction, JsonNumber, JsonObject, JsonPoint, Whole};
-use crate::io::json::{AtField, FieldError, value_or};
+use crate::io::json::{
+    Above0, AtField, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole, value_or,
+};
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::soft_reach::{SoftReach, SoftReachField};

@@ -9,8 +9,9 @@ use std::marker::PhantomData;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::extras::{AnimationExtras, Extras, NodeExtras, SamplerExtras};
-use super::extras::{is_this_program, this_program};
+use super::extras::{
+    AnimationExtras, Extras, NodeExtras, SamplerExtras, is_this_program, this_program,
+};
 use super::material::{GltfImage, GltfMaterial, GltfTexture, Uri};
 use crate::io::json::{FieldError, JsonNumbers, JsonObject, JsonPath, JsonPoint, Whole};
 

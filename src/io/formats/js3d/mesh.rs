@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::file::Js3dMesh;
-use crate::io::json::JsonPath;
-use crate::io::json::{FieldError, FieldWarnings};
+use crate::io::json::{FieldError, FieldWarnings, JsonPath};
 use crate::io::packed;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};

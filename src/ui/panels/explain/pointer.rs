@@ -6,8 +6,9 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::figures::{FigureLabels, FigureLine, Lit, arc, around, beside};
-use super::figures::{FormulaRow, degrees, length, table};
+use super::figures::{
+    FigureLabels, FigureLine, FormulaRow, Lit, arc, around, beside, degrees, length, table,
+};
 use crate::document::Arm;
 use crate::session::{ArmFigure, Session};
 use crate::ui::style;

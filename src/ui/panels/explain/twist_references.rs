@@ -5,8 +5,7 @@ use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
 use crate::session::{Actions, Session, ViewAction};
-use crate::ui::widgets;
-use crate::ui::{glossary, labels, style};
+use crate::ui::{glossary, labels, style, widgets};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let arm = session.arm();

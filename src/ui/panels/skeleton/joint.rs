@@ -9,8 +9,7 @@ use super::targets;
 use crate::document::Channel;
 use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
 use crate::session::{Actions, Edit, JointEdit, Session};
-use crate::ui::widgets::Choice;
-use crate::ui::widgets::{self, AXES, NumberField, Slider, text, with_axis};
+use crate::ui::widgets::{self, AXES, Choice, NumberField, Slider, text, with_axis};
 use crate::ui::{labels, style};
 
 const STIFF: &str = "The limits leave one angle only";

@@ -8,8 +8,7 @@ use egui::{
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, BodyPart, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
-use crate::ui::widgets;
-use crate::ui::{commands, style};
+use crate::ui::{commands, style, widgets};
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;

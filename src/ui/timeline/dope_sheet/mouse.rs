@@ -6,8 +6,7 @@ use glam::Vec3;
 use crate::document::Channel;
 use crate::session::{Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session};
 use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, KeyShift, Press, TimelineDrag};
-use crate::ui::timeline::rows::{DopeSheetRow, KeySet};
-use crate::ui::timeline::rows::{ROW, take_keyboard};
+use crate::ui::timeline::rows::{DopeSheetRow, KeySet, ROW, take_keyboard};
 use crate::ui::timeline::time_scale::TimeScale;
 use crate::ui::{labels, style};
 

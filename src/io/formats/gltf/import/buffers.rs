@@ -7,11 +7,9 @@ use std::path::{Component, Path};
 use crate::io::error::{OpenError, system_reason};
 use crate::io::formats::gltf::file::{GltfBuffer, GltfFile, index_rule};
 use crate::io::formats::gltf::material::Uri;
-use crate::io::json::FieldError;
-use crate::io::json::JsonPath;
+use crate::io::json::{FieldError, JsonPath};
 use crate::io::packed;
-use crate::io::source::Source;
-use crate::io::source::open_regular;
+use crate::io::source::{Source, open_regular};
 
 /// The bytes of the buffers that the import reads; `None` for all other buffers.
 pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);

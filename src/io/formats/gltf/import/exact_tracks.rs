@@ -23,10 +23,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::animations;
 use super::animations::NodeTracks;
-use super::joint_tracks::JointPlacement;
-use super::joint_tracks::JointTracks;
-use super::nodes::SkinJoints;
-use super::nodes::{NodeTransform, NodeTree};
+use super::joint_tracks::{JointPlacement, JointTracks};
+use super::nodes::{NodeTransform, NodeTree, SkinJoints};
 use super::sampler::{AnimatedPart, KeySampler};
 use crate::document::{Channel, Keys, Timeline};
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};

@@ -2,10 +2,8 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Mat3, Vec3};
 
-use super::joint_tracks::JointPlacement;
-use super::joint_tracks::JointTracks;
-use super::nodes::NodeTree;
-use super::nodes::SkinJoints;
+use super::joint_tracks::{JointPlacement, JointTracks};
+use super::nodes::{NodeTree, SkinJoints};
 use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointBone, JointTree};
 use crate::io::formats::gltf::UniqueNames;

@@ -5,9 +5,7 @@ use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{
     Component, GltfAccessor, GltfBufferView, GltfFile, GltfSparse, index_rule,
 };
-use crate::io::json::FieldError;
-use crate::io::json::JsonPath;
-use crate::io::json::{JsonObject, Whole};
+use crate::io::json::{FieldError, JsonObject, JsonPath, Whole};
 
 /// The numbers of an accessor, row by row. All rows are within the bytes.
 pub struct AccessorRows<'a> {

@@ -11,9 +11,8 @@ use crate::kinematics::limb_ik::{ElbowReference, Limb};
 use crate::kinematics::twist::Stereographic;
 use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
 use crate::session::{Actions, Session, TargetEdit};
-use crate::ui::widgets::Choice;
 use crate::ui::widgets::{
-    self, AXES, PointSliders, Slider, angle_slider, soft_reach_sliders, with_axis,
+    self, AXES, Choice, PointSliders, Slider, angle_slider, soft_reach_sliders, with_axis,
 };
 
 pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
