@@ -13,9 +13,8 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::rig::{LimbSettings, TargetKind};
 
-use crate::common::Random;
-use crate::common::documents;
 use crate::common::skeletons::{forest, transform};
+use crate::common::{Random, documents};
 
 const WHOLE: Timeline = Timeline { start: 0.0, end: 2.0, frame_rate: 24.0 };
 const PART: Timeline = Timeline { start: 0.5, end: 1.25, frame_rate: 24.0 };

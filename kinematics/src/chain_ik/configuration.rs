@@ -1,6 +1,6 @@
 use glam::{Mat3A, Quat, Vec3, Vec3A};
 
-use super::problem::{EndEffector, Problem};
+use super::problem::{EndEffector, Link, Problem};
 use crate::skeleton::{JointAngles, nearest_angles};
 
 /// Angles of all links, shifts of all trees, and the positions that follow from both, in problem
@@ -106,6 +106,33 @@ impl Configuration {
         errors.fold(0.0, f64::max)
     }
 
+    /// Σ w r² with the distances r from joints to the tips below them, in the problem's units; as
+    /// [`Problem::inertia`] in this pose.
+    pub fn inertia(&self, problem: &Problem) -> f32 {
+        let of_link = |(link, base): (&Link, &Vec3A)| {
+            let squares = problem.below(link).iter().map(|effector| {
+                let arm = self.tips[*effector] - *base;
+                problem.effectors[*effector].weight * arm.length_squared()
+            });
+            squares.sum::<f32>()
+        };
+        let turning: f32 = problem.links.iter().zip(&self.bases).map(of_link).sum();
+        turning + problem.inertia_of_shifts()
+    }
+
+    /// Largest distance from a tip to the point to which methods move it, in the problem's units.
+    pub fn farthest(&self, problem: &Problem) -> f64 {
+        let tips = problem.effectors.iter().zip(&self.tips);
+        let distances = tips.map(|(effector, tip)| effector.target.distance(*tip));
+        f64::from(distances.fold(0.0, f32::max))
+    }
+
+    /// Sum of the distances from tips to requested targets, in world units.
+    pub fn total_error(&self, problem: &Problem) -> f64 {
+        let tips = problem.effectors.iter().zip(&self.tips);
+        tips.map(|(effector, tip)| problem.error(effector, *tip)).sum()
+    }
+
     /// Weighted root mean square distance from tips to targets, in the problem's units.
     pub fn distance(&self, problem: &Problem) -> f64 {
         let weights: f64 =
@@ -173,5 +200,20 @@ impl Coordinates {
     pub fn copy_from(&mut self, config: &Configuration) {
         self.angles.clone_from(&config.angles);
         self.shifts.clone_from(&config.shifts);
+    }
+
+    pub fn subtract(&mut self, other: &Self) {
+        let angles = self.angles.iter_mut().zip(&other.angles);
+        angles.for_each(|(angles, other)| *angles -= *other);
+        let shifts = self.shifts.iter_mut().zip(&other.shifts);
+        shifts.for_each(|(shift, other)| *shift -= *other);
+    }
+
+    /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes of
+    /// angles, and of shifts in chain lengths.
+    pub fn norm(&self, length: f32) -> f32 {
+        let angles: f32 = self.angles.iter().map(|angles| angles.length_squared()).sum();
+        let shifts: f32 = self.shifts.iter().map(|shift| (*shift * length).length_squared()).sum();
+        (angles + shifts).sqrt()
     }
 }

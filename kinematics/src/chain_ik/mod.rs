@@ -28,6 +28,9 @@
 //! A target out of reach is not an error: the chain straightens towards the target and the solver
 //! stalls. Results are deterministic.
 //!
+//! [`ChainSolver::run`] solves one pose. Of neighbouring frames of a motion it may find different
+//! minima, and joints jump. [`ChainSolver::track`] continues from the pose of the frame before.
+//!
 //! # What breaks
 //!
 //! - A solver stalls at a *local* minimum of f. Limits can cause such minima away from the target.
@@ -50,6 +53,7 @@ mod perturb;
 mod problem;
 mod solver;
 mod stall;
+mod tracker;
 
 pub use diagnose::{diagnose, diagnose_targets};
 pub use inside::{
@@ -59,4 +63,4 @@ pub use jacobian::{Swing, jacobian};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
 pub use problem::TipTarget;
-pub use solver::{ChainSolver, Report, Status, solve};
+pub use solver::{ChainSolver, Report, Status, TrackStep, solve};

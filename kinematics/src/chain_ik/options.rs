@@ -4,6 +4,7 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::method::{Method, TwoBoneRefusal, TwoBonesRefused};
+use super::problem::Problem;
 use crate::skeleton::JointId;
 
 /// Options of all methods.
@@ -130,6 +131,13 @@ impl Root {
     pub const ALL: [Self; 3] = [Self::Locked, Self::Turns, Self::Free];
 }
 
+impl SolverOptions {
+    /// The tolerance in world units.
+    pub(super) fn tolerance_of(&self, problem: &Problem) -> f64 {
+        self.tolerance.map_or(1e-4 * problem.world_length(), f64::from)
+    }
+}
+
 /// A skeleton, target or option that cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -140,6 +148,10 @@ pub enum SolveError {
     /// Two targets name the same joint.
     #[error("joint {0} must have one target, got more")]
     TwoTargets(JointId),
+    /// A joint between a target and a root has another parent or lock than in the skeleton for
+    /// which the solver was made.
+    #[error("joint {0} must have the parent and the lock with which the solver was made")]
+    OtherJoint(JointId),
     /// The position of a target is not finite.
     #[error("the target of joint {joint} must be finite, got {point}")]
     Point {

@@ -1,13 +1,18 @@
+mod track;
+
 use core::fmt;
 
 use super::configuration::Configuration;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
 use super::method::{Method, MethodInputs, MethodState};
-use super::problem::{self, Problem};
+use super::problem::{self, Builder, Problem};
 use super::stall::{Escape, StallDetector};
+use super::tracker::Tracker;
 use super::{SolveError, SolverOptions, TipTarget, perturb};
 use crate::skeleton::Skeleton;
 use crate::vector::saturate;
+
+pub use self::track::TrackStep;
 
 /// An iterative solver that moves the bone tips of a skeleton to targets.
 ///
@@ -31,11 +36,13 @@ use crate::vector::saturate;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChainSolver {
     report: Report,
+    options: SolverOptions,
     max_iterations: u32,
     /// Number of iterations after which a bounded solver stops; `None` for others.
     bound: Option<u32>,
     /// In world units.
     tolerance: f64,
+    builder: Builder,
     problem: Problem,
     config: Configuration,
     /// The configuration before the first iteration.
@@ -43,6 +50,8 @@ pub struct ChainSolver {
     state: MethodState,
     stall: StallDetector,
     escape: Escape,
+    /// `None` before the first call of [`ChainSolver::track`].
+    tracker: Option<Box<Tracker>>,
 }
 
 impl ChainSolver {
@@ -60,8 +69,8 @@ impl ChainSolver {
         targets: &[TipTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
-        options.check()?;
-        Self::of_problem(problem::build(skeleton, targets, options)?, skeleton, targets, options)
+        let (builder, problem) = Self::problem(skeleton, targets, options)?;
+        Self::of_problem(builder, problem, skeleton, targets, options)
     }
 
     /// Prepares a solver that stops with [`Status::Bounded`] after at most `work`, so that the time
@@ -77,25 +86,38 @@ impl ChainSolver {
         options: &SolverOptions,
         work: u64,
     ) -> Result<Self, SolveError> {
-        options.check()?;
-        let problem = problem::build(skeleton, targets, options)?;
+        let (builder, problem) = Self::problem(skeleton, targets, options)?;
         let (method, of_iteration) = (options.method, (options.method.row().work)(&problem));
         if of_iteration > work {
             let (targets, links) = (targets.len(), problem.links.len());
             return Err(SolveError::TooMuchWork { method, targets, links });
         }
         let bound = u32::try_from(work / of_iteration.max(1)).unwrap_or(u32::MAX);
-        let solver = Self::of_problem(problem, skeleton, targets, options)?;
+        let solver = Self::of_problem(builder, problem, skeleton, targets, options)?;
         Ok(Self { bound: Some(bound), ..solver })
     }
 
+    fn problem(
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+    ) -> Result<(Builder, Problem), SolveError> {
+        options.check()?;
+        let mut builder = Builder::new(skeleton, targets, options)?;
+        let mut problem = Problem::default();
+        builder.fill(&mut problem, skeleton, targets)?;
+        problem.set_targets(targets);
+        Ok((builder, problem))
+    }
+
     fn of_problem(
+        builder: Builder,
         problem: Problem,
         skeleton: &Skeleton,
         targets: &[TipTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
-        let tolerance = options.tolerance.map_or(1e-4 * problem.world_length(), f64::from);
+        let tolerance = options.tolerance_of(&problem);
         let SolverOptions { method, damping, step, .. } = *options;
         let inputs = MethodInputs { problem: &problem, skeleton, damping, step };
         let state = MethodState::new(method, &inputs)?;
@@ -110,15 +132,18 @@ impl ChainSolver {
         let (start, escape) = (config.clone(), Escape::new(&config));
         let mut solver = Self {
             report,
+            options: *options,
             max_iterations,
             bound: None,
             tolerance,
+            builder,
             problem,
             config,
             start,
             state,
             stall,
             escape,
+            tracker: None,
         };
         solver.set_targets(targets);
         Ok(solver)
@@ -211,6 +236,13 @@ impl ChainSolver {
     /// [`SolveError::NoJoint`] for other joints or another order; [`SolveError::Point`];
     /// [`SolveError::Weight`].
     pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
+        self.check_targets(targets)?;
+        self.set_targets(targets);
+        Ok(())
+    }
+
+    /// Checks targets that must be for the joints of the present targets, in the same order.
+    fn check_targets(&self, targets: &[TipTarget]) -> Result<(), SolveError> {
         let effectors = &self.problem.effectors;
         for (index, effector) in effectors.iter().enumerate() {
             let joint = targets.get(index).map(|target| target.joint);
@@ -224,7 +256,6 @@ impl ChainSolver {
         for target in targets {
             problem::check_target(target)?;
         }
-        self.set_targets(targets);
         Ok(())
     }
 
@@ -241,7 +272,7 @@ impl ChainSolver {
                 let offset = self.problem.root_offset(index, config.shifts[index]);
                 skeleton.write_local(tree.root, |root| root.offset = offset);
             }
-        } else if config.is_same(&self.start) {
+        } else if self.tracker.is_none() && config.is_same(&self.start) {
             // Nothing has moved: writes the angles from before the run, bit for bit, also if other
             // angles have been written since.
             for link in &self.problem.links {
@@ -249,8 +280,14 @@ impl ChainSolver {
             }
             return;
         }
-        let mut config = config.clone();
-        self.state.update_orientations(&mut config);
+        let mut updated = Configuration::default();
+        let config = if self.tracker.is_some() {
+            config
+        } else {
+            updated.clone_from(config);
+            self.state.update_orientations(&mut updated);
+            &updated
+        };
         for (index, link) in self.problem.links.iter().enumerate() {
             skeleton.write_local(link.joint, |joint| {
                 joint.rotation = config.angles_near(&self.problem, index, joint.rotation);

@@ -24,6 +24,11 @@ impl Patience {
         Self { iterations, repeats_steps: false, least_moving }
     }
 
+    /// Number of iterations without an improvement after which the method has stalled.
+    pub fn iterations(self) -> u32 {
+        self.iterations
+    }
+
     /// Decrease of the distance up to which an iteration is idle. `tolerance` is in the problem's
     /// units.
     fn least_decrease(self, tolerance: f64) -> f64 {

@@ -19,6 +19,7 @@ mod solver_inside;
 mod spline;
 mod swing;
 mod target_match;
+mod track;
 mod twist;
 mod two_bone;
 mod two_bone_accuracy;

@@ -43,6 +43,12 @@ impl Ccd {
         }
     }
 
+    /// Fits the sweep to links that are mounted otherwise.
+    pub fn refit(&mut self, problem: &Problem) {
+        self.mounts.clear();
+        self.mounts.extend(problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)));
+    }
+
     /// Makes a sweep and returns `true`.
     pub fn iterate(
         &mut self,

@@ -32,6 +32,10 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
     wrenches: Wrenches,
     step: Coordinates,
     before: Coordinates,
+    /// Of a move in the null space: the way to the wanted coordinates.
+    wanted: Coordinates,
+    /// Of a move in the null space: angular velocity of each link and velocity of its joint.
+    velocities: Vec<(Vec3A, Vec3A)>,
     /// Rotation axes of the configuration, as columns; zero for fixed angles.
     axes: Vec<Mat3A>,
     /// JJᵀ; only the lower triangle is used.
@@ -51,12 +55,20 @@ impl DampedLeastSquares {
             wrenches: Wrenches::default(),
             step: Coordinates::default(),
             before: Coordinates::default(),
+            wanted: Coordinates::default(),
+            velocities: Vec::new(),
             axes: Vec::new(),
             square: DMatrix::zeros(rows, rows),
             factored: DMatrix::zeros(rows, rows),
             residuals: DVector::zeros(rows),
             forces: DVector::zeros(rows),
         }
+    }
+
+    /// Fits λ to other lengths and resets it to its initial value.
+    pub fn refit(&mut self, problem: &Problem, damping: f32) {
+        self.damping = damping * problem.length;
+        self.restart();
     }
 
     /// Resets λ to its initial value and returns `true`.
@@ -97,6 +109,78 @@ impl DampedLeastSquares {
             self.raised *= GROWTH;
         }
         false
+    }
+
+    /// Moves the configuration towards wanted coordinates without moving the tips, to first order:
+    /// by the part of the way d that is in the null space, (I − Jᵀ (JJᵀ + λ²I)⁻¹ J) d, and by at most
+    /// `most`, the Euclidean norm of the changes of angles in radians and of shifts in chain lengths.
+    /// Angles that would cross a limit are fixed.
+    pub fn advance_in_null_space(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        wanted: impl Fn(&mut Coordinates),
+        most: f32,
+    ) {
+        self.before.copy_from(config);
+        self.axes.clone_from(&config.axes);
+        self.wanted.copy_from(config);
+        wanted(&mut self.wanted);
+        self.wanted.subtract(&self.before);
+        loop {
+            self.multiply(problem, config);
+            self.set_velocities_as_residuals(problem, config);
+            if !self.solve(problem, config) {
+                return;
+            }
+            self.take_from_wanted(problem);
+            if !self.fix_angles(problem) {
+                break;
+            }
+        }
+        let norm = self.step.norm(problem.length);
+        let factor = if norm > most { most / norm } else { 1.0 };
+        advance(problem, &self.before, &self.step, factor, config);
+    }
+
+    /// Sets the residuals to J d, the weighted velocities of the tips on the wanted way.
+    fn set_velocities_as_residuals(&mut self, problem: &Problem, config: &Configuration) {
+        self.velocities.clear();
+        for (index, link) in problem.links.iter().enumerate() {
+            let (spin, velocity) = match link.parent {
+                Some(parent) => {
+                    let (spin, velocity) = self.velocities[parent];
+                    (spin, velocity + spin.cross(config.bases[index] - config.bases[parent]))
+                }
+                None => (Vec3A::ZERO, self.wanted.shifts[link.tree]),
+            };
+            let own = self.axes[index] * Vec3A::from(self.wanted.angles[index]);
+            self.velocities.push((spin + own, velocity));
+        }
+        for (index, effector) in problem.effectors.iter().enumerate() {
+            let velocity = match effector.link {
+                Some(link) => {
+                    let (spin, velocity) = self.velocities[link];
+                    velocity + spin.cross(config.tips[index] - config.bases[link])
+                }
+                None => self.wanted.shifts[effector.tree],
+            };
+            let row = velocity * effector.weight.sqrt();
+            self.residuals.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
+        }
+    }
+
+    /// Turns the step Jᵀ F into the rest of the wanted way; fixed angles do not move.
+    fn take_from_wanted(&mut self, problem: &Problem) {
+        let lever = problem.length * problem.length;
+        let Coordinates { angles, shifts } = &mut self.step;
+        for (by, wanted) in angles.iter_mut().zip(&self.wanted.angles) {
+            *by = *wanted - *by;
+        }
+        for (by, wanted) in shifts.iter_mut().zip(&self.wanted.shifts) {
+            // The unit of a step's shifts: see `advance`.
+            *by = *wanted / lever - *by;
+        }
     }
 
     fn record_gradient(

@@ -14,7 +14,7 @@ use core::str::FromStr;
 use thiserror::Error;
 
 use self::ccd::Ccd;
-use self::damped_least_squares::DampedLeastSquares;
+pub(super) use self::damped_least_squares::DampedLeastSquares;
 use self::fabrik::Fabrik;
 use self::relaxation::Relaxation;
 use self::transpose::{Transpose, TransposeFixed};
@@ -344,6 +344,31 @@ impl MethodState {
             Self::Relaxation(relaxation) => relaxation.iterate(problem, config, recorder),
             Self::TwoBone(limbs) => limbs.iterate(problem, config, recorder),
         }
+    }
+
+    /// Fits the method to a problem with other lengths, weights, mounts or limits of the same links,
+    /// and forgets what it has kept from earlier iterations. `damping` and `step` are those of the
+    /// solver's options.
+    pub fn refit(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        damping: f32,
+        step: f32,
+    ) -> Result<(), TwoBonesRefused> {
+        match self {
+            Self::TransposeFixed(transpose) => transpose.refit(problem, config, step),
+            Self::Transpose(descent) => descent.refit(problem),
+            Self::DampedLeastSquares(damped) => damped.refit(problem, damping),
+            Self::Ccd(ccd) => ccd.refit(problem),
+            Self::Fabrik(fabrik) => fabrik.refit(problem),
+            Self::Relaxation(relaxation) => {
+                relaxation.refit(problem);
+                relaxation.inward.restart();
+            }
+            Self::TwoBone(limbs) => limbs.refit(problem)?,
+        }
+        Ok(())
     }
 
     /// Updates orientations that iterations leave behind the points that they move.

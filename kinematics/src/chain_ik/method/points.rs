@@ -53,6 +53,12 @@ impl<P: InwardPass> PointMethod<P> {
         Self { inward, points, before: Configuration::default(), sweep }
     }
 
+    /// Fits the points and the sweep to other lengths and mounts.
+    pub fn refit(&mut self, problem: &Problem) {
+        self.points.refit(problem);
+        self.sweep.refit(problem);
+    }
+
     /// Makes the passes, and a sweep of CCD if they need one; returns `true`.
     pub fn iterate(
         &mut self,
@@ -164,6 +170,47 @@ impl LinkPoints {
         points.arms = vec![Vec3A::ZERO; points.all.len()];
         points.pairs.reserve(points.all.len());
         points
+    }
+
+    /// Fits the points to other lengths, weights, mounts and limits. Allocates only if joints or tips
+    /// come to share a point, or share one no longer.
+    fn refit(&mut self, problem: &Problem) {
+        let weight = |member: MemberKind| match member {
+            MemberKind::Base(link) => {
+                let below = problem.below(&problem.links[link]).iter();
+                below.map(|effector| problem.effectors[*effector].weight).sum()
+            }
+            MemberKind::Tip(effector) => problem.effectors[effector].weight,
+        };
+        let refit = |member: &mut PointMember| member.weight = weight(member.kind);
+        for point in &mut self.all {
+            point.members.iter_mut().for_each(refit);
+            point.position = point.members[0].kind.position_in_link(problem);
+            point.radius = point.position.length();
+            point.weight = point.members.iter().map(|member| member.weight).sum();
+        }
+        self.grounds.iter_mut().flatten().for_each(refit);
+        if !self.are_points_apart(problem) {
+            *self = Self::new(problem);
+            return;
+        }
+        self.limited = problem.links.iter().any(|link| link.limits.is_limited());
+        self.mounts.clear();
+        self.mounts.extend(problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)));
+    }
+
+    /// True if the members of each point are where it is, and those of other points are not.
+    fn are_points_apart(&self, problem: &Problem) -> bool {
+        let is_at = |point: &LinkPoint, member: &PointMember| {
+            member.kind.position_in_link(problem) == point.position
+        };
+        self.all.iter().all(|point| point.members.iter().all(|member| is_at(point, member)))
+            && self.ranges.iter().all(|(from, to)| {
+                let points = &self.all[*from..*to];
+                let others = |index: usize| points[..index].iter();
+                (0..points.len())
+                    .all(|index| others(index).all(|it| it.position != points[index].position))
+            })
     }
 
     fn list(&mut self, problem: &Problem) -> Vec<Vec<LinkPoint>> {
@@ -413,6 +460,14 @@ impl LinkPoint {
 }
 
 impl MemberKind {
+    /// Position in the space of the link that has it.
+    fn position_in_link(self, problem: &Problem) -> Vec3A {
+        match self {
+            Self::Base(link) => problem.links[link].pivot,
+            Self::Tip(effector) => problem.effectors[effector].tip,
+        }
+    }
+
     /// Position in problem space.
     fn position_in(self, config: &Configuration) -> Vec3A {
         match self {

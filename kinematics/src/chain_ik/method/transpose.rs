@@ -55,8 +55,18 @@ pub(in crate::chain_ik) struct TransposeFixed {
 
 impl TransposeFixed {
     pub fn new(problem: &Problem, step: f32) -> Self {
-        let step = if problem.inertia > 0.0 { step / problem.inertia } else { 0.0 };
-        Self { step, ..Self::default() }
+        let mut transpose = Self::default();
+        transpose.set_step(step, problem.inertia);
+        transpose
+    }
+
+    /// Fits the step to a pose, in which the cost can have more curvature than in the bind pose.
+    pub fn refit(&mut self, problem: &Problem, config: &Configuration, step: f32) {
+        self.set_step(step, problem.inertia.max(config.inertia(problem)));
+    }
+
+    fn set_step(&mut self, step: f32, inertia: f32) {
+        self.step = if inertia > 0.0 { step / inertia } else { 0.0 };
     }
 
     /// Makes a step and returns `true`.
@@ -106,18 +116,25 @@ pub(in crate::chain_ik) struct Transpose {
 
 impl Transpose {
     pub fn new(problem: &Problem) -> Self {
-        let step = if problem.inertia > 0.0 { problem.inertia.recip() } else { 0.0 };
         let zero = || Coordinates::zero(problem);
-        Self {
-            initial_step: step,
-            step,
+        let mut transpose = Self {
+            initial_step: 0.0,
+            step: 0.0,
             iterations: 0,
             costs: [0.0; COSTS],
             wrenches: Wrenches::default(),
             descent: zero(),
             last_descent: zero(),
             before: zero(),
-        }
+        };
+        transpose.refit(problem);
+        transpose
+    }
+
+    /// Fits the first step to other lengths and forgets the last steps.
+    pub fn refit(&mut self, problem: &Problem) {
+        self.initial_step = if problem.inertia > 0.0 { problem.inertia.recip() } else { 0.0 };
+        self.restart();
     }
 
     /// Forgets the last steps and returns `true`.

@@ -86,6 +86,27 @@ impl TwoBones {
         Ok(Self { limbs })
     }
 
+    /// Fits the limbs to other lengths.
+    ///
+    /// # Errors
+    ///
+    /// [`TwoBoneRefusal::NoLength`]; the limbs are unchanged.
+    pub fn refit(&mut self, problem: &Problem) -> Result<(), TwoBonesRefused> {
+        for check in [true, false] {
+            for limb in &mut self.limbs {
+                let effector = &problem.effectors[limb.effector];
+                let lengths = [problem.links[limb.lower].pivot.length(), effector.tip.length()];
+                let refused =
+                    |_| TwoBonesRefused { joint: effector.joint, reason: TwoBoneRefusal::NoLength };
+                let arm = TwoBone::new(lengths[0], lengths[1]).map_err(refused)?;
+                if !check {
+                    limb.arm = arm;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Solves all limbs and returns `false`: a second time would change nothing.
     pub fn iterate(
         &self,

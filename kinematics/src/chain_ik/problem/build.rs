@@ -2,11 +2,11 @@ use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3A};
 
 use super::{EndEffector, KinematicTree, Link, Problem};
 use crate::chain_ik::{Method, Root, SolveError, SolverOptions, TipTarget};
-use crate::skeleton::{Joint, JointId, Skeleton};
+use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// The space of a joint, relative to the link to which it is attached or, without a link, to its
 /// tree.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Attachment {
     link: Option<usize>,
     to_link: Affine3A,
@@ -15,63 +15,108 @@ struct Attachment {
     path: f64,
 }
 
-/// Builds the problem of moving the tips of a skeleton to targets.
-pub fn build(
-    skeleton: &Skeleton,
-    targets: &[TipTarget],
-    options: &SolverOptions,
-) -> Result<Problem, SolveError> {
-    check_targets(skeleton, targets)?;
-    let transform = skeleton.transform();
-    let (to_world, to_skeleton) = with_inverse(transform).ok_or(SolveError::Singular)?;
-    let on_path = on_paths(skeleton, targets);
-    let length = longest_path(skeleton, targets);
-    let unit = if length > 0.0 { (-length.log2().floor()).exp2() } else { 1.0 };
-    let mut problem = Problem {
-        links: Vec::new(),
-        effectors: Vec::new(),
-        trees: Vec::new(),
-        below: Vec::new(),
-        free_roots: options.root == Root::Free,
-        length: (length * unit) as f32,
-        inertia: 0.0,
-        to_skeleton,
-        to_world,
-        unit,
-    };
-    let attachments = problem.add_links(skeleton, &on_path, options.root);
-    problem.add_effectors(skeleton, targets, &attachments, options.method);
-    problem.list_below();
-    problem.inertia = problem.bind_inertia(skeleton);
-    problem.set_targets(targets);
-    Ok(problem)
+/// Builds problems of moving the tips of one skeleton to targets of the same joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Builder {
+    root: Root,
+    method: Method,
+    /// Joints between targets and roots, parents before children.
+    path: Vec<PathJoint>,
+    /// The spaces of all joints; `None` for joints on no path.
+    attachments: Vec<Option<Attachment>>,
+    bind: SkeletonPose,
+}
+
+/// The properties of a joint on a path that decide which links a problem has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PathJoint {
+    id: JointId,
+    parent: Option<JointId>,
+    is_locked: bool,
+}
+
+impl PathJoint {
+    fn new(id: JointId, joint: &Joint, root: Root) -> Self {
+        let is_locked = joint.locked || (root == Root::Locked && joint.parent.is_none());
+        Self { id, parent: joint.parent, is_locked }
+    }
+}
+
+impl Builder {
+    /// # Errors
+    ///
+    /// [`SolveError::NoJoint`] and the errors of targets.
+    pub fn new(
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+        options: &SolverOptions,
+    ) -> Result<Self, SolveError> {
+        check_targets(skeleton, targets)?;
+        let joints = targets.iter().map(|target| target.joint);
+        let path = path(skeleton, joints, options.root);
+        Ok(Self { root: options.root, method: options.method, path, ..Self::default() })
+    }
+
+    /// Fills a problem in its memory, but for the points of the targets, which must be on the same
+    /// joints, in the same order, as those for which the builder was made.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::OtherJoint`] for a skeleton in which a joint between a target and a root has
+    /// another parent or lock; [`SolveError::Singular`]. The problem is unchanged.
+    pub fn fill(
+        &mut self,
+        problem: &mut Problem,
+        skeleton: &Skeleton,
+        targets: &[TipTarget],
+    ) -> Result<(), SolveError> {
+        let is_same = |joint: &&PathJoint| {
+            let found = skeleton.joint(joint.id);
+            found.is_some_and(|found| PathJoint::new(joint.id, found, self.root) == **joint)
+        };
+        if let Some(other) = self.path.iter().find(|joint| !is_same(joint)) {
+            return Err(SolveError::OtherJoint(other.id));
+        }
+        let transform = skeleton.transform();
+        let (to_world, to_skeleton) = with_inverse(transform).ok_or(SolveError::Singular)?;
+        let length = longest_path(skeleton, targets);
+        let unit = if length > 0.0 { (-length.log2().floor()).exp2() } else { 1.0 };
+        problem.links.clear();
+        problem.effectors.clear();
+        problem.trees.clear();
+        problem.free_roots = self.root == Root::Free;
+        problem.length = (length * unit) as f32;
+        (problem.to_skeleton, problem.to_world, problem.unit) = (to_skeleton, to_world, unit);
+        self.add_links(problem, skeleton);
+        problem.add_effectors(skeleton, targets, &self.attachments, self.method);
+        problem.list_below();
+        skeleton.write_bind_pose_in_skeleton(&mut self.bind);
+        problem.inertia = problem.bind_inertia(&self.bind);
+        Ok(())
+    }
+
+    fn add_links(&mut self, problem: &mut Problem, skeleton: &Skeleton) {
+        self.attachments.clear();
+        self.attachments.resize(skeleton.joints().len(), None);
+        for PathJoint { id, parent, is_locked } in &self.path {
+            let joint = &skeleton[*id];
+            let base = match parent.and_then(|parent| self.attachments[parent.index()]) {
+                Some(parent) => problem.at_offset(joint, parent),
+                None => problem.add_tree(*id, joint),
+            };
+            self.attachments[id.index()] = Some(if *is_locked {
+                Problem::fuse_joint(joint, base)
+            } else {
+                problem.add_link(*id, joint, base)
+            });
+        }
+    }
 }
 
 impl Problem {
-    fn add_links(
-        &mut self,
-        skeleton: &Skeleton,
-        on_path: &[bool],
-        root: Root,
-    ) -> Vec<Option<Attachment>> {
-        let mut attachments: Vec<Option<Attachment>> = vec![None; on_path.len()];
-        for (id, joint) in skeleton.iter().filter(|(id, _)| on_path[id.index()]) {
-            let base = match joint.parent.and_then(|parent| attachments[parent.index()]) {
-                Some(parent) => self.at_offset(joint, parent),
-                None => self.add_tree(id, joint),
-            };
-            let is_locked = joint.locked || (root == Root::Locked && joint.parent.is_none());
-            attachments[id.index()] = Some(if is_locked {
-                Self::fuse_joint(joint, base)
-            } else {
-                self.add_link(id, joint, base)
-            });
-        }
-        attachments
-    }
-
     fn add_tree(&mut self, root: JointId, joint: &Joint) -> Attachment {
-        self.trees.push(KinematicTree { root, origin: joint.offset.as_dvec3() });
+        let offset = joint.offset.as_dvec3();
+        self.trees.push(KinematicTree { root, offset, origin: offset });
         let tree = self.trees.len() - 1;
         Attachment { link: None, to_link: Affine3A::IDENTITY, tree, path: 0.0 }
     }
@@ -140,23 +185,36 @@ impl Problem {
         }
     }
 
+    /// Lists the end effectors at each link and below, in their order.
     fn list_below(&mut self) {
-        let mut lists = vec![Vec::new(); self.links.len()];
-        for (index, effector) in self.effectors.iter().enumerate() {
-            let parent = |link: &usize| self.links[*link].parent;
-            for link in std::iter::successors(effector.link, parent) {
-                lists[link].push(index);
+        let Self { links, effectors, below, .. } = self;
+        // Counts them first, in place of the end of each list.
+        for effector in effectors.iter() {
+            let mut above = effector.link;
+            while let Some(link) = above {
+                links[link].below.1 += 1;
+                above = links[link].parent;
             }
         }
-        for (link, list) in self.links.iter_mut().zip(lists) {
-            let from = self.below.len();
-            self.below.extend(list);
-            link.below = (from, self.below.len());
+        let mut from = 0;
+        for link in links.iter_mut() {
+            let count = link.below.1;
+            link.below = (from, from);
+            from += count;
+        }
+        below.clear();
+        below.resize(from, 0);
+        for (index, effector) in effectors.iter().enumerate() {
+            let mut above = effector.link;
+            while let Some(link) = above {
+                below[links[link].below.1] = index;
+                links[link].below.1 += 1;
+                above = links[link].parent;
+            }
         }
     }
 
-    fn bind_inertia(&self, skeleton: &Skeleton) -> f32 {
-        let bind = skeleton.bind_pose_in_skeleton();
+    fn bind_inertia(&self, bind: &SkeletonPose) -> f32 {
         let mut sum = 0.0;
         for link in &self.links {
             for effector in self.below(link) {
@@ -165,12 +223,13 @@ impl Problem {
                 sum += f64::from(effector.weight) * (arm * self.unit).length_squared();
             }
         }
-        if self.free_roots {
-            let weights: f64 =
-                self.effectors.iter().map(|effector| f64::from(effector.weight)).sum();
-            sum += weights * f64::from(self.length).powi(2);
-        }
-        sum as f32
+        sum as f32 + self.inertia_of_shifts()
+    }
+
+    /// The part of Σ w r² that the shifts of free roots have, each with one chain length as r.
+    pub fn inertia_of_shifts(&self) -> f32 {
+        let weights: f32 = self.effectors.iter().map(|effector| effector.weight).sum();
+        if self.free_roots { weights * self.length * self.length } else { 0.0 }
     }
 }
 
@@ -189,15 +248,14 @@ fn with_inverse(transform: Affine3A) -> Option<(DMat3, DAffine3)> {
     inverse.is_finite().then_some((matrix, inverse))
 }
 
-/// True if each joint is a target's joint or an ancestor of one.
-fn on_paths(skeleton: &Skeleton, targets: &[TipTarget]) -> Vec<bool> {
+/// The joints of targets and their ancestors, parents first.
+fn path(skeleton: &Skeleton, targets: impl Iterator<Item = JointId>, root: Root) -> Vec<PathJoint> {
     let mut on_path = vec![false; skeleton.joints().len()];
-    for target in targets {
-        for joint in skeleton.ancestors(target.joint) {
-            on_path[joint.index()] = true;
-        }
+    for joint in targets.flat_map(|target| skeleton.ancestors(target)) {
+        on_path[joint.index()] = true;
     }
-    on_path
+    let joints = skeleton.iter().filter(|(id, _)| on_path[id.index()]);
+    joints.map(|(id, joint)| PathJoint::new(id, joint, root)).collect()
 }
 
 /// Length of the longest path from a root to a tip, in skeleton units.

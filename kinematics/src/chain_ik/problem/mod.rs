@@ -19,7 +19,7 @@ use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
 use crate::skeleton::{JointId, JointLimits};
 
-pub(super) use build::{build, check_target};
+pub(super) use build::{Builder, check_target};
 
 /// A target for the tip of a joint's bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,13 +76,15 @@ pub struct EndEffector {
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinematicTree {
     pub root: JointId,
+    /// The root's offset in the FK pose, in skeleton space.
+    pub offset: DVec3,
     /// Origin of the tree's points, in skeleton space: the root's offset before the run, until
     /// [`Problem::approach`] moves the origin.
     pub origin: DVec3,
 }
 
 /// A skeleton with targets, in the form on which solvers work: see the module.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Problem {
     /// All links, parents before children.
     pub links: Vec<Link>,
@@ -127,10 +129,27 @@ impl Problem {
         self.to_world.determinant().abs().cbrt()
     }
 
+    /// Converts a length from the problem's units to the world's, by the transform's mean scale.
+    pub fn length_to_world(&self, length: f64) -> f64 {
+        length / self.unit * self.scale()
+    }
+
+    /// Vector from a requested target to its tip, in the world.
+    pub fn residual(&self, effector: &EndEffector, tip: Vec3A) -> DVec3 {
+        self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit)
+    }
+
     /// Distance from a tip to its requested target, in world units.
     pub fn error(&self, effector: &EndEffector, tip: Vec3A) -> f64 {
-        let residual = (tip.as_dvec3() - effector.requested) / self.unit;
-        (self.to_world * residual).length()
+        self.residual(effector, tip).length()
+    }
+
+    /// Keeps the ways of free roots from their offsets in the FK pose in a problem before this one,
+    /// which was built anew for other offsets.
+    pub fn carry_origins(&mut self, before: &Self) {
+        for (tree, before) in self.trees.iter_mut().zip(&before.trees) {
+            tree.origin = before.origin + (tree.offset - before.offset);
+        }
     }
 
     pub fn set_targets(&mut self, targets: &[TipTarget]) {

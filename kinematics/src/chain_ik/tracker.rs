@@ -1,0 +1,123 @@
+use glam::{DVec3, Mat3A, Vec3};
+
+use super::configuration::{Configuration, Coordinates};
+use super::method::DampedLeastSquares;
+use super::problem::{Link, Problem};
+use crate::skeleton::{JointAngles, equivalent_triples, nearest_angles};
+
+/// Damping of the null space in chain lengths.
+const NULL_SPACE_DAMPING: f32 = 1e-2;
+
+/// State and space of [tracking](super::ChainSolver::track).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tracker {
+    /// The problem of the next step, in which it is built; after [`Tracker::take_along`], that of the
+    /// last step.
+    pub next: Problem,
+    /// True if the last step held a target back and came nearer to it.
+    pub was_held_back: bool,
+    /// The configuration as the FK pose takes it along.
+    taken: Configuration,
+    /// Vectors from targets to tips after the last step, in the world.
+    residuals: Vec<DVec3>,
+    posture: DampedLeastSquares,
+}
+
+impl Tracker {
+    pub fn new(problem: &Problem, config: &Configuration) -> Self {
+        Self {
+            next: problem.clone(),
+            was_held_back: false,
+            taken: config.clone(),
+            residuals: Vec::with_capacity(problem.effectors.len()),
+            posture: DampedLeastSquares::new(problem, NULL_SPACE_DAMPING),
+        }
+    }
+
+    /// Replaces a problem by the next one and takes the configuration along with the FK pose. Returns
+    /// the largest change of a vector from target to tip, in the world.
+    pub fn take_along(&mut self, problem: &mut Problem, config: &mut Configuration) -> f64 {
+        write_residuals(problem, config, &mut self.residuals);
+        std::mem::swap(problem, &mut self.next);
+        let before = &self.next;
+        for (index, angles) in config.angles.iter_mut().enumerate() {
+            *angles = taken_along(&before.links[index], &problem.links[index], *angles);
+        }
+        let scale = (problem.unit() / before.unit()) as f32;
+        config.shifts.iter_mut().for_each(|shift| *shift *= scale);
+        config.forward(problem);
+        if !config.orientations.is_empty() {
+            config.set_orientations();
+        }
+        self.taken.copy_from(config);
+        let tips = problem.effectors.iter().zip(&config.tips).zip(&self.residuals);
+        let changes = tips.map(|((effector, tip), residual)| {
+            problem.residual(effector, *tip).distance(*residual)
+        });
+        changes.fold(0.0, f64::max)
+    }
+
+    /// Largest distance by which the configuration has moved since [`Tracker::take_along`], in the
+    /// problem's units.
+    pub fn displacement(&self, config: &Configuration) -> f64 {
+        f64::from(config.max_displacement(&self.taken))
+    }
+
+    /// Moves a configuration towards the FK pose in the null space of the targets, by at most `most`.
+    pub fn move_to_fk(&mut self, problem: &Problem, config: &mut Configuration, most: f32) {
+        // Not for a chain without a length, which gives no number.
+        if most > 0.0 {
+            self.posture.refit(problem, NULL_SPACE_DAMPING);
+            let wanted = |wanted: &mut Coordinates| set_fk(problem, wanted);
+            self.posture.advance_in_null_space(problem, config, wanted, most);
+            if !config.orientations.is_empty() {
+                config.set_orientations();
+            }
+        }
+    }
+}
+
+/// The angles of a link that keeps its rotation relative to the FK pose, within its limits.
+fn taken_along(before: &Link, now: &Link, angles: Vec3) -> Vec3 {
+    let angles = if before.start == now.start {
+        angles
+    } else if angles == before.start {
+        now.start
+    } else {
+        let matrix = |angles: Vec3| JointAngles(angles).matrix();
+        let turn: Mat3A = matrix(before.start).transpose() * matrix(now.start);
+        nearest_angles(matrix(angles) * turn, angles + now.start - before.start)
+    };
+    now.limits.project(angles)
+}
+
+/// Sets the coordinates of the FK pose that are nearest to `coordinates`.
+fn set_fk(problem: &Problem, coordinates: &mut Coordinates) {
+    for (link, angles) in problem.links.iter().zip(&mut coordinates.angles) {
+        let [nearest, _] = equivalent_triples(link.start, *angles);
+        *angles = link.limits.project(nearest);
+    }
+    for (tree, shift) in problem.trees.iter().zip(&mut coordinates.shifts) {
+        *shift = ((tree.offset - tree.origin) * problem.unit()).as_vec3a();
+    }
+}
+
+fn write_residuals(problem: &Problem, config: &Configuration, residuals: &mut Vec<DVec3>) {
+    residuals.clear();
+    let tips = problem.effectors.iter().zip(&config.tips);
+    residuals.extend(tips.map(|(effector, tip)| problem.residual(effector, *tip)));
+}
+
+/// Moves the points to which tips move to at most `reach` from the tips, in the problem's units.
+/// Returns whether a point was farther away.
+pub(super) fn hold_back(problem: &mut Problem, config: &Configuration, reach: f32) -> bool {
+    let mut is_held_back = false;
+    for (effector, tip) in problem.effectors.iter_mut().zip(&config.tips) {
+        let way = effector.target - *tip;
+        if way.length() > reach {
+            effector.target = *tip + way.clamp_length_max(reach);
+            is_held_back = true;
+        }
+    }
+    is_held_back
+}
