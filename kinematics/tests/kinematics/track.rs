@@ -8,7 +8,7 @@ use ik_arm_kinematics::chain_ik::{
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton, SkeletonPose};
 
-use crate::common::skeletons::{ITERATIVE, chain, length, limit, target, transform};
+use crate::common::skeletons::{ITERATIVE, chain, forest, length, limit, target, transform};
 use crate::common::{Random, cases};
 
 const JOINTS: usize = 10;
@@ -397,6 +397,80 @@ fn refused_steps_change_nothing() {
         solver.write(&mut one);
         untouched.write(&mut two);
         assert_eq!(one, two, "{method}");
+    }
+}
+
+/// A power of ten within the range of f32, or 1.
+fn size(random: &mut Random) -> f32 {
+    if random.coin() { 1.0 } else { random.power_of_ten(-18.0..18.0) as f32 }
+}
+
+#[test]
+fn steps_of_any_skeleton_are_finite_and_keep_locked_joints_and_joints_off_the_path() {
+    let mut random = Random(0xf0e5);
+    for _ in 0..cases(4000) {
+        let mut fk = forest(&mut random, 12);
+        let unit = size(&mut random);
+        for joint in fk.ids() {
+            let grow = |it: &mut Joint| {
+                it.offset *= unit;
+                it.axis *= unit;
+            };
+            fk.change(joint, grow).expect("finite");
+        }
+        let mut joints: Vec<_> = fk.ids().filter(|_| random.chance(0.3)).collect();
+        joints.push(JointId::new(11));
+        joints.dedup();
+        let mut targets: Vec<_> = joints
+            .iter()
+            .map(|joint| {
+                let point = random.vector(4.0) * unit;
+                TipTarget { joint: *joint, point, weight: random.within(0.1..5.0) }
+            })
+            .collect();
+        let root = random.one_of(&Root::ALL);
+        let method = random.one_of(&Method::ALL);
+        let options = SolverOptions { root, iterations: Some(40), ..SolverOptions::new(method) };
+        let Ok(mut solver) = ChainSolver::new(&fk, &targets, &options) else { continue };
+        solver.run();
+        for _ in 0..12 {
+            let way = 10_f32.powi(-(random.below(5) as i32)) * unit;
+            for target in &mut targets {
+                target.point += way * random.direction();
+            }
+            if random.coin() {
+                for joint in fk.ids() {
+                    let turned = fk[joint].rotation + 0.1 * random.angles();
+                    fk.set_rotation(joint, turned).expect("finite");
+                }
+            }
+            if random.chance(0.2) {
+                let joint = JointId::new(random.below(12));
+                let moved = random.vector(0.1) * unit;
+                fk.change(joint, |it| it.offset += moved).expect("finite");
+            }
+            let step = match solver.track(&targets, &fk) {
+                Ok(step) => step,
+                // A bone that has lost its length.
+                Err(SolveError::TwoBone { .. }) => continue,
+                Err(error) => panic!("{error}"),
+            };
+            let numbers = [step.joint_motion, step.target_motion, step.report.error];
+            assert!(numbers.iter().all(|it| *it >= 0.0), "{method}: {step:?}");
+            let mut posed = fk.clone();
+            solver.write(&mut posed);
+            for (id, joint) in posed.iter() {
+                assert!(joint.rotation.is_finite() && joint.offset.is_finite(), "{method}");
+                assert!(joint.limits.contains(joint.rotation), "{method}: {joint:?}");
+                let is_moved = joints.iter().any(|tip| fk.is_in_subtree(*tip, id));
+                if joint.locked || !is_moved {
+                    assert_eq!(joint.rotation, fk[id].rotation, "{method}");
+                }
+                if joint.parent.is_some() || root != Root::Free {
+                    assert_eq!(joint.offset, fk[id].offset, "{method}");
+                }
+            }
+        }
     }
 }
 
