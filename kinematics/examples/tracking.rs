@@ -1,15 +1,15 @@
-//! Compares poses that a solver tracks from frame to frame with poses solved from the FK pose in each
-//! frame by itself:
+//! Compares poses that a solver tracks from frame to frame with poses solved from the FK pose in
+//! each frame by itself:
 //!
 //! ```text
 //! cargo run --release --example tracking [joints=10] [chains=40] [frames=240]
 //! ```
 //!
 //! The target of each chain moves twice along a circle and a figure eight in random planes, with a
-//! frame each 1/120 s. The tables list, over all frames, the largest step of a joint over the step of
-//! the target, which is 1 at best; frames that miss a target which a fresh solve reaches; and the
-//! distance of the joints after the second loop from those after the first, in lengths of the chain.
-//! Everything but the times is the same on every run.
+//! frame each 1/120 s. The tables list, over all frames, the largest step of a joint over the step
+//! of the target, which is 1 at best; frames that miss a target which a fresh solve reaches; and
+//! the distance of the joints after the second loop from those after the first, in lengths of the
+//! chain. Everything but the times is the same on every run.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

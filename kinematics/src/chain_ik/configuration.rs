@@ -209,8 +209,8 @@ impl Coordinates {
         shifts.for_each(|(shift, other)| *shift -= *other);
     }
 
-    /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes of
-    /// angles, and of shifts in chain lengths.
+    /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes
+    /// of angles, and of shifts in chain lengths.
     pub fn norm(&self, length: f32) -> f32 {
         let angles: f32 = self.angles.iter().map(|angles| angles.length_squared()).sum();
         let shifts: f32 = self.shifts.iter().map(|shift| (*shift * length).length_squared()).sum();

@@ -11,8 +11,8 @@ const NULL_SPACE_DAMPING: f32 = 1e-2;
 /// State and space of [tracking](super::ChainSolver::track).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tracker {
-    /// The problem of the next step, in which it is built; after [`Tracker::take_along`], that of the
-    /// last step.
+    /// The problem of the next step, in which it is built; after [`Tracker::take_along`], that of
+    /// the last step.
     pub next: Problem,
     /// True if the last step held a target back and came nearer to it.
     pub was_held_back: bool,
@@ -34,8 +34,8 @@ impl Tracker {
         }
     }
 
-    /// Replaces a problem by the next one and takes the configuration along with the FK pose. Returns
-    /// the largest change of a vector from target to tip, in the world.
+    /// Replaces a problem by the next one and takes the configuration along with the FK pose.
+    /// Returns the largest change of a vector from target to tip, in the world.
     pub fn take_along(&mut self, problem: &mut Problem, config: &mut Configuration) -> f64 {
         write_residuals(problem, config, &mut self.residuals);
         std::mem::swap(problem, &mut self.next);
@@ -63,7 +63,8 @@ impl Tracker {
         f64::from(config.max_displacement(&self.taken))
     }
 
-    /// Moves a configuration towards the FK pose in the null space of the targets, by at most `most`.
+    /// Moves a configuration towards the FK pose in the null space of the targets, by at most
+    /// `most`.
     pub fn move_to_fk(&mut self, problem: &Problem, config: &mut Configuration, most: f32) {
         // Not for a chain without a length, which gives no number.
         if most > 0.0 {

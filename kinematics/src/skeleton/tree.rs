@@ -241,8 +241,8 @@ impl Skeleton {
         SkeletonPose::new(&self.joints, Affine3A::IDENTITY, |_, joint| joint.local())
     }
 
-    /// Writes [`Skeleton::bind_pose_in_skeleton`] into an existing pose. Allocates only if that pose
-    /// has too little memory.
+    /// Writes [`Skeleton::bind_pose_in_skeleton`] into an existing pose. Allocates only if that
+    /// pose has too little memory.
     pub(crate) fn write_bind_pose_in_skeleton(&self, pose: &mut SkeletonPose) {
         let local = |_, joint: &Joint| joint.local_in_bind_pose();
         pose.refill(&self.joints, Affine3A::IDENTITY, local);

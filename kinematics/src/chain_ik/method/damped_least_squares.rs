@@ -112,9 +112,9 @@ impl DampedLeastSquares {
     }
 
     /// Moves the configuration towards wanted coordinates without moving the tips, to first order:
-    /// by the part of the way d that is in the null space, (I − Jᵀ (JJᵀ + λ²I)⁻¹ J) d, and by at most
-    /// `most`, the Euclidean norm of the changes of angles in radians and of shifts in chain lengths.
-    /// Angles that would cross a limit are fixed.
+    /// by the part of the way d that is in the null space, (I − Jᵀ (JJᵀ + λ²I)⁻¹ J) d, and by at
+    /// most `most`, the Euclidean norm of the changes of angles in radians and of shifts in chain
+    /// lengths. Angles that would cross a limit are fixed.
     pub fn advance_in_null_space(
         &mut self,
         problem: &Problem,

@@ -346,9 +346,9 @@ impl MethodState {
         }
     }
 
-    /// Fits the method to a problem with other lengths, weights, mounts or limits of the same links,
-    /// and forgets what it has kept from earlier iterations. `damping` and `step` are those of the
-    /// solver's options.
+    /// Fits the method to a problem with other lengths, weights, mounts or limits of the same
+    /// links, and forgets what it has kept from earlier iterations. `damping` and `step` are those
+    /// of the solver's options.
     pub fn refit(
         &mut self,
         problem: &Problem,

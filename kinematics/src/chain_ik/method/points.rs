@@ -172,8 +172,8 @@ impl LinkPoints {
         points
     }
 
-    /// Fits the points to other lengths, weights, mounts and limits. Allocates only if joints or tips
-    /// come to share a point, or share one no longer.
+    /// Fits the points to other lengths, weights, mounts and limits. Allocates only if joints or
+    /// tips come to share a point, or share one no longer.
     fn refit(&mut self, problem: &Problem) {
         let weight = |member: MemberKind| match member {
             MemberKind::Base(link) => {

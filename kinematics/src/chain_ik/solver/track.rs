@@ -5,12 +5,12 @@
 //!
 //! 1. Each joint keeps its rotation relative to the FK pose: it turns by what the FK pose turned,
 //!    q ← q · FK⁻¹(before) · FK(now).
-//! 2. The configuration moves towards the FK pose in the null space of the targets, by at most γ·s/L
-//!    with the length L of the longest chain and the largest change s of a tip's way to its target.
-//!    Without this, a pose would not return after a closed path of the targets, and limited chains
-//!    would lose targets.
-//! 3. The method iterates to a fraction of s, so that slow motions do not proceed in leaps. A target
-//!    that was lost is approached by at most s + 0.02·L in a step.
+//! 2. The configuration moves towards the FK pose in the null space of the targets, by at most
+//!    γ·s/L with the length L of the longest chain and the largest change s of a tip's way to its
+//!    target. Without this, a pose would not return after a closed path of the targets, and limited
+//!    chains would lose targets.
+//! 3. The method iterates to a fraction of s, so that slow motions do not proceed in leaps. A
+//!    target that was lost is approached by at most s + 0.02·L in a step.
 //!
 //! If s is above 0.1·L, the target or the FK pose has jumped, and the step is a run with restarts.
 //! If nothing has changed since a step that ended, its configuration is kept, bit for bit.
@@ -29,8 +29,8 @@ const POSTURE_RATE: f64 = 10.0;
 const FINENESS: f64 = 1.0 / 50.0;
 /// The finest tolerance of a step, in chain lengths; below it is rounding.
 const FINEST: f64 = 1e-6;
-/// The way, beside the targets' motion, by which a step may approach a target that was lost, in chain
-/// lengths.
+/// The way, beside the targets' motion, by which a step may approach a target that was lost, in
+/// chain lengths.
 const CATCH_UP: f64 = 0.02;
 /// The part of the way to a target that was lost by which a step must approach it at least, or the
 /// target is out of reach.
@@ -50,11 +50,11 @@ pub struct TrackStep {
     /// Largest change of the vector from a tip to its target since the last step, before this step
     /// moved the tips and with the tips as the FK pose takes them along; in world units.
     pub target_motion: f32,
-    /// Largest distance by which this step moved a joint or a tip from where the FK pose took it, in
-    /// world units. A multiple of `target_motion` is a pop.
+    /// Largest distance by which this step moved a joint or a tip from where the FK pose took it,
+    /// in world units. A multiple of `target_motion` is a pop.
     pub joint_motion: f32,
-    /// True if a target was too far away to be reached in this step. Further steps approach it, also
-    /// while it rests.
+    /// True if a target was too far away to be reached in this step. Further steps approach it,
+    /// also while it rests.
     pub is_held_back: bool,
     /// True if a target or the FK pose has jumped: the step was a run with restarts.
     pub has_jumped: bool,
@@ -73,18 +73,19 @@ impl TrackStep {
 }
 
 impl ChainSolver {
-    /// Makes the next step of a motion: continues from the present configuration to targets and an FK
-    /// pose that have moved a little. Small motions of targets give small motions of joints, also at
-    /// limits and out of reach, where [`ChainSolver::run`] from each frame's FK pose would jump.
+    /// Makes the next step of a motion: continues from the present configuration to targets and an
+    /// FK pose that have moved a little. Small motions of targets give small motions of joints,
+    /// also at limits and out of reach, where [`ChainSolver::run`] from each frame's FK pose would
+    /// jump.
     ///
     /// Prepare the solver with the first frame and [run](ChainSolver::run) it; then call this for
     /// each frame, and [`ChainSolver::write`] to a copy of the FK pose. The result depends on the
     /// frames before: a motion is a track.
     ///
-    /// `targets` must be for the joints of the solver's targets, in the same order; points and weights
-    /// may differ. `fk` is the skeleton in the FK pose of this frame: its angles, offsets, bones,
-    /// frames, limits and transform may differ from those before, but not the parents and locks of the
-    /// joints between targets and roots. After the first call, nothing is allocated.
+    /// `targets` must be for the joints of the solver's targets, in the same order; points and
+    /// weights may differ. `fk` is the skeleton in the FK pose of this frame: its angles, offsets,
+    /// bones, frames, limits and transform may differ from those before, but not the parents and
+    /// locks of the joints between targets and roots. After the first call, nothing is allocated.
     ///
     /// ```
     /// use glam::Vec3;
