@@ -1,4 +1,4 @@
-use glam::{Mat3A, Quat, Vec3, Vec3A};
+use glam::{DVec3, Mat3A, Quat, Vec3, Vec3A};
 
 use super::problem::{EndEffector, Link, Problem};
 use crate::skeleton::{JointAngles, nearest_angles};
@@ -69,6 +69,13 @@ impl Configuration {
         self.orientations.extend(self.frames.iter().map(Quat::from_mat3a));
     }
 
+    /// Sets `orientations` from `frames` if the method uses them.
+    pub fn renew_orientations(&mut self) {
+        if !self.orientations.is_empty() {
+            self.set_orientations();
+        }
+    }
+
     /// Euler angles of a link. If they follow from orientations, they are those nearest to `near`.
     pub fn angles_near(&self, problem: &Problem, index: usize, near: Vec3) -> Vec3 {
         let link = &problem.links[index];
@@ -98,12 +105,7 @@ impl Configuration {
 
     /// Largest distance from a tip to its target, in world units.
     pub fn error(&self, problem: &Problem) -> f64 {
-        let errors = problem
-            .effectors
-            .iter()
-            .zip(&self.tips)
-            .map(|(effector, tip)| problem.error(effector, *tip));
-        errors.fold(0.0, f64::max)
+        problem.residuals(&self.tips).map(DVec3::length).fold(0.0, f64::max)
     }
 
     /// Σ w r² with the distances r from joints to the tips below them, in the problem's units; as
@@ -129,8 +131,7 @@ impl Configuration {
 
     /// Sum of the distances from tips to requested targets, in world units.
     pub fn total_error(&self, problem: &Problem) -> f64 {
-        let tips = problem.effectors.iter().zip(&self.tips);
-        tips.map(|(effector, tip)| problem.error(effector, *tip)).sum()
+        problem.residuals(&self.tips).map(DVec3::length).sum()
     }
 
     /// Weighted root mean square distance from tips to targets, in the problem's units.

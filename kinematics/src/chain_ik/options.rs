@@ -132,6 +132,11 @@ impl Root {
 }
 
 impl SolverOptions {
+    /// Maximum number of iterations of a run.
+    pub(super) fn max_iterations(&self) -> u32 {
+        self.iterations.unwrap_or(self.method.budget())
+    }
+
     /// The tolerance in world units.
     pub(super) fn tolerance_of(&self, problem: &Problem) -> f64 {
         self.tolerance.map_or(1e-4 * problem.world_length(), f64::from)

@@ -37,7 +37,6 @@ pub use self::track::TrackStep;
 pub struct ChainSolver {
     report: Report,
     options: SolverOptions,
-    max_iterations: u32,
     /// Number of iterations after which a bounded solver stops; `None` for others.
     bound: Option<u32>,
     /// In world units.
@@ -128,12 +127,10 @@ impl ChainSolver {
         let least = problem.length_from_world(tolerance);
         let stall = StallDetector::new(method.row().patience, least, &config);
         let report = Report { method, iterations: 0, error: 0.0, status: Status::Iterating };
-        let max_iterations = options.iterations.unwrap_or(method.budget());
         let (start, escape) = (config.clone(), Escape::new(&config));
         let mut solver = Self {
             report,
             options: *options,
-            max_iterations,
             bound: None,
             tolerance,
             builder,
@@ -189,7 +186,7 @@ impl ChainSolver {
     }
 
     fn step_with(&mut self, recorder: &mut Recorder) -> Report {
-        if matches!(self.report.status, Status::Converged | Status::Stalled) {
+        if self.is_settled() {
             return self.report;
         }
         if self.report.iterations == 0 {
@@ -226,6 +223,11 @@ impl ChainSolver {
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.report.status != Status::Iterating
+    }
+
+    /// True if further iterations would change nothing.
+    fn is_settled(&self) -> bool {
+        matches!(self.report.status, Status::Converged | Status::Stalled)
     }
 
     /// Moves the targets and restarts from the current pose with no iterations made. The targets
@@ -280,14 +282,8 @@ impl ChainSolver {
             }
             return;
         }
-        let mut updated = Configuration::default();
-        let config = if self.tracker.is_some() {
-            config
-        } else {
-            updated.clone_from(config);
-            self.state.update_orientations(&mut updated);
-            &updated
-        };
+        let mut config = config.clone();
+        self.state.update_orientations(&mut config);
         for (index, link) in self.problem.links.iter().enumerate() {
             skeleton.write_local(link.joint, |joint| {
                 joint.rotation = config.angles_near(&self.problem, index, joint.rotation);
@@ -301,6 +297,11 @@ impl ChainSolver {
         } else {
             self.problem.set_targets(targets);
         }
+        self.begin();
+    }
+
+    /// Begins to count iterations, and forgets earlier ones.
+    fn begin(&mut self) {
         self.report.iterations = 0;
         self.measure();
         self.state.restart();
@@ -314,13 +315,19 @@ impl ChainSolver {
         self.report.error = saturate(error);
         self.report.status = if error <= self.tolerance {
             Status::Converged
-        } else if self.report.iterations >= self.max_iterations {
-            Status::OutOfIterations
-        } else if self.bound.is_some_and(|bound| self.report.iterations >= bound) {
-            Status::Bounded
         } else {
-            Status::Iterating
+            self.used_up().unwrap_or(Status::Iterating)
         };
+    }
+
+    /// The status if no iterations are left.
+    fn used_up(&self) -> Option<Status> {
+        let is_over = |most: u32| self.report.iterations >= most;
+        if is_over(self.options.max_iterations()) {
+            Some(Status::OutOfIterations)
+        } else {
+            self.bound.is_some_and(is_over).then_some(Status::Bounded)
+        }
     }
 
     /// Bends straight chains that no method can bend. Without any, the configuration keeps its
@@ -354,18 +361,22 @@ impl ChainSolver {
         if !self.can_escape() {
             return false;
         }
+        self.update_angles();
         let config = &mut self.config;
-        self.state.update_orientations(config);
-        let uses_orientations = self.report.method.row().uses_orientations;
-        if uses_orientations {
-            config.update_angles(&self.problem);
+        if !config.orientations.is_empty() {
             config.forward(&self.problem);
         }
         let any = change(&self.problem, config);
-        if any && uses_orientations {
-            config.set_orientations();
+        if any {
+            config.renew_orientations();
         }
         any
+    }
+
+    /// Brings angles and orientations up to date with the points that the method moves.
+    fn update_angles(&mut self) {
+        self.state.update_orientations(&mut self.config);
+        self.config.update_angles(&self.problem);
     }
 
     /// Returns to the best configuration so far and starts again from there in another way. If all

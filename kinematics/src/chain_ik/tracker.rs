@@ -1,4 +1,4 @@
-use glam::{DVec3, Mat3A, Vec3};
+use glam::{Mat3A, Vec3};
 
 use super::configuration::{Configuration, Coordinates};
 use super::method::DampedLeastSquares;
@@ -18,8 +18,6 @@ pub(super) struct Tracker {
     pub was_held_back: bool,
     /// The configuration as the FK pose takes it along.
     taken: Configuration,
-    /// Vectors from targets to tips after the last step, in the world.
-    residuals: Vec<DVec3>,
     posture: DampedLeastSquares,
 }
 
@@ -29,7 +27,6 @@ impl Tracker {
             next: problem.clone(),
             was_held_back: false,
             taken: config.clone(),
-            residuals: Vec::with_capacity(problem.effectors.len()),
             posture: DampedLeastSquares::new(problem, NULL_SPACE_DAMPING),
         }
     }
@@ -37,24 +34,22 @@ impl Tracker {
     /// Replaces a problem by the next one and takes the configuration along with the FK pose.
     /// Returns the largest change of a vector from target to tip, in the world.
     pub fn take_along(&mut self, problem: &mut Problem, config: &mut Configuration) -> f64 {
-        write_residuals(problem, config, &mut self.residuals);
         std::mem::swap(problem, &mut self.next);
         let before = &self.next;
+        let tips_before = &mut self.taken.tips;
+        tips_before.clone_from(&config.tips);
         for (index, angles) in config.angles.iter_mut().enumerate() {
             *angles = taken_along(&before.links[index], &problem.links[index], *angles);
         }
         let scale = (problem.unit() / before.unit()) as f32;
         config.shifts.iter_mut().for_each(|shift| *shift *= scale);
         config.forward(problem);
-        if !config.orientations.is_empty() {
-            config.set_orientations();
-        }
+        config.renew_orientations();
+        let residuals_before = before.residuals(tips_before);
+        let changes = problem.residuals(&config.tips).zip(residuals_before);
+        let motion = changes.map(|(now, before)| now.distance(before)).fold(0.0, f64::max);
         self.taken.copy_from(config);
-        let tips = problem.effectors.iter().zip(&config.tips).zip(&self.residuals);
-        let changes = tips.map(|((effector, tip), residual)| {
-            problem.residual(effector, *tip).distance(*residual)
-        });
-        changes.fold(0.0, f64::max)
+        motion
     }
 
     /// Largest distance by which the configuration has moved since [`Tracker::take_along`], in the
@@ -71,9 +66,7 @@ impl Tracker {
             self.posture.refit(problem, NULL_SPACE_DAMPING);
             let wanted = |wanted: &mut Coordinates| set_fk(problem, wanted);
             self.posture.advance_in_null_space(problem, config, wanted, most);
-            if !config.orientations.is_empty() {
-                config.set_orientations();
-            }
+            config.renew_orientations();
         }
     }
 }
@@ -101,24 +94,4 @@ fn set_fk(problem: &Problem, coordinates: &mut Coordinates) {
     for (tree, shift) in problem.trees.iter().zip(&mut coordinates.shifts) {
         *shift = ((tree.offset - tree.origin) * problem.unit()).as_vec3a();
     }
-}
-
-fn write_residuals(problem: &Problem, config: &Configuration, residuals: &mut Vec<DVec3>) {
-    residuals.clear();
-    let tips = problem.effectors.iter().zip(&config.tips);
-    residuals.extend(tips.map(|(effector, tip)| problem.residual(effector, *tip)));
-}
-
-/// Moves the points to which tips move to at most `reach` from the tips, in the problem's units.
-/// Returns whether a point was farther away.
-pub(super) fn hold_back(problem: &mut Problem, config: &Configuration, reach: f32) -> bool {
-    let mut is_held_back = false;
-    for (effector, tip) in problem.effectors.iter_mut().zip(&config.tips) {
-        let way = effector.target - *tip;
-        if way.length() > reach {
-            effector.target = *tip + way.clamp_length_max(reach);
-            is_held_back = true;
-        }
-    }
-    is_held_back
 }

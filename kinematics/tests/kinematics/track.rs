@@ -49,10 +49,9 @@ impl Motion {
         target(self.tip, self.centre + cos * self.axes[0] + sin * self.axes[1])
     }
 
-    fn solver(&self, options: &SolverOptions) -> ChainSolver {
-        let mut solver = ChainSolver::new(&self.fk, &[self.target(0)], options).expect("a solver");
-        solver.run();
-        solver
+    /// The first pose.
+    fn tracked(&self, options: &SolverOptions) -> Tracked {
+        Tracked::new(&self.fk, &[self.target(0)], options)
     }
 }
 
@@ -63,7 +62,9 @@ struct Tracked {
 }
 
 impl Tracked {
-    fn new(solver: ChainSolver, fk: &Skeleton) -> Self {
+    fn new(fk: &Skeleton, targets: &[TipTarget], options: &SolverOptions) -> Self {
+        let mut solver = ChainSolver::new(fk, targets, options).expect("a solver");
+        solver.run();
         let mut posed = fk.clone();
         solver.write(&mut posed);
         Self { solver, posed }
@@ -96,7 +97,7 @@ fn smoothness(method: Method, is_limited: bool, distance: f32) -> (Vec<f32>, f32
     let (mut ratios, mut lost, mut looked) = (Vec::new(), 0, 0);
     for _ in 0..cases(60) {
         let motion = Motion::new(&mut random, JOINTS, is_limited, distance);
-        let mut tracked = Tracked::new(motion.solver(&options), &motion.fk);
+        let mut tracked = motion.tracked(&options);
         for frame in 1..=FRAMES {
             let before = tracked.posed.pose();
             let step = tracked.step(&[motion.target(frame)], &motion.fk);
@@ -142,7 +143,7 @@ fn a_pose_at_rest_keeps_its_bits() {
     for method in ITERATIVE {
         for (is_limited, distance) in [(true, 0.5), (false, 1.3)] {
             let motion = Motion::new(&mut random, JOINTS, is_limited, distance);
-            let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+            let mut tracked = motion.tracked(&SolverOptions::new(method));
             tracked.step(&[motion.target(1)], &motion.fk);
             while tracked.step(&[motion.target(1)], &motion.fk).is_held_back {}
             let (rest, report) = (tracked.posed.clone(), tracked.solver.report());
@@ -160,7 +161,7 @@ fn a_pose_goes_along_with_the_fk_pose_that_turns_and_moves() {
     let mut random = Random(9);
     for method in ITERATIVE {
         let motion = Motion::new(&mut random, JOINTS, false, 0.5);
-        let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+        let mut tracked = motion.tracked(&SolverOptions::new(method));
         tracked.step(&[motion.target(1)], &motion.fk);
         let length = length(&motion.fk, &[motion.tip]);
         let space = tracked.posed.pose();
@@ -191,7 +192,7 @@ fn joints_turn_by_what_the_fk_pose_turns() {
     let mut random = Random(4);
     for method in ITERATIVE {
         let motion = Motion::new(&mut random, JOINTS, false, 0.5);
-        let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+        let mut tracked = motion.tracked(&SolverOptions::new(method));
         let first = JointId::new(1);
         let mut fk = motion.fk.clone();
         for _ in 0..30 {
@@ -223,7 +224,7 @@ fn bones_may_change_their_lengths_and_targets_their_weights() {
     for method in ITERATIVE {
         for is_limited in [false, true] {
             let motion = Motion::new(&mut random, JOINTS, is_limited, 0.4);
-            let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+            let mut tracked = motion.tracked(&SolverOptions::new(method));
             for frame in 1..=120 {
                 // Beyond a power of two, by which problems are scaled.
                 let scale = 1.0 + 0.015 * f32::from(frame);
@@ -263,11 +264,8 @@ fn steps_in_a_moved_scaled_or_mirrored_skeleton_are_as_smooth() {
                 let TipTarget { joint, point, weight } = motion.target(frame);
                 TipTarget { joint, point: space.transform_point3(point), weight }
             };
-            let mut solver =
-                ChainSolver::new(&motion.fk, &[target(0)], &SolverOptions::new(method))
-                    .expect("it");
-            solver.run();
-            let mut tracked = Tracked::new(solver, &motion.fk);
+            let options = SolverOptions::new(method);
+            let mut tracked = Tracked::new(&motion.fk, &[target(0)], &options);
             let mut ratios = Vec::new();
             for frame in 1..=FRAMES {
                 let before = tracked.posed.pose();
@@ -288,7 +286,7 @@ fn a_target_that_jumps_is_solved_anew() {
     let mut random = Random(5);
     for method in ITERATIVE {
         let motion = Motion::new(&mut random, JOINTS, false, 0.4);
-        let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+        let mut tracked = motion.tracked(&SolverOptions::new(method));
         let step = tracked.step(&[motion.target(FRAMES / 2)], &motion.fk);
         assert!(step.has_jumped && step.report.converged(), "{method}: {step:?}");
         let step = tracked.step(&[motion.target(FRAMES / 2 + 1)], &motion.fk);
@@ -304,10 +302,7 @@ fn a_target_that_was_out_of_reach_is_found_again() {
         let length = length(&motion.fk, &[motion.tip]);
         let direction = random.direction();
         let at = |distance: f32| target(motion.tip, distance * length * direction);
-        let mut solver =
-            ChainSolver::new(&motion.fk, &[at(0.8)], &SolverOptions::new(method)).expect("it");
-        solver.run();
-        let mut tracked = Tracked::new(solver, &motion.fk);
+        let mut tracked = Tracked::new(&motion.fk, &[at(0.8)], &SolverOptions::new(method));
         for step in 0..60 {
             tracked.step(&[at(0.8 + 0.01 * step as f32)], &motion.fk);
         }
@@ -323,12 +318,37 @@ fn a_target_that_was_out_of_reach_is_found_again() {
 }
 
 #[test]
+fn a_run_after_steps_of_a_track_is_written_as_any_run() {
+    let mut random = Random(17);
+    for method in ITERATIVE {
+        let motion = Motion::new(&mut random, JOINTS, false, 0.4);
+        let Tracked { mut solver, mut posed } = motion.tracked(&SolverOptions::new(method));
+        solver.track(&[motion.target(1)], &motion.fk).expect("a step");
+        let other = motion.target(FRAMES / 3);
+        solver.retarget(&[other]).expect("the same joint");
+        let report = solver.run();
+        solver.write(&mut posed);
+        let length = length(&motion.fk, &[motion.tip]);
+        let seen = posed.tip(motion.tip).distance(other.point);
+        assert!((seen - report.error).abs() < 1e-5 * length, "{method}: {seen}, {report:?}");
+        assert!(report.converged(), "{method}: {report:?}");
+
+        let before = posed.pose();
+        let step = solver.track(&[motion.target(FRAMES / 3 + 1)], &motion.fk).expect("a step");
+        solver.write(&mut posed);
+        let ratio = farthest(&before, &posed.pose()) / step.target_motion;
+        assert!(step.report.converged() && !step.has_jumped, "{method}: {step:?}");
+        assert!(ratio < 12.0, "{method}: {ratio}");
+    }
+}
+
+#[test]
 fn the_elbow_of_two_bones_goes_on_on_its_side() {
     let mut random = Random(2);
     for _ in 0..cases(100) {
         let motion = Motion::new(&mut random, 2, false, 0.5);
         let options = SolverOptions::new(Method::TwoBone);
-        let mut tracked = Tracked::new(motion.solver(&options), &motion.fk);
+        let mut tracked = motion.tracked(&options);
         let [upper, lower] = [1, 2].map(|joint| motion.fk[JointId::new(joint)].axis.length());
         for frame in 1..=FRAMES {
             let before = tracked.posed.pose();
@@ -353,7 +373,7 @@ fn free_roots_follow_and_keep_their_precision_far_away() {
         let motion = Motion::new(&mut random, 5, false, 0.5);
         let options = SolverOptions { root: Root::Free, ..SolverOptions::new(method) };
         let length = length(&motion.fk, &[motion.tip]);
-        let mut tracked = Tracked::new(motion.solver(&options), &motion.fk);
+        let mut tracked = motion.tracked(&options);
         let start = motion.target(0).point;
         for step in 1..=1000_u16 {
             let point = start + 0.05 * length * f32::from(step) * Vec3::X;
@@ -369,7 +389,7 @@ fn refused_steps_change_nothing() {
     let mut random = Random(1);
     for method in ITERATIVE {
         let motion = Motion::new(&mut random, JOINTS, true, 0.5);
-        let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+        let mut tracked = motion.tracked(&SolverOptions::new(method));
         tracked.step(&[motion.target(1)], &motion.fk);
         let mut untouched = tracked.solver.clone();
         let next = motion.target(2);
@@ -479,7 +499,7 @@ fn limits_hold_in_each_step() {
     let mut random = Random(21);
     for method in ITERATIVE {
         let mut motion = Motion::new(&mut random, JOINTS, true, 0.7);
-        let mut tracked = Tracked::new(motion.solver(&SolverOptions::new(method)), &motion.fk);
+        let mut tracked = motion.tracked(&SolverOptions::new(method));
         for frame in 1..=FRAMES {
             // A limit that narrows from step to step.
             let most = 2.0 - 1.9 * f32::from(frame) / f32::from(FRAMES);

@@ -37,7 +37,7 @@ pub(in crate::chain_ik) struct Ccd {
 impl Ccd {
     pub fn new(problem: &Problem) -> Self {
         Self {
-            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            mounts: problem.mounts().collect(),
             rotations: vec![Quat::IDENTITY; problem.links.len()],
             pairs: Vec::with_capacity(problem.effectors.len()),
         }
@@ -46,7 +46,7 @@ impl Ccd {
     /// Fits the sweep to links that are mounted otherwise.
     pub fn refit(&mut self, problem: &Problem) {
         self.mounts.clear();
-        self.mounts.extend(problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)));
+        self.mounts.extend(problem.mounts());
     }
 
     /// Makes a sweep and returns `true`.

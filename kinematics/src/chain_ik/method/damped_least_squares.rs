@@ -65,10 +65,9 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Fits λ to other lengths and resets it to its initial value.
+    /// Fits λ to other lengths.
     pub fn refit(&mut self, problem: &Problem, damping: f32) {
         self.damping = damping * problem.length;
-        self.restart();
     }
 
     /// Resets λ to its initial value and returns `true`.

@@ -347,8 +347,8 @@ impl MethodState {
     }
 
     /// Fits the method to a problem with other lengths, weights, mounts or limits of the same
-    /// links, and forgets what it has kept from earlier iterations. `damping` and `step` are those
-    /// of the solver's options.
+    /// links; [restart](Self::restart) it then. `damping` and `step` are those of the solver's
+    /// options.
     pub fn refit(
         &mut self,
         problem: &Problem,
@@ -362,10 +362,7 @@ impl MethodState {
             Self::DampedLeastSquares(damped) => damped.refit(problem, damping),
             Self::Ccd(ccd) => ccd.refit(problem),
             Self::Fabrik(fabrik) => fabrik.refit(problem),
-            Self::Relaxation(relaxation) => {
-                relaxation.refit(problem);
-                relaxation.inward.restart();
-            }
+            Self::Relaxation(relaxation) => relaxation.refit(problem),
             Self::TwoBone(limbs) => limbs.refit(problem)?,
         }
         Ok(())

@@ -156,7 +156,7 @@ impl LinkPoints {
     pub fn new(problem: &Problem) -> Self {
         let mut points = Self {
             grounds: vec![Vec::new(); problem.trees.len()],
-            mounts: problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)).collect(),
+            mounts: problem.mounts().collect(),
             limited: problem.links.iter().any(|link| link.limits.is_limited()),
             base_destinations: vec![Vec3A::ZERO; problem.links.len()],
             ..Self::default()
@@ -196,7 +196,7 @@ impl LinkPoints {
         }
         self.limited = problem.links.iter().any(|link| link.limits.is_limited());
         self.mounts.clear();
-        self.mounts.extend(problem.links.iter().map(|link| Quat::from_mat3a(&link.mount)));
+        self.mounts.extend(problem.mounts());
     }
 
     /// True if the members of each point are where it is, and those of other points are not.

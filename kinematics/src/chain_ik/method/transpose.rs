@@ -128,13 +128,13 @@ impl Transpose {
             before: zero(),
         };
         transpose.refit(problem);
+        transpose.restart();
         transpose
     }
 
-    /// Fits the first step to other lengths and forgets the last steps.
+    /// Fits the first step to other lengths.
     pub fn refit(&mut self, problem: &Problem) {
         self.initial_step = if problem.inertia > 0.0 { problem.inertia.recip() } else { 0.0 };
-        self.restart();
     }
 
     /// Forgets the last steps and returns `true`.

@@ -15,7 +15,7 @@
 
 mod build;
 
-use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
+use glam::{DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
 use crate::skeleton::{JointId, JointLimits};
 
@@ -134,14 +134,11 @@ impl Problem {
         length / self.unit * self.scale()
     }
 
-    /// Vector from a requested target to its tip, in the world.
-    pub fn residual(&self, effector: &EndEffector, tip: Vec3A) -> DVec3 {
-        self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit)
-    }
-
-    /// Distance from a tip to its requested target, in world units.
-    pub fn error(&self, effector: &EndEffector, tip: Vec3A) -> f64 {
-        self.residual(effector, tip).length()
+    /// Vectors from all requested targets to their tips, in the world.
+    pub fn residuals<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
+        self.effectors.iter().zip(tips).map(|(effector, tip)| {
+            self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit)
+        })
     }
 
     /// Keeps the ways of free roots from their offsets in the FK pose in a problem before this one,
@@ -158,6 +155,25 @@ impl Problem {
             effector.requested = (point - self.trees[effector.tree].origin) * self.unit;
             effector.target = effector.requested.clamp_length_max(effector.max_distance).as_vec3a();
         }
+    }
+
+    /// Brings the points to which tips move to at most `most` from the tips, in the problem's units,
+    /// until the targets are set again. Returns whether a point was farther away.
+    pub fn hold_back(&mut self, tips: &[Vec3A], most: f32) -> bool {
+        let mut is_held_back = false;
+        for (effector, tip) in self.effectors.iter_mut().zip(tips) {
+            let way = effector.target - *tip;
+            if way.length() > most {
+                effector.target = *tip + way.clamp_length_max(most);
+                is_held_back = true;
+            }
+        }
+        is_held_back
+    }
+
+    /// Rotations from links' spaces to their parents', without the links' own rotations.
+    pub fn mounts(&self) -> impl Iterator<Item = Quat> + '_ {
+        self.links.iter().map(|link| Quat::from_mat3a(&link.mount))
     }
 
     /// Sets the targets. If a tree is farther than two chain lengths from its targets, moves its

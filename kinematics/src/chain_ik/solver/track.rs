@@ -17,7 +17,7 @@
 
 use super::{ChainSolver, Report, Status};
 use crate::chain_ik::inside::Recorder;
-use crate::chain_ik::tracker::{Tracker, hold_back};
+use crate::chain_ik::tracker::Tracker;
 use crate::chain_ik::{SolveError, SolverOptions, TipTarget};
 use crate::skeleton::Skeleton;
 use crate::vector::saturate;
@@ -122,15 +122,11 @@ impl ChainSolver {
     pub fn track(&mut self, targets: &[TipTarget], fk: &Skeleton) -> Result<TrackStep, SolveError> {
         self.check_targets(targets)?;
         let tracker = self.tracker.take();
-        let mut tracker = tracker.unwrap_or_else(|| Box::new(self.start_track()));
+        let new = || Box::new(Tracker::new(&self.problem, &self.config));
+        let mut tracker = tracker.unwrap_or_else(new);
         let step = self.track_with(&mut tracker, targets, fk);
         self.tracker = Some(tracker);
         step
-    }
-
-    fn start_track(&mut self) -> Tracker {
-        self.settle();
-        Tracker::new(&self.problem, &self.config)
     }
 
     fn track_with(
@@ -139,16 +135,15 @@ impl ChainSolver {
         targets: &[TipTarget],
         fk: &Skeleton,
     ) -> Result<TrackStep, SolveError> {
-        let next = &mut tracker.next;
-        self.builder.fill(next, fk, targets)?;
-        next.carry_origins(&self.problem);
-        next.set_targets(targets);
-        let is_at_rest = matches!(self.report.status, Status::Converged | Status::Stalled);
-        if is_at_rest && !tracker.was_held_back && *next == self.problem {
+        self.builder.fill(&mut tracker.next, fk, targets)?;
+        tracker.next.carry_origins(&self.problem);
+        tracker.next.set_targets(targets);
+        if self.is_settled() && !tracker.was_held_back && tracker.next == self.problem {
             return Ok(TrackStep::at_rest(self.report));
         }
+        self.update_angles();
         let SolverOptions { damping, step, .. } = self.options;
-        self.state.refit(next, &self.config, damping, step)?;
+        self.state.refit(&tracker.next, &self.config, damping, step)?;
         let motion = tracker.take_along(&mut self.problem, &mut self.config);
         self.tolerance = self.options.tolerance_of(&self.problem);
         let has_jumped = motion > JUMP * self.problem.world_length();
@@ -160,7 +155,6 @@ impl ChainSolver {
             tracker.was_held_back = self.follow(tracker, motion);
             self.problem.set_targets(targets);
         }
-        self.settle();
         let joint_motion = self.problem.length_to_world(tracker.displacement(&self.config));
         Ok(TrackStep {
             report: self.report,
@@ -176,10 +170,10 @@ impl ChainSolver {
     fn follow(&mut self, tracker: &mut Tracker, motion: f64) -> bool {
         let length = self.problem.world_length();
         let reach = motion + CATCH_UP * length;
-        let most = self.problem.length_from_world(reach) as f32;
-        let is_far = hold_back(&mut self.problem, &self.config, most);
-        let most = (POSTURE_RATE * motion / length) as f32;
-        tracker.move_to_fk(&self.problem, &mut self.config, most);
+        let most_way = self.problem.length_from_world(reach) as f32;
+        let is_far = self.problem.hold_back(&self.config.tips, most_way);
+        let most_turn = (POSTURE_RATE * motion / length) as f32;
+        tracker.move_to_fk(&self.problem, &mut self.config, most_turn);
         let before = self.config.total_error(&self.problem);
         let finest = self.tolerance.min(FINENESS * motion).max(FINEST * length);
         self.approach(self.problem.length_from_world(finest));
@@ -190,8 +184,7 @@ impl ChainSolver {
     /// Iterates without restarts until the tips are within `tolerance` of their points, in the
     /// problem's units, or further iterations gain almost nothing. Makes at least one iteration.
     fn approach(&mut self, tolerance: f64) {
-        self.report.iterations = 0;
-        self.state.restart();
+        self.begin();
         let window = self.report.method.row().patience.iterations();
         let mut best = self.config.farthest(&self.problem);
         let mut best_before = best;
@@ -210,7 +203,7 @@ impl ChainSolver {
             }
             let is_checked = self.report.iterations.is_multiple_of(window);
             let has_gained = best < best_before * (1.0 - f64::from(window) * LEAST_GAIN);
-            if !can_go_on || is_checked && !has_gained || self.is_out_of_iterations() {
+            if !can_go_on || is_checked && !has_gained || self.used_up().is_some() {
                 self.config.copy_from(&self.escape.best);
                 break;
             }
@@ -222,16 +215,5 @@ impl ChainSolver {
         if self.report.status == Status::Iterating {
             self.report.status = Status::Stalled;
         }
-    }
-
-    fn is_out_of_iterations(&self) -> bool {
-        let most = self.bound.map_or(self.max_iterations, |bound| bound.min(self.max_iterations));
-        self.report.iterations >= most
-    }
-
-    /// Brings angles and orientations up to date with the points that the method moves.
-    fn settle(&mut self) {
-        self.state.update_orientations(&mut self.config);
-        self.config.update_angles(&self.problem);
     }
 }
