@@ -278,7 +278,7 @@ mod tests {
 
     use super::*;
     use crate::kinematics::skeleton::{Joint, Skeleton};
-    use crate::rig::{LimbSettings, Target, TargetKind};
+    use crate::rig::{Carried, LimbSettings, Target, TargetKind};
 
     #[test]
     fn sentences_name_hands_joints_and_lengths() {
@@ -294,7 +294,7 @@ mod tests {
         target.influence = 1.0;
         target.kind = TargetKind::Limb(LimbSettings::default());
         rig.targets.push(target);
-        let found = &rig.diagnose(0.0)[0];
+        let found = &rig.diagnose(0.0, &Carried::default())[0];
         assert_eq!(
             cause(&rig, found),
             "hand cannot reach that far: the target is 3.4 from upper, the bones are 1.7 long"

@@ -39,7 +39,8 @@ fn only_a_track_poses_a_document_at_a_time() {
     for (file, text) in sources_in("src") {
         let ways = [".skeleton_at(", "rig.evaluate(", "apply_keys("];
         let found = ways.into_iter().find(|way| text.contains(way));
-        assert!(found.is_none() || file == "src/document/track.rs", "{file}: {found:?}");
+        let is_track = file.starts_with("src/document/track");
+        assert!(found.is_none() || is_track, "{file}: {found:?}");
     }
 }
 

@@ -41,6 +41,13 @@ impl Document {
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }
 
+    /// True if poses of the skeleton depend on the ones before them: see
+    /// [`SkeletonRig::is_carried`].
+    pub fn is_tracked(&self) -> bool {
+        let rig = &self.skeleton_rig;
+        rig.is_tracked && rig.targets.iter().any(|it| rig.is_carried(it) && self.can_pose(it))
+    }
+
     /// True if keys of the channel pose the shown rig.
     fn poses(&self, channel: Channel) -> bool {
         let target = channel.target().and_then(|joint| self.skeleton_rig.target(joint));

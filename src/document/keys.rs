@@ -1,5 +1,5 @@
 use core::ops::RangeInclusive;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
@@ -37,6 +37,15 @@ impl Keys {
     /// [`Keys::track`], shared.
     pub(super) fn shared_track(&self, channel: Channel) -> Option<Shared<Spline<Vec3>>> {
         self.tracks.get(&channel).cloned()
+    }
+
+    /// The channels whose keys differ from those in `other`.
+    pub(super) fn changed_channels(&self, other: &Self) -> BTreeSet<Channel> {
+        if self.tracks == other.tracks {
+            return BTreeSet::new();
+        }
+        let all = self.tracks.keys().chain(other.tracks.keys()).copied();
+        all.filter(|channel| self.tracks.get(channel) != other.tracks.get(channel)).collect()
     }
 
     /// True if a channel is keyed.

@@ -2,8 +2,8 @@
 //! their keys, the timeline, the cameras and the set of visible overlays.
 //!
 //! A pose is a function of the document and the time alone, and a [`Track`] is the only way to it.
-//! State from which a solve continues (the previous Pointer, the transported frame, the forearm's
-//! roll) is therefore part of the document too.
+//! State from which a motion begins (the skeleton's posture; of the arm the previous Pointer, the
+//! transported frame, the forearm's roll) is therefore part of the document too.
 //!
 //! Large parts are [`Shared`](crate::kinematics::Shared): clones of a document share them, and an
 //! edit copies only the parts that it changes.
@@ -53,6 +53,9 @@ pub struct Document {
     pub keys: Keys,
     /// The time range that is played, and its frame rate.
     pub timeline: Timeline,
+    /// The time in seconds of the first step of the skeleton's motion, which is set when a target
+    /// first poses it; see [`Document::motion_start`].
+    pub track_start: Option<f64>,
     /// The camera of the shown rig.
     pub camera: Camera,
     /// The camera of the rig that is not shown; with `None`, that rig is framed when it is shown.

@@ -1,5 +1,9 @@
+mod grid;
+mod motion;
+
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::Document;
 use super::arm::Arm;
@@ -10,12 +14,19 @@ use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::ik::IkSolution;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{EvaluatedSkeleton, PathKind, Skin, TargetReport};
+use crate::rig::{Carried, EvaluatedSkeleton, PathKind, Posture, Skin, TargetReport};
+use motion::Motion;
 
 /// The motion of a document: its pose at any time.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Small motions of targets must give small motions of joints. No pose that follows from the
+/// targets of one frame alone is continuous everywhere, so a motion goes in steps, each from the
+/// state that the one before has left; between two steps, a pose is one step from the first of them.
+/// All this is a function of the document. The states of steps are kept, and clones of a track
+/// share them.
+#[derive(Clone, Debug)]
 pub struct Track {
-    document: Document,
+    motion: Arc<Motion>,
 }
 
 /// A document posed at a time. Each rig is solved when its pose is first read, and only once.
@@ -24,6 +35,7 @@ pub struct Posed {
     /// Every keyed channel has its value at `time`.
     document: Document,
     time: f64,
+    motion: Arc<Motion>,
     arm: OnceCell<SolvedArm>,
     skeleton: OnceCell<EvaluatedSkeleton>,
 }
@@ -46,28 +58,58 @@ impl Document {
 impl Track {
     /// The track of a document, whose large parts it shares.
     pub fn new(document: &Document) -> Self {
-        Self { document: document.clone() }
+        Self { motion: Arc::new(Motion::new(document)) }
+    }
+
+    /// The track of another document, with the states of this one for all steps before the first
+    /// whose inputs differ.
+    #[must_use]
+    pub fn updated(&self, document: &Document) -> Self {
+        if document == self.document() {
+            return self.clone();
+        }
+        Self { motion: Arc::new(self.motion.updated(document)) }
     }
 
     /// The document of the track.
     pub fn document(&self) -> &Document {
-        &self.document
+        self.motion.document()
     }
 
     /// The document posed at a time in seconds: every keyed channel has its interpolated value, and
     /// with [`PathKind::Head`] the rig has the head's keys.
     #[must_use]
     pub fn at(&self, time: f64) -> Posed {
-        let mut document = self.document.clone();
+        let mut document = self.document().clone();
         document.apply_keys(time);
         self.pose(document, time)
     }
 
     /// Poses an edited copy of the document that [`Track::at`] has at `time`, in seconds: channels
-    /// keep the values that they have in the copy.
+    /// keep the values that they have in the copy. The pose continues from the state that the track
+    /// has before that time.
     #[must_use]
     pub fn pose(&self, document: Document, time: f64) -> Posed {
-        Posed { document, time, arm: OnceCell::new(), skeleton: OnceCell::new() }
+        let motion = self.motion.clone();
+        Posed { document, time, motion, arm: OnceCell::new(), skeleton: OnceCell::new() }
+    }
+
+    /// The posture with which an edited document begins, so that its motion continues from the
+    /// present one; `None` if it begins with the FK pose. With `may_start_afresh`, it also does so
+    /// where only a solve from there reaches all targets.
+    pub fn posture_after(
+        &self,
+        edited: &Document,
+        may_start_afresh: bool,
+    ) -> Option<Shared<Posture>> {
+        self.motion.posture_after(edited, may_start_afresh)
+    }
+}
+
+impl PartialEq for Track {
+    /// Compares documents, of which the poses are a function.
+    fn eq(&self, other: &Self) -> bool {
+        self.document() == other.document()
     }
 }
 
@@ -163,7 +205,15 @@ impl Posed {
 
     /// The skeleton posed by FK and by its targets, with a report for each target.
     pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
-        self.skeleton.get_or_init(|| self.document.skeleton_rig.evaluate(self.time))
+        self.skeleton.get_or_init(|| {
+            let before = self.carried().unwrap_or_default();
+            self.document.skeleton_rig.step(self.time, &before).0
+        })
+    }
+
+    /// The state from which the skeleton's pose continues; `None` if it continues from none.
+    pub fn carried(&self) -> Option<Arc<Carried>> {
+        self.motion.state_before(self.time).filter(|_| self.document.skeleton_rig.is_tracked)
     }
 
     /// Work of the skeleton's pose, in the unit of [`ChainSolver::bounded`]; 0 until it is read.
@@ -198,7 +248,7 @@ impl PartialEq for Posed {
 
 impl Document {
     /// Sets every keyed channel to its interpolated value at a time in seconds.
-    fn apply_keys(&mut self, time: f64) {
+    pub(super) fn apply_keys(&mut self, time: f64) {
         let keys = self.keys.clone();
         let cursor = [Channel::Hand, Channel::Pin, Channel::Pinned, Channel::Root];
         if cursor.into_iter().any(|channel| keys.has(channel)) {

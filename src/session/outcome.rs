@@ -97,6 +97,8 @@ pub(super) enum Consequence {
     ForgetPause,
     /// Sets the camera at once.
     SetCamera(Camera),
+    /// Lets the motion begin with the FK pose, instead of a posture, after the next change.
+    ResetPosture,
     /// Moves the camera smoothly.
     GlideTo(Camera),
     /// Frames all smoothly.

@@ -461,7 +461,7 @@ fn an_invalid_file_is_an_error_with_its_position() {
         ("hello", ", line 1, column 1: not JSON: expected value"),
         (
             "{\"format\":\"ik-arm\",\n\"version\":7}",
-            ", line 2, column 11: version: must be 2, got 7, which needs a newer ik-arm",
+            ", line 2, column 11: version: must be at most 3, got 7, which needs a newer ik-arm",
         ),
         (
             "{\"scene\":{\"skinned_meshes\":{\"X\":{\"skeleton\":{\"bones\":\n[{\"extent\":1}]}}}}}",

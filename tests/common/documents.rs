@@ -7,6 +7,7 @@ use ik_arm::document::{
     TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::{Example, OpenOptions, parse};
+use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
@@ -15,7 +16,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton}
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
 use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::rig::{LimbSettings, Posture, PosturedJoint, TargetKind, TargetSpace};
 use ik_arm::session::FileAction;
 
 use super::Random;
@@ -68,6 +69,9 @@ pub fn document(random: &mut Random) -> Document {
         rig.follow_paths =
             rig.with_path(root, random.one_of(&[None, kinds[0], kinds[1], kinds[2]]));
     }
+    rig.is_tracked = random.coin();
+    rig.posture =
+        random.coin().then(|| posture(random, &rig)).filter(|it| !it.is_empty()).map(Shared::from);
     let keys = keys(random, &rig);
     let start = f64::from(random.within(-100.0..100.0));
     let timeline = Timeline {
@@ -81,6 +85,7 @@ pub fn document(random: &mut Random) -> Document {
         skeleton_rig: rig,
         keys,
         timeline,
+        track_start: random.coin().then(|| start - f64::from(random.within(0.0..3.0))),
         metres_per_unit: random.coin().then(|| random.positive()),
         animation_name: random.coin().then(|| random.one_of(&["Run", "", "läuft"]).to_owned()),
         camera: Camera {
@@ -95,14 +100,28 @@ pub fn document(random: &mut Random) -> Document {
     }
 }
 
+fn posture(random: &mut Random, rig: &SkeletonRig) -> Posture {
+    let mut posture = Posture::default();
+    for joint in rig.skeleton.ids() {
+        let rotation = random.coin().then(|| random.finite_vector());
+        let offset = random.coin().then(|| random.finite_vector());
+        posture.joints.insert(joint, PosturedJoint { rotation, offset });
+        if random.coin() {
+            posture.limbs.insert(joint, std::array::from_fn(|_| random.finite_vector()));
+        }
+    }
+    posture
+}
+
 fn target_kind(random: &mut Random) -> TargetKind {
     if random.coin() {
         return TargetKind::WholeBody;
     }
-    let reference = match random.below(4) {
+    let reference = match random.below(5) {
         0 => ElbowReference::Fk,
         1 => ElbowReference::Up,
         2 => ElbowReference::Pole(random.finite_vector()),
+        3 => ElbowReference::Transport,
         _ => ElbowReference::Stereographic(Stereographic::default()),
     };
     let soft_reach = SoftReach::new(random.within(0.0..0.9), 1.0 + random.within(0.0..2.0), 0.5);

@@ -252,7 +252,9 @@ fn angles_go_on_over_full_turns_instead_of_jumping_back() {
 
 #[test]
 fn a_bake_of_a_part_leaves_the_rest_to_the_targets() {
-    let document = waving();
+    let mut document = waving();
+    // Along a track, poses after the range depend on those in it.
+    document.skeleton_rig.is_tracked = false;
     let settings = Bake { frames: PART, ..Bake::of_timeline(&document) };
     let baked = bake(&document, &settings).document;
     for frame in 0..WHOLE.frames() {

@@ -25,4 +25,5 @@ mod straight_legs;
 mod tadpoles;
 mod target_spaces;
 mod tour;
+mod track;
 mod up_axis;

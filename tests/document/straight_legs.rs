@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3, Vec3A};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions, TipTarget, solve};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
-use ik_arm::rig::{EvaluatedSkeleton, SkeletonRig};
+use ik_arm::rig::{Carried, EvaluatedSkeleton, SkeletonRig};
 use ik_arm::words;
 use serde_json::Value;
 
@@ -145,7 +145,7 @@ fn feet_whose_ankles_bend_too_little_are_said_to_miss_their_rotation() {
     rig.skeleton_mut()
         .change(foot, |foot| foot.limits.set_range(RotationAxis::X, stiff))
         .expect("a joint");
-    let found = rig.diagnose(0.0);
+    let found = rig.diagnose(0.0, &Carried::default());
     assert_eq!(found.len(), 1, "{found:?}");
     let sentence = words::cause(&rig, &found[0]);
     let end = "° short of its target's rotation: its limit about x is in the way";

@@ -19,7 +19,7 @@ fn open(text: &str) -> Opened {
 }
 
 fn with(fields: &str) -> String {
-    format!("{{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"skeleton\",\n{fields}}}")
+    format!("{{\"format\":\"ik-arm\",\"version\":3,\"rig\":\"skeleton\",\n{fields}}}")
 }
 
 fn refusal(text: &str) -> String {
@@ -72,7 +72,7 @@ fn a_document_with_a_number_that_is_not_finite_is_not_written() {
 fn a_file_is_formatted_for_human_readers() {
     let json = io::to_json(&Document::default()).expect("written");
     assert!(
-        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 2,\n  \"rig\": \"arm\",\n")
+        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 3,\n  \"rig\": \"arm\",\n")
     );
     assert!(json.contains("\n    \"cursor\": [250.0, 120.0, 60.0],\n"), "{json}");
     assert!(json.contains("\n    \"joints\": [{\n      \"name\": \"root\",\n"), "{json}");
@@ -83,7 +83,7 @@ fn a_file_is_formatted_for_human_readers() {
 
 #[test]
 fn fields_left_out_have_their_defaults() {
-    let small = "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"arm\"}";
+    let small = "{\"format\":\"ik-arm\",\"version\":3,\"rig\":\"arm\"}";
     assert_eq!(open(small).document, Document::default());
 }
 
@@ -171,16 +171,16 @@ fn a_file_that_is_no_document_is_refused_with_the_reason() {
              Scotty3D) or \"asset\" (glTF)",
         ),
         (
-            "{\n\"format\":\"png\",\"version\":2}",
+            "{\n\"format\":\"png\",\"version\":3}",
             "line 2, column 10: format: must be \"ik-arm\", got \"png\"",
         ),
         (
-            "{\"format\":\"ik-arm\",\n \"version\": 3, \"rig\": {}}",
-            "line 2, column 13: version: must be 2, got 3, which needs a newer ik-arm",
+            "{\"format\":\"ik-arm\",\n \"version\": 4, \"rig\": {}}",
+            "line 2, column 13: version: must be at most 3, got 4, which needs a newer ik-arm",
         ),
         (
             "{\"format\":\"ik-arm\",\"version\":0}",
-            "line 1, column 30: version: must be 2, the version that is read, got 0",
+            "line 1, column 30: version: must be 2 or 3, the versions that are read, got 0",
         ),
         ("{\"format\":\"ik-arm\"}", "line 1, column 1: missing field `version`"),
         (
@@ -188,9 +188,9 @@ fn a_file_that_is_no_document_is_refused_with_the_reason() {
             "line 1, column 30: version: invalid type: string \"1\", expected a whole number from 0 to \
              4294967295",
         ),
-        ("{\"format\":\"ik-arm\",\"version\":2}", "line 1, column 1: missing field `rig`"),
+        ("{\"format\":\"ik-arm\",\"version\":3}", "line 1, column 1: missing field `rig`"),
         (
-            "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"leg\"}",
+            "{\"format\":\"ik-arm\",\"version\":3,\"rig\":\"leg\"}",
             "line 1, column 38: rig: unknown variant `leg`, expected `arm` or `skeleton`",
         ),
     ] {

@@ -2,6 +2,8 @@ mod track;
 
 use core::fmt;
 
+use glam::Vec3;
+
 use super::configuration::Configuration;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
 use super::method::{Method, MethodInputs, MethodState};
@@ -9,7 +11,7 @@ use super::problem::{self, Builder, Problem};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
 use super::{SolveError, SolverOptions, TipTarget, perturb};
-use crate::skeleton::Skeleton;
+use crate::skeleton::{JointId, Skeleton};
 use crate::vector::saturate;
 
 pub use self::track::TrackStep;
@@ -259,6 +261,62 @@ impl ChainSolver {
             problem::check_target(target)?;
         }
         Ok(())
+    }
+
+    /// Begins anew with the angles of a pose, and with the offsets of its free roots, in place of the
+    /// FK pose; angles beyond limits are clamped. `pose` must be a pose of the skeleton for which
+    /// the solver was made.
+    pub fn begin_from(&mut self, pose: &Skeleton) {
+        for (link, angles) in self.problem.links.iter().zip(&mut self.config.angles) {
+            if let Some(joint) = pose.joint(link.joint) {
+                *angles = link.limits.project(joint.rotation);
+            }
+        }
+        if self.problem.free_roots {
+            for (index, shift) in self.config.shifts.iter_mut().enumerate() {
+                if let Some(root) = pose.joint(self.problem.trees[index].root) {
+                    *shift = self.problem.shift_to(index, root.offset);
+                }
+            }
+        }
+        self.config.forward(&self.problem);
+        self.config.renew_orientations();
+        self.begin();
+    }
+
+    /// [Begins from](ChainSolver::begin_from) a pose that is a solution: as long as nothing changes,
+    /// [`ChainSolver::track`] keeps it, also if it misses targets.
+    pub fn rest_at(&mut self, pose: &Skeleton) {
+        self.begin_from(pose);
+        if self.report.status == Status::Iterating {
+            self.report.status = Status::Stalled;
+        }
+    }
+
+    /// The options with which the solver was made.
+    pub fn options(&self) -> &SolverOptions {
+        &self.options
+    }
+
+    /// The joints of the targets, in their order.
+    pub fn target_joints(&self) -> impl Iterator<Item = JointId> {
+        self.problem.effectors.iter().map(|effector| effector.joint)
+    }
+
+    /// Euler angles in radians of the joints that the solver turns, within their limits.
+    pub fn angles(&self) -> impl Iterator<Item = (JointId, Vec3)> {
+        let mut config = self.config.clone();
+        self.state.update_orientations(&mut config);
+        config.update_angles(&self.problem);
+        self.problem.links.iter().zip(config.angles).map(|(link, angles)| (link.joint, angles))
+    }
+
+    /// Offsets of the roots that the solver moves: see [`Root::Free`](super::Root::Free).
+    pub fn offsets(&self) -> impl Iterator<Item = (JointId, Vec3)> {
+        let trees = self.problem.trees.iter().filter(|_| self.problem.free_roots).enumerate();
+        trees.map(|(index, tree)| {
+            (tree.root, self.problem.root_offset(index, self.config.shifts[index]))
+        })
     }
 
     /// Writes the solved Euler angles and the offsets of free roots into `skeleton`, which must be

@@ -15,13 +15,16 @@ pub(super) struct Bend {
     pub lower: DVec3,
     /// Limits of β in radians; infinite where β is not limited.
     pub limits: (f64, f64),
+    /// The side of straight that the limb keeps; `None` for that of the FK pose.
+    pub kept_side: Option<f64>,
     law: Law,
 }
 
 impl Bend {
     /// The rotation of a bone about `axis`, with the fields of [`Bend`].
     pub fn new(axis: DVec3, upper: DVec3, lower: DVec3, limits: (f64, f64)) -> Self {
-        Self { axis, upper, lower, limits, law: Law::new(axis, upper, lower) }
+        let law = Law::new(axis, upper, lower);
+        Self { axis, upper, lower, limits, kept_side: None, law }
     }
 
     /// The vector from the base of the upper bone to the tip of the lower bone, at the angle β.
@@ -68,10 +71,13 @@ impl Bend {
         -self.side(near) * self.axis.cross(lower)
     }
 
-    /// The side of straight on which the limb is bent at `near`, or to which it may bend farther: 1
-    /// for a positive rotation, else −1.
+    /// The side of straight that the limb keeps, or on which it is bent at `near`, or to which it may
+    /// bend farther: 1 for a positive rotation, else −1.
     pub fn side(&self, near: f64) -> f64 {
         const STRAIGHT: f64 = 1e-6;
+        if let Some(side) = self.kept_side {
+            return side;
+        }
         let straight = angle::nearest_f64(self.law.straight, near);
         let bent = near - straight;
         if bent.abs() > STRAIGHT {
@@ -79,6 +85,25 @@ impl Bend {
         }
         let (from, to) = self.limits;
         if to - straight >= straight - from { 1.0 } else { -1.0 }
+    }
+
+    /// Angle in radians between the two bones at β = `angle`; 0 for a straight limb.
+    pub fn bent_by(&self, angle: f64) -> f64 {
+        let lower = self.tip(angle) - self.upper;
+        self.upper.cross(lower).length().atan2(self.upper.dot(lower))
+    }
+
+    /// True if the limb is straight at β = `angle`, but for rounding.
+    pub fn is_straight_at(&self, angle: f64) -> bool {
+        (angle::nearest_f64(self.law.straight, angle) - angle).abs() < 1e-3
+    }
+
+    /// True if the limits let the limb bend to both sides of straight.
+    pub fn has_both_sides(&self, near: f64) -> bool {
+        const ROUNDING: f64 = 1e-6;
+        let (from, to) = self.limits;
+        let straight = angle::nearest_f64(self.law.straight, self.middle(near));
+        from < straight - ROUNDING && straight + ROUNDING < to
     }
 
     /// An angle within the limits that equivalent angles are chosen near to.
@@ -116,7 +141,7 @@ impl Law {
 }
 
 /// A vector to the tip of a limb, and the side of the elbow: the axes of the Pointer's frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     /// Unit vector from the upper joint to the tip, or to the target.
     pub pointer: DVec3,
@@ -184,7 +209,38 @@ impl Aim {
     }
 }
 
-fn orthonormal(v: DVec3, normal: DVec3) -> DVec3 {
+/// Which way a limb bends, in the upper joint's space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BendWay {
+    /// Unit axis about which a positive rotation bends the limb farther.
+    pub axis: DVec3,
+    /// Unit direction to which the elbow moves.
+    pub outward: DVec3,
+}
+
+impl BendWay {
+    /// The other way of a hinge.
+    pub fn reversed(self) -> Self {
+        Self { axis: -self.axis, outward: -self.outward }
+    }
+
+    /// This way turned towards another one by a fraction of the least rotations.
+    pub fn towards(self, other: Self, fraction: f64) -> Self {
+        let turned = |from, to| turned_towards(from, to, fraction);
+        Self { axis: turned(self.axis, other.axis), outward: turned(self.outward, other.outward) }
+    }
+}
+
+/// A unit vector turned towards another one by a fraction of the least rotation.
+fn turned_towards(from: DVec3, to: DVec3, fraction: f64) -> DVec3 {
+    if fraction >= 1.0 {
+        return to;
+    }
+    let rotation = DQuat::from_rotation_arc(from, to);
+    DQuat::IDENTITY.slerp(rotation, fraction) * from
+}
+
+pub(super) fn orthonormal(v: DVec3, normal: DVec3) -> DVec3 {
     v.reject_from_normalized(normal).normalize_or(normal.any_orthonormal_vector())
 }
 

@@ -46,7 +46,10 @@ use thiserror::Error;
 
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
-pub use solver::{ElbowReference, LimbReach, LimbReport, LimbTarget, fk_twist, solve};
+pub use solver::{
+    CarriedLimb, ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides,
+    fk_twist, solve, step,
+};
 
 /// Two bones of a skeleton that a target poses together, such as an arm or a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

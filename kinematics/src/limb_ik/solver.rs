@@ -1,6 +1,6 @@
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-use super::elbow::{Aim, Bend};
+use super::elbow::{Aim, Bend, BendWay, orthonormal};
 use super::{JointSpace, Limb};
 use crate::skeleton::{AnglesWithin, Joint, JointId, RotationAxis, Skeleton};
 use crate::soft_reach::SoftReach;
@@ -51,6 +51,43 @@ pub enum ElbowReference {
     Pole(Vec3),
     /// A stereographic map in the space of the upper joint's parent.
     Stereographic(Stereographic),
+    /// The direction of the step before, carried to the Pointer by the least rotation, in the space
+    /// of the upper joint's parent. Without a step before, it is that of the FK pose.
+    Transport,
+}
+
+/// What a limb carries from one step of a motion to the next, so that it does not jump where its
+/// inputs give no direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CarriedLimb {
+    /// The way in which the FK pose bends, or bent when it was last bent enough.
+    way: Option<BendWay>,
+    /// The Pointer and the elbow at twist 0, in the space of the upper joint's parent.
+    aim: Option<Aim>,
+    /// Rotations from the FK pose to the solved one of upper joint, lower joint and hand.
+    turns: [Option<DQuat>; 3],
+}
+
+impl CarriedLimb {
+    /// The state in single precision: in the space of the upper joint's parent the Pointer and the
+    /// elbow's direction at twist 0, then in the upper joint's space the axis about which the FK
+    /// pose bends and the direction in which its elbow moves. `None` before the first step.
+    pub fn to_vectors(&self) -> Option<[Vec3; 4]> {
+        let (aim, way) = self.aim.zip(self.way)?;
+        Some([aim.pointer, aim.outward, way.axis, way.outward].map(DVec3::as_vec3))
+    }
+
+    /// The state with the vectors of [`CarriedLimb::to_vectors`]; vectors without a direction are
+    /// ignored.
+    pub fn from_vectors(vectors: [Vec3; 4]) -> Self {
+        let [pointer, outward, axis, bending] =
+            vectors.map(|vector| vector.as_dvec3().try_normalize());
+        let aim = pointer
+            .zip(outward)
+            .map(|(pointer, outward)| Aim { pointer, outward: orthonormal(outward, pointer) });
+        let way = axis.zip(bending).map(|(axis, outward)| BendWay { axis, outward });
+        Self { way, aim, turns: [None; 3] }
+    }
 }
 
 /// The result of a solve.
@@ -89,11 +126,25 @@ pub enum LimbReach {
 /// Returns `None`, and changes nothing, if the skeleton's transform is singular or the skeleton has
 /// no such joints.
 pub fn solve(skeleton: &mut Skeleton, limb: Limb, target: &LimbTarget) -> Option<LimbReport> {
-    let fk = FkLimb::new(skeleton, limb)?;
+    step(skeleton, limb, target, &mut CarriedLimb::default())
+}
+
+/// [`solve`] as a step of a motion: continues from what the step before has carried.
+///
+/// While the FK pose is bent by less than 2°, the limb bends the way it did before; up to 5°, that
+/// way is blended into the way of the FK pose. A hinge that can bend to both sides keeps its side
+/// until the solved limb is straight.
+pub fn step(
+    skeleton: &mut Skeleton,
+    limb: Limb,
+    target: &LimbTarget,
+    carried: &mut CarriedLimb,
+) -> Option<LimbReport> {
+    let fk = FkLimb::new(skeleton, limb)?.carrying(&skeleton[limb.lower], carried);
     let local = LocalTarget::new(skeleton, target, &fk)?;
-    let solved = SolvedLimb::new(skeleton, limb, &fk, &local);
+    let solved = SolvedLimb::new(skeleton, limb, &fk, &local, carried);
     if target.influence > 0.0 {
-        solved.write(skeleton, limb, target.influence);
+        solved.write(skeleton, limb, target.influence, &mut carried.turns);
     }
     let tip = if target.influence < 1.0 {
         let above = skeleton[limb.upper].parent;
@@ -114,7 +165,17 @@ pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> O
     let aim = fk.aim();
     let target = LimbTarget { reference, ..LimbTarget::new(Vec3::ZERO) };
     let local = LocalTarget::new(skeleton, &target, &fk)?;
-    Some(aim.twist_from(local.aim(&fk, aim.pointer)) as f32)
+    Some(aim.twist_from(local.aim(&fk, aim.pointer, None)) as f32)
+}
+
+/// True if the lower joint of a limb is no hinge, or a hinge whose limits let the limb bend to both
+/// sides of straight.
+pub fn bends_to_several_sides(skeleton: &Skeleton, limb: Limb) -> bool {
+    let Some(fk) = FkLimb::new(skeleton, limb) else { return false };
+    let lower = &skeleton[limb.lower];
+    let is_movable = RotationAxis::ALL.into_iter().any(|axis| lower.limits.span(axis) >= 1e-6);
+    let is_fixed = lower.locked || !is_movable;
+    !is_fixed && (lower.hinge().is_none() || fk.bend.has_both_sides(fk.angle))
 }
 
 /// A target in skeleton space.
@@ -150,13 +211,18 @@ impl<'a> LocalTarget<'a> {
         is_valid.then_some(Self { point, pole, hand, target })
     }
 
-    /// The Pointer with the elbow at twist 0.
-    fn aim(&self, fk: &FkLimb, pointer: DVec3) -> Aim {
+    /// The Pointer with the elbow at twist 0; `before` are those of the step before, in the space of
+    /// the upper joint's parent.
+    fn aim(&self, fk: &FkLimb, pointer: DVec3, before: Option<Aim>) -> Aim {
         // Sine of the angle to the Pointer below which a direction gives no elbow.
         const PARALLEL: f64 = 1e-6;
         let above = fk.above.rotation;
         let outward = match self.target.reference {
             ElbowReference::Fk => None,
+            ElbowReference::Transport => {
+                let before = before.map_or_else(|| fk.aim(), |aim| aim.rotated(above));
+                return before.carried_to(pointer);
+            }
             ElbowReference::Up => Some(above.y_axis),
             ElbowReference::Pole(_) => Some((self.pole - fk.base).normalize_or_zero()),
             ElbowReference::Stereographic(map) => {
@@ -193,7 +259,17 @@ struct FkLimb {
     angle: f64,
     /// The Euler angle, x, y or z, that β is; `None` if the lower joint turns about another axis.
     free_angle: Option<RotationAxis>,
+    /// The elbow's direction in the upper joint's space that is kept; `None` for that of the FK
+    /// pose.
+    kept_outward: Option<DVec3>,
+    /// True if the limb bends to the other side than the FK pose.
+    is_reversed: bool,
 }
+
+/// Bend in radians up to which the FK pose has no direction of its own.
+const STRAIGHT_FK: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// Bend in radians from which the FK pose has a direction of its own.
+const BENT_FK: f64 = 5.0 * core::f64::consts::PI / 180.0;
 
 impl FkLimb {
     fn new(skeleton: &Skeleton, limb: Limb) -> Option<Self> {
@@ -204,7 +280,54 @@ impl FkLimb {
         let upper_rotation = above.rotation * upper.rotation_f64(upper.rotation);
         let (bend, angle, free_angle) = bend_of(lower, mount);
         let base = above.point(upper.offset);
-        Some(Self { above, base, upper_rotation, mount, bend, angle, free_angle })
+        Some(Self {
+            above,
+            base,
+            upper_rotation,
+            mount,
+            bend,
+            angle,
+            free_angle,
+            kept_outward: None,
+            is_reversed: false,
+        })
+    }
+
+    /// The limb with the way in which it bent before, where the FK pose is nearly straight; carries
+    /// on the way in which it bends now.
+    fn carrying(mut self, lower: &Joint, carried: &mut CarriedLimb) -> Self {
+        let of_fk = self.way();
+        let Some(before) = carried.way else {
+            carried.way = Some(of_fk);
+            return self;
+        };
+        let bent = self.bend.bent_by(self.angle);
+        let share = ((bent - STRAIGHT_FK) / (BENT_FK - STRAIGHT_FK)).clamp(0.0, 1.0);
+        let is_hinge = lower.hinge().is_some() || lower.locked;
+        self.is_reversed = is_hinge && before.axis.dot(of_fk.axis) < 0.0;
+        let goal = if self.is_reversed { of_fk.reversed() } else { of_fk };
+        let way = before.towards(goal, share);
+        if share >= 1.0 {
+            carried.way = Some(way);
+        }
+        if is_hinge {
+            self.bend.kept_side = Some(goal.axis.dot(self.bend.axis).signum());
+        } else if share < 1.0 {
+            let turned = self.bend.tip(self.angle) - self.bend.upper;
+            let unlimited = (f64::NEG_INFINITY, f64::INFINITY);
+            self.bend = Bend::new(way.axis, self.bend.upper, turned, unlimited);
+            self.bend.kept_side = Some(1.0);
+            (self.angle, self.free_angle) = (0.0, None);
+        }
+        self.kept_outward = (share < 1.0 || self.is_reversed).then_some(way.outward);
+        self
+    }
+
+    /// The way in which the FK pose bends.
+    fn way(&self) -> BendWay {
+        let side = self.bend.side(self.angle);
+        let outward = self.aim_of(self.bend.tip(self.angle), self.angle).outward;
+        BendWay { axis: side * self.bend.axis, outward }
     }
 
     /// Position of the tip in the FK pose, in skeleton space.
@@ -214,7 +337,9 @@ impl FkLimb {
 
     /// The Pointer and elbow of the FK pose, in skeleton space.
     fn aim(&self) -> Aim {
-        self.aim_of(self.bend.tip(self.angle), self.angle).rotated(self.upper_rotation)
+        let aim = self.aim_of(self.bend.tip(self.angle), self.angle);
+        let kept = |outward| Aim { outward: orthonormal(outward, aim.pointer), ..aim };
+        self.kept_outward.map_or(aim, kept).rotated(self.upper_rotation)
     }
 
     /// The Pointer and elbow for a vector to the tip in the upper joint's space, bent by `angle`.
@@ -248,16 +373,15 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<RotationAxis>
         let bend = Bend::new(about, mount.origin, unbent, limits);
         (bend, f64::from(lower.rotation[hinge.index()]), Some(hinge))
     };
-    let mut movable = RotationAxis::ALL.to_vec();
-    movable.retain(|hinge| lower.limits.span(*hinge) >= 1e-6);
-    if let ([hinge], false) = (&movable[..], lower.locked) {
-        return about(*hinge);
+    if let (Some(hinge), false) = (lower.hinge(), lower.locked) {
+        return about(hinge);
     }
     let turned = mount.rotation * lower.rotation_f64(lower.rotation) * axis;
     let free = |axis: DVec3, limits: (f64, f64)| {
         (Bend::new(axis, mount.origin, turned, limits), 0.0, None)
     };
-    if lower.locked || movable.is_empty() {
+    let is_fixed = RotationAxis::ALL.into_iter().all(|axis| lower.limits.span(axis) < 1e-6);
+    if lower.locked || is_fixed {
         return free(DVec3::X, (0.0, 0.0));
     }
     let normal = mount.origin.cross(turned);
@@ -271,11 +395,8 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<RotationAxis>
         room.min(core::f64::consts::PI) * bend.axis.cross(turned.normalize_or_zero()).length()
     };
     let rank = |one, other| swing(one).total_cmp(&(swing(other) + 1e-6));
-    let widest = movable.into_iter().reduce(
-        |best, hinge| {
-            if rank(hinge, best).is_gt() { hinge } else { best }
-        },
-    );
+    let movable = RotationAxis::ALL.into_iter().filter(|axis| lower.limits.span(*axis) >= 1e-6);
+    let widest = movable.reduce(|best, hinge| if rank(hinge, best).is_gt() { hinge } else { best });
     widest.map_or_else(|| free(DVec3::X, (0.0, 0.0)), about)
 }
 
@@ -291,7 +412,13 @@ struct SolvedLimb {
 }
 
 impl SolvedLimb {
-    fn new(skeleton: &Skeleton, limb: Limb, fk: &FkLimb, local: &LocalTarget<'_>) -> Self {
+    fn new(
+        skeleton: &Skeleton,
+        limb: Limb,
+        fk: &FkLimb,
+        local: &LocalTarget<'_>,
+        carried: &mut CarriedLimb,
+    ) -> Self {
         let target = local.target;
         let to_target = local.point - fk.base;
         let wanted = to_target.length();
@@ -302,7 +429,12 @@ impl SolvedLimb {
         let lower_rotation = fk.mount.rotation * skeleton[limb.lower].rotation_f64(lower.angles);
         let tip = fk.mount.origin + lower_rotation * skeleton[limb.lower].axis.as_dvec3();
 
-        let aim = local.aim(fk, pointer).twisted(f64::from(target.twist));
+        let aim = local.aim(fk, pointer, carried.aim);
+        carried.aim = Some(aim.rotated(fk.above.rotation.transpose()));
+        if fk.is_reversed && fk.bend.is_straight_at(lower.bend) {
+            carried.way = carried.way.map(BendWay::reversed);
+        }
+        let aim = aim.twisted(f64::from(target.twist));
         let upper_rotation = fk.aim_of(tip, lower.bend).rotation_to(aim);
         let upper =
             skeleton[limb.upper].angles_within(fk.above.rotation.transpose() * upper_rotation);
@@ -332,11 +464,18 @@ impl SolvedLimb {
     }
 
     /// Writes the angles, blended with those of the FK pose by the influence.
-    fn write(&self, skeleton: &mut Skeleton, limb: Limb, influence: f32) {
-        let turns = [(limb.upper, Some(self.upper)), (limb.lower, Some(self.lower))];
-        for (joint, angles) in turns.into_iter().chain(limb.hand.map(|hand| (hand, self.hand))) {
-            let Some(angles) = angles else { continue };
-            let angles = skeleton[joint].angles_towards(angles, influence);
+    fn write(
+        &self,
+        skeleton: &mut Skeleton,
+        limb: Limb,
+        influence: f32,
+        turns: &mut [Option<DQuat>; 3],
+    ) {
+        let joints = [Some(limb.upper), Some(limb.lower), limb.hand];
+        let angles = [Some(self.upper), Some(self.lower), self.hand];
+        for ((joint, angles), turn) in joints.into_iter().zip(angles).zip(turns) {
+            let Some((joint, angles)) = joint.zip(angles) else { continue };
+            let angles = skeleton[joint].angles_towards(angles, influence, turn);
             skeleton.write_local(joint, |joint| joint.rotation = angles);
         }
         let stretch = 1.0 + (self.stretch as f32 - 1.0) * influence;

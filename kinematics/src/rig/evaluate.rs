@@ -1,10 +1,11 @@
 use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
+use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
-use crate::chain_ik::{ChainSolver, Report, SolveError, TipTarget};
+use crate::chain_ik::{Report, SolveError, TipTarget};
 use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
 
@@ -77,16 +78,27 @@ impl SkeletonRig {
     /// Angle in radians within which a hand has the rotation that its target asks for.
     pub const ROTATION_TOLERANCE: f32 = 1e-3;
 
-    /// The skeleton at a time in seconds, as a function of the rig and the time alone.
+    /// The skeleton at a time in seconds, as a function of the rig and the time alone: a
+    /// [step](SkeletonRig::step) that continues from nothing.
+    pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
+        self.step(time, &Carried::default()).0
+    }
+
+    /// The skeleton at a time in seconds, as a step of a motion: continues from what the step
+    /// before has carried. Returns what this step carries to the next. The rig may have changed
+    /// since the step before, its targets and joints included.
     ///
     /// The whole-body targets are solved together, from the FK pose; the limb targets then one
     /// after the other, in the order of their joints, but each after those that move the joints
     /// that it is on. The work of the solver is bounded: see
     /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
-    pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
-        let fk = self.fk_at(time);
-        let mut solved = fk.clone();
-        let outcomes = self.solve_targets(&mut solved, time);
+    ///
+    /// Whole-body targets with different influences are solved once for each influence: together
+    /// with all targets of at least that influence. Each such pose is blended with the one of the
+    /// next lower influence by the ratio of the two, and the first one with the FK pose.
+    pub fn step(&self, time: f64, before: &Carried) -> (EvaluatedSkeleton, Carried) {
+        let mut carried = before.clone();
+        let (fk, solved, outcomes) = self.posed(time, &mut carried);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
             let end = |joint| match outcome {
@@ -101,7 +113,33 @@ impl SkeletonRig {
             TargetReport { position, pole, error, rotation_error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
-        EvaluatedSkeleton { fk, solved, targets }
+        (EvaluatedSkeleton { fk, solved, targets }, carried)
+    }
+
+    /// [`SkeletonRig::step`] without its pose and reports: changes `carried` to what the step
+    /// carries.
+    pub fn carry(&self, time: f64, carried: &mut Carried) {
+        self.posed(time, carried);
+    }
+
+    /// The last of as many steps at a time in seconds, all with these inputs, as bring targets near
+    /// again that the state `before` has left far behind. An edit of a rig is such a change.
+    pub fn settle(&self, time: f64, before: &Carried) -> (EvaluatedSkeleton, Carried) {
+        const MOST_STEPS: usize = 200;
+        let (mut solved, mut carried) = self.step(time, before);
+        for _ in 1..MOST_STEPS {
+            if !carried.is_held_back() {
+                break;
+            }
+            (solved, carried) = self.step(time, &carried);
+        }
+        (solved, carried)
+    }
+
+    /// True if all targets that pose the skeleton are reached.
+    pub fn has_reached_all(&self, evaluated: &EvaluatedSkeleton) -> bool {
+        let targets = self.targets.iter().zip(&evaluated.targets);
+        targets.filter(|(target, _)| target.is_posing()).all(|(_, report)| self.is_reached(report))
     }
 
     /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a
@@ -123,48 +161,48 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
     /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
-        let mut skeleton = self.fk_at(time);
-        self.solve_targets(&mut skeleton, time);
-        skeleton
+        self.posed(time, &mut Carried::default()).1
     }
 
-    /// Poses `solved`, the FK pose, by the targets; returns the outcome for each.
-    fn solve_targets(&self, solved: &mut Shared<Skeleton>, time: f64) -> Vec<TargetOutcome> {
+    /// The FK pose, the solved pose and the outcome for each target of a step.
+    fn posed(
+        &self,
+        time: f64,
+        carried: &mut Carried,
+    ) -> (Shared<Skeleton>, Shared<Skeleton>, Vec<TargetOutcome>) {
         let leads = |target: &Target| target.enabled && self.leads_path(target);
         let outcome =
             |target| if leads(target) { TargetOutcome::Leads } else { TargetOutcome::Off };
         let mut outcomes: Vec<_> = self.targets.iter().map(outcome).collect();
-        self.solve_whole_body(solved, time, &mut outcomes);
-        self.solve_limbs(solved, time, &mut outcomes);
-        outcomes
+        let fk = self.fk_at(time);
+        let mut solved = fk.clone();
+        self.solve_whole_body(&mut solved, time, carried, &mut outcomes);
+        self.solve_limbs(&mut solved, time, carried, &mut outcomes);
+        (fk, solved, outcomes)
     }
 
     fn solve_whole_body(
         &self,
         solved: &mut Shared<Skeleton>,
         time: f64,
+        carried: &mut Carried,
         outcomes: &mut [TargetOutcome],
     ) {
         let is_active =
-            |target: &&Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
-        let active: Vec<&Target> = self.targets.iter().filter(is_active).collect();
+            |target: &Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
+        let active = self.targets.iter().filter(|it| is_active(it));
+        let active: Vec<BodyTarget> = active
+            .map(|it| BodyTarget { tip: it.tip_target(solved, time), influence: it.influence })
+            .collect();
         if active.is_empty() {
-            return;
+            return carried.forget_body();
         }
-        let tips: Vec<TipTarget> = active.iter().map(|it| it.tip_target(solved, time)).collect();
-        let outcome =
-            match ChainSolver::bounded(solved, &tips, &self.solver, ChainSolver::POSE_WORK) {
-                Ok(mut solver) => {
-                    let report = solver.run();
-                    let mut full = Skeleton::clone(solved);
-                    solver.write(&mut full);
-                    blend(solved, &full, &active);
-                    TargetOutcome::WholeBody(report)
-                }
-                Err(error) => TargetOutcome::Refused(error),
-            };
+        let outcome = match carried.step_body(&self.solver, solved, &active) {
+            Ok(report) => TargetOutcome::WholeBody(report),
+            Err(error) => TargetOutcome::Refused(error),
+        };
         for (target, slot) in self.targets.iter().zip(outcomes) {
-            if is_active(&target) {
+            if is_active(target) {
                 *slot = outcome.clone();
             }
         }
@@ -174,20 +212,23 @@ impl SkeletonRig {
         &self,
         solved: &mut Shared<Skeleton>,
         time: f64,
+        carried: &mut Carried,
         outcomes: &mut [TargetOutcome],
     ) {
         let is_limb = |index: &usize| {
             let target = &self.targets[*index];
             self.is_solved_for(target) && target.limb().is_some()
         };
-        let limbs = (0..self.targets.len()).filter(is_limb).collect();
+        let limbs: Vec<usize> = (0..self.targets.len()).filter(is_limb).collect();
+        carried.retain_limbs(|joint| limbs.iter().any(|it| self.targets[*it].joint == joint));
         for index in LimbOrder::new(self, limbs).indices {
             let target = &self.targets[index];
             let Some(settings) = target.limb() else { continue };
             outcomes[index] = match Limb::ending_at(solved, target.joint) {
                 Ok(limb) => {
                     let limb_target = target.limb_target(settings, solved, time);
-                    let report = limb_ik::solve(solved.make_mut(), limb, &limb_target);
+                    let of_limb = carried.limb(target.joint);
+                    let report = limb_ik::step(solved.make_mut(), limb, &limb_target, of_limb);
                     report.map_or(TargetOutcome::Refused(SolveError::Singular), TargetOutcome::Limb)
                 }
                 Err(error) => TargetOutcome::NoLimb(error),
@@ -210,27 +251,6 @@ impl Target {
             soft_reach: settings.soft_reach,
             hand: settings.hand_in_world(pose, self.space),
             influence: self.influence,
-        }
-    }
-}
-
-/// Turns the joints of a pose towards those of `full`, each by the greatest influence of the
-/// targets that move it.
-fn blend(pose: &mut Shared<Skeleton>, full: &Skeleton, targets: &[&Target]) {
-    let mut influences = vec![0.0_f32; full.joints().len()];
-    for target in targets {
-        for joint in full.ancestors(target.joint) {
-            let influence = &mut influences[joint.index()];
-            *influence = influence.max(target.influence);
-        }
-    }
-    for (joint, influence) in (0..).map(JointId::new).zip(influences) {
-        let (before, after) = (&pose[joint], &full[joint]);
-        if influence > 0.0 && before != after {
-            let rotation = before.angles_towards(after.rotation, influence);
-            let offset = before.offset.lerp(after.offset, influence);
-            pose.make_mut()
-                .write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
         }
     }
 }

@@ -2,6 +2,7 @@
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
+mod carried;
 mod crowd;
 mod diagnose;
 mod evaluate;
@@ -15,6 +16,7 @@ mod target_match;
 mod up_axis;
 
 pub use arm::{ArmPart, ArmRig, TaperedCylinder};
+pub use carried::{Carried, Posture, PosturedJoint};
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
 pub use diagnose::RemedyError;
 pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport, TargetSpaceError};

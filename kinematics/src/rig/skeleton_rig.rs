@@ -2,12 +2,13 @@ use std::collections::BTreeMap;
 
 use glam::{Vec3, Vec3A};
 
+use super::carried::Posture;
 use super::follow_path::{FollowPath, PathKind};
 use super::skin::Skin;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind};
 use crate::Shared;
 use crate::chain_ik::{SolverOptions, TipTarget};
-use crate::limb_ik::Limb;
+use crate::limb_ik::{self, ElbowReference, Limb};
 use crate::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 use crate::spline::Spline;
 
@@ -29,6 +30,12 @@ pub struct SkeletonRig {
     /// [`PathKind::Target`]. The evaluation of a document sets them; there are none in a document
     /// that is not evaluated, and they are never saved.
     pub head_tracks: BTreeMap<JointId, Shared<Spline<Vec3>>>,
+    /// True if each frame of a motion continues from the one before; false if each is solved by
+    /// itself, from its FK pose.
+    pub is_tracked: bool,
+    /// The posture with which the motion begins; `None` for the one that is solved from the FK
+    /// pose.
+    pub posture: Option<Shared<Posture>>,
     /// The mesh that follows the joints; `None` for bones alone.
     pub skin: Option<Skin>,
 }
@@ -46,6 +53,8 @@ impl SkeletonRig {
             iterations_per_frame: 1,
             follow_paths: Vec::new(),
             head_tracks: BTreeMap::new(),
+            is_tracked: true,
+            posture: None,
             skin: None,
         }
     }
@@ -98,6 +107,15 @@ impl SkeletonRig {
     /// The joints that a target turns if it poses the skeleton.
     pub(super) fn moved_by(&self, target: &Target) -> MovedJoints {
         MovedJoints::new(&self.skeleton, self.solver.root, target)
+    }
+
+    /// True if the pose by a target depends on the pose before it: by a whole-body target, and by a
+    /// limb target that carries the elbow's direction or whose limb can bend to more than one side.
+    pub fn is_carried(&self, target: &Target) -> bool {
+        let Some(settings) = target.limb() else { return !self.leads_path(target) };
+        let limb = Limb::ending_at(&self.skeleton, target.joint);
+        settings.reference == ElbowReference::Transport
+            || limb.is_ok_and(|limb| limb_ik::bends_to_several_sides(&self.skeleton, limb))
     }
 
     /// The joint that a target is named after: the hand of its limb, or the joint whose tip it
@@ -166,6 +184,7 @@ impl SkeletonRig {
     /// targets of removed joints, and the paths of joints that are no roots any more.
     pub fn remap(&mut self, remap: &JointRemap) {
         self.targets = self.targets.iter().filter_map(|target| target.remapped(remap)).collect();
+        self.posture = self.posture.as_ref().map(|posture| posture.remapped(remap).into());
         self.skin = self.skin.as_ref().map(|skin| skin.remapped(remap, &self.skeleton));
         let is_root =
             |root: &JointId| self.skeleton.joint(*root).is_some_and(|it| it.parent.is_none());

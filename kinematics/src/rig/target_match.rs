@@ -1,5 +1,6 @@
 use glam::{DQuat, Vec3};
 
+use super::carried::Carried;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, Target, TargetKind};
 use crate::limb_ik::{self, ElbowReference, Limb};
@@ -11,9 +12,9 @@ impl SkeletonRig {
     /// Moves a target to where the skeleton at `time`, in seconds, has the tip without it. A limb's
     /// target also takes over the hand's orientation, if it keeps one, and the elbow's side: by
     /// moving the pole, or by its twist. At any influence the skeleton is then posed as without the
-    /// target.
-    pub fn match_target_to_fk(&mut self, index: usize, time: f64) {
-        let pose = self.skeleton_at_without(index, time);
+    /// target. `before` is the state from which the poses continue.
+    pub fn match_target_to_fk(&mut self, index: usize, time: f64, before: &Carried) {
+        let pose = self.skeleton_at_without(index, time, before);
         let target = self.targets[index];
         if pose.joint(target.joint).is_none() {
             return;
@@ -30,8 +31,9 @@ impl SkeletonRig {
     /// Writes the pose at `time`, in seconds, to the FK angles of the joints that a target moves.
     /// With an influence between 0 and 1, the target then moves to the tip, where FK and IK agree.
     /// The skeleton does not move, unless a part of a stretch is blended in: FK has no stretch.
-    pub fn match_fk_to_pose(&mut self, index: usize, time: f64) {
-        let solved = self.skeleton_at(time);
+    /// `before` is the state from which the poses continue; afterwards they continue from nothing.
+    pub fn match_fk_to_pose(&mut self, index: usize, time: f64, before: &Carried) {
+        let solved = self.step(time, before).0.solved;
         let target = self.targets[index];
         let is_whole_body = target.kind == TargetKind::WholeBody;
         for joint in self.moved_by(&target).turned {
@@ -42,24 +44,24 @@ impl SkeletonRig {
             self.skeleton_mut()
                 .write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
         }
-        let pose = self.skeleton_at_without(index, time);
+        let pose = self.skeleton_at_without(index, time, &Carried::default());
         if let Some(settings) = self.targets[index].limb_mut()
             && let Ok(limb) = Limb::ending_at(&pose, target.joint)
         {
             settings.match_elbow(&pose, limb);
         }
         if target.influence < 1.0 {
-            self.match_target_to_fk(index, time);
+            self.match_target_to_fk(index, time, &Carried::default());
         }
     }
 }
 
 impl SkeletonRig {
     /// The skeleton at a time in seconds, posed by all targets but one.
-    fn skeleton_at_without(&self, index: usize, time: f64) -> Shared<Skeleton> {
+    fn skeleton_at_without(&self, index: usize, time: f64, before: &Carried) -> Shared<Skeleton> {
         let mut without = self.clone();
         without.targets[index].enabled = false;
-        without.skeleton_at(time)
+        without.step(time, before).0.solved
     }
 }
 

@@ -260,14 +260,48 @@ impl Joint {
         if second.1 + ROUNDING < first.1 { second.0 } else { first.0 }
     }
 
-    /// The joint's angles turned towards other angles by a fraction of the shortest rotation
-    /// between the two. A fraction of 1 gives `angles` bit for bit.
-    pub(crate) fn angles_towards(&self, angles: Vec3, fraction: f32) -> Vec3 {
+    /// The joint's angles turned towards other angles by a fraction of the rotation between the two.
+    /// A hinge turns by a fraction of the difference of its angle. Another joint turns the way that
+    /// `turn`, the rotation in the step before, continues; without one, the shortest way. `turn`
+    /// becomes the rotation of this step. A fraction of 1 gives `angles` bit for bit.
+    pub(crate) fn angles_towards(
+        &self,
+        angles: Vec3,
+        fraction: f32,
+        turn: &mut Option<DQuat>,
+    ) -> Vec3 {
+        let [from, to] = [self.rotation, angles].map(|it| DQuat::from_mat3(&self.rotation_f64(it)));
+        let whole = (from.conjugate() * to).normalize();
+        let continues = turn.map_or(whole.w, |before| before.dot(whole));
+        let whole = if continues < 0.0 { -whole } else { whole };
+        *turn = Some(whole);
         if fraction >= 1.0 {
             return angles;
         }
-        let [from, to] = [self.rotation, angles].map(|it| DQuat::from_mat3(&self.rotation_f64(it)));
-        self.angles_within(DMat3::from_quat(from.slerp(to, f64::from(fraction)))).angles
+        if self.hinge().is_some() {
+            return self.limits.project(self.rotation.lerp(angles, fraction));
+        }
+        let turned = from * part_of(whole, f64::from(fraction));
+        self.angles_within(DMat3::from_quat(turned)).angles
+    }
+
+    /// The only axis about which the limits let the joint turn; `None` if there are several, or
+    /// none.
+    pub(crate) fn hinge(&self) -> Option<RotationAxis> {
+        const MOVABLE: f32 = 1e-6;
+        let movable = |axis: &RotationAxis| self.limits.span(*axis) >= MOVABLE;
+        let mut movable = RotationAxis::ALL.into_iter().filter(movable);
+        movable.next().filter(|_| movable.next().is_none())
+    }
+}
+
+/// A fraction of a rotation, which is more than half a turn for a negative w.
+fn part_of(rotation: DQuat, fraction: f64) -> DQuat {
+    let axis = rotation.xyz();
+    let half = axis.length().atan2(rotation.w);
+    match axis.try_normalize() {
+        Some(axis) => DQuat::from_axis_angle(axis, 2.0 * half * fraction),
+        None => DQuat::IDENTITY,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, Vec3};
 use ik_arm_kinematics::limb_ik::ElbowReference;
-use ik_arm_kinematics::rig::{LimbSettings, SkeletonRig, Target, TargetKind, TargetSpace};
+use ik_arm_kinematics::rig::{Carried, LimbSettings, SkeletonRig, Target, TargetKind, TargetSpace};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
 use ik_arm_kinematics::twist::Stereographic;
@@ -90,7 +90,7 @@ fn a_target_that_moves_to_the_fk_pose_takes_over_without_moving_the_skeleton() {
         });
         let reach = rig.reach();
         let time = f64::from(random.within(0.0..4.0));
-        rig.match_target_to_fk(0, time);
+        rig.match_target_to_fk(0, time, &Carried::default());
         for influence in [0.0, 0.3, 1.0] {
             rig.targets[0].influence = influence;
             let (tip, angle) = difference(&rig.evaluate(time).solved, &rig.fk_at(time), reach);
@@ -118,7 +118,7 @@ fn the_evaluated_pose_written_to_the_angles_moves_nothing() {
         let kind = TargetKind::Limb(settings);
         rig.targets.push(Target { kind, influence, ..Target::new(forearm, home, 0.1) });
         let before = rig.evaluate(0.0);
-        rig.match_fk_to_pose(0, 0.0);
+        rig.match_fk_to_pose(0, 0.0, &Carried::default());
         let after = rig.evaluate(0.0);
         let (tip, angle) = difference(&before.solved, &after.solved, rig.reach());
         assert!(tip <= 1e-6, "{case}: a tip moves by {tip} at influence {influence}");

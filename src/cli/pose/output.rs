@@ -191,7 +191,8 @@ impl AnsweredPose {
             format!("{method} {status}, after {iterations} iterations")
         });
         let remark = refused.or(bounded);
-        let why = posed.document().skeleton_rig.diagnose(posed.time());
+        let before = posed.carried().unwrap_or_default();
+        let why = posed.document().skeleton_rig.diagnose(posed.time(), &before);
         Self { skeleton: posed.skeleton().clone(), report, why, remark }
     }
 

@@ -17,8 +17,12 @@ const DISCARD: &str = "Discard unkeyed change";
 pub struct Editing {
     document: Document,
     track: Track,
+    /// The track with unkeyed edits as keys at the playhead.
+    shown_track: Track,
     /// The document posed at the playhead, with unkeyed edits.
     posed: Posed,
+    /// True if the next change of the document begins with the FK pose instead of a posture.
+    resets_posture: bool,
     /// Unkeyed edits, discarded when the time changes.
     overrides: Overrides,
     transaction: Option<Transaction>,
@@ -54,7 +58,9 @@ impl Editing {
         let track = Track::new(&document);
         Self {
             posed: track.pose(document.clone(), 0.0),
+            shown_track: track.clone(),
             track,
+            resets_posture: false,
             document,
             overrides: Overrides::default(),
             transaction: None,
@@ -145,7 +151,9 @@ impl Editing {
     /// none is open.
     pub(in crate::session) fn posed_before(&self) -> Posed {
         match &self.transaction {
-            Some(transaction) => self.track.pose(transaction.shown.clone(), self.posed.time()),
+            Some(transaction) => {
+                self.shown_track.pose(transaction.shown.clone(), self.posed.time())
+            }
             None => self.posed.clone(),
         }
     }
@@ -271,12 +279,31 @@ impl Editing {
 
     /// Poses the document at `time`, in seconds, with the unkeyed edits.
     pub(in crate::session) fn evaluate(&mut self, time: f64) {
-        self.track = Track::new(&self.document);
+        self.track = self.track.updated(&self.document);
+        self.shown_track = if self.overrides.is_empty() {
+            self.track.clone()
+        } else {
+            self.shown_track.updated(&self.with_keyed_overrides(time))
+        };
         let mut shown = self.track.at(time).into_document();
         for (channel, value) in &self.overrides {
             channel.set(&mut shown, *value);
         }
-        self.posed = self.track.pose(shown, time);
+        self.posed = self.shown_track.pose(shown, time);
+    }
+
+    /// The document with the unkeyed edits as keys at `time`, in seconds.
+    fn with_keyed_overrides(&self, time: f64) -> Document {
+        let mut document = self.document.clone();
+        for (channel, value) in &self.overrides {
+            document.keys.insert_auto(*channel, time, *value);
+        }
+        document
+    }
+
+    /// Lets the motion begin with the FK pose after the next change of the document.
+    pub(in crate::session) fn reset_posture(&mut self) {
+        self.resets_posture = true;
     }
 
     /// The present state, for undo; `time` is the playhead in seconds.
@@ -337,7 +364,7 @@ impl Editing {
         if let Some(transaction) = self.transaction.take() {
             // Not during a drag, which would stop for the time that it takes.
             self.document.skeleton_rig.refresh_skin();
-            self.track = Track::new(&self.document);
+            self.track = self.track.updated(&self.document);
             self.posed.set_skin(self.document.skeleton_rig.skin.clone());
             self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
         }

@@ -142,11 +142,13 @@ impl Snapshot {
     /// True if the snapshot's document differs from `other` in more than cameras, shown rig and
     /// overlays.
     pub fn differs_in_content_from(&self, other: &Document) -> bool {
-        let Document { arm, skeleton_rig, keys, timeline, metres_per_unit, .. } = &self.document;
+        let Document { arm, skeleton_rig, keys, timeline, track_start, metres_per_unit, .. } =
+            &self.document;
         *arm != other.arm
             || *skeleton_rig != other.skeleton_rig
             || *keys != other.keys
             || *timeline != other.timeline
+            || *track_start != other.track_start
             || *metres_per_unit != other.metres_per_unit
     }
 

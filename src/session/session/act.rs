@@ -120,6 +120,7 @@ impl Session {
             }
 
             Consequence::Write(after) => self.write(*after),
+            Consequence::ResetPosture => self.editing.reset_posture(),
             Consequence::Refresh => self.refresh(),
             Consequence::DiscardUnkeyed => self.editing.clear_overrides(),
             Consequence::ForgetUnkeyed(channels) => {

@@ -3,8 +3,8 @@ use glam::Vec3;
 use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::diagnosis::{Diagnosis, Remedy};
 use crate::kinematics::skeleton::{Joint, JointId};
-use crate::rig::TargetSpace;
-use crate::session::outcome::Outcome;
+use crate::rig::{Carried, TargetSpace};
+use crate::session::outcome::{Consequence, Outcome};
 use crate::session::session::Session;
 use crate::words::{self, significant};
 
@@ -69,7 +69,11 @@ impl TargetEdit {
             Self::MatchTargetToFk(joint) => {
                 matched(session, joint, SkeletonRig::match_target_to_fk)
             }
-            Self::MatchFkToPose(joint) => matched(session, joint, SkeletonRig::match_fk_to_pose),
+            Self::MatchFkToPose(joint) => Outcome::from(Consequence::ResetPosture).and(matched(
+                session,
+                joint,
+                SkeletonRig::match_fk_to_pose,
+            )),
             Self::SetTargetSpace { joint, space } => {
                 Outcome::change(shown, |document| document.set_target_space(joint, space, time))
             }
@@ -123,13 +127,16 @@ fn remove(shown: &Document, joint: JointId) -> Outcome {
 fn matched(
     session: &Session,
     joint: JointId,
-    matched: fn(&mut SkeletonRig, usize, f64),
+    matched: fn(&mut SkeletonRig, usize, f64, &Carried),
 ) -> Outcome {
     let Some(index) = session.skeleton_rig().target(joint) else {
         return Outcome::default();
     };
     let time = session.playback().time();
-    Outcome::change(session.shown(), |document| matched(&mut document.skeleton_rig, index, time))
+    let before = session.posed().carried().unwrap_or_default();
+    Outcome::change(session.shown(), |document| {
+        matched(&mut document.skeleton_rig, index, time, &before);
+    })
 }
 
 /// Replaces the target of a joint.
@@ -220,7 +227,9 @@ impl Session {
         {
             &[]
         } else if finds_out {
-            self.evaluated().why(index, targets, || rig.diagnose_targets(&[index], time))
+            let before = || self.posed().carried().unwrap_or_default();
+            let diagnose = || rig.diagnose_targets(&[index], time, &before());
+            self.evaluated().why(index, targets, diagnose)
         } else {
             self.evaluated().known_why(index)
         }

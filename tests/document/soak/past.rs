@@ -19,6 +19,7 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         skeleton_rig,
         keys,
         timeline,
+        track_start,
         camera: _,
         other_rig_camera: _,
         display: _,
@@ -29,6 +30,7 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
         && *skeleton_rig == b.skeleton_rig
         && *keys == b.keys
         && *timeline == b.timeline
+        && *track_start == b.track_start
         && *metres_per_unit == b.metres_per_unit
         && *animation_name == b.animation_name
 }
@@ -40,10 +42,12 @@ fn differing_fields(a: &Document, b: &Document) -> Vec<&'static str> {
         ("arm", a.arm == b.arm),
         ("skeleton", one.skeleton == other.skeleton),
         ("targets", one.targets == other.targets),
+        ("posture", one.posture == other.posture),
         ("skin", one.skin == other.skin),
         ("skeleton rig", one == other),
         ("keys", a.keys == b.keys),
         ("timeline", a.timeline == b.timeline),
+        ("track start", a.track_start == b.track_start),
         ("camera", a.camera == b.camera),
         ("other camera", a.other_rig_camera == b.other_rig_camera),
         ("document", a == b),

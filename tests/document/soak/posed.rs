@@ -14,8 +14,7 @@ const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
     arm(session.arm(), session.pose())?;
-    let skeleton = session.skeleton_rig().skeleton_at(session.playback().time());
-    joints(&skeleton, session.skeleton_pose())?;
+    joints(session.posed().skeleton(), session.skeleton_pose())?;
     places(session)
 }
 

@@ -97,6 +97,8 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         iterations_per_frame,
         follow_paths,
         head_tracks: _,
+        is_tracked: _,
+        posture,
         skin,
     } = rig;
     let joints = skeleton.joints();
@@ -105,6 +107,12 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     for (index, joint) in joints.iter().enumerate() {
         self::joint(joint, index)?;
         hold!(names.insert(joint.name.as_str()), "no two joints are called {:?}", joint.name);
+    }
+    if let Some(posture) = posture {
+        let joints = posture.joints.keys().chain(posture.limbs.keys());
+        for joint in joints {
+            hold!(skeleton.joint(*joint).is_some(), "the posture is of the skeleton: {posture:?}");
+        }
     }
     let mut aimed = HashSet::new();
     for target in targets {

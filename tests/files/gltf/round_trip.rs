@@ -18,10 +18,10 @@ fn reopened(document: &Document) -> Opened {
 
 /// Bases of bones, and the arm's hand, in metres.
 fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
-    let document = document.at(time).into_document();
+    let posed = document.at(time);
     let named = match document.rig {
         RigKind::Skeleton => {
-            let skeleton = document.skeleton_rig.skeleton_at(time);
+            let skeleton = posed.skeleton();
             let pose = skeleton.pose();
             let joints = skeleton.joints().iter().enumerate();
             joints
@@ -29,7 +29,7 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
                 .collect()
         }
         RigKind::Arm => {
-            let rig = document.arm.rig(&document.arm.pose());
+            let rig = posed.arm().rig(posed.arm_pose());
             let parts =
                 [("upper", ArmPart::Root), ("lower", ArmPart::Elbow), ("hand", ArmPart::Hand)];
             parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()

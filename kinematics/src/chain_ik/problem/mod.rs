@@ -215,6 +215,11 @@ impl Problem {
         clamp_to_f32(offset).as_vec3()
     }
 
+    /// Shift of a tree that brings its root to an offset in skeleton space.
+    pub fn shift_to(&self, tree: usize, offset: Vec3) -> Vec3A {
+        ((offset.as_dvec3() - self.trees[tree].origin) * self.unit).as_vec3a()
+    }
+
     fn scaled(&self, v: Vec3) -> Vec3A {
         (v.as_dvec3() * self.unit).as_vec3a()
     }

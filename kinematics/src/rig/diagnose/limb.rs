@@ -171,7 +171,7 @@ impl RigCase<'_> {
     fn widened(&self, angles: &[Angle]) -> Option<Remedy> {
         let mut free = self.full.clone();
         remove_limits(free.skeleton_mut(), angles);
-        let pose = free.skeleton_at(self.time);
+        let pose = free.step(self.time, self.before).0.solved;
         widen_to_contain(&self.full.skeleton, &pose, angles)
     }
 

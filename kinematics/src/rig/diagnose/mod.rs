@@ -4,6 +4,7 @@ mod limb;
 
 use thiserror::Error;
 
+use super::carried::Carried;
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
@@ -16,11 +17,12 @@ impl SkeletonRig {
     /// The causes for which the tips are not at their enabled targets at a time in seconds, or
     /// hands not turned as these ask, the most likely first; empty if all are reached.
     ///
-    /// Every remedy was tried: its residual is that of [`SkeletonRig::evaluate`] after
-    /// [`SkeletonRig::apply_remedy`].
-    pub fn diagnose(&self, time: f64) -> Vec<Diagnosis> {
+    /// The pose is that of [`SkeletonRig::step`] from the state `before`. Every remedy was tried:
+    /// its residual is that of the step after [`SkeletonRig::apply_remedy`], or that of
+    /// [`SkeletonRig::evaluate`] where only this reaches all targets.
+    pub fn diagnose(&self, time: f64, before: &Carried) -> Vec<Diagnosis> {
         let all: Vec<usize> = (0..self.targets.len()).collect();
-        self.diagnose_targets(&all, time)
+        self.diagnose_targets(&all, time, before)
     }
 
     /// [`SkeletonRig::diagnose`] for the targets with these indices.
@@ -28,8 +30,13 @@ impl SkeletonRig {
     /// # Panics
     ///
     /// If there is no target with one of the indices.
-    pub fn diagnose_targets(&self, targets: &[usize], time: f64) -> Vec<Diagnosis> {
-        let evaluated = self.evaluate(time);
+    pub fn diagnose_targets(
+        &self,
+        targets: &[usize],
+        time: f64,
+        before: &Carried,
+    ) -> Vec<Diagnosis> {
+        let evaluated = self.step(time, before).0;
         let tolerance = self.tolerance();
         let is_missed = |index: &usize| self.is_missed(*index, &evaluated, tolerance);
         let mut missed: Vec<usize> = targets.iter().copied().filter(is_missed).collect();
@@ -41,7 +48,7 @@ impl SkeletonRig {
 
         let mut full = self.clone();
         missed.iter().for_each(|index| full.targets[*index].influence = 1.0);
-        let evaluated_full = full.evaluate(time);
+        let evaluated_full = full.step(time, before).0;
         let still_missed: Vec<usize> = missed
             .iter()
             .copied()
@@ -54,6 +61,7 @@ impl SkeletonRig {
                 rig: self,
                 full: &full,
                 time,
+                before,
                 tolerance,
                 target: &self.targets[index],
                 residual: evaluated.targets[index].error,
@@ -192,6 +200,7 @@ struct RigCase<'a> {
     /// The rig with full influence of all missed targets.
     pub full: &'a SkeletonRig,
     pub time: f64,
+    pub before: &'a Carried,
     pub tolerance: f32,
     pub target: &'a Target,
     pub residual: f32,
@@ -255,7 +264,12 @@ impl RigCase<'_> {
         let mut changed = rig.clone();
         changed.apply_remedy(remedy, self.time).ok()?;
         let index = changed.target(self.target.joint)?;
-        let TargetReport { error, rotation_error, .. } = changed.evaluate(self.time).targets[index];
+        let mut solved = changed.settle(self.time, self.before).0;
+        if !changed.has_reached_all(&solved) {
+            let afresh = changed.evaluate(self.time);
+            solved = if changed.has_reached_all(&afresh) { afresh } else { solved };
+        }
+        let TargetReport { error, rotation_error, .. } = solved.targets[index];
         Some(Left { distance: error, angle: rotation_error.unwrap_or_default() })
     }
 

@@ -4,7 +4,7 @@ use glam::{Affine3A, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm_kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy};
 use ik_arm_kinematics::rig::{
-    LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetPath, TargetSpace,
+    Carried, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetPath, TargetSpace,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
@@ -28,7 +28,7 @@ fn first_causes(
     for case in 0..CASES {
         let rig = rig(&mut random);
         let time = f64::from(random.within(0.0..3.0));
-        let found = rig.diagnose(time);
+        let found = rig.diagnose(time, &Carried::default());
         assert!(!found.is_empty(), "case {case} is reached");
         if !is_expected(&found[0]) {
             others.push((case, found[0].cause));
@@ -239,7 +239,7 @@ fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_
         let report = &rig.evaluate(0.0).targets[0];
         assert!(report.error <= rig.tolerance() && !rig.is_reached(report), "{case}: {report:?}");
 
-        let found = rig.diagnose(0.0);
+        let found = rig.diagnose(0.0, &Carried::default());
         let [Diagnosis { cause, joints, remedies, .. }] = &found[..] else { panic!("{found:?}") };
         let Cause::RotationLimits { missing, axes } = *cause else { panic!("{case}: {cause:?}") };
         assert!((missing - beyond).abs() < 1e-4, "{case}: {missing}, {beyond}");
@@ -255,7 +255,7 @@ fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_
         assert!(rig.is_reached(report), "{case}: {report:?}");
         let left = report.rotation_error.expect("a rotation");
         assert!((left - tried.rotation_residual).abs() < 1e-5, "{left} {tried:?}");
-        assert_eq!(rig.diagnose(0.0), []);
+        assert_eq!(rig.diagnose(0.0, &Carried::default()), []);
     }
 }
 
@@ -265,12 +265,13 @@ fn a_hand_within_its_limits_has_no_cause_and_one_that_is_out_of_reach_has_both()
     for case in 0..CASES {
         let axis = case % 3;
         let rig = turned_hand(&mut random, axis, 0.9 * HAND_LIMITS[axis]);
-        assert_eq!(rig.diagnose(0.0), [], "{case}");
+        assert_eq!(rig.diagnose(0.0, &Carried::default()), [], "{case}");
 
         let mut rig = turned_hand(&mut random, axis, HAND_LIMITS[axis] + 1.0);
         let away = rig.targets[0].home - rig.skeleton.base(UPPER);
         rig.targets[0].home += 10.0 * away;
-        let causes: Vec<_> = rig.diagnose(0.0).iter().map(|found| found.cause.name()).collect();
+        let causes: Vec<_> =
+            rig.diagnose(0.0, &Carried::default()).iter().map(|found| found.cause.name()).collect();
         assert_eq!(causes[0], "out_of_reach", "{case}");
     }
 }
@@ -319,11 +320,11 @@ fn targets_that_are_reached_or_disabled_have_no_cause() {
     let mut random = Random(4);
     for _ in 0..CASES {
         let mut rig = limb(&mut random, inside);
-        assert_eq!(rig.diagnose(0.0), []);
+        assert_eq!(rig.diagnose(0.0, &Carried::default()), []);
         rig.targets[0].home = Vec3::splat(1e3);
-        assert_ne!(rig.diagnose(0.0), []);
+        assert_ne!(rig.diagnose(0.0, &Carried::default()), []);
         rig.targets[0].enabled = false;
-        assert_eq!(rig.diagnose(0.0), []);
+        assert_eq!(rig.diagnose(0.0, &Carried::default()), []);
     }
 }
 
@@ -336,7 +337,8 @@ fn causes_of_several_targets_come_in_turn_the_farthest_target_first() {
         let target = Target::new(*tip, Vec3::X * distance, 1.0);
         rig.targets.push(Target { influence: 1.0, ..target });
     }
-    let targets: Vec<_> = rig.diagnose(0.0).iter().map(|found| found.target).collect();
+    let targets: Vec<_> =
+        rig.diagnose(0.0, &Carried::default()).iter().map(|found| found.target).collect();
     assert_eq!(targets, [tips[1], tips[2], tips[0]]);
 }
 
@@ -344,10 +346,10 @@ fn causes_of_several_targets_come_in_turn_the_farthest_target_first() {
 fn a_limb_out_of_reach_has_remedies_by_target_and_stretch() {
     let mut random = Random(2);
     let mut rig = limb(&mut random, |_, [upper, lower]| 2.0 * (upper + lower));
-    let found = &rig.diagnose(0.0)[0];
+    let found = &rig.diagnose(0.0, &Carried::default())[0];
     let Cause::OutOfReach { distance, longest, .. } = found.cause else { panic!("{found:?}") };
     assert!((distance / longest - 2.0).abs() < 1e-3);
     let stretch = found.remedies.iter().find(|it| matches!(it.remedy, Remedy::Stretch { .. }));
     rig.apply_remedy(&stretch.expect("stretch").remedy, 0.0).expect("a limb");
-    assert_eq!(rig.diagnose(0.0), []);
+    assert_eq!(rig.diagnose(0.0, &Carried::default()), []);
 }

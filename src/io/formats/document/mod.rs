@@ -9,6 +9,7 @@
 mod arm;
 mod follow_path;
 mod keys;
+mod posture;
 mod skeleton;
 mod skin;
 mod targets;
@@ -21,8 +22,8 @@ use serde::{Deserialize, Serialize};
 use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig, Skin};
 use crate::io::error::{OpenError, SaveError};
 use crate::io::json::{
-    Above0, AtField, FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPoint, Whole,
-    to_styled_json, value_or,
+    Above0, AtField, FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPath, JsonPoint,
+    JsonSeconds, Whole, to_styled_json, value_or,
 };
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
@@ -32,6 +33,7 @@ use arm::ArmFields;
 use follow_path::FollowPathList;
 pub use keys::KeyFields;
 use keys::{ChannelFields, TimelineFields, keys};
+use posture::PostureFields;
 use skeleton::SkeletonFields;
 use skin::SkinFields;
 use targets::{SolverFields, TargetFields, add_targets};
@@ -111,8 +113,10 @@ fn with_relative_skin(document: &Document, folder: &Path) -> Document {
 }
 
 const FORMAT: &str = "ik-arm";
-/// The version of files.
-const VERSION: u32 = 2;
+/// The version of files that are written.
+const VERSION: u32 = 3;
+/// The earliest version of files that are read.
+const EARLIEST: u32 = 2;
 
 /// The first two fields: the name of the format and its version.
 #[derive(Deserialize)]
@@ -128,11 +132,15 @@ impl Header {
             return Err(format!("must be {FORMAT:?}, got {:?}", self.format)).at("format");
         }
         let reason = match self.version.0 {
-            VERSION => return Ok(()),
+            EARLIEST..=VERSION => return Ok(()),
             version if version > VERSION => {
-                format!("must be {VERSION}, got {version}, which needs a newer ik-arm")
+                format!("must be at most {VERSION}, got {version}, which needs a newer ik-arm")
             }
-            version => format!("must be {VERSION}, the version that is read, got {version}"),
+            version => {
+                format!(
+                    "must be {EARLIEST} or {VERSION}, the versions that are read, got {version}"
+                )
+            }
         };
         Err(reason).at("version")
     }
@@ -149,6 +157,10 @@ struct DocumentFields {
     skin: Option<JsonObject<SkinFields>>,
     targets: Option<Vec<JsonObject<TargetFields>>>,
     solver: Option<JsonObject<SolverFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    posture: Option<JsonObject<PostureFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    track_start: Option<JsonSeconds>,
     follow_path: Option<FollowPathList>,
     #[serde(skip_serializing_if = "Option::is_none")]
     channels: Option<Vec<JsonObject<ChannelFields>>>,
@@ -165,7 +177,9 @@ struct DocumentFields {
 
 impl DocumentFields {
     fn new(document: &Document) -> Self {
-        let SkeletonRig { skeleton, skin, targets, follow_paths, .. } = &document.skeleton_rig;
+        let SkeletonRig { skeleton, skin, targets, follow_paths, posture, .. } =
+            &document.skeleton_rig;
+        let posture = posture.as_ref().map(|posture| PostureFields::new(posture));
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
             format: FORMAT.to_owned(),
@@ -176,6 +190,8 @@ impl DocumentFields {
             skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
             targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
             solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
+            posture: posture.map(JsonObject),
+            track_start: document.track_start.map(JsonSeconds::from),
             follow_path: Some(FollowPathList::new(follow_paths)),
             channels,
             timeline: Some(JsonObject(TimelineFields::new(document.timeline))),
@@ -200,6 +216,10 @@ impl DocumentFields {
         if let Some(JsonObject(fields)) = self.solver {
             fields.set(&mut rig).at("solver")?;
         }
+        if let Some(JsonObject(fields)) = self.posture {
+            let posture = fields.posture(rig.skeleton.joints().len()).at("posture")?;
+            rig.posture = (!posture.is_empty()).then(|| posture.into());
+        }
         if let Some(paths) = self.follow_path {
             paths.add_to(&mut rig).at("follow_path")?;
         }
@@ -213,6 +233,7 @@ impl DocumentFields {
             skeleton_rig: rig,
             keys: Keys::default(),
             timeline: timeline.transpose()?.unwrap_or_default(),
+            track_start: self.track_start.map(f64::from),
             camera: camera(self.camera, "camera")?.unwrap_or_default(),
             other_rig_camera: camera(self.other_camera, "other_camera")?,
             display: self.overlays.map(FromIterator::from_iter).unwrap_or_default(),
@@ -220,6 +241,12 @@ impl DocumentFields {
             animation_name: self.animation_name,
         };
         document.keys = keys(self.channels.unwrap_or_default(), &document).at("channels")?;
+        if self.version == Whole(2) && document.is_tracked() && document.is_animated() {
+            let remark = "is 2: a figure now moves from frame to frame, so that it may be posed \
+                          otherwise than before; `track: false` of the solver poses each frame by \
+                          itself";
+            warnings.push(JsonPath::root().key("version"), remark);
+        }
         Ok(document)
     }
 }

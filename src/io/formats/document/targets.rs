@@ -57,6 +57,7 @@ enum ElbowReferenceName {
     Up,
     Pole,
     Stereographic,
+    Transport,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -82,6 +83,8 @@ pub struct SolverFields {
     step: Option<Above0>,
     root: Option<Root>,
     iterations_per_frame: Option<Whole>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    track: Option<bool>,
 }
 
 /// Adds the targets of a file to a rig, which must have its skeleton already.
@@ -149,6 +152,7 @@ impl LimbFields {
             ElbowReference::Up => (ElbowReferenceName::Up, None),
             ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(pole.into())),
             ElbowReference::Stereographic(_) => (ElbowReferenceName::Stereographic, None),
+            ElbowReference::Transport => (ElbowReferenceName::Transport, None),
         };
         Self {
             reference: Some(reference),
@@ -162,6 +166,7 @@ impl LimbFields {
 
     fn settings(self, joints: usize) -> Result<LimbSettings, FieldError> {
         let reference = match (self.reference.unwrap_or_default(), self.pole) {
+            (ElbowReferenceName::Transport, _) => ElbowReference::Transport,
             (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
             (ElbowReferenceName::Up, _) => ElbowReference::Up,
             (ElbowReferenceName::Pole, Some(JsonPoint(pole))) => ElbowReference::Pole(pole),
@@ -235,6 +240,7 @@ impl SolverFields {
             step: Some(solver.step.into()),
             root: Some(solver.root),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
+            track: (!rig.is_tracked).then_some(false),
         }
     }
 
@@ -253,6 +259,7 @@ impl SolverFields {
             step: value_or(self.step, default.step),
             root: self.root.unwrap_or(default.root),
         };
+        rig.is_tracked = self.track.unwrap_or(true);
         rig.iterations_per_frame = value_or(self.iterations_per_frame, rig.iterations_per_frame);
         let count = rig.iterations_per_frame;
         if (1..=MOST).contains(&count) {

@@ -46,10 +46,30 @@ impl Editing {
         if !self.is_editing() {
             after.skeleton_rig.refresh_skin();
         }
+        self.update_posture(&mut after, change);
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
         Some(outcome)
+    }
+
+    /// Sets the posture of an edited document, so that its motion continues from the present one,
+    /// and the time at which the motion begins.
+    fn update_posture(&mut self, after: &mut Document, change: TreeChange) {
+        let is_reset = std::mem::take(&mut self.resets_posture);
+        let is_drag = self.is_editing();
+        let is_same_tree = change == TreeChange::Kept
+            && after.skeleton().joints().len() == self.document.skeleton().joints().len();
+        after.skeleton_rig.posture = if is_reset || !is_same_tree {
+            None
+        } else {
+            self.track.posture_after(after, !is_drag)
+        };
+        if after.track_start.is_none() && after.is_tracked() {
+            let began = self.document.is_tracked();
+            let of = if began { &self.document } else { &*after };
+            after.track_start = Some(of.motion_start());
+        }
     }
 
     /// Adapts the open transaction to a change of the document. The drag ends if joints were added,

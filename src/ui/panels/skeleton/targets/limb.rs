@@ -87,6 +87,11 @@ fn reference(
         (ElbowReference::Up, "Up", "Measure from up"),
         (pole, "Pole", "Measure from the direction to a point"),
         (map, "Stereographic", "Measure from a stereographic map"),
+        (
+            ElbowReference::Transport,
+            "Transport",
+            "Carry the direction along the motion: no direction of the target is singular",
+        ),
     ];
     let is_now =
         |reference: &ElbowReference| discriminant(reference) == discriminant(&settings.reference);

@@ -1,0 +1,288 @@
+use std::collections::BTreeMap;
+
+use glam::{DQuat, Vec3};
+
+use crate::Shared;
+use crate::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget, TrackStep};
+use crate::limb_ik::CarriedLimb;
+use crate::skeleton::{JointId, JointRemap, Skeleton};
+
+/// What a step of a motion leaves to the next one, so that small motions of targets and FK poses
+/// give small motions of joints: the configuration of the whole-body targets' solver, and how limbs
+/// bend. It is about the poses before influences and, for whole-body targets, before limbs.
+///
+/// The default continues from nothing: the step solves from its FK pose, with restarts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// The posture with which the first step begins; `None` after it.
+    posture: Option<Shared<Posture>>,
+    /// One for each influence of whole-body targets, the greatest first.
+    bodies: Vec<Body>,
+    /// By the joint of a limb's target.
+    limbs: BTreeMap<JointId, CarriedLimb>,
+}
+
+/// The configuration with which a motion begins, as a document keeps it: the state before its first
+/// step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Posture {
+    /// Joints that whole-body targets turn.
+    pub joints: BTreeMap<JointId, PosturedJoint>,
+    /// [`CarriedLimb::to_vectors`] by the joint of a limb's target.
+    pub limbs: BTreeMap<JointId, [Vec3; 4]>,
+}
+
+/// Angles and place of a joint in a [`Posture`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PosturedJoint {
+    /// Euler angles in radians, as in [`Joint::rotation`](crate::skeleton::Joint::rotation); `None`
+    /// for a joint that solvers move but do not turn.
+    pub rotation: Option<Vec3>,
+    /// Offset from the parent's base, for a root that solvers may move; `None` for other joints.
+    pub offset: Option<Vec3>,
+}
+
+impl Posture {
+    /// True if it poses nothing.
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty() && self.limbs.is_empty()
+    }
+
+    /// The same posture after joints were renumbered, without those that were removed.
+    #[must_use]
+    pub fn remapped(&self, remap: &JointRemap) -> Self {
+        fn by<T: Copy>(map: &BTreeMap<JointId, T>, remap: &JointRemap) -> BTreeMap<JointId, T> {
+            map.iter().filter_map(|(joint, of)| Some((remap.get(*joint)?, *of))).collect()
+        }
+        Self { joints: by(&self.joints, remap), limbs: by(&self.limbs, remap) }
+    }
+
+    /// A pose with the joints of the posture.
+    fn posed(&self, pose: &Skeleton) -> Skeleton {
+        let mut posed = pose.clone();
+        for (joint, of) in &self.joints {
+            posed.write_local(*joint, |joint| {
+                joint.rotation = of.rotation.unwrap_or(joint.rotation);
+                joint.offset = of.offset.unwrap_or(joint.offset);
+            });
+        }
+        posed
+    }
+}
+
+/// A whole-body target of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyTarget {
+    pub tip: TipTarget,
+    pub influence: f32,
+}
+
+/// Whole-body targets that are solved together.
+#[derive(Clone, Debug, PartialEq)]
+struct Body {
+    solver: ChainSolver,
+    step: Option<TrackStep>,
+    /// By joint, the rotations by which the pose is blended in.
+    turns: Vec<Option<DQuat>>,
+}
+
+impl Carried {
+    /// The state before the first step of a motion that begins with a posture.
+    pub fn from_posture(posture: &Shared<Posture>) -> Self {
+        let limbs = &posture.limbs;
+        let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_vectors(*it)));
+        Self { posture: Some(posture.clone()), bodies: Vec::new(), limbs: limbs.collect() }
+    }
+
+    /// The posture with which a motion continues from here.
+    pub fn to_posture(&self) -> Posture {
+        let joints = self.bodies.last().map(Body::joints).unwrap_or_default();
+        let limbs = self.limbs.iter();
+        let limbs = limbs.filter_map(|(joint, limb)| Some((*joint, limb.to_vectors()?)));
+        Posture { joints, limbs: limbs.collect() }
+    }
+
+    /// True if a target was too far away to be reached in the last step, so that a further step
+    /// comes nearer to it, even if nothing else moves.
+    pub fn is_held_back(&self) -> bool {
+        self.steps().any(|step| step.is_held_back)
+    }
+
+    /// True if a target or the FK pose had jumped in the last step.
+    pub fn has_jumped(&self) -> bool {
+        self.steps().any(|step| step.has_jumped)
+    }
+
+    /// About the work of the last step, in the unit of [`ChainSolver::bounded`].
+    pub fn work(&self) -> u64 {
+        self.bodies.iter().map(|body| body.solver.work()).sum()
+    }
+
+    fn steps(&self) -> impl Iterator<Item = &TrackStep> {
+        self.bodies.iter().filter_map(|body| body.step.as_ref())
+    }
+
+    pub(super) fn forget_body(&mut self) {
+        self.bodies.clear();
+        self.posture = None;
+    }
+
+    pub(super) fn retain_limbs(&mut self, is_posing: impl Fn(JointId) -> bool) {
+        self.limbs.retain(|joint, _| is_posing(*joint));
+    }
+
+    pub(super) fn limb(&mut self, joint: JointId) -> &mut CarriedLimb {
+        self.limbs.entry(joint).or_default()
+    }
+
+    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one. Returns the
+    /// report of the solve for all of them.
+    ///
+    /// # Errors
+    ///
+    /// The error of a solver; the pose is unchanged.
+    pub(super) fn step_body(
+        &mut self,
+        options: &SolverOptions,
+        pose: &mut Shared<Skeleton>,
+        targets: &[BodyTarget],
+    ) -> Result<Report, SolveError> {
+        let mut influences: Vec<f32> = targets.iter().map(|target| target.influence).collect();
+        influences.sort_unstable_by(|one, other| other.total_cmp(one));
+        influences.dedup();
+        let mut before = Before {
+            bodies: std::mem::take(&mut self.bodies).into_iter().map(Some).collect(),
+            posture: self.posture.take().filter(|posture| !posture.joints.is_empty()),
+            work: ChainSolver::POSE_WORK / influences.len() as u64,
+        };
+        let last = influences.len() - 1;
+        let body = |(index, least): (usize, &f32)| {
+            let tips = targets.iter().filter(|target| target.influence >= *least);
+            let tips: Vec<TipTarget> = tips.map(|target| target.tip).collect();
+            before.step(options, pose, &tips, index == last)
+        };
+        self.bodies = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+        let report = self.bodies[last].solver.report();
+        let poses: Vec<Skeleton> = self.bodies.iter().map(|body| body.posed(pose)).collect();
+        blend(pose, poses, &influences, &mut self.bodies);
+        Ok(report)
+    }
+}
+
+/// The bodies of the step before.
+struct Before {
+    bodies: Vec<Option<Body>>,
+    posture: Option<Shared<Posture>>,
+    /// Most work of a body.
+    work: u64,
+}
+
+impl Before {
+    /// The next step of the body with these targets: the one before, if there was one.
+    fn step(
+        &mut self,
+        options: &SolverOptions,
+        fk: &Skeleton,
+        tips: &[TipTarget],
+        has_all_targets: bool,
+    ) -> Result<Body, SolveError> {
+        let is_same = |body: &Option<Body>| {
+            let solver = body.as_ref().map(|body| &body.solver);
+            solver.is_some_and(|it| {
+                it.options() == options
+                    && it.target_joints().eq(tips.iter().map(|target| target.joint))
+            })
+        };
+        let same = self.bodies.iter_mut().find(|it| is_same(it));
+        if let Some(mut body) = same.and_then(Option::take) {
+            if let Ok(step) = body.solver.track(tips, fk) {
+                body.step = Some(step);
+                return Ok(body);
+            }
+            self.bodies.push(Some(body));
+        }
+        self.begin(options, fk, tips, has_all_targets)
+    }
+
+    /// A body that begins with this step, with the angles that its joints had in another body.
+    fn begin(
+        &self,
+        options: &SolverOptions,
+        fk: &Skeleton,
+        tips: &[TipTarget],
+        has_all_targets: bool,
+    ) -> Result<Body, SolveError> {
+        let mut solver = ChainSolver::bounded(fk, tips, options, self.work)?;
+        match &self.posture {
+            Some(posture) if has_all_targets => solver.rest_at(&posture.posed(fk)),
+            Some(posture) => solver.begin_from(&posture.posed(fk)),
+            None => {
+                let common = |body: &&Body| {
+                    let joints = body.solver.target_joints();
+                    joints.filter(|joint| tips.iter().any(|tip| tip.joint == *joint)).count()
+                };
+                if let Some(nearest) = self.bodies.iter().flatten().max_by_key(common) {
+                    solver.begin_from(&nearest.posed(fk));
+                }
+            }
+        }
+        if self.posture.is_none() || !has_all_targets {
+            solver.run();
+        }
+        Ok(Body { solver, step: None, turns: vec![None; fk.joints().len()] })
+    }
+}
+
+impl Body {
+    /// The FK pose with the joints that the solver turns as it has solved them.
+    fn posed(&self, fk: &Skeleton) -> Skeleton {
+        let mut pose = fk.clone();
+        self.solver.write(&mut pose);
+        pose
+    }
+
+    fn joints(&self) -> BTreeMap<JointId, PosturedJoint> {
+        let mut joints: BTreeMap<JointId, PosturedJoint> = BTreeMap::new();
+        for (joint, rotation) in self.solver.angles() {
+            joints.entry(joint).or_default().rotation = Some(rotation);
+        }
+        for (joint, offset) in self.solver.offsets() {
+            joints.entry(joint).or_default().offset = Some(offset);
+        }
+        joints
+    }
+}
+
+/// Blends the FK pose `pose` with the poses of bodies, the greatest influence first.
+fn blend(
+    pose: &mut Shared<Skeleton>,
+    mut poses: Vec<Skeleton>,
+    influences: &[f32],
+    bodies: &mut [Body],
+) {
+    let Some(mut full) = poses.pop() else { return };
+    for index in (0..influences.len()).rev() {
+        let turns = &mut bodies[index].turns;
+        if let Some(mut below) = poses.pop() {
+            let fraction = influences[index] / influences[index - 1];
+            turn_towards(&mut below, &full, fraction, turns);
+            full = below;
+        } else {
+            turn_towards(pose.make_mut(), &full, influences[index], turns);
+        }
+    }
+}
+
+/// Turns the joints of a pose towards those of `full`.
+fn turn_towards(pose: &mut Skeleton, full: &Skeleton, fraction: f32, turns: &mut [Option<DQuat>]) {
+    for ((joint, after), turn) in full.iter().zip(turns) {
+        let before = &pose[joint];
+        if before.rotation == after.rotation && before.offset == after.offset {
+            *turn = None;
+            continue;
+        }
+        let rotation = before.angles_towards(after.rotation, fraction, turn);
+        let offset = before.offset.lerp(after.offset, fraction);
+        pose.write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
+    }
+}
