@@ -20,7 +20,7 @@
 //! | `export` | files for other programs: motion, tables, meshes, pictures | `app` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
 //! | `app` | window, surface and frame loop (winit) | `app` |
-//! | `cli` | commands: solve, pose, render, export, bake, skin, examples, tour, gui | `app` |
+//! | `cli` | commands: solve, pose, check, render, export, bake, skin, examples, tour, gui | `app` |
 //!
 //! # One frame
 //!

@@ -3,7 +3,7 @@
 use crate::kinematics::chain_ik::Root;
 use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
-use crate::rig::SkeletonRig;
+use crate::rig::{RigPop, RigPopCause, SkeletonRig};
 
 /// The cause of a diagnosis, such as "The limits of elbow keep hand away from its target". A limb's
 /// target is named after its hand.
@@ -95,6 +95,52 @@ pub fn cause_with(found: &Diagnosis, names: Names<'_>) -> String {
             format!("{target} is only {percent} % of the way from its FK pose to its target")
         }
     }
+}
+
+/// The cause of a pop, such as "elbow jumps: its limit is met".
+pub fn pop(rig: &SkeletonRig, pop: &RigPop) -> String {
+    with_names(rig, |names| {
+        let (joint, tip) = ((names.joint)(pop.joint), (names.tip)(pop.target));
+        let why = match pop.cause {
+            RigPopCause::TargetJump => format!("the target of {tip} jumps"),
+            RigPopCause::FkJump => "the joint angles jump".to_owned(),
+            RigPopCause::Switched => format!("the target of {tip} begins or ends to pose it"),
+            RigPopCause::Lost => format!("{tip} loses its target"),
+            RigPopCause::Found => format!("{tip} catches up with its target"),
+            RigPopCause::ByItself => {
+                "each frame is solved by itself, and neighbouring frames find other poses"
+                    .to_owned()
+            }
+            RigPopCause::LimitMet => "a joint of the chain meets its limit".to_owned(),
+            RigPopCause::LimitLeft => "a joint of the chain leaves its limit".to_owned(),
+            RigPopCause::Straight => format!("the bones to {tip} are nearly straight"),
+            RigPopCause::Folded => format!("{tip} is near the base of its chain"),
+            RigPopCause::Singular => {
+                "the elbow's reference is near a direction in which it flips".to_owned()
+            }
+            RigPopCause::StraightFk => {
+                "the joint angles pose the limb straight and give the elbow no side".to_owned()
+            }
+            RigPopCause::TurnsOver => {
+                format!("bones are in line with the way of {tip}, and the solver turns them over")
+            }
+            RigPopCause::Returns => "it swings back towards its joint angles".to_owned(),
+            RigPopCause::AtLimit => {
+                "other joints of the chain are at their limits, and it makes up for them".to_owned()
+            }
+            RigPopCause::Seam => "the motion begins again in another pose".to_owned(),
+            RigPopCause::Unknown => "no cause was found".to_owned(),
+        };
+        format!("{joint} moves {} times as far as its target: {why}", significant(pop.ratio))
+    })
+}
+
+/// A lost target, such as "hand misses its target by 0.2, which it can reach from another pose".
+pub fn lost(rig: &SkeletonRig, target: JointId, miss: f32) -> String {
+    with_names(rig, |names| {
+        let (tip, miss) = ((names.tip)(target), significant(miss));
+        format!("{tip} misses its target by {miss}, but reaches it from another pose")
+    })
 }
 
 fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {

@@ -14,7 +14,8 @@ use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinSource};
 use crate::scene::Scene;
 use crate::session::{
-    Action, BakeJob, Export, ExportJob, FileAction, Overlays, PathDialog, ShellAction,
+    Action, BakeJob, Export, ExportJob, FileAction, InspectAction, InspectionJob, Overlays,
+    PathDialog, ShellAction,
 };
 
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
@@ -59,6 +60,17 @@ pub(super) fn bake(
         send(&proxy, UserEvent::Baked(job, result));
     });
     started
+}
+
+/// Starts an inspection of the motion.
+pub(super) fn inspect(job: InspectionJob, proxy: EventLoopProxy<UserEvent>) {
+    thread::spawn(move || {
+        // After a panic, what is known of the motion stays unknown.
+        match std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| job.run())) {
+            Ok(ended) => send(&proxy, UserEvent::Inspected(Box::new(ended))),
+            Err(_) => log::error!("the inspection of a motion panicked"),
+        }
+    });
 }
 
 /// Starts an export; the window shows its progress.
@@ -222,6 +234,8 @@ pub enum UserEvent {
     Report(Result<String, String>),
     /// Result or error of a finished bake.
     Baked(BakeJob, Result<Box<Baked>, String>),
+    /// End of an inspection of the motion.
+    Inspected(Box<InspectAction>),
     /// Message or error of a finished export.
     Exported(Result<String, String>),
     /// The backup of unsaved changes was written.

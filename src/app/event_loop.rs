@@ -246,6 +246,9 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Baked(job, result) => {
                 self.session.apply(BakeAction::Ended(job, result));
             }
+            UserEvent::Inspected(ended) => {
+                self.session.apply(*ended);
+            }
             UserEvent::Exported(result) => {
                 self.session.apply(FileAction::ExportEnded(result));
             }

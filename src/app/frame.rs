@@ -3,14 +3,14 @@ use std::time::{Duration, Instant};
 use egui::{FullOutput, RawInput, Rect, ViewportId};
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 
-use super::background::UserEvent;
+use super::background::{self, UserEvent};
 use super::dynamic_resolution::lap_timer;
 use super::error::GraphicsError;
 use super::graphics::{Graphics, guarded};
 use super::present::Presented;
 use super::window::{AppWindow, Repaint};
 use crate::scene::Scene;
-use crate::session::{Actions, Effect, Session};
+use crate::session::{Actions, Effect, InspectAction, Session};
 use crate::ui::{self, FrameTime, style};
 
 /// Time between frames while only counts of earlier frames are missing.
@@ -38,6 +38,10 @@ impl AppWindow {
         if self.ends || effects.into_iter().any(|effect| self.carry_out(effect, session, proxy)) {
             output.textures_delta.clear();
             return Repaint::Quit;
+        }
+        if let Some(job) = session.next_inspection() {
+            session.apply(InspectAction::Started(job.clone()));
+            background::inspect(job, proxy.clone());
         }
         self.update_title(session);
         let platform = std::mem::take(&mut output.platform_output);

@@ -2,6 +2,7 @@
 
 mod argument;
 mod bake;
+mod check;
 mod convert;
 mod examples;
 mod export;
@@ -24,6 +25,7 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 use clap_complete::Shell;
 
 use bake::BakeArgs;
+use check::CheckArgs;
 use convert::ConvertArgs;
 use examples::ExamplesArgs;
 use export::ExportArgs;
@@ -52,6 +54,8 @@ enum Command {
     Solve(SolveArgs),
     /// Print the pose of a file's skeleton as JSON: by its targets, by FK or by a solver
     Pose(PoseArgs),
+    /// Check a skeleton's motion for jumps, lost targets and sliding feet: one line of JSON
+    Check(CheckArgs),
     /// Draw the arm, a file or a crowd to a PNG, without a window
     Render(RenderArgs),
     #[command(about = export::about())]
@@ -98,6 +102,7 @@ pub fn run() -> ExitCode {
             return solve::run(&args).unwrap_or_else(|error| error.exit());
         }
         Some(Command::Pose(args)) => pose::run(&args),
+        Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),

@@ -45,6 +45,12 @@ pub enum CommandError {
     SkinOfArm(String),
     #[error("{0} shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms")]
     PoseOfArm(String),
+    #[error("{0} shows the arm; check needs a skeleton")]
+    CheckOfArm(String),
+    #[error("{0}: the check was cancelled")]
+    Stopped(String),
+    #[error("{file}: {faults}")]
+    Faults { file: String, faults: String },
     #[error("{file}: the position of joint {name:?} must be within ±3.4028235e38")]
     Overflow { file: String, name: String },
     #[error(
@@ -81,7 +87,7 @@ impl CommandError {
             _ => say(self),
         }
         match self {
-            Self::Cancelled { .. } => ExitCode::from(INTERRUPTED),
+            Self::Cancelled { .. } | Self::Stopped(_) => ExitCode::from(INTERRUPTED),
             Self::Usage(_) => ExitCode::from(USAGE),
             _ => ExitCode::FAILURE,
         }

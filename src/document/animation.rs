@@ -41,6 +41,12 @@ impl Document {
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }
 
+    /// True if the skeleton moves, and targets pose it at some time.
+    pub fn is_posed_over_time(&self) -> bool {
+        let targets = &self.skeleton_rig.targets;
+        self.is_animated() && targets.iter().any(|target| self.can_pose(target))
+    }
+
     /// True if poses of the skeleton depend on the ones before them: see
     /// [`SkeletonRig::is_carried`].
     pub fn is_tracked(&self) -> bool {

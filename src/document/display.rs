@@ -54,6 +54,9 @@ pub enum Overlay {
     Frames,
     /// The skeleton's FK pose, beside the pose that the targets give it.
     FkPose,
+    /// The skeleton as this frame alone would pose it, beside the pose to which its motion has
+    /// come.
+    ByItself,
     /// The skin of a skeleton that has one.
     Skin,
     /// The bones of a skeleton with a skin, through the skin. Without it, the bones are hidden
@@ -90,6 +93,7 @@ impl Overlay {
             Self::Hand => "hand",
             Self::Frames => "frames",
             Self::FkPose => "fk_pose",
+            Self::ByItself => "by_itself",
             Self::Skin => "skin",
             Self::Bones => "bones",
             Self::Wireframe => "wireframe",
@@ -118,8 +122,9 @@ impl Overlay {
         [Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Overlays of the skeleton alone.
-    pub const SKELETON: [Self; 6] = [
+    pub const SKELETON: [Self; 7] = [
         Self::FkPose,
+        Self::ByItself,
         Self::Skin,
         Self::Bones,
         Self::Wireframe,

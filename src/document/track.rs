@@ -38,6 +38,7 @@ pub struct Posed {
     motion: Arc<Motion>,
     arm: OnceCell<SolvedArm>,
     skeleton: OnceCell<EvaluatedSkeleton>,
+    by_itself: OnceCell<Shared<Skeleton>>,
 }
 
 /// The arm's IK solution, and its blend with FK.
@@ -91,7 +92,23 @@ impl Track {
     #[must_use]
     pub fn pose(&self, document: Document, time: f64) -> Posed {
         let motion = self.motion.clone();
-        Posed { document, time, motion, arm: OnceCell::new(), skeleton: OnceCell::new() }
+        Posed {
+            document,
+            time,
+            motion,
+            arm: OnceCell::new(),
+            skeleton: OnceCell::new(),
+            by_itself: OnceCell::new(),
+        }
+    }
+
+    /// The document posed at a time in seconds as if it were the only one: solved from the FK pose.
+    #[must_use]
+    pub fn by_itself(&self, time: f64) -> Posed {
+        let mut document = self.document().clone();
+        document.apply_keys(time);
+        document.skeleton_rig.is_tracked = false;
+        self.pose(document, time)
     }
 
     /// The posture with which an edited document begins, so that its motion continues from the
@@ -206,14 +223,22 @@ impl Posed {
     /// The skeleton posed by FK and by its targets, with a report for each target.
     pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
         self.skeleton.get_or_init(|| {
-            let before = self.carried().unwrap_or_default();
-            self.document.skeleton_rig.step(self.time, &before).0
+            let rig = &self.document.skeleton_rig;
+            match self.carried() {
+                Some(before) => rig.step(self.time, &before).0,
+                None => rig.evaluate(self.time),
+            }
         })
     }
 
     /// The state from which the skeleton's pose continues; `None` if it continues from none.
     pub fn carried(&self) -> Option<Arc<Carried>> {
         self.motion.state_before(self.time).filter(|_| self.document.skeleton_rig.is_tracked)
+    }
+
+    /// The skeleton as its rig at this time alone would pose it: solved from the FK pose.
+    pub fn skeleton_by_itself(&self) -> &Shared<Skeleton> {
+        self.by_itself.get_or_init(|| self.document.skeleton_rig.skeleton_at(self.time))
     }
 
     /// Work of the skeleton's pose, in the unit of [`ChainSolver::bounded`]; 0 until it is read.

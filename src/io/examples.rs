@@ -59,7 +59,7 @@ pub fn new_document() -> Document {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 32] = examples! {
+    pub const ALL: [Self; 33] = examples! {
         Basics in "" {
             "arm", "Arm" => "The arm of the paper, two limbs in closed form.";
             "two-targets", "Two targets on a Y" =>
@@ -82,6 +82,9 @@ impl Example {
                  on Follow the mouse.";
             "ten-joints", "Ten-joint chain" =>
                 "A chain with one target, to watch the solvers at work.";
+            "jumping-chain", "Jumping chain" =>
+                "A chain that follows its target smoothly, and as a thin figure what each frame \
+                 would do by itself: it jumps; press Space to play.";
             "keyframes", "Keyframes" =>
                 "An arm whose hand goes along a spline through six keys; press Space to play.";
             "degenerate", "Degenerate cases" =>

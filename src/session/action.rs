@@ -2,6 +2,7 @@ use crate::session::arm::edits::ArmEdit;
 use crate::session::display::DisplayEdit;
 use crate::session::files::action::FileAction;
 use crate::session::history::transaction::TransactionAction;
+use crate::session::inspections::InspectAction;
 use crate::session::keys::{BakeAction, KeysEdit};
 use crate::session::outcome::Outcome;
 use crate::session::playback::PlaybackAction;
@@ -35,6 +36,8 @@ pub enum Action {
     Solver(SolverAction),
     /// Bakes on a thread of their own.
     Bake(BakeAction),
+    /// Starts and ends inspections of the motion.
+    Inspect(InspectAction),
     /// Opens, saves and exports.
     File(FileAction),
     /// Changes dialogs, messages or preferences.
@@ -61,6 +64,7 @@ from_payload! {
     Playback(PlaybackAction),
     Solver(SolverAction),
     Bake(BakeAction),
+    Inspect(InspectAction),
     File(FileAction),
     Shell(ShellAction),
     Tour(TourAction),

@@ -99,6 +99,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Trail => "Toggle motion trail",
         Overlay::OnionSkins => "Toggle onion skins",
         Overlay::FkPose => "Toggle FK pose",
+        Overlay::ByItself => "Toggle frame by itself",
         Overlay::Skin => "Toggle skin",
         Overlay::Bones => "Toggle bones",
         Overlay::Wireframe => "Toggle wireframe",

@@ -106,6 +106,10 @@ impl Evaluated {
         self.transport_path.advance(posed.arm());
         self.pops.record(posed, cause);
         posed.skeleton().write_pose(&mut self.skeleton_pose);
+        if posed.document().display.shows(Overlay::ByItself) {
+            // Solved here, since drawing takes no memory.
+            posed.skeleton_by_itself();
+        }
         self.posed_skin.clear();
         self.why.clear();
     }

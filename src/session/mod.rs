@@ -10,6 +10,7 @@ mod drag;
 mod evaluated;
 mod files;
 mod history;
+mod inspections;
 mod keys;
 mod outcome;
 mod overlays;
@@ -42,6 +43,7 @@ pub use files::action::{Export, ExportJob, FileAction, FileContents, PathDialog}
 pub use files::files::Files;
 pub use history::editing::Editing;
 pub use history::transaction::TransactionAction;
+pub use inspections::{InspectAction, InspectionJob};
 pub use keys::BakeAction;
 pub use keys::KeysEdit;
 pub use outcome::Effect;

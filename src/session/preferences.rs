@@ -174,7 +174,7 @@ pub enum PanelTab {
     Twist,
     /// The distances that the hand can have.
     Reach,
-    /// The jumps of the elbow, their causes and their fixes.
+    /// The jumps of the elbow, or of a figure's joints, their causes and their fixes.
     Pops,
     /// The solver: for a skeleton its settings and iterations, for an arm why there are none.
     Solver,
@@ -186,7 +186,7 @@ pub enum PanelTab {
 
 impl PanelTab {
     const ARM: [Self; 5] = [Self::Triangle, Self::Twist, Self::Reach, Self::Pops, Self::Solver];
-    const SKELETON: [Self; 3] = [Self::Solver, Self::Race, Self::Skin];
+    const SKELETON: [Self; 4] = [Self::Solver, Self::Race, Self::Pops, Self::Skin];
 
     /// The tabs for a rig, in the order of the panel.
     pub fn of(rig: RigKind) -> &'static [Self] {

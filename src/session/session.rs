@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use super::evaluated::Evaluated;
 use super::files::files::Files;
 use super::history::editing::Editing;
+use super::inspections::{InspectionJob, Inspections};
 use super::playback::Playback;
 use super::preferences::Preferences;
 use super::selection::Selection;
@@ -10,7 +11,7 @@ use super::shell::Shell;
 use super::solver::solvers::Solvers;
 use super::tour::state::TourState;
 use super::view::View;
-use crate::document::{Arm, Camera, Document, Posed, RigKind, SkeletonRig};
+use crate::document::{Arm, Camera, Document, Inspection, Posed, RigKind, SkeletonRig};
 use crate::io;
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::kinematics::two_bone::TwoBonePose;
@@ -49,6 +50,7 @@ pub struct Session {
     selection: Selection,
     playback: Playback,
     solvers: Solvers,
+    inspections: Inspections,
     view: View,
     files: Files,
     shell: Shell,
@@ -81,6 +83,7 @@ impl Session {
             selection: Selection::default(),
             playback: Playback::default(),
             solvers: Solvers::default(),
+            inspections: Inspections::default(),
             view: View::default(),
             files: Files::default(),
             shell: Shell::default(),
@@ -116,6 +119,18 @@ impl Session {
     /// The solver run or the comparison of solvers.
     pub fn solvers(&self) -> &Solvers {
         &self.solvers
+    }
+
+    /// What was found in the motion of the figure: pops, lost targets, slides. `None` while that is
+    /// not known, or if no targets move a figure.
+    pub fn inspection(&self) -> Option<&Inspection> {
+        self.inspections.found(&self.editing)
+    }
+
+    /// The inspection of the motion that should run now, on a thread of its own: see
+    /// [`InspectAction`](crate::session::InspectAction). `None` if all is known.
+    pub fn next_inspection(&self) -> Option<InspectionJob> {
+        self.inspections.next(&self.editing)
     }
 
     /// The moves of the camera, and the crowd.

@@ -85,6 +85,10 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         (_, Overlay::FkPose) => {
             ("FK pose", "Show the pose of the joint angles alone; shown anyway while blended")
         }
+        (_, Overlay::ByItself) => (
+            "Frame by itself",
+            "Show the pose that this frame would have without the frames before it",
+        ),
         (_, Overlay::Skin) => ("Skin", "Show the skin"),
         (_, Overlay::Bones) => ("Bones", "Show the bones through the skin"),
         (_, Overlay::Wireframe) => ("Wireframe", "Show the edges of the skin's triangles"),

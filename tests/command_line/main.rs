@@ -2,6 +2,7 @@
 #![cfg(feature = "app")]
 
 mod bake;
+mod check;
 #[path = "../common/mod.rs"]
 mod common;
 mod convert;

@@ -146,6 +146,8 @@ examples! {
         SetSolver: [SolverEdit::SetSolver(
             SolverOptions::new(Method::Fabrik).with_damping(0.3),
         )];
+        SetTracked: [SolverEdit::SetTracked(false)];
+        ResetPosture: [SolverEdit::ResetPosture];
         SetIterationsPerFrame: [SolverEdit::SetIterationsPerFrame(17)];
         ApplyPose: [SolverEdit::ApplyPose];
     }
@@ -215,6 +217,12 @@ fn session_for(edit: &Edit) -> Session {
     session.apply(PlaybackAction::SetTime(1.0));
     if *edit == Edit::Skin(SkinEdit::PackSkin) {
         session.apply(SkinEdit::SetSkin(Some(skin_of_a_file(&session))));
+    }
+    if *edit == Edit::Solver(SolverEdit::ResetPosture) {
+        let target = Target { kind: TargetKind::WholeBody, ..session.skeleton_rig().targets[0] };
+        session.apply(TargetEdit::SetTarget(target));
+        session.apply(TargetEdit::SetTarget(Target { home: target.home * 0.9, ..target }));
+        assert!(session.document().skeleton_rig.posture.is_some());
     }
     if *edit == Edit::Solver(SolverEdit::ApplyPose) {
         session.apply(DisplayEdit::ShowRig(RigKind::Skeleton));

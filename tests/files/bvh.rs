@@ -40,8 +40,8 @@ fn shown(skeleton: Skeleton) -> Document {
 
 /// Positions of bases at a time, and of the tips of leaves.
 fn points(document: &Document, time: f64) -> HashMap<String, Vec3> {
-    let document = document.at(time).into_document();
-    let skeleton = document.skeleton_rig.skeleton_at(time);
+    let posed = document.at(time);
+    let skeleton = posed.skeleton();
     let pose = skeleton.pose();
     let mut points = HashMap::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {

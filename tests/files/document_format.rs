@@ -256,8 +256,8 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
             "line 2, column 22: overlays[1]: unknown variant `elbow`, expected one of `cursor`, \
              `pointer`, `inner_limit`, `outer_limit`, `elbow_circle`, `grid_xy`, `grid_xz`, \
              `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `onion_skins`, `singularity_globe`, \
-             `twist_references`, `hand`, `frames`, `fk_pose`, `skin`, `bones`, `wireframe`, `skin_weights`, \
-             `compare_skinning`",
+             `twist_references`, `hand`, `frames`, `fk_pose`, `by_itself`, `skin`, `bones`, `wireframe`, \
+             `skin_weights`, `compare_skinning`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {

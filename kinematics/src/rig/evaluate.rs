@@ -81,7 +81,7 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, as a function of the rig and the time alone: a
     /// [step](SkeletonRig::step) that continues from nothing.
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
-        self.step(time, &Carried::default()).0
+        self.evaluated(time, &mut Carried::default(), false)
     }
 
     /// The skeleton at a time in seconds, as a step of a motion: continues from what the step
@@ -98,7 +98,12 @@ impl SkeletonRig {
     /// next lower influence by the ratio of the two, and the first one with the FK pose.
     pub fn step(&self, time: f64, before: &Carried) -> (EvaluatedSkeleton, Carried) {
         let mut carried = before.clone();
-        let (fk, solved, outcomes) = self.posed(time, &mut carried);
+        let evaluated = self.evaluated(time, &mut carried, true);
+        (evaluated, carried)
+    }
+
+    fn evaluated(&self, time: f64, carried: &mut Carried, carries: bool) -> EvaluatedSkeleton {
+        let (fk, solved, outcomes) = self.posed(time, carried, carries);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
             let end = |joint| match outcome {
@@ -113,13 +118,13 @@ impl SkeletonRig {
             TargetReport { position, pole, error, rotation_error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
-        (EvaluatedSkeleton { fk, solved, targets }, carried)
+        EvaluatedSkeleton { fk, solved, targets }
     }
 
     /// [`SkeletonRig::step`] without its pose and reports: changes `carried` to what the step
     /// carries.
     pub fn carry(&self, time: f64, carried: &mut Carried) {
-        self.posed(time, carried);
+        self.posed(time, carried, true);
     }
 
     /// The last of as many steps at a time in seconds, all with these inputs, as bring targets near
@@ -161,14 +166,16 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
     /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
-        self.posed(time, &mut Carried::default()).1
+        self.posed(time, &mut Carried::default(), false).1
     }
 
-    /// The FK pose, the solved pose and the outcome for each target of a step.
+    /// The FK pose, the solved pose and the outcome for each target of a step. Without `carries`,
+    /// `carried` holds nothing of limbs afterwards.
     fn posed(
         &self,
         time: f64,
         carried: &mut Carried,
+        carries: bool,
     ) -> (Shared<Skeleton>, Shared<Skeleton>, Vec<TargetOutcome>) {
         let leads = |target: &Target| target.enabled && self.leads_path(target);
         let outcome =
@@ -177,7 +184,7 @@ impl SkeletonRig {
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
         self.solve_whole_body(&mut solved, time, carried, &mut outcomes);
-        self.solve_limbs(&mut solved, time, carried, &mut outcomes);
+        self.solve_limbs(&mut solved, time, carries.then_some(carried), &mut outcomes);
         (fk, solved, outcomes)
     }
 
@@ -212,7 +219,7 @@ impl SkeletonRig {
         &self,
         solved: &mut Shared<Skeleton>,
         time: f64,
-        carried: &mut Carried,
+        mut carried: Option<&mut Carried>,
         outcomes: &mut [TargetOutcome],
     ) {
         let is_limb = |index: &usize| {
@@ -220,15 +227,22 @@ impl SkeletonRig {
             self.is_solved_for(target) && target.limb().is_some()
         };
         let limbs: Vec<usize> = (0..self.targets.len()).filter(is_limb).collect();
-        carried.retain_limbs(|joint| limbs.iter().any(|it| self.targets[*it].joint == joint));
+        if let Some(carried) = &mut carried {
+            carried.retain_limbs(|joint| limbs.iter().any(|it| self.targets[*it].joint == joint));
+        }
         for index in LimbOrder::new(self, limbs).indices {
             let target = &self.targets[index];
             let Some(settings) = target.limb() else { continue };
             outcomes[index] = match Limb::ending_at(solved, target.joint) {
                 Ok(limb) => {
                     let limb_target = target.limb_target(settings, solved, time);
-                    let of_limb = carried.limb(target.joint);
-                    let report = limb_ik::step(solved.make_mut(), limb, &limb_target, of_limb);
+                    let solved = solved.make_mut();
+                    let report = match &mut carried {
+                        Some(carried) => {
+                            limb_ik::step(solved, limb, &limb_target, carried.limb(target.joint))
+                        }
+                        None => limb_ik::solve(solved, limb, &limb_target),
+                    };
                     report.map_or(TargetOutcome::Refused(SolveError::Singular), TargetOutcome::Limb)
                 }
                 Err(error) => TargetOutcome::NoLimb(error),

@@ -9,6 +9,7 @@ mod evaluate;
 mod follow_path;
 mod mesh_skin;
 mod path_following;
+mod pops;
 mod skeleton_rig;
 mod skin;
 mod target;
@@ -24,6 +25,7 @@ pub use follow_path::{FollowPath, PathKind, WavyRing};
 pub use mesh_skin::{
     AttachedMesh, FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture,
 };
+pub use pops::{RigMoment, RigPop, RigPopCause};
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{BoneSkin, Skin, SkinMeshError, SkinSource};
 pub use target::{LimbSettings, Target, TargetKind, TargetMotion, TargetPath, TargetSpace};

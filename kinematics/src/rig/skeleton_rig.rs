@@ -221,6 +221,16 @@ impl SkeletonRig {
         self.reach_in(&mut Vec::new())
     }
 
+    /// Length in the world of the path from a joint's root to its tip, along bones and offsets, by
+    /// the transform's mean scale; 0 for a missing joint.
+    pub fn length_to(&self, joint: JointId) -> f32 {
+        let Some(last) = self.skeleton.joint(joint) else { return 0.0 };
+        let above = self.skeleton.ancestors(joint).map(|joint| &self.skeleton[joint]);
+        let offsets = above.filter(|joint| joint.parent.is_some()).map(|it| it.offset.length());
+        let scale = self.skeleton.transform().matrix3.determinant().abs().cbrt();
+        (last.axis.length() + offsets.sum::<f32>()) * scale
+    }
+
     /// [`SkeletonRig::reach`] with a buffer for intermediate results.
     pub fn reach_in(&self, reach: &mut Vec<f32>) -> f32 {
         let joints = self.skeleton.joints();

@@ -134,6 +134,10 @@ impl Motion {
         edited: &Document,
         may_start_afresh: bool,
     ) -> Option<Shared<Posture>> {
+        let is_tracked = |document: &Document| document.skeleton_rig.is_tracked;
+        if !is_tracked(&self.document) || !is_tracked(edited) {
+            return self.document.skeleton_rig.posture.clone();
+        }
         let grid = self.grid?;
         if !edited.is_tracked() {
             return None;

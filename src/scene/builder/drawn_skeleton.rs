@@ -160,11 +160,22 @@ impl<'a> DrawnSkeleton<'a> {
         fk: &SkeletonPose,
         is_shown: impl Fn(JointId) -> bool,
     ) {
+        let colour = scene.palette.sky_top.mixed(scene.palette.joint, FK_CONTRAST);
+        self.add_thin_pose(scene, fk, colour, is_shown);
+    }
+
+    /// Adds the bones that another pose has elsewhere, thin, for the joints that are to be shown.
+    pub fn add_thin_pose(
+        &self,
+        scene: &mut Scene,
+        other: &SkeletonPose,
+        colour: Colour,
+        is_shown: impl Fn(JointId) -> bool,
+    ) {
         // Fraction of the reach.
         const APART: f32 = 1e-3;
-        let colour = scene.palette.sky_top.mixed(scene.palette.joint, FK_CONTRAST);
-        for joint in fk.ids().filter(|joint| is_shown(*joint)) {
-            let (base, tip) = (fk.base(joint), fk.tip(joint));
+        for joint in other.ids().filter(|joint| is_shown(*joint)) {
+            let (base, tip) = (other.base(joint), other.tip(joint));
             let apart =
                 base.distance(self.pose.base(joint)).max(tip.distance(self.pose.tip(joint)));
             if apart > APART * self.reach {

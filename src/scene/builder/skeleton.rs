@@ -53,6 +53,9 @@ pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f
     (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::grid_cell_for(reach))
 }
 
+/// How far the colour of the pose of a frame by itself is mixed with that of the sky, from 0 to 1.
+const BY_ITSELF_FADED: f32 = 0.3;
+
 /// Adds the bones with their shadows, the ghosts of other solvers, the targets with their trails,
 /// the followed path, and labels.
 pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch: &mut Scratch) {
@@ -93,6 +96,11 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         let is_blended = |influence: f32| influence > 0.0 && influence < 1.0;
         let is_shown = |joint: JointId| all || is_blended(influences[joint.index()]);
         drawn.add_fk_pose(scene, fk_pose, is_shown);
+    }
+    if display.shows(Overlay::ByItself) {
+        posed.skeleton_by_itself().write_pose(fk_pose);
+        let colour = scene.palette.accent.mixed(scene.palette.sky_top, BY_ITSELF_FADED);
+        drawn.add_thin_pose(scene, fk_pose, colour, |_| true);
     }
     let accent = scene.palette.accent;
     for joint in overlays.concerned.iter().filter(|joint| joint.index() < joints.len()) {

@@ -11,6 +11,11 @@ pub enum SolverEdit {
     SetSolver(SolverOptions),
     /// Sets the number of iterations that a solver run makes per frame.
     SetIterationsPerFrame(u32),
+    /// Lets each frame of a motion continue from the one before, or solves each by itself.
+    SetTracked(bool),
+    /// Lets the motion begin with the pose that is solved from the joints' own angles, instead of
+    /// the posture that drags have left.
+    ResetPosture,
     /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends
     /// the run.
     ApplyPose,
@@ -20,7 +25,10 @@ impl SolverEdit {
     /// Label of the edit's undo step.
     pub fn label(&self) -> &'static str {
         match self {
-            Self::SetSolver(_) | Self::SetIterationsPerFrame(_) => "Change solver",
+            Self::SetSolver(_) | Self::SetIterationsPerFrame(_) | Self::SetTracked(_) => {
+                "Change solver"
+            }
+            Self::ResetPosture => "Reset posture",
             Self::ApplyPose => "Apply pose",
         }
     }
@@ -39,6 +47,13 @@ impl SolverEdit {
                     document.skeleton_rig.iterations_per_frame = iterations;
                 })
             }
+            Self::SetTracked(is_tracked) => Outcome::change(session.shown(), |document| {
+                document.skeleton_rig.is_tracked = is_tracked;
+            }),
+            Self::ResetPosture => Outcome::from(Consequence::ResetPosture)
+                .and(Outcome::change(session.shown(), |document| {
+                    document.skeleton_rig.posture = None
+                })),
             Self::ApplyPose => apply_pose(session),
         }
     }
@@ -69,5 +84,5 @@ fn apply_pose(session: &Session) -> Outcome {
         }
         Ok(())
     });
-    Outcome::from(Consequence::EndSolvers).and(written)
+    Outcome::from(Consequence::EndSolvers).and(Consequence::ResetPosture).and(written)
 }

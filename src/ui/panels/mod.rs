@@ -61,7 +61,9 @@ fn guides(session: &Session) -> &'static [Overlay] {
         RigKind::Skeleton if !session.skeleton_rig().follow_paths.is_empty() => {
             &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose, Overlay::ElbowCircle]
         }
-        RigKind::Skeleton => &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle],
+        RigKind::Skeleton => {
+            &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle, Overlay::ByItself]
+        }
     }
 }
 
@@ -106,6 +108,7 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
             (RigKind::Arm, PanelTab::Reach) => explain::reach(ui, session),
             (RigKind::Arm, PanelTab::Pops) => explain::pops(ui, session, actions),
             (RigKind::Arm, _) => figure = explain::triangle(ui, session, actions),
+            (RigKind::Skeleton, PanelTab::Pops) => explain::figure_pops(ui, session, actions),
             (RigKind::Skeleton, PanelTab::Race) => solver::race(ui, session, actions),
             (RigKind::Skeleton, PanelTab::Skin) => skeleton::skin_areas(ui, session),
             (RigKind::Skeleton, _) => solver::solver(ui, session, actions),
@@ -135,7 +138,10 @@ fn tooltip(rig: RigKind, tab: PanelTab) -> &'static str {
         (_, PanelTab::Triangle) => "Show the triangle of shoulder, elbow and hand",
         (_, PanelTab::Twist) => "Compare what the Socket twist can be measured from",
         (_, PanelTab::Reach) => "Show how near and how far the hand can be",
-        (_, PanelTab::Pops) => "Show where the elbow jumped, and why",
+        (RigKind::Arm, PanelTab::Pops) => "Show where the elbow jumped, and why",
+        (RigKind::Skeleton, PanelTab::Pops) => {
+            "Show where joints jump, targets are lost and feet slide, and why"
+        }
         (RigKind::Arm, PanelTab::Solver) => "Show why the arm needs no iterations",
         (RigKind::Skeleton, PanelTab::Solver) => "Watch a solver bring the tips to their targets",
         (_, PanelTab::Race) => "Run all solvers on the same targets",

@@ -11,6 +11,7 @@ use super::value_scale::ValueScales;
 use crate::document::Timeline;
 use crate::session::{Actions, PlaybackAction, Session};
 use crate::ui::{style, widgets};
+use crate::words;
 
 /// Minimum distance in points between labels.
 const LABEL: f64 = 64.0;
@@ -52,9 +53,68 @@ pub(in crate::ui) fn ui(
     drag::follow_playhead(ui, session, scale, actions);
     step_by_accesskit(ui, session, actions);
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
-    response.on_hover_text(
-        "Drag to scrub, Ctrl off the frame grid. Wheel zooms, middle drag pans, double-click shows all",
-    )
+    let ticks = fault_ticks(session);
+    paint_faults(ui, scale, rect, &ticks);
+    let mouse = response.hover_pos().filter(|_| !response.dragged());
+    let hovered = mouse.and_then(|mouse| {
+        const NEAR: f32 = 4.0;
+        let away = |tick: &FaultTick| (scale.x(tick.time) - mouse.x).abs();
+        let nearest = ticks.iter().min_by(|one, other| away(one).total_cmp(&away(other)))?;
+        (away(nearest) <= NEAR).then_some(nearest)
+    });
+    match hovered {
+        Some(tick) => response.on_hover_text(format!("{:.2} s: {}", tick.time, tick.sentence)),
+        None => response.on_hover_text(
+            "Drag to scrub, Ctrl off the frame grid. Wheel zooms, middle drag pans, double-click \
+             shows all",
+        ),
+    }
+}
+
+/// A fault of the motion: a pop, or a target that is lost.
+struct FaultTick {
+    /// In seconds.
+    time: f64,
+    /// The end of a span, in seconds.
+    until: f64,
+    sentence: String,
+    is_lost: bool,
+}
+
+fn fault_ticks(session: &Session) -> Vec<FaultTick> {
+    let Some(found) = session.inspection() else { return Vec::new() };
+    let rig = session.skeleton_rig();
+    let pops = found.peaks(session.document().timeline).into_iter().map(|peak| FaultTick {
+        time: peak.time,
+        until: peak.time,
+        sentence: words::pop(rig, &peak.pop),
+        is_lost: false,
+    });
+    let lost = found.lost.iter().map(|span| FaultTick {
+        time: span.from,
+        until: span.to,
+        sentence: words::lost(rig, span.target, span.miss),
+        is_lost: true,
+    });
+    pops.chain(lost).collect()
+}
+
+/// Draws triangles at pops, and bars where targets are lost.
+fn paint_faults(ui: &Ui, scale: TimeScale, rect: Rect, ticks: &[FaultTick]) {
+    const SIZE: f32 = 4.0;
+    let painter = ui.painter().with_clip_rect(rect);
+    let (warn, error) = (ui.visuals().warn_fg_color, ui.visuals().error_fg_color);
+    for tick in ticks {
+        let (x, until, bottom) = (scale.x(tick.time), scale.x(tick.until), rect.bottom());
+        if tick.is_lost {
+            let bar = Rect::from_x_y_ranges(x..=until.max(x + 2.0), bottom - 3.0..=bottom);
+            painter.rect_filled(bar, 0.0, error);
+        } else {
+            let at = |dx: f32, dy: f32| pos2(x + dx * SIZE, bottom - dy * SIZE);
+            let points = vec![at(-1.0, 0.0), at(0.0, 2.0), at(1.0, 0.0)];
+            painter.add(Shape::convex_polygon(points, warn, Stroke::NONE));
+        }
+    }
 }
 
 /// True if the left mouse button was pressed on the widget of `response` in this frame.

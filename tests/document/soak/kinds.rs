@@ -6,9 +6,9 @@ use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
     Action, ArmEdit, ArmFigure, ArmJoint, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget,
-    InsideLayer, JointEdit, KeysEdit, Navigation, PanelTab, PathEdit, PlaybackAction, PoseMode,
-    SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit, TargetEdit, TourAction,
-    TransactionAction, ViewAction,
+    InsideLayer, InspectAction, InspectionJob, JointEdit, KeysEdit, Navigation, PanelTab, PathEdit,
+    PlaybackAction, PoseMode, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit,
+    TargetEdit, TourAction, TransactionAction, ViewAction,
 };
 
 use crate::soak::values::Values;
@@ -159,6 +159,8 @@ kinds! {
     }
     Edit (Solver) (SolverEdit) {
         SetSolver: Solve 3, |v| SolverEdit::SetSolver(v.options());
+        SetTracked: Solve 1, |v| SolverEdit::SetTracked(v.coin());
+        ResetPosture: Solve 1, |_| SolverEdit::ResetPosture;
         SetIterationsPerFrame: Solve 1, |v| SolverEdit::SetIterationsPerFrame(v.iterations_per_frame());
         ApplyPose: Solve 3, |_| SolverEdit::ApplyPose;
     }
@@ -254,6 +256,10 @@ kinds! {
         Start: Look 1, |v| BakeAction::Start(v.bake());
         Started: Look 1, |v| BakeAction::Started(v.bake_job());
         Ended: Keys 1, |v| BakeAction::Ended(v.bake_job(), Ok(v.baked()));
+    }
+    Inspect () (InspectAction) {
+        Started: Look 1, |v| InspectAction::Started(InspectionJob::new(v.session.history()));
+        Ended: Look 1, |v| v.inspected();
     }
     File () (FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());

@@ -88,7 +88,8 @@ fn every_joint_is_where_it_was_in_every_frame() {
         assert_eq!(read.rig, RigKind::Skeleton);
         assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
         assert_eq!(order.len(), read.skeleton().joints().len());
-        let moves = document.is_animated();
+        // The solver refuses a flat skeleton, whose targets then move nothing.
+        let moves = document.is_animated() && name != "jumping-chain-flat";
         assert_eq!(moves, !read.keys.is_empty(), "{name}");
         check(&name, &document, &opened);
     }

@@ -24,6 +24,7 @@ impl Editing {
         mut after: Document,
         playback: &Playback,
     ) -> Option<WriteOutcome> {
+        let resets_posture = std::mem::take(&mut self.resets_posture);
         if after == *self.shown() {
             return None;
         }
@@ -46,7 +47,7 @@ impl Editing {
         if !self.is_editing() {
             after.skeleton_rig.refresh_skin();
         }
-        self.update_posture(&mut after, change);
+        self.update_posture(&mut after, change, resets_posture);
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
@@ -55,8 +56,7 @@ impl Editing {
 
     /// Sets the posture of an edited document, so that its motion continues from the present one,
     /// and the time at which the motion begins.
-    fn update_posture(&mut self, after: &mut Document, change: TreeChange) {
-        let is_reset = std::mem::take(&mut self.resets_posture);
+    fn update_posture(&self, after: &mut Document, change: TreeChange, is_reset: bool) {
         let is_drag = self.is_editing();
         let is_same_tree = change == TreeChange::Kept
             && after.skeleton().joints().len() == self.document.skeleton().joints().len();

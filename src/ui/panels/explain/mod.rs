@@ -1,6 +1,7 @@
 //! Figures and formulas of the arm with the numbers of the current pose; its hierarchy as a tree,
 //! each part with what places it in its parent.
 
+mod figure_pops;
 mod figures;
 mod pointer;
 mod pops;
@@ -15,6 +16,7 @@ use crate::session::{Actions, ArmFigure, Session, TourState};
 use crate::ui::{pose_summary, widgets};
 use figures::{Lit, degrees, figure_colour, length, point};
 
+pub(super) use figure_pops::ui as figure_pops;
 pub(super) use pops::ui as pops;
 pub(super) use twist_references::ui as twist;
 

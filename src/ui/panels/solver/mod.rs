@@ -108,6 +108,26 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step.row(ui, session, "Step", actions, set);
     }
     roots(ui, options, actions);
+    motion(ui, session, actions);
+}
+
+/// Settings of motions: whether frames continue from each other, and the posture of the first.
+fn motion(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.skeleton_rig();
+    let tooltip = "Solve each frame from its joint angles, not from the frame before. Off by default: \
+                   neighbouring frames then find different poses, and joints jump";
+    let is_alone = !rig.is_tracked;
+    ui.horizontal(|ui| {
+        let changed = widgets::check_box(ui, "Each frame by itself", tooltip, is_alone, None);
+        actions.extend(changed.map(|is_alone| SolverEdit::SetTracked(!is_alone)));
+        widgets::at_right(ui, |ui| {
+            let disabled = rig.posture.is_none().then_some("Drags of targets have left no posture");
+            let tooltip = "Begin the motion with the pose that is solved from the joint angles";
+            if widgets::button(ui, "Reset posture", tooltip, disabled) {
+                actions.push(SolverEdit::ResetPosture);
+            }
+        });
+    });
 }
 
 fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{Bake, Baked, Document, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Bake, Baked, Document, Inspection, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{Example, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, PathDialog};
+use ik_arm::session::{
+    BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, InspectAction, InspectionJob,
+    PathDialog,
+};
 
 use super::Values;
 use crate::common::skeletons;
@@ -46,6 +49,13 @@ impl Values<'_> {
             Some(Dialog::Bake { job: Some(job), .. }) => job.clone(),
             _ => BakeJob { progress: Arc::new(Progress::default()) },
         }
+    }
+
+    /// The end of an inspection of the present document, cancelled half the time.
+    pub fn inspected(&mut self) -> InspectAction {
+        let job = InspectionJob::new(self.session.history());
+        let found = self.coin().then(|| Box::new(Inspection::default()));
+        InspectAction::Ended(job, found)
     }
 
     /// A bake of a few frames; one that changes nothing if the document cannot be baked.

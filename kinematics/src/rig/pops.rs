@@ -1,0 +1,536 @@
+//! Pops of a rig: steps of a motion in which joints move much farther than the inputs that pose
+//! them.
+//!
+//! The pose before a step, taken along by the FK pose (each joint keeps its rotation relative to
+//! FK), is the pose that no target has changed. With p̃ a joint's position in it and p the one after
+//! the step, the joint moves by |p − p̃|. A target moves by |(t − t₀) − (p̃ − p₀)|, the change of the
+//! vector from its tip, or, if that is more, by what changes of twist and influence move of the
+//! joints. A step pops if the ratio of the two is above 2; of a limb, above the bound of
+//! [`pop`](crate::pop).
+
+use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+
+use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetKind};
+use crate::limb_ik::{ElbowReference, Limb};
+use crate::skeleton::{JointId, RotationAxis, Skeleton};
+
+/// A rig at a time, with its pose.
+#[derive(Clone, Copy, Debug)]
+pub struct RigMoment<'a> {
+    /// The rig with the values that it has at the time.
+    pub rig: &'a SkeletonRig,
+    /// Its pose.
+    pub evaluated: &'a EvaluatedSkeleton,
+}
+
+/// A step of a motion in which a joint moves much farther than the inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigPop {
+    /// The joint whose base or tip moves farthest.
+    pub joint: JointId,
+    /// Ratio of its way to that of the inputs.
+    pub ratio: f32,
+    /// The cause.
+    pub cause: RigPopCause,
+    /// The target whose joints pop.
+    pub target: JointId,
+}
+
+/// Cause of a pop of a rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum RigPopCause {
+    /// The target moves by more than a tenth of the chain in the step.
+    TargetJump,
+    /// The FK pose moves by more than a tenth of the chain in the step.
+    FkJump,
+    /// A target begins or ceases to pose the joints.
+    Switched,
+    /// The target is not reached any more, by the pose to which the motion has come.
+    Lost,
+    /// The target is reached again, or comes nearer after it was lost.
+    Found,
+    /// Each frame is solved by itself, and neighbouring frames find different poses.
+    ByItself,
+    /// An angle comes to an end of its range.
+    LimitMet,
+    /// An angle leaves an end of its range.
+    LimitLeft,
+    /// The chain or limb is nearly straight.
+    Straight,
+    /// The tip is near the base of the chain or limb.
+    Folded,
+    /// The limb's twist reference is near a direction in which it is singular.
+    Singular,
+    /// The FK pose of the limb passes through straight.
+    StraightFk,
+    /// The method needs many iterations, because bones are nearly in line with the way of the tip,
+    /// and turns them over.
+    TurnsOver,
+    /// Joints swing back towards the FK pose, for as far as the targets leave them free.
+    Returns,
+    /// Angles at the ends of their ranges leave other joints to make up for them.
+    AtLimit,
+    /// The motion starts again from its first frame.
+    Seam,
+    /// None of these.
+    Unknown,
+}
+
+impl RigPopCause {
+    /// All causes.
+    pub const ALL: [Self; 17] = [
+        Self::TargetJump,
+        Self::FkJump,
+        Self::Switched,
+        Self::Lost,
+        Self::Found,
+        Self::ByItself,
+        Self::LimitMet,
+        Self::LimitLeft,
+        Self::Straight,
+        Self::Folded,
+        Self::Singular,
+        Self::StraightFk,
+        Self::TurnsOver,
+        Self::Returns,
+        Self::AtLimit,
+        Self::Seam,
+        Self::Unknown,
+    ];
+
+    /// Name of the cause in machine-readable output.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TargetJump => "target_jump",
+            Self::FkJump => "fk_jump",
+            Self::Switched => "switched",
+            Self::Lost => "lost",
+            Self::Found => "found",
+            Self::ByItself => "by_itself",
+            Self::LimitMet => "limit_met",
+            Self::LimitLeft => "limit_left",
+            Self::Straight => "straight",
+            Self::Folded => "folded",
+            Self::Singular => "singular",
+            Self::StraightFk => "straight_fk",
+            Self::TurnsOver => "turns_over",
+            Self::Returns => "returns",
+            Self::AtLimit => "at_limit",
+            Self::Seam => "seam",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// Ratio above which a step of a whole body pops, and factor of the bound of a limb.
+const POP: f64 = 2.0;
+/// Way of the inputs, in chain lengths, below which a step is measured against this way: joints
+/// move by rounding.
+const LEAST_WAY: f64 = 1e-3;
+/// Part of a chain's length beyond which inputs jump.
+const JUMP: f64 = 0.1;
+
+impl<'a> RigMoment<'a> {
+    /// The pops of a step from this moment to another one, at most one for the whole-body targets
+    /// and one for each limb. `is_missed` says for both moments whether the target with an index is
+    /// missed.
+    pub fn pops_to(
+        &self,
+        after: &RigMoment<'_>,
+        is_missed: [&dyn Fn(usize) -> bool; 2],
+    ) -> Vec<RigPop> {
+        let joints = |moment: &RigMoment<'_>| moment.rig.skeleton.joints().len();
+        if joints(self) != joints(after) || self.rig.targets.len() != after.rig.targets.len() {
+            return Vec::new();
+        }
+        let step =
+            Step { before: *self, after: *after, taken: taken_along(self, after), is_missed };
+        let poses = |index: &usize| {
+            let both = [self, after].map(|moment| &moment.rig.targets[*index]);
+            both.iter().any(|target| after.rig.is_solved_for(target))
+        };
+        let targets: Vec<usize> = (0..after.rig.targets.len()).filter(poses).collect();
+        let (limbs, bodies): (Vec<usize>, Vec<usize>) =
+            targets.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
+        let groups = limbs.iter().map(|index| vec![*index]).chain([bodies]);
+        groups.filter_map(|group| step.pop(&group)).collect()
+    }
+}
+
+/// A step between two moments.
+struct Step<'a> {
+    before: RigMoment<'a>,
+    after: RigMoment<'a>,
+    /// Base and tip of each joint in the pose before, taken along by FK.
+    taken: Vec<[DVec3; 2]>,
+    is_missed: [&'a dyn Fn(usize) -> bool; 2],
+}
+
+impl Step<'_> {
+    /// The pop of the joints that targets turn together, if there is one.
+    fn pop(&self, targets: &[usize]) -> Option<RigPop> {
+        let length = targets.iter().map(|it| self.length(*it)).fold(0.0, f64::max);
+        let turned =
+            |index: &usize| self.after.rig.moved_by(&self.after.rig.targets[*index]).turned;
+        let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
+        let moved = joints.iter().map(|joint| (*joint, self.moved(*joint)));
+        let (joint, moved) = moved.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        let ways = targets.iter().map(|it| (*it, self.way(*it, moved)));
+        let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        let ratio = moved / way.max(LEAST_WAY * length);
+        if !(ratio > self.bound(targets[0])) {
+            return None;
+        }
+        let cause = self.cause(targets, farthest, &joints, joint, length);
+        let target = self.after.rig.targets[farthest].joint;
+        Some(RigPop { joint, ratio: ratio as f32, cause, target })
+    }
+
+    /// Ratio above which the step pops.
+    fn bound(&self, target: usize) -> f64 {
+        const NEAR_BASE: f64 = 0.2;
+        let Some((_, [base, elbow, tip])) = self.limb(&self.after, target) else { return POP };
+        let [upper, lower, distance] = [elbow - base, tip - elbow, tip - base].map(DVec3::length);
+        let before = self.limb(&self.before, target);
+        let distance =
+            before.map_or(distance, |(_, [base, _, tip])| distance.min((tip - base).length()));
+        POP * (upper / distance.max(NEAR_BASE * (upper + lower))).max(1.0)
+    }
+
+    /// Distance by which a joint's base or tip moves from where FK takes it.
+    fn moved(&self, joint: JointId) -> f64 {
+        let after = places(&self.after.evaluated.solved, joint);
+        let taken = self.taken[joint.index()];
+        after.iter().zip(taken).map(|(after, taken)| after.distance(taken)).fold(0.0, f64::max)
+    }
+
+    /// Way of a target and of its other inputs, by which joints that move by `moved` may move.
+    fn way(&self, index: usize, moved: f64) -> f64 {
+        let [before, after] = self.both(index);
+        let tip = |moment: &RigMoment<'_>| places(&moment.evaluated.solved, after.0.joint)[1];
+        let place = |report: &TargetReport| report.position.as_dvec3();
+        let taken = self.taken[after.0.joint.index()][1] - tip(&self.before);
+        let way = ((place(after.1) - place(before.1)) - taken).length();
+        let influence = f64::from((after.0.influence - before.0.influence).abs());
+        let of_influence = influence * self.from_fk(after.0);
+        let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
+        let of_twist = (twist(after.0) - twist(before.0)).abs().min(2.0) * self.length(index) / 2.0;
+        let pole = |report: &TargetReport| report.pole.map(Vec3::as_dvec3);
+        let of_pole = match (pole(before.1), pole(after.1)) {
+            (Some(before), Some(after)) => (after - before).length(),
+            _ => 0.0,
+        };
+        let orientation = |target: &Target| target.limb().and_then(|limb| limb.orientation);
+        let turns_hand = orientation(before.0) != orientation(after.0);
+        let of_hand = if turns_hand { moved.min(0.5 * self.length(index)) } else { 0.0 };
+        way.max(of_influence).max(of_twist).max(of_pole).max(of_hand)
+    }
+
+    /// Largest distance of a joint that a target turns from its place in the FK pose, per influence.
+    fn from_fk(&self, target: &Target) -> f64 {
+        let EvaluatedSkeleton { fk, solved, .. } = self.after.evaluated;
+        let turned = self.after.rig.moved_by(target).turned;
+        let apart = turned.iter().map(|joint| {
+            let [fk, solved] = [fk, solved].map(|pose| places(pose, *joint)[1]);
+            fk.distance(solved)
+        });
+        apart.fold(0.0, f64::max) / f64::from(target.influence.max(1e-3))
+    }
+
+    fn both(&self, index: usize) -> [(&Target, &TargetReport); 2] {
+        [&self.before, &self.after]
+            .map(|moment| (&moment.rig.targets[index], &moment.evaluated.targets[index]))
+    }
+
+    /// Length of a target's chain or limb in the world.
+    fn length(&self, index: usize) -> f64 {
+        match self.limb(&self.after, index) {
+            Some((_, [base, elbow, tip])) => (elbow - base).length() + (tip - elbow).length(),
+            None => f64::from(self.after.rig.length_to(self.after.rig.targets[index].joint)),
+        }
+    }
+
+    /// The limb of a target with the positions of base, elbow and tip; `None` for a whole body.
+    fn limb(&self, moment: &RigMoment<'_>, index: usize) -> Option<(Limb, [DVec3; 3])> {
+        let target = &moment.rig.targets[index];
+        target.limb()?;
+        let pose = &moment.evaluated.solved;
+        let limb = Limb::ending_at(pose, target.joint).ok()?;
+        let [elbow, tip] = places(pose, limb.lower);
+        Some((limb, [places(pose, limb.upper)[0], elbow, tip]))
+    }
+}
+
+/// Causes.
+impl Step<'_> {
+    fn cause(
+        &self,
+        targets: &[usize],
+        farthest: usize,
+        joints: &[JointId],
+        joint: JointId,
+        length: f64,
+    ) -> RigPopCause {
+        let is_solved = |moment: &RigMoment<'_>, index: usize| {
+            let target = &moment.rig.targets[index];
+            moment.rig.is_solved_for(target)
+                && !matches!(moment.evaluated.targets[index].outcome, TargetOutcome::Off)
+        };
+        let any = |test: &dyn Fn(usize) -> bool| targets.iter().any(|index| test(*index));
+        if any(&|it| is_solved(&self.before, it) != is_solved(&self.after, it)) {
+            return RigPopCause::Switched;
+        }
+        if any(&|it| self.target_way(it) > JUMP * length) {
+            return RigPopCause::TargetJump;
+        }
+        if joints.iter().any(|joint| self.fk_way(*joint) > JUMP * length) {
+            return RigPopCause::FkJump;
+        }
+        let missed = |moment: usize| any(&|index| (self.is_missed[moment])(index));
+        match [missed(0), missed(1)] {
+            [false, true] => return RigPopCause::Lost,
+            [true, false] => return RigPopCause::Found,
+            _ => {}
+        }
+        if self.after.rig.targets[farthest].kind != TargetKind::WholeBody {
+            return self.cause_of_limb(farthest);
+        }
+        if !self.after.rig.is_tracked {
+            return RigPopCause::ByItself;
+        }
+        if let Some(cause) = self.cause_of_limits(joints) {
+            return cause;
+        }
+        let is_missed = missed(0) && missed(1);
+        if any(&|it| self.is_stretched(it)) {
+            RigPopCause::Straight
+        } else if any(&|it| self.is_at_base(it)) {
+            RigPopCause::Folded
+        } else if is_missed {
+            RigPopCause::Found
+        } else if self.turns_over(targets) {
+            RigPopCause::TurnsOver
+        } else if self.returns(joints, joint) {
+            RigPopCause::Returns
+        } else if joints.iter().any(|it| ends(&self.after.evaluated.solved, *it).contains(&true)) {
+            RigPopCause::AtLimit
+        } else {
+            RigPopCause::Unknown
+        }
+    }
+
+    /// Way of a target in the world.
+    fn target_way(&self, index: usize) -> f64 {
+        let [before, after] = self.both(index).map(|(_, report)| report.position.as_dvec3());
+        before.distance(after)
+    }
+
+    /// Way of a joint in the FK pose.
+    fn fk_way(&self, joint: JointId) -> f64 {
+        let [before, after] =
+            [&self.before, &self.after].map(|moment| places(&moment.evaluated.fk, joint)[1]);
+        before.distance(after)
+    }
+
+    fn cause_of_limits(&self, joints: &[JointId]) -> Option<RigPopCause> {
+        let mut met = false;
+        let mut left = false;
+        for joint in joints {
+            let [before, after] =
+                [&self.before, &self.after].map(|moment| ends(&moment.evaluated.solved, *joint));
+            for (before, after) in before.into_iter().zip(after) {
+                met |= after && !before;
+                left |= before && !after;
+            }
+        }
+        if met { Some(RigPopCause::LimitMet) } else { left.then_some(RigPopCause::LimitLeft) }
+    }
+
+    fn cause_of_limb(&self, index: usize) -> RigPopCause {
+        /// Angle in radians from a singular direction below which the elbow swings fast.
+        const NEAR: f64 = 0.35;
+        let after = self.limb(&self.after, index);
+        let Some((limb, [base, elbow, tip])) = after else { return RigPopCause::Unknown };
+        let pointer = (tip - base).normalize_or_zero();
+        let settings = self.after.rig.targets[index].limb().copied().unwrap_or_default();
+        let [upper, lower, distance] = [elbow - base, tip - elbow, tip - base].map(DVec3::length);
+        let fk = &self.after.evaluated.fk;
+        let fk_bent = |fk: &Skeleton| {
+            let [fk_elbow, fk_tip] = places(fk, limb.lower);
+            (fk_elbow - places(fk, limb.upper)[0]).angle_between(fk_tip - fk_elbow)
+        };
+        let singular = match settings.reference {
+            ElbowReference::Fk => {
+                let fk_pointer = places(fk, limb.lower)[1] - places(fk, limb.upper)[0];
+                let away = std::f64::consts::PI - fk_pointer.angle_between(pointer);
+                if fk_bent(fk) < 0.1 {
+                    return RigPopCause::StraightFk;
+                }
+                away
+            }
+            ElbowReference::Transport => f64::INFINITY,
+            ElbowReference::Up | ElbowReference::Pole(_) | ElbowReference::Stereographic(_) => {
+                let axis = self.reference_axis(index, limb, base);
+                let angle = axis.angle_between(pointer);
+                let is_one_sided = matches!(settings.reference, ElbowReference::Stereographic(_));
+                if is_one_sided { angle } else { angle.min(std::f64::consts::PI - angle) }
+            }
+        };
+        let joints: Vec<JointId> = limb.joints().collect();
+        let [turned, bent, swung] = self.parts(index, limb);
+        let is_far_out = distance > 0.5 * ((upper - lower).abs() + upper + lower);
+        if swung >= turned.max(bent) {
+            if singular < NEAR {
+                return RigPopCause::Singular;
+            }
+            let of_limits = self.cause_of_limits(&joints);
+            return of_limits.unwrap_or(RigPopCause::Unknown);
+        }
+        if turned >= bent || !is_far_out { RigPopCause::Folded } else { RigPopCause::Straight }
+    }
+
+    /// The parts of the elbow's way, seen from the limb's base: by the rotation of the line to the
+    /// tip, in the plane of the limb, and about that line.
+    fn parts(&self, index: usize, limb: Limb) -> [f64; 3] {
+        let [base, tip] = [self.taken[limb.upper.index()][0], self.taken[limb.lower.index()][1]];
+        let elbow = self.taken[limb.lower.index()][0] - base;
+        let Some((_, [new_base, new_elbow, new_tip])) = self.limb(&self.after, index) else {
+            return [0.0; 3];
+        };
+        let new_elbow = new_elbow - new_base;
+        let [from, to] = [tip - base, new_tip - new_base].map(|way| way.normalize_or(DVec3::X));
+        let carried = DQuat::from_rotation_arc(from, to) * elbow;
+        let along =
+            |elbow: DVec3| DVec2::new(elbow.dot(to), elbow.reject_from_normalized(to).length());
+        let bent = along(carried).distance(along(new_elbow));
+        let [one, other] = [carried, new_elbow].map(|elbow| elbow.reject_from_normalized(to));
+        let swung = one.angle_between(other) * 0.5 * (one.length() + other.length());
+        [carried.distance(elbow), bent, if swung.is_finite() { swung } else { 0.0 }]
+    }
+
+    /// The direction in the world in which the twist reference of a limb is singular.
+    fn reference_axis(&self, index: usize, limb: Limb, base: DVec3) -> DVec3 {
+        let pose = &self.after.evaluated.solved;
+        let above = pose[limb.upper].parent;
+        let rotation =
+            above.map_or(DMat3::IDENTITY, |above| DMat3::from_quat(pose.rotation_in_world(above)));
+        let settings = self.after.rig.targets[index].limb().copied().unwrap_or_default();
+        let pole = self.after.evaluated.targets[index].pole;
+        match settings.reference {
+            ElbowReference::Stereographic(map) => rotation * map.singular().as_dvec3(),
+            ElbowReference::Pole(_) => pole.map_or(DVec3::ZERO, |pole| pole.as_dvec3() - base),
+            _ => rotation.y_axis,
+        }
+    }
+
+    /// True if a chain is nearly straight, before or after the step.
+    fn is_stretched(&self, index: usize) -> bool {
+        const STRAIGHT: f64 = 0.97;
+        let joint = self.after.rig.targets[index].joint;
+        [&self.before, &self.after].into_iter().any(|moment| {
+            let pose = &moment.evaluated.solved;
+            let root = pose.ancestors(joint).last().unwrap_or(joint);
+            let reach = places(pose, joint)[1].distance(places(pose, root)[0]);
+            let bones = pose.ancestors(joint).map(|joint| {
+                let [base, tip] = places(pose, joint);
+                let parent = pose[joint].parent.map(|parent| places(pose, parent)[0]);
+                let offset = parent.map_or(0.0, |parent| parent.distance(base));
+                (offset, base.distance(tip))
+            });
+            let bones: Vec<(f64, f64)> = bones.collect();
+            let length = bones[0].1 + bones.iter().map(|(offset, _)| offset).sum::<f64>();
+            reach > STRAIGHT * length
+        })
+    }
+
+    /// True if the tip of a chain is near its base.
+    fn is_at_base(&self, index: usize) -> bool {
+        const NEAR: f64 = 0.1;
+        let joint = self.after.rig.targets[index].joint;
+        let pose = &self.after.evaluated.solved;
+        let root = pose.ancestors(joint).last().unwrap_or(joint);
+        let reach = places(pose, joint)[1].distance(places(pose, root)[0]);
+        reach < NEAR * self.length(index)
+    }
+
+    /// True if the method needed many iterations, in which it turns bones that are in the way of
+    /// others.
+    fn turns_over(&self, targets: &[usize]) -> bool {
+        const MANY: u32 = 6;
+        targets.iter().any(|index| match &self.after.evaluated.targets[*index].outcome {
+            TargetOutcome::WholeBody(report) => report.iterations >= MANY,
+            _ => false,
+        })
+    }
+
+    /// True if a third of the joints' rotation, or half of the way of the joint that moves farthest,
+    /// leads towards the FK pose.
+    fn returns(&self, joints: &[JointId], joint: JointId) -> bool {
+        let rotation = |moment: &RigMoment<'_>, joint: JointId| {
+            let EvaluatedSkeleton { fk, solved, .. } = moment.evaluated;
+            let [fk, solved] = [fk, solved]
+                .map(|pose| DQuat::from_mat3(&pose[joint].rotation_f64(pose[joint].rotation)));
+            fk.conjugate() * solved
+        };
+        let (mut before, mut after, mut turned) = (0.0, 0.0, 0.0);
+        for joint in joints {
+            let [one, other] = [&self.before, &self.after].map(|it| rotation(it, *joint));
+            let square = |turn: DQuat| turn.xyz().length().atan2(turn.w.abs()).powi(2);
+            before += square(one);
+            after += square(other);
+            turned += square(one.conjugate() * other);
+        }
+        if before.sqrt() - after.sqrt() > turned.sqrt() / 3.0 {
+            return true;
+        }
+        let EvaluatedSkeleton { fk, solved, .. } = self.after.evaluated;
+        let ends = places(solved, joint).into_iter().zip(self.taken[joint.index()]);
+        let way = |(after, taken): &(DVec3, DVec3)| after.distance_squared(*taken);
+        let ends = ends.zip(places(fk, joint));
+        let farthest = ends.max_by(|one, other| way(&one.0).total_cmp(&way(&other.0)));
+        farthest.is_some_and(|((after, taken), fk)| {
+            taken.distance(fk) - after.distance(fk) >= 0.5 * after.distance(taken)
+        })
+    }
+}
+
+/// For each angle of a joint, true if it is at an end of its range.
+fn ends(pose: &Skeleton, joint: JointId) -> [bool; 3] {
+    let joint = &pose[joint];
+    RotationAxis::ALL
+        .map(|axis| joint.limits.span(axis) > 1e-6 && joint.limits.is_at_end(joint.rotation, axis))
+}
+
+/// Base and tip of a joint's bone in the world.
+fn places(pose: &Skeleton, joint: JointId) -> [DVec3; 2] {
+    [pose.base(joint), pose.tip(joint)].map(Vec3::as_dvec3)
+}
+
+/// Base and tip of each joint in the solved pose of a moment, taken along by the FK pose to another
+/// moment: every joint keeps its rotation and its offset relative to FK.
+fn taken_along(before: &RigMoment<'_>, after: &RigMoment<'_>) -> Vec<[DVec3; 2]> {
+    let joints = before.evaluated.solved.joints().iter();
+    let fk = before.evaluated.fk.joints().iter().zip(after.evaluated.fk.joints());
+    let transform = after.evaluated.fk.transform().as_daffine3();
+    let mut spaces: Vec<(DMat3, DVec3)> = Vec::with_capacity(joints.len());
+    let mut taken = Vec::with_capacity(joints.len());
+    for (solved, (fk, fk_after)) in joints.zip(fk) {
+        let [turned, from, to] = [solved, fk, fk_after].map(|it| it.rotation_f64(it.rotation));
+        let offset = fk_after.offset.as_dvec3() + (solved.offset - fk.offset).as_dvec3();
+        let (above, origin) =
+            solved.parent.map_or((DMat3::IDENTITY, DVec3::ZERO), |parent| spaces[parent.index()]);
+        let base = origin + above * offset;
+        let rotation = above * turned * from.transpose() * to;
+        spaces.push((rotation, base));
+        let tip = base + rotation * fk_after.axis.as_dvec3();
+        taken.push([base, tip].map(|point| transform.transform_point3(point)));
+    }
+    taken
+}

@@ -1,0 +1,102 @@
+use std::sync::Arc;
+
+use crate::document::{Document, Inspection, RigKind, Track};
+use crate::io::Progress;
+use crate::kinematics::Shared;
+use crate::session::history::editing::Editing;
+use crate::session::outcome::Outcome;
+
+/// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs on a thread of its
+/// own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inspections {
+    /// What the latest inspection has found, with the revision of the document.
+    found: Option<(u64, Shared<Inspection>)>,
+    running: Option<InspectionJob>,
+}
+
+/// An inspection of a revision of the document.
+#[derive(Clone, Debug)]
+pub struct InspectionJob {
+    revision: u64,
+    track: Track,
+    progress: Arc<Progress>,
+}
+
+/// Starts and ends inspections.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InspectAction {
+    /// An inspection has started; it replaces the one that runs.
+    Started(InspectionJob),
+    /// An inspection has ended; without a result if it was cancelled.
+    Ended(InspectionJob, Option<Box<Inspection>>),
+}
+
+impl InspectionJob {
+    /// An inspection of the present document.
+    #[must_use]
+    pub fn new(editing: &Editing) -> Self {
+        let (revision, track) = (editing.revision(), editing.track().clone());
+        Self { revision, track, progress: Arc::default() }
+    }
+
+    /// Inspects the motion and returns the action that ends the inspection.
+    #[must_use]
+    pub fn run(self) -> InspectAction {
+        let frames = self.track.document().timeline;
+        let total = frames.frames();
+        let go_on = |done| self.progress.step(done, total).is_ok();
+        let found = Inspection::new(&self.track, frames, false, go_on);
+        InspectAction::Ended(self, found.map(Box::new))
+    }
+}
+
+impl PartialEq for InspectionJob {
+    /// Compares revisions, of which the results are a function.
+    fn eq(&self, other: &Self) -> bool {
+        self.revision == other.revision
+    }
+}
+
+impl Inspections {
+    /// What was found in the motion of the present document; `None` while that is not known, or if
+    /// nothing moves.
+    pub(super) fn found(&self, editing: &Editing) -> Option<&Inspection> {
+        let (revision, found) = self.found.as_ref()?;
+        (*revision == editing.revision()).then_some(found)
+    }
+
+    /// The inspection that should run now; `None` if there is nothing new to inspect, or while an
+    /// edit goes on.
+    pub(super) fn next(&self, editing: &Editing) -> Option<InspectionJob> {
+        let revision = editing.revision();
+        let is_known = self.found.as_ref().is_some_and(|(known, _)| *known == revision);
+        let is_running = self.running.as_ref().is_some_and(|job| job.revision == revision);
+        let can_start = !is_known && !is_running && !editing.is_editing();
+        (can_start && is_worth(editing.document())).then(|| InspectionJob::new(editing))
+    }
+
+    pub(super) fn apply(&mut self, action: InspectAction) -> Outcome {
+        match action {
+            InspectAction::Started(job) => {
+                if let Some(running) = self.running.replace(job) {
+                    running.progress.cancel();
+                }
+            }
+            InspectAction::Ended(job, found) => {
+                if self.running.as_ref() == Some(&job) {
+                    self.running = None;
+                }
+                if let Some(found) = found {
+                    self.found = Some((job.revision, Shared::from(*found)));
+                }
+            }
+        }
+        Outcome::default()
+    }
+}
+
+/// True if a document shows a figure whose targets move it.
+fn is_worth(document: &Document) -> bool {
+    document.rig == RigKind::Skeleton && document.is_posed_over_time()
+}
