@@ -25,6 +25,7 @@ pub(super) fn save_picture(
     proxy: EventLoopProxy<UserEvent>,
 ) {
     thread::spawn(move || {
+        let picture = ViewportPicture { posed: picture.posed.into_known(), ..picture };
         let result = match draw(&picture, &path) {
             Ok(()) => Ok(format!("Saved {}", path.display())),
             Err(error) => Err(format!("Not saved: {error}")),

@@ -41,6 +41,12 @@ impl Document {
         moves || self.keys.tracks().any(|(channel, _)| self.poses(channel))
     }
 
+    /// True if anything moves the skeleton or its targets over time, also while the arm is shown.
+    pub(super) fn moves_skeleton(&self) -> bool {
+        let is_of_skeleton = |channel: Channel| channel.rig() == Some(RigKind::Skeleton);
+        self.skeleton_rig.is_moving() || self.keys.tracks().any(|(it, _)| is_of_skeleton(it))
+    }
+
     /// True if the skeleton moves, and targets pose it at some time.
     pub fn is_posed_over_time(&self) -> bool {
         let targets = &self.skeleton_rig.targets;

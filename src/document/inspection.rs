@@ -4,9 +4,11 @@
 mod spans;
 
 use super::{Document, Posed, Timeline, Track};
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::rig::{
-    EvaluatedSkeleton, RigMoment, RigPop, RigPopCause, SkeletonRig, TargetOutcome, TargetReport,
+    EvaluatedSkeleton, Posture, RigMoment, RigPop, RigPopCause, SkeletonRig, TargetOutcome,
+    TargetReport,
 };
 pub use spans::Slide;
 use spans::{Slides, Spans};
@@ -26,6 +28,8 @@ pub struct Inspection {
     pub at_limits: Vec<LimitSpan>,
     /// Spans of frames in which a target with full influence rests and its tip moves.
     pub slides: Vec<Slide>,
+    /// If targets are lost, a posture with which the motion loses none.
+    pub better_posture: Option<Shared<Posture>>,
 }
 
 /// The frame in which a tip is farthest from its target.
@@ -162,6 +166,33 @@ impl Inspection {
     }
 }
 
+/// Remedies.
+impl Inspection {
+    /// If targets are lost, looks for a posture with which the motion loses none: the motion is
+    /// tracked backwards from a solve of a frame that is lost, and then inspected from there.
+    pub fn find_better_posture(
+        &mut self,
+        track: &Track,
+        frames: Timeline,
+        mut go_on: impl FnMut(usize) -> bool,
+    ) {
+        /// Most spans from which a posture is sought.
+        const MOST: usize = 3;
+        for LostSpan { from, to, .. } in self.lost.iter().take(MOST) {
+            for time in [*to, *from] {
+                let Some(posture) = track.posture_reaching(time) else { continue };
+                let mut document = track.document().clone();
+                document.skeleton_rig.posture = Some(posture.clone());
+                let again = Self::new(&Track::new(&document), frames, false, &mut go_on);
+                if again.is_some_and(|again| again.lost.is_empty()) {
+                    self.better_posture = Some(posture);
+                    return;
+                }
+            }
+        }
+    }
+}
+
 /// What an inspection has found so far.
 struct Inspector {
     worst: Vec<Option<WorstMiss>>,
@@ -238,6 +269,7 @@ impl Inspector {
             pops: self.pops,
             at_limits: limits.collect(),
             slides: self.slides.ended(targets),
+            better_posture: None,
         }
     }
 }

@@ -36,6 +36,8 @@ pub struct Posed {
     document: Document,
     time: f64,
     motion: Arc<Motion>,
+    /// The state of another motion from which the pose continues until its own is known.
+    provisional: Option<Arc<Carried>>,
     arm: OnceCell<SolvedArm>,
     skeleton: OnceCell<EvaluatedSkeleton>,
     by_itself: OnceCell<Shared<Skeleton>>,
@@ -96,10 +98,29 @@ impl Track {
             document,
             time,
             motion,
+            provisional: None,
             arm: OnceCell::new(),
             skeleton: OnceCell::new(),
             by_itself: OnceCell::new(),
         }
+    }
+
+    /// True if the pose at a time in seconds is known, or computed in some hundredths of a second.
+    pub fn is_quick_at(&self, time: f64) -> bool {
+        const QUICK: u64 = 1 << 19;
+        self.motion.missing_work(time) <= QUICK
+    }
+
+    /// [`Track::pose`] without the steps until then: continues from the state that `other`, the
+    /// motion before an edit, has before that time.
+    #[must_use]
+    pub fn pose_provisionally(&self, document: Document, time: f64, other: &Self) -> Posed {
+        let known = if other.is_quick_at(time) {
+            other.motion.state_before(time)
+        } else {
+            other.motion.known_before(time)
+        };
+        Posed { provisional: Some(known.unwrap_or_default()), ..self.pose(document, time) }
     }
 
     /// The document posed at a time in seconds as if it were the only one: solved from the FK pose.
@@ -120,6 +141,18 @@ impl Track {
         may_start_afresh: bool,
     ) -> Option<Shared<Posture>> {
         self.motion.posture_after(edited, may_start_afresh)
+    }
+
+    /// The posture of an edited document, whose joints may be others, that begins near a posture of
+    /// its joints.
+    pub fn posture_near(edited: &Document, posture: &Shared<Posture>) -> Option<Shared<Posture>> {
+        Motion::posture_near(edited, posture)
+    }
+
+    /// The posture with which the motion would reach the targets that a solve of the pose at a time
+    /// in seconds by itself reaches: the motion is tracked backwards from there.
+    pub fn posture_reaching(&self, time: f64) -> Option<Shared<Posture>> {
+        self.motion.posture_reaching(time)
     }
 }
 
@@ -231,8 +264,25 @@ impl Posed {
         })
     }
 
+    /// The pose of the document's own motion: computes what a provisional pose has left out.
+    #[must_use]
+    pub fn into_known(self) -> Self {
+        if self.provisional.is_none() {
+            return self;
+        }
+        Self { provisional: None, skeleton: OnceCell::new(), ..self }
+    }
+
+    /// True if the pose continues from the motion before an edit, since its own is not known yet.
+    pub fn is_provisional(&self) -> bool {
+        self.provisional.is_some()
+    }
+
     /// The state from which the skeleton's pose continues; `None` if it continues from none.
     pub fn carried(&self) -> Option<Arc<Carried>> {
+        if let Some(provisional) = &self.provisional {
+            return Some(provisional.clone());
+        }
         self.motion.state_before(self.time).filter(|_| self.document.skeleton_rig.is_tracked)
     }
 

@@ -4,7 +4,7 @@ use crate::document::{Document, Inspection, RigKind, Track};
 use crate::io::Progress;
 use crate::kinematics::Shared;
 use crate::session::history::editing::Editing;
-use crate::session::outcome::Outcome;
+use crate::session::outcome::{Consequence, Outcome};
 
 /// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs on a thread of its
 /// own.
@@ -46,7 +46,10 @@ impl InspectionJob {
         let frames = self.track.document().timeline;
         let total = frames.frames();
         let go_on = |done| self.progress.step(done, total).is_ok();
-        let found = Inspection::new(&self.track, frames, false, go_on);
+        let found = Inspection::new(&self.track, frames, false, go_on).map(|mut found| {
+            found.find_better_posture(&self.track, frames, go_on);
+            found
+        });
         InspectAction::Ended(self, found.map(Box::new))
     }
 }
@@ -90,6 +93,8 @@ impl Inspections {
                 if let Some(found) = found {
                     self.found = Some((job.revision, Shared::from(*found)));
                 }
+                // The inspection has computed the states of the motion that the session shares.
+                return Consequence::Refresh.into();
             }
         }
         Outcome::default()

@@ -24,6 +24,8 @@ pub struct Preferences {
     pub timeline_open: Option<bool>,
     /// True if the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
+    /// True if solver runs start from the FK pose, false if from the frame before.
+    pub runs_from_fk: bool,
     /// True if the hand of the arm was ever dragged, so that no hint is needed.
     pub has_dragged_hand: bool,
     /// True if the tour is offered at the start.
@@ -70,6 +72,7 @@ impl Default for Preferences {
             skeleton_tab: PanelTab::Solver,
             timeline_open: None,
             curves: false,
+            runs_from_fk: false,
             has_dragged_hand: false,
             offers_tour: true,
         }

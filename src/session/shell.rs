@@ -25,6 +25,8 @@ pub enum ShellAction {
     SetNavigation(Navigation),
     /// Sets the time for a frame while something moves.
     SetFrameBudget(FrameBudget),
+    /// Lets solver runs start from the FK pose, instead of from the frame before.
+    RunFromFk(bool),
 }
 
 /// The open dialog and the message in the status bar.
@@ -55,6 +57,10 @@ impl ShellAction {
             }
             Self::SetNavigation(navigation) => {
                 Consequence::Prefer(Preferences { navigation, ..preferences }).into()
+            }
+            Self::RunFromFk(runs_from_fk) => {
+                Outcome::from(Consequence::Prefer(Preferences { runs_from_fk, ..preferences }))
+                    .and(Consequence::Refresh)
             }
             Self::SetFrameBudget(frame_budget) => {
                 Consequence::Prefer(Preferences { frame_budget, ..preferences }).into()

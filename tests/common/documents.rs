@@ -36,7 +36,7 @@ pub fn document(random: &mut Random) -> Document {
             let (home, weight) = (random.finite_vector(), random.positive());
             let enabled = random.coin();
             let (kind, influence) = (target_kind(random), random.within(0.0..1.0));
-            let space = TargetSpace::World;
+            let (space, softness) = (TargetSpace::World, random.within(0.0..0.99));
             rig.targets.push(Target {
                 joint,
                 home,
@@ -44,6 +44,7 @@ pub fn document(random: &mut Random) -> Document {
                 kind,
                 influence,
                 weight,
+                softness,
                 enabled,
                 motion,
             });

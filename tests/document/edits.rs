@@ -14,7 +14,8 @@ use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
-    FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinSource, TargetKind, TargetSpace,
+    FileMesh, LimbSettings, MeshSkin, Posture, PosturedJoint, Skin, SkinFile, SkinSource,
+    TargetKind, TargetSpace,
 };
 use ik_arm::session::{
     ArmEdit, DisplayEdit, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, PoseMode,
@@ -148,6 +149,12 @@ examples! {
         )];
         SetTracked: [SolverEdit::SetTracked(false)];
         ResetPosture: [SolverEdit::ResetPosture];
+        SetPosture: [SolverEdit::SetPosture(Posture {
+            joints: [(JointId::new(AIMED), PosturedJoint {
+                rotation: Some(Vec3::X * 0.1), ..PosturedJoint::default()
+            })].into(),
+            ..Posture::default()
+        }.into())];
         SetIterationsPerFrame: [SolverEdit::SetIterationsPerFrame(17)];
         ApplyPose: [SolverEdit::ApplyPose];
     }

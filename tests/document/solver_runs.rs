@@ -84,12 +84,18 @@ fn bits(skeleton: &Skeleton) -> Vec<[u32; 6]> {
     skeleton.iter().map(|(_, joint)| of(joint)).collect()
 }
 
-/// The FK pose after some iterations of a new solver, with the error that it reports.
+/// The pose of the motion's step before, or the FK pose, after some iterations of a new solver, with
+/// the error that it reports.
 fn fresh(session: &Session, options: &SolverOptions, iterations: u32) -> (Skeleton, f32) {
     let (rig, time) = (session.skeleton_rig(), session.playback().time());
     let mut skeleton = Skeleton::clone(&rig.fk_at(time));
     let mut solver =
         ChainSolver::new(&skeleton, &rig.targets_at(time), options).expect("it can be solved");
+    let carried = session.posed().carried();
+    if let Some(start) = carried.and_then(|carried| carried.body_pose(&skeleton)) {
+        solver.begin_from(&start);
+        skeleton = start;
+    }
     if iterations > 0 {
         for _ in 0..iterations {
             solver.step();

@@ -319,7 +319,7 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
     assert!(!bench.shows(Role::Button, "Apply pose"), "there is no run yet");
     (0..4).for_each(|_| bench.click(Role::Button, "Step"));
     bench.apply([SolverAction::Show(0)]);
-    is_disabled_because(&mut bench, "Iteration 0 is the FK pose already");
+    is_disabled_because(&mut bench, "Iteration 0 is the start already");
     bench.apply([SolverAction::Show(2)]);
     let posed = bench.session().solvers().run().expect("a run").skeleton().clone();
     bench.click(Role::Button, "Apply pose");

@@ -16,6 +16,8 @@ use crate::skeleton::{JointId, JointRemap, Skeleton};
 pub struct Carried {
     /// The posture with which the first step begins; `None` after it.
     posture: Option<Shared<Posture>>,
+    /// True if the first step keeps the posture, false if it solves from there.
+    rests_at_posture: bool,
     /// One for each influence of whole-body targets, the greatest first.
     bodies: Vec<Body>,
     /// By the joint of a limb's target.
@@ -46,6 +48,15 @@ impl Posture {
     /// True if it poses nothing.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty() && self.limbs.is_empty()
+    }
+
+    /// True if a skeleton with this number of joints has all joints of the posture, and all numbers
+    /// are finite.
+    pub fn fits(&self, joints: usize) -> bool {
+        let has = |joint: &JointId| joint.index() < joints;
+        let vectors = self.joints.values().flat_map(|of| [of.rotation, of.offset]).flatten();
+        self.joints.keys().chain(self.limbs.keys()).all(has)
+            && vectors.chain(self.limbs.values().flatten().copied()).all(Vec3::is_finite)
     }
 
     /// The same posture after joints were renumbered, without those that were removed.
@@ -89,9 +100,20 @@ struct Body {
 impl Carried {
     /// The state before the first step of a motion that begins with a posture.
     pub fn from_posture(posture: &Shared<Posture>) -> Self {
+        Self { rests_at_posture: true, ..Self::near_posture(posture) }
+    }
+
+    /// The state before the first step of a motion that begins near a posture, with the pose that is
+    /// solved from there.
+    pub fn near_posture(posture: &Shared<Posture>) -> Self {
         let limbs = &posture.limbs;
         let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_vectors(*it)));
-        Self { posture: Some(posture.clone()), bodies: Vec::new(), limbs: limbs.collect() }
+        Self {
+            posture: Some(posture.clone()),
+            rests_at_posture: false,
+            bodies: Vec::new(),
+            limbs: limbs.collect(),
+        }
     }
 
     /// The posture with which a motion continues from here.
@@ -116,6 +138,12 @@ impl Carried {
     /// About the work of the last step, in the unit of [`ChainSolver::bounded`].
     pub fn work(&self) -> u64 {
         self.bodies.iter().map(|body| body.solver.work()).sum()
+    }
+
+    /// An FK pose with the joints that whole-body targets turn as the last step has posed them,
+    /// before influences; `None` if they posed none.
+    pub fn body_pose(&self, fk: &Skeleton) -> Option<Skeleton> {
+        Some(self.bodies.last()?.posed(fk))
     }
 
     fn steps(&self) -> impl Iterator<Item = &TrackStep> {
@@ -153,6 +181,7 @@ impl Carried {
         let mut before = Before {
             bodies: std::mem::take(&mut self.bodies).into_iter().map(Some).collect(),
             posture: self.posture.take().filter(|posture| !posture.joints.is_empty()),
+            rests_at_posture: self.rests_at_posture,
             work: ChainSolver::POSE_WORK / influences.len() as u64,
         };
         let last = influences.len() - 1;
@@ -173,6 +202,7 @@ impl Carried {
 struct Before {
     bodies: Vec<Option<Body>>,
     posture: Option<Shared<Posture>>,
+    rests_at_posture: bool,
     /// Most work of a body.
     work: u64,
 }
@@ -213,8 +243,9 @@ impl Before {
         has_all_targets: bool,
     ) -> Result<Body, SolveError> {
         let mut solver = ChainSolver::bounded(fk, tips, options, self.work)?;
+        let rests = self.posture.is_some() && self.rests_at_posture && has_all_targets;
         match &self.posture {
-            Some(posture) if has_all_targets => solver.rest_at(&posture.posed(fk)),
+            Some(posture) if rests => solver.rest_at(&posture.posed(fk)),
             Some(posture) => solver.begin_from(&posture.posed(fk)),
             None => {
                 let common = |body: &&Body| {
@@ -226,7 +257,7 @@ impl Before {
                 }
             }
         }
-        if self.posture.is_none() || !has_all_targets {
+        if !rests {
             solver.run();
         }
         Ok(Body { solver, step: None, turns: vec![None; fk.joints().len()] })

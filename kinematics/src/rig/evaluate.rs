@@ -5,9 +5,10 @@ use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
-use crate::chain_ik::{Report, SolveError, TipTarget};
+use crate::chain_ik::{Report, Root, SolveError, TipTarget};
 use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
+use crate::soft_reach::SoftReach;
 
 /// A skeleton posed at a time: by its angles (FK) and by its targets.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,7 +200,10 @@ impl SkeletonRig {
             |target: &Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
         let active = self.targets.iter().filter(|it| is_active(it));
         let active: Vec<BodyTarget> = active
-            .map(|it| BodyTarget { tip: it.tip_target(solved, time), influence: it.influence })
+            .map(|it| BodyTarget {
+                tip: self.tip_target(it, solved, time),
+                influence: it.influence,
+            })
             .collect();
         if active.is_empty() {
             return carried.forget_body();
@@ -251,12 +255,41 @@ impl SkeletonRig {
     }
 }
 
-impl Target {
-    /// The target at a time in seconds, for a solver of chains.
-    pub(super) fn tip_target(&self, pose: &Skeleton, time: f64) -> TipTarget {
-        TipTarget { joint: self.joint, point: self.in_world(pose, time), weight: self.weight }
+impl SkeletonRig {
+    /// A whole-body target at a time in seconds, for a solver of chains, in the FK pose.
+    pub(super) fn tip_target(&self, target: &Target, fk: &Skeleton, time: f64) -> TipTarget {
+        let point = self.softened(target, fk, target.in_world(fk, time));
+        TipTarget { joint: target.joint, point, weight: target.weight }
     }
 
+    /// The point to which solvers bring the tip of a whole-body target that is at `point`, in the
+    /// world. With [`Target::softness`], it stays a little nearer to the base of the chain, so that
+    /// joints do not race where the chain becomes straight: its distance from the topmost joint
+    /// that turns goes through the curve of [soft limits](crate::soft_reach), at the outer limit
+    /// alone. The root must not be free to move.
+    pub fn softened(&self, target: &Target, fk: &Skeleton, point: Vec3) -> Vec3 {
+        let Ok(soft) = SoftReach::new(target.softness, 1.0, 0.0) else { return point };
+        let turns = |joint: &JointId| !fk[*joint].locked;
+        let top = fk.ancestors(target.joint).filter(turns).last();
+        let Some(top) = top.filter(|_| !soft.is_hard() && self.solver.root != Root::Free) else {
+            return point;
+        };
+        let below = fk.ancestors(target.joint).take_while(|joint| *joint != top);
+        let offsets = below.map(|joint| f64::from(fk[joint].offset.length())).sum::<f64>();
+        let scale = f64::from(fk.transform().matrix3.determinant().abs()).cbrt();
+        let most = (offsets + f64::from(fk[target.joint].axis.length())) * scale;
+        let base = fk.base(top).as_dvec3();
+        let way = point.as_dvec3() - base;
+        let distance = way.length();
+        if !(distance > 0.5 * most && distance.is_finite()) {
+            return point;
+        }
+        let (softened, _) = soft.between(0.0, most, distance);
+        (base + way * (softened / distance)).as_vec3()
+    }
+}
+
+impl Target {
     fn limb_target(&self, settings: &LimbSettings, pose: &Skeleton, time: f64) -> LimbTarget {
         LimbTarget {
             point: self.in_world(pose, time),

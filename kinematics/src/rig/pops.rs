@@ -185,7 +185,7 @@ impl Step<'_> {
         let ways = targets.iter().map(|it| (*it, self.way(*it, moved)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ratio = moved / way.max(LEAST_WAY * length);
-        if !(ratio > self.bound(targets[0])) {
+        if ratio <= self.bound(targets[0]) || ratio.is_nan() {
             return None;
         }
         let cause = self.cause(targets, farthest, &joints, joint, length);
@@ -219,7 +219,7 @@ impl Step<'_> {
         let taken = self.taken[after.0.joint.index()][1] - tip(&self.before);
         let way = ((place(after.1) - place(before.1)) - taken).length();
         let influence = f64::from((after.0.influence - before.0.influence).abs());
-        let of_influence = influence * self.from_fk(after.0);
+        let of_influence = influence * self.distance_from_fk(after.0);
         let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
         let of_twist = (twist(after.0) - twist(before.0)).abs().min(2.0) * self.length(index) / 2.0;
         let pole = |report: &TargetReport| report.pole.map(Vec3::as_dvec3);
@@ -234,7 +234,7 @@ impl Step<'_> {
     }
 
     /// Largest distance of a joint that a target turns from its place in the FK pose, per influence.
-    fn from_fk(&self, target: &Target) -> f64 {
+    fn distance_from_fk(&self, target: &Target) -> f64 {
         let EvaluatedSkeleton { fk, solved, .. } = self.after.evaluated;
         let turned = self.after.rig.moved_by(target).turned;
         let apart = turned.iter().map(|joint| {

@@ -156,7 +156,7 @@ impl SkeletonRig {
     pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
         let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
-        enabled.map(|target| target.tip_target(&fk, time)).collect()
+        enabled.map(|target| self.tip_target(target, &fk, time)).collect()
     }
 
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.

@@ -22,6 +22,9 @@ pub struct Target {
     pub influence: f32,
     /// Weight relative to the other whole-body targets, above 0.
     pub weight: f32,
+    /// How a whole-body target slows its tip before the chain is straight, from 0, not at all, to
+    /// less than 1; see [`SkeletonRig::softened`](super::SkeletonRig::softened).
+    pub softness: f32,
     /// True if the target has any effect.
     pub enabled: bool,
     /// Motion in time, in the target's space.
@@ -52,6 +55,7 @@ impl Target {
             kind: TargetKind::WholeBody,
             influence: 0.0,
             weight: 1.0,
+            softness: 0.0,
             enabled: true,
             motion,
         }

@@ -36,7 +36,7 @@ impl Grid {
         let grid =
             Self { start: document.motion_start(), rate: frame_rate, steps_per_frame, last: 0 };
         let end = document.keys.times().last().map_or(end, |last| last.max(end));
-        let last = if document.is_moving() { grid.steps_until(end) } else { 0.0 };
+        let last = if document.moves_skeleton() { grid.steps_until(end) } else { 0.0 };
         Self { last: (last - Self::ROUNDING).ceil().clamp(0.0, Self::MOST) as usize, ..grid }
     }
 
@@ -83,11 +83,12 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Channel;
 
     fn grid(start: f64, end: f64, frame_rate: f64) -> (Grid, Timeline) {
         let timeline = Timeline { start, end, frame_rate };
         let mut document = Document { timeline, ..Document::default() };
-        document.key(crate::document::Channel::Twist, start);
+        document.key(Channel::Translation, start);
         (Grid::new(&document), timeline)
     }
 

@@ -123,6 +123,34 @@ impl Motion {
         }
     }
 
+    /// About the work of the steps until a time in seconds whose states are not known, in the unit
+    /// of [`Motion::MOST_WORK`].
+    pub fn missing_work(&self, time: f64) -> u64 {
+        let Some(grid) = self.grid else { return 0 };
+        let wanted = match grid.place(time) {
+            Place::Before => 0,
+            Place::On(step) | Place::After(step) => step,
+        };
+        let states = self.states();
+        let (known, of_known) =
+            states.before(wanted).map_or((0, 0), |(step, state)| (step + 1, state.work));
+        let of_step = of_known.checked_div(known as u64).unwrap_or_else(|| {
+            let rig = &self.document.skeleton_rig;
+            Self::WORK_OF_STEP + (8 * rig.skeleton.joints().len() * rig.targets.len()) as u64
+        });
+        // States after the end, which is not known, are counted, too.
+        (wanted.min(grid.last) + 1).saturating_sub(known) as u64 * of_step
+    }
+
+    /// The last known state before a time in seconds; `None` if none is known.
+    pub fn known_before(&self, time: f64) -> Option<Arc<Carried>> {
+        let step = match self.grid?.place(time) {
+            Place::Before => 0,
+            Place::On(step) | Place::After(step) => step,
+        };
+        Some(self.states().before(step)?.1.carried)
+    }
+
     /// The posture of this motion after an edit: one step from its first state to the inputs that
     /// an edited document has there, and as many more as targets are held back. `None` if the
     /// edited document begins with the FK pose.
@@ -155,6 +183,34 @@ impl Motion {
         }
         let posture = carried.to_posture();
         (!posture.is_empty()).then(|| posture.into())
+    }
+
+    /// The posture of an edited document, whose joints may be others, that begins near a posture of
+    /// its joints.
+    pub fn posture_near(edited: &Document, posture: &Shared<Posture>) -> Option<Shared<Posture>> {
+        if !edited.is_tracked() {
+            return None;
+        }
+        let (start, near) = (edited.motion_start(), Carried::near_posture(posture));
+        let posture = rig_at(edited, start).settle(start, &near).1.to_posture();
+        (!posture.is_empty()).then(|| posture.into())
+    }
+
+    /// The posture with which the motion would come to a solve of the FK pose at a time in seconds:
+    /// tracked backwards from there. `None` if no pose depends on those before.
+    pub fn posture_reaching(&self, time: f64) -> Option<Shared<Posture>> {
+        let grid = self.grid?;
+        let last = match grid.place(time) {
+            Place::Before => return None,
+            Place::On(step) | Place::After(step) => step.min(Self::MOST_STEPS),
+        };
+        let mut carried = Carried::default();
+        rig_at(&self.document, time).carry(time, &mut carried);
+        for step in (0..=last).rev() {
+            let time = grid.time(step);
+            rig_at(&self.document, time).carry(time, &mut carried);
+        }
+        Some(carried.to_posture().into())
     }
 
     /// The state after a step, or after the last one of the motion if that comes before, with its

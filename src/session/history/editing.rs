@@ -19,6 +19,8 @@ pub struct Editing {
     track: Track,
     /// The track with unkeyed edits as keys at the playhead.
     shown_track: Track,
+    /// The last track whose pose at the playhead was known.
+    known_track: Track,
     /// The document posed at the playhead, with unkeyed edits.
     posed: Posed,
     /// True if the next change of the document begins with the FK pose instead of a posture.
@@ -59,6 +61,7 @@ impl Editing {
         Self {
             posed: track.pose(document.clone(), 0.0),
             shown_track: track.clone(),
+            known_track: track.clone(),
             track,
             resets_posture: false,
             document,
@@ -289,7 +292,12 @@ impl Editing {
         for (channel, value) in &self.overrides {
             channel.set(&mut shown, *value);
         }
-        self.posed = self.shown_track.pose(shown, time);
+        self.posed = if self.shown_track.is_quick_at(time) {
+            self.known_track = self.shown_track.clone();
+            self.shown_track.pose(shown, time)
+        } else {
+            self.shown_track.pose_provisionally(shown, time, &self.known_track)
+        };
     }
 
     /// The document with the unkeyed edits as keys at `time`, in seconds.

@@ -52,13 +52,17 @@ impl Session {
             }
             Action::View(action) => self.view.apply(action, document.camera, self.preferences),
             Action::Playback(action) => self.playback.apply(action, &document.timeline),
-            Action::Solver(action) => self.solvers.apply(action, self.editing.posed()),
+            Action::Solver(action) => self.apply_to_solvers(action),
             Action::Shell(action) => {
                 let arm = (self.rig() == RigKind::Arm).then(|| self.arm());
                 action.apply(arm, self.preferences)
             }
         };
         self.act(outcome)
+    }
+
+    fn apply_to_solvers(&mut self, action: SolverAction) -> Outcome {
+        self.solvers.apply(action, self.editing.posed(), self.preferences.runs_from_fk)
     }
 
     /// Applies an edit as an undo step of its own, or as part of the open transaction.
@@ -174,7 +178,7 @@ impl Session {
             Consequence::LookInside => {
                 let look = SolverAction::ShowPart { iteration: 1, part: Some(0) };
                 for action in [SolverAction::Step, look] {
-                    let outcome = self.solvers.apply(action, self.editing.posed());
+                    let outcome = self.apply_to_solvers(action);
                     self.act(outcome);
                 }
             }
@@ -210,7 +214,7 @@ impl Session {
         if self.solvers.is_idle() {
             return;
         }
-        let inputs = SolverInputs::of(self.posed()).ok();
+        let inputs = SolverInputs::of(self.posed(), self.preferences.runs_from_fk).ok();
         if let Err(error) = self.solvers.follow(inputs) {
             self.act(Outcome::fail(error.to_string()));
         }

@@ -133,7 +133,7 @@ fn matched(
         return Outcome::default();
     };
     let time = session.playback().time();
-    let before = session.posed().carried().unwrap_or_default();
+    let before = session.posed().clone().into_known().carried().unwrap_or_default();
     Outcome::change(session.shown(), |document| {
         matched(&mut document.skeleton_rig, index, time, &before);
     })
@@ -152,7 +152,7 @@ pub(in crate::session) fn set_target(session: &Session, target: Target) -> Outco
 
 /// The rule that a target breaks; `None` for a valid one.
 fn fault(target: &Target) -> Option<String> {
-    let Target { home, motion, weight, influence, .. } = *target;
+    let Target { home, motion, weight, softness, influence, .. } = *target;
     let above_0 = |value: f32| value.is_finite() && value > 0.0;
     if !home.is_finite() {
         Some(format!("The position of a target must be finite, got {home}"))
@@ -162,6 +162,8 @@ fn fault(target: &Target) -> Option<String> {
         Some("The path of a target must have a period above 0 and a finite radius".to_owned())
     } else if !(0.0..=1.0).contains(&influence) {
         Some(format!("The influence of a target must be from 0 to 1, got {influence}"))
+    } else if !(0.0..1.0).contains(&softness) {
+        Some(format!("The softness of a target must be from 0 to less than 1, got {softness}"))
     } else if !target.has_finite_kind() {
         Some("The twist, pole and orientation of a limb's target must be finite".to_owned())
     } else {

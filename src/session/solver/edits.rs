@@ -1,6 +1,8 @@
 use super::run::SolverRun;
 use crate::document::SkeletonRig;
+use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::SolverOptions;
+use crate::rig::Posture;
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::session::Session;
 
@@ -16,6 +18,8 @@ pub enum SolverEdit {
     /// Lets the motion begin with the pose that is solved from the joints' own angles, instead of
     /// the posture that drags have left.
     ResetPosture,
+    /// Lets the motion begin with another posture.
+    SetPosture(Shared<Posture>),
     /// Writes the shown iterate of the solver run to the joints' own angles and offsets, and ends
     /// the run.
     ApplyPose,
@@ -29,6 +33,7 @@ impl SolverEdit {
                 "Change solver"
             }
             Self::ResetPosture => "Reset posture",
+            Self::SetPosture(_) => "Change posture",
             Self::ApplyPose => "Apply pose",
         }
     }
@@ -50,10 +55,20 @@ impl SolverEdit {
             Self::SetTracked(is_tracked) => Outcome::change(session.shown(), |document| {
                 document.skeleton_rig.is_tracked = is_tracked;
             }),
-            Self::ResetPosture => Outcome::from(Consequence::ResetPosture)
-                .and(Outcome::change(session.shown(), |document| {
-                    document.skeleton_rig.posture = None
-                })),
+            Self::ResetPosture => Outcome::from(Consequence::ResetPosture).and(Outcome::change(
+                session.shown(),
+                |document| {
+                    document.skeleton_rig.posture = None;
+                },
+            )),
+            Self::SetPosture(_) if session.history().is_editing() => {
+                Outcome::say("End the drag first")
+            }
+            Self::SetPosture(posture) => Outcome::change(session.shown(), |document| {
+                let joints = document.skeleton().joints().len();
+                let posture = Some(posture).filter(|posture| posture.fits(joints));
+                document.skeleton_rig.posture = posture;
+            }),
             Self::ApplyPose => apply_pose(session),
         }
     }

@@ -5,7 +5,7 @@ use crate::kinematics::chain_ik::{Report, SubStep};
 use crate::kinematics::skeleton::Skeleton;
 use crate::session::cached::Cached;
 
-/// Iterates of a solver run, oldest first. Iterate 0 is the FK pose.
+/// Iterates of a solver run, oldest first. Iterate 0 is the start.
 ///
 /// At most 4096 iterates and about 32 MiB are kept. Beyond that every second iterate is dropped, so
 /// that the first and the latest remain and the whole run is shown in coarser steps.

@@ -8,21 +8,25 @@ use crate::kinematics::chain_ik::{
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::session::solver::iterates::{Inside, Iterate, Iterates};
 
-/// Inputs of a solver run: the FK pose, the targets and the options of a document at a time.
+/// Inputs of a solver run: the FK pose, the start, the targets and the options of a document at a
+/// time.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::session) struct SolverInputs {
     pub fk: Shared<Skeleton>,
+    /// The pose with which the run starts: the FK pose, or that of the motion's step before.
+    pub start: Shared<Skeleton>,
     pub targets: Vec<TipTarget>,
     pub options: SolverOptions,
 }
 
 impl SolverInputs {
-    /// The inputs of a pose.
+    /// The inputs of a pose. The run starts from the pose from which the motion continues; from the
+    /// FK pose if there is none, or if `from_fk`.
     ///
     /// # Errors
     ///
     /// The reason why there is nothing to solve.
-    pub fn of(posed: &Posed) -> Result<Self, &'static str> {
+    pub fn of(posed: &Posed, from_fk: bool) -> Result<Self, &'static str> {
         let Document { rig, skeleton_rig, .. } = posed.document();
         if *rig != RigKind::Skeleton {
             return Err("Show the skeleton to solve it");
@@ -35,17 +39,24 @@ impl SolverInputs {
         if targets.is_empty() {
             return Err("There is no target to solve for; add one to a joint");
         }
-        Ok(Self { fk: rig.fk_at(time), targets, options: rig.solver })
+        let fk = rig.fk_at(time);
+        let carried = posed.carried().filter(|_| !from_fk);
+        let start = carried.and_then(|carried| carried.body_pose(&fk)).map(Shared::from);
+        Ok(Self { start: start.unwrap_or_else(|| fk.clone()), fk, targets, options: rig.solver })
     }
 
     /// A solver with the bound of a pose, so that the window stays responsive.
     pub fn solver(&self) -> Result<ChainSolver, SolveError> {
-        let Self { fk, targets, options } = self;
-        ChainSolver::bounded(fk, targets, options, ChainSolver::POSE_WORK)
+        let Self { fk, start, targets, options } = self;
+        let mut solver = ChainSolver::bounded(fk, targets, options, ChainSolver::POSE_WORK)?;
+        if start != fk {
+            solver.begin_from(start);
+        }
+        Ok(solver)
     }
 }
 
-/// A view on a solve: a solver runs on a copy of the FK pose, every iterate is kept, and one of
+/// A view on a solve: a solver runs on a copy of the pose, every iterate is kept, and one of
 /// them is shown. The document does not change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverRun {
@@ -72,7 +83,7 @@ impl SolverRun {
 
     pub(in crate::session) fn new(inputs: SolverInputs) -> Result<Self, SolveError> {
         let solver = inputs.solver()?;
-        let skeleton = Skeleton::clone(&inputs.fk);
+        let skeleton = Skeleton::clone(&inputs.start);
         Ok(Self {
             inputs,
             wanted: Some(0),
@@ -186,7 +197,7 @@ impl SolverRun {
         for _ in 0..before {
             solver.step();
         }
-        solver.step_inside(&self.inputs.fk).1
+        solver.step_inside(&self.inputs.start).1
     }
 
     /// Looks at a part of the shown iteration, or at its last one if it has fewer; for `None`, at
@@ -245,7 +256,7 @@ impl SolverRun {
 
     fn pose_before(&self, part: usize) -> SkeletonPose {
         let Some(previous) = part.checked_sub(1) else {
-            let mut skeleton = Skeleton::clone(&self.inputs.fk);
+            let mut skeleton = Skeleton::clone(&self.inputs.start);
             self.iterates.at(self.shown().iteration.saturating_sub(1)).write(&mut skeleton);
             return skeleton.pose();
         };
@@ -297,7 +308,7 @@ impl SolverRun {
     }
 }
 
-/// A comparison of all solvers, run side by side from the FK pose to the same targets. Like a
+/// A comparison of all solvers, run side by side from one start to the same targets. Like a
 /// single [`SolverRun`], it does not change the document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
@@ -388,7 +399,7 @@ fn with_method(inputs: &SolverInputs, method: Method) -> SolverInputs {
 /// The shown iteration of a solver run or of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShownIteration {
-    /// Number of the shown iteration: 0 is the FK pose.
+    /// Number of the shown iteration: 0 is the start.
     pub number: u32,
     /// Number of the latest iteration.
     pub latest: u32,

@@ -4,7 +4,7 @@ use crate::session::outcome::{Consequence, Outcome};
 use crate::session::preferences::PanelTab;
 use crate::session::solver::run::{Comparison, ShownIteration, SolverInputs, SolverRun};
 
-/// Runs and compares solvers on copies of the FK pose; the document does not change.
+/// Runs and compares solvers on copies of the pose; the document does not change.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolverAction {
     /// Starts or pauses the solver.
@@ -24,7 +24,7 @@ pub enum SolverAction {
     },
     /// Shows the parts of the iterations one after the other, or stops that.
     Walk(bool),
-    /// Shows the latest kept iterate of at most this number of iterations: 0 is the FK pose. From
+    /// Shows the latest kept iterate of at most this number of iterations: 0 is the start. From
     /// the number of the latest on, each iterate is shown as it is made.
     Show(u32),
 }
@@ -43,10 +43,15 @@ pub enum Solvers {
 }
 
 impl Solvers {
-    /// Applies an action on a pose. The page on the right that shows what was started comes to the
+    /// Applies an action on a pose; `from_fk`: see [`SolverInputs::of`]. The page on the right that shows what was started comes to the
     /// front.
-    pub(in crate::session) fn apply(&mut self, action: SolverAction, posed: &Posed) -> Outcome {
-        let inputs = || SolverInputs::of(posed).map_err(Outcome::say);
+    pub(in crate::session) fn apply(
+        &mut self,
+        action: SolverAction,
+        posed: &Posed,
+        from_fk: bool,
+    ) -> Outcome {
+        let inputs = || SolverInputs::of(posed, from_fk).map_err(Outcome::say);
         match action {
             SolverAction::Run(true) => {
                 let started = inputs().map(|inputs| self.start(inputs));
@@ -225,7 +230,7 @@ impl Solvers {
     }
 
     /// Adopts the present inputs: if they have changed, the run or the comparison is made anew from
-    /// the FK pose, with as many iterations. It ends if there are no inputs, or if the solver
+    /// its start, with as many iterations. It ends if there are no inputs, or if the solver
     /// refuses them.
     pub(in crate::session) fn follow(
         &mut self,

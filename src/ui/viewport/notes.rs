@@ -125,3 +125,17 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
         });
     });
 }
+
+/// Says that the pose is not that of the motion yet, because a thread computes that.
+pub(super) fn provisional(ui: &Ui, session: &Session, viewport: Rect) {
+    if !session.posed().is_provisional() || session.rig() != RigKind::Skeleton {
+        return;
+    }
+    let area = Area::new(Id::unique("provisional pose")).order(Order::Middle);
+    let corner = viewport.left_bottom() + vec2(MARGIN, -MARGIN);
+    area.pivot(Align2::LEFT_BOTTOM).fixed_pos(corner).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.label("Provisional pose: the motion until here is being computed");
+        });
+    });
+}

@@ -161,6 +161,7 @@ kinds! {
         SetSolver: Solve 3, |v| SolverEdit::SetSolver(v.options());
         SetTracked: Solve 1, |v| SolverEdit::SetTracked(v.coin());
         ResetPosture: Solve 1, |_| SolverEdit::ResetPosture;
+        SetPosture: Solve 1, |v| SolverEdit::SetPosture(v.posture().into());
         SetIterationsPerFrame: Solve 1, |v| SolverEdit::SetIterationsPerFrame(v.iterations_per_frame());
         ApplyPose: Solve 3, |_| SolverEdit::ApplyPose;
     }
@@ -294,6 +295,7 @@ kinds! {
     Shell () (ShellAction) {
         SetTheme: Look 1, |v| ShellAction::SetTheme(v.one_of(&[Theme::Dark, Theme::Light]));
         SetNavigation: Look 1, |v| ShellAction::SetNavigation(v.one_of(&Navigation::ALL));
+        RunFromFk: Look 1, |v| ShellAction::RunFromFk(v.coin());
         SetFrameBudget: Look 1, |v| ShellAction::SetFrameBudget(v.one_of(&FrameBudget::ALL));
         OpenDialog: Look 2, |v| ShellAction::OpenDialog(v.dialog());
         CloseDialog: Look 1, |_| ShellAction::CloseDialog;

@@ -191,7 +191,9 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
 }
 
 fn target(target: &Target, joints: usize) -> Result<(), Broken> {
-    let Target { joint, home, space: _, kind: _, influence, weight, enabled: _, motion } = target;
+    let Target { joint, home, space: _, kind: _, influence, weight, softness, enabled: _, motion } =
+        target;
+    hold!((0.0..1.0).contains(softness), "the softness is from 0 to less than 1: {softness}");
     hold!(*joint < JointId::new(joints), "a target is of a joint: {joint} of {joints}");
     hold!(home.is_finite() && is_above_0(*weight), "a target can be aimed at: {target:?}");
     hold!((0.0..=1.0).contains(influence), "influence is a fraction: {target:?}");

@@ -103,7 +103,8 @@ impl SkeletonRig {
             return Vec::new();
         }
         let active = self.targets.iter().filter(|it| self.is_solved_for(it)).filter(is_whole_body);
-        let tips: Vec<TipTarget> = active.map(|it| it.tip_target(&evaluated.fk, time)).collect();
+        let tips: Vec<TipTarget> =
+            active.map(|it| self.tip_target(it, &evaluated.fk, time)).collect();
         chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
     }
 }

@@ -30,6 +30,8 @@ pub struct TargetFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     influence: Option<Fraction>,
     weight: Option<Above0>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    softness: Option<JsonNumber>,
     enabled: Option<bool>,
     motion: Option<JsonObject<TargetMotionFields>>,
 }
@@ -120,6 +122,7 @@ impl TargetFields {
             },
             influence: (target.influence != 0.0).then_some(target.influence.into()),
             weight: Some(target.weight.into()),
+            softness: (target.softness != 0.0).then_some(target.softness.into()),
             enabled: Some(target.enabled),
             motion: Some(JsonObject(motion)),
         }
@@ -133,11 +136,16 @@ impl TargetFields {
             None => TargetKind::WholeBody,
         };
         let motion = self.motion.map(|JsonObject(fields)| fields.motion(default.motion));
+        let softness = value_or(self.softness, default.softness);
+        if !(0.0..1.0).contains(&softness) {
+            return Err(format!("must be from 0 to less than 1, got {softness}")).at("softness");
+        }
         Ok(Target {
             space: space(self.on_joint, joints).at("on_joint")?,
             kind,
             influence: value_or(self.influence, default.influence),
             weight: value_or(self.weight, default.weight),
+            softness,
             enabled: self.enabled.unwrap_or(default.enabled),
             motion: motion.unwrap_or(default.motion),
             ..default

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Editing;
-use crate::document::{Arm, Channel, Document, Keys, PathKind, TwistReferenceKind};
+use crate::document::{Arm, Channel, Document, Keys, PathKind, Track, TwistReferenceKind};
 use crate::session::history::steps::TreeChange;
 use crate::session::playback::Playback;
 
@@ -60,8 +60,14 @@ impl Editing {
         let is_drag = self.is_editing();
         let is_same_tree = change == TreeChange::Kept
             && after.skeleton().joints().len() == self.document.skeleton().joints().len();
-        after.skeleton_rig.posture = if is_reset || !is_same_tree {
+        let posture = after.skeleton_rig.posture.take();
+        after.skeleton_rig.posture = if is_reset {
             None
+        } else if !is_same_tree {
+            posture.and_then(|posture| Track::posture_near(after, &posture))
+        } else if !is_drag && posture != self.document.skeleton_rig.posture {
+            // The edit has chosen it.
+            posture
         } else {
             self.track.posture_after(after, !is_drag)
         };

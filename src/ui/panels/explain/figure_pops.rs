@@ -59,6 +59,12 @@ fn lost(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
             (*from, *target, format!("{}{until}", words::lost(rig, *target, *miss)))
         };
         lines(ui, found.lost.iter().map(line), actions);
+        if let Some(posture) = &found.better_posture {
+            let tooltip = "Begin the motion in another pose, from which it loses no target";
+            if widgets::button(ui, "Begin in another pose", tooltip, None) {
+                actions.push(SolverEdit::SetPosture(posture.clone()));
+            }
+        }
     });
 }
 

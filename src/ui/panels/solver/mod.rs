@@ -6,7 +6,7 @@ mod runs;
 use egui::{ComboBox, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
-use crate::session::{Actions, Session, ShownIteration, SolverAction, SolverEdit};
+use crate::session::{Actions, Session, ShellAction, ShownIteration, SolverAction, SolverEdit};
 use crate::ui::widgets::{self, NumberField, text};
 use runs::why_not;
 
@@ -199,6 +199,18 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             actions.push(SolverAction::Reset);
         }
     });
+    start(ui, session, actions);
+}
+
+/// Whether runs start from the FK pose, where the motion gives another start.
+fn start(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    if session.posed().carried().is_none() {
+        return;
+    }
+    let from_fk = session.preferences().runs_from_fk;
+    let tooltip = "Start runs from the joint angles alone, not from the frame before";
+    let changed = widgets::check_box(ui, "Start from the FK pose", tooltip, from_fk, None);
+    actions.extend(changed.map(ShellAction::RunFromFk));
 }
 
 /// Shows the report on the shown iterate or the evaluated pose, at constant height so that nothing

@@ -171,7 +171,7 @@ fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Ac
         _ if session.solvers().comparison().is_some() => {
             Some("End the race and run one solver to apply its pose")
         }
-        0 => Some("Iteration 0 is the FK pose already"),
+        0 => Some("Iteration 0 is the start already"),
         _ => None,
     };
     let tooltip = "Write the shown pose to the joints' own angles (FK)";
@@ -182,7 +182,7 @@ fn apply(ui: &mut Ui, session: &Session, shown: ShownIteration, actions: &mut Ac
 
 pub(in crate::ui) fn race(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(comparison) = session.solvers().comparison() else {
-        let tooltip = "Run every solver from the FK pose, each as a coloured ghost";
+        let tooltip = "Run every solver from the same start, each as a coloured ghost";
         if widgets::button(ui, "Race all solvers", tooltip, why_not(session)) {
             actions.push(SolverAction::Compare);
         }

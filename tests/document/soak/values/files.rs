@@ -7,6 +7,7 @@ use glam::{Affine3A, Vec3};
 use ik_arm::document::{Bake, Baked, Document, Inspection, RigKind, SkeletonRig, Timeline};
 use ik_arm::io::{Example, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::rig::{Posture, PosturedJoint};
 use ik_arm::session::{
     BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, InspectAction, InspectionJob,
     PathDialog,
@@ -49,6 +50,13 @@ impl Values<'_> {
             Some(Dialog::Bake { job: Some(job), .. }) => job.clone(),
             _ => BakeJob { progress: Arc::new(Progress::default()) },
         }
+    }
+
+    /// A posture of one joint, which the skeleton may not have.
+    pub fn posture(&mut self) -> Posture {
+        let rotation = Some(self.angles());
+        let joint = PosturedJoint { rotation, offset: self.coin().then(|| self.angles()) };
+        Posture { joints: [(self.joint(), joint)].into(), ..Posture::default() }
     }
 
     /// The end of an inspection of the present document, cancelled half the time.

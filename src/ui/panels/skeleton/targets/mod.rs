@@ -6,7 +6,7 @@ mod limb;
 use egui::{RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
-use crate::kinematics::chain_ik::Status;
+use crate::kinematics::chain_ik::{Root, Status};
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::limb_ik::LimbReach;
 use crate::kinematics::skeleton::JointId;
@@ -151,6 +151,22 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
     };
     let set = |weight| TargetEdit::SetTarget(Target { weight, ..target });
     weight.row(ui, session, "Weight", actions, set);
+    let softness = Slider {
+        name: "Target softness",
+        label: "Softness",
+        term: Some("Softness"),
+        tooltip: "Slow the tip before the chain is straight, so that no joint snaps",
+        value: target.softness,
+        range: (0.0, 0.9),
+        default: 0.0,
+        step: 0.1,
+        disabled: (session.skeleton_rig().solver.root == Root::Free)
+            .then_some("A root that moves freely is never too far away"),
+        ..Slider::default()
+    };
+    softness.show(ui, session, actions, |softness| {
+        TargetEdit::SetTarget(Target { softness: softness.clamp(0.0, 0.99), ..target })
+    });
 }
 
 /// Shows the buttons that match the target and the FK pose.
