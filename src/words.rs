@@ -78,6 +78,9 @@ pub fn cause_with(found: &Diagnosis, names: Names<'_>) -> String {
         Cause::Stalled => {
             format!("The solver stopped where no small turn helps, though {target} can get nearer")
         }
+        Cause::Lost => format!(
+            "{target} can reach its target from another pose, but not from the one to which the motion came"
+        ),
         Cause::Singular { .. } => {
             format!("No joint can move {target} in the direction of its target")
         }

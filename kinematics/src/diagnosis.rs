@@ -101,6 +101,8 @@ pub enum Cause {
         /// Number of iterations after which the solver stopped.
         iterations: u32,
     },
+    /// The target can be reached, but not from the pose to which the motion has come.
+    Lost,
     /// The pose is a mix of the FK pose and the solved one, which reaches the target.
     Influence {
         /// Fraction of the way from the FK pose to the solved one.
@@ -129,6 +131,7 @@ impl Cause {
             Self::Locked => "locked",
             Self::Conflict { .. } => "conflict",
             Self::Stalled => "stalled",
+            Self::Lost => "lost",
             Self::Singular { .. } => "singular",
             Self::OutOfIterations { .. } => "out_of_iterations",
             Self::Influence { .. } => "influence",

@@ -3,15 +3,17 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
+    Channel, Document, Posed, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
+    Track,
 };
 use ik_arm::io;
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
+use ik_arm::kinematics::spline::{Interpolation, Knot};
 use ik_arm::rig::{LimbSettings, TargetKind};
 use ik_arm::session::{
-    JointEdit, KeysEdit, PlaybackAction, Session, TargetEdit, TransactionAction,
+    InspectAction, JointEdit, KeysEdit, PlaybackAction, Session, TargetEdit, TransactionAction,
 };
 
 use crate::common::Random;
@@ -100,7 +102,10 @@ fn times(random: &mut Random, timeline: Timeline) -> Vec<f64> {
 }
 
 fn bits(track: &Track, time: f64) -> Vec<u32> {
-    let posed = track.at(time);
+    bits_of(&track.at(time))
+}
+
+fn bits_of(posed: &Posed) -> Vec<u32> {
     let joints = posed.skeleton().joints().iter();
     let numbers = joints.flat_map(|joint| [joint.rotation, joint.offset].map(|it| it.to_array()));
     numbers.flatten().map(f32::to_bits).collect()
@@ -375,4 +380,60 @@ fn a_joint_edit_takes_the_posture_along() {
     assert!(moved < 0.2, "moved by {moved}");
     let error = session.posed().targets()[0].error;
     assert!(error <= session.skeleton_rig().tolerance(), "off by {error}");
+}
+
+/// A chain of 60 bones whose tip goes around for a minute.
+fn long_motion() -> Document {
+    let mut rig = SkeletonRig::new(chain(&mut Random(1207), 60, false));
+    let tip = JointId::new(60);
+    let home = rig.skeleton.tip(tip) * 0.6;
+    let motion = TargetMotion { path: TargetPath::Circle, radius: 6.0, period: 4.0 };
+    rig.targets.push(Target { influence: 1.0, motion, ..Target::new(tip, home, 0.3) });
+    let timeline = Timeline { start: 0.0, end: 60.0, frame_rate: 30.0 };
+    Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() }
+}
+
+#[test]
+fn a_motion_that_takes_long_is_shown_provisionally_until_a_thread_has_computed_it() {
+    let document = long_motion();
+    let mut session = Session::with_document(Default::default(), document.clone());
+    session.apply(PlaybackAction::SetTime(50.0));
+    assert!(session.posed().is_provisional());
+    let known = bits(&Track::new(&document), 50.0);
+    let job = session.next_inspection().expect("a motion to inspect");
+    session.apply(InspectAction::Started(job.clone()));
+    session.apply(job.run());
+    assert!(!session.posed().is_provisional());
+    assert_eq!(bits_of(session.posed()), known);
+
+    // An edit shows one step from the motion before it, and then its own.
+    let target = session.skeleton_rig().targets[0];
+    session.apply(TargetEdit::SetTarget(Target { home: target.home + Vec3::X * 0.1, ..target }));
+    assert!(session.posed().is_provisional());
+    let report = &session.posed().targets()[0];
+    assert!(report.error < 0.05, "the provisional pose follows the edit: {}", report.error);
+    let exact = session.posed().clone().into_known();
+    assert_eq!(bits_of(&exact), bits(&Track::new(session.document()), 50.0));
+}
+
+#[test]
+fn softness_keeps_a_chain_from_snapping_straight() {
+    let mut rig = SkeletonRig::new(chain(&mut Random(1208), 5, false));
+    let tip = JointId::new(5);
+    let (home, length) = (rig.skeleton.tip(tip), rig.length_to(tip));
+    rig.targets.push(Target { influence: 1.0, ..Target::new(tip, home, 0.3) });
+    let timeline = Timeline { start: 0.0, end: 2.0, frame_rate: 60.0 };
+    let mut document =
+        Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+    let far = home.normalize() * length * 1.3;
+    for (time, point) in [(0.0, home * 0.8), (2.0, far)] {
+        let key = Knot { interpolation: Interpolation::Linear, ..Knot::new(time, point) };
+        document.keys.insert_key(Channel::Target(tip), key);
+    }
+    let hard = largest_step(&document);
+    document.skeleton_rig.targets[0].softness = 0.4;
+    let soft = largest_step(&document);
+    assert!(soft < 0.6 * hard, "{soft} instead of {hard}");
+    let pose = Track::new(&document).at(2.0).skeleton().pose();
+    assert!(pose.tip(tip).length() < 0.999 * length, "the tip stays short of the target");
 }

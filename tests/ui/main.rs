@@ -14,6 +14,7 @@ mod controls;
 mod crowd;
 mod dialogs;
 mod export;
+mod figure_pops;
 mod figures;
 mod first_click;
 mod gallery;

@@ -55,6 +55,12 @@ impl SkeletonRig {
             .filter(|it| full.is_missed(*it, &evaluated_full, tolerance))
             .collect();
         let whole_body = full.diagnose_whole_body(&still_missed, &evaluated_full, time);
+        let afresh = (*before != Carried::default()).then(|| full.evaluate(time));
+        let is_lost = |index: usize| {
+            let is_whole_body = self.targets[index].kind == TargetKind::WholeBody;
+            let afresh = afresh.as_ref().filter(|_| is_whole_body);
+            afresh.is_some_and(|afresh| !full.is_missed(index, afresh, tolerance))
+        };
 
         let examine = |index: usize| {
             let case = RigCase {
@@ -69,6 +75,9 @@ impl SkeletonRig {
             };
             let mut found: Vec<Diagnosis> = case.influence().into_iter().collect();
             if still_missed.contains(&index) {
+                if is_lost(index) {
+                    found.push(case.diagnosis(Cause::Lost, Vec::new(), Vec::new()));
+                }
                 let of_target = whole_body.iter().filter(|it| it.target == case.target.joint);
                 found.extend(of_target.map(|it| case.tried_again(it)));
                 found.extend(case.limb(&evaluated_full.targets[index]));

@@ -2,9 +2,12 @@
 
 use egui::Ui;
 
-use crate::document::{FramePop, Inspection, LostSpan, Slide};
+use crate::document::{FramePop, Inspection, LostSpan, SkeletonRig, Slide, Target};
+use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, PlaybackAction, SelectAction, Session, SolverEdit};
+use crate::kinematics::soft_reach::SoftReach;
+use crate::rig::{LimbSettings, RigPop, RigPopCause, TargetKind};
+use crate::session::{Actions, PlaybackAction, SelectAction, Session, SolverEdit, TargetEdit};
 use crate::ui::widgets;
 use crate::words::{self, significant};
 
@@ -20,10 +23,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         return;
     }
     let Some(found) = session.inspection() else {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            ui.label("Looking through the motion…");
-        });
+        // Without a spinner, which would draw all the time.
+        ui.weak("Looking through the motion…");
         return;
     };
     pops(ui, session, found, actions);
@@ -40,11 +41,59 @@ fn pops(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
     let rig = session.skeleton_rig();
     let line = |FramePop { time, pop }: &FramePop| (*time, pop.joint, words::pop(rig, pop));
     lines(ui, peaks.iter().map(line), actions);
+    let mut offered: Vec<Target> = Vec::new();
+    for FramePop { pop, .. } in &peaks {
+        let Some((label, tooltip, target)) = remedy(rig, pop) else { continue };
+        if !offered.contains(&target) {
+            offered.push(target);
+            if widgets::button(ui, &label, tooltip, None) {
+                actions.push(TargetEdit::SetTarget(target));
+            }
+        }
+    }
     if !session.skeleton_rig().is_tracked && !peaks.is_empty() {
         let tooltip = "Switch off Each frame by itself in the Solver page";
         if widgets::button(ui, "Continue from frame to frame", tooltip, None) {
             actions.push(SolverEdit::SetTracked(true));
         }
+    }
+}
+
+/// A change of a target that helps against a pop, with its label and its tooltip; `None` if no
+/// setting of the target helps.
+fn remedy(rig: &SkeletonRig, pop: &RigPop) -> Option<(String, &'static str, Target)> {
+    const SOFTER: f32 = 0.2;
+    const SOFTEST: f32 = 0.8;
+    let target = rig.targets[rig.target(pop.target)?];
+    let name = &rig.skeleton.joint(rig.end_of(&target))?.name;
+    match (pop.cause, target.kind) {
+        (RigPopCause::Straight, TargetKind::WholeBody) if target.softness < SOFTEST => {
+            let softer = Target { softness: target.softness + SOFTER, ..target };
+            Some((
+                format!("Soften the target of {name}"),
+                "Slow the tip before the chain is straight",
+                softer,
+            ))
+        }
+        (RigPopCause::Straight, TargetKind::Limb(limb)) if limb.soft_reach.softness() < SOFTEST => {
+            let soft = limb.soft_reach;
+            let softness = soft.softness() + SOFTER;
+            let soft_reach = SoftReach::new(softness, soft.max_stretch(), soft.min_elbow_angle());
+            let limb = LimbSettings { soft_reach: soft_reach.ok()?, ..limb };
+            let softer = Target { kind: TargetKind::Limb(limb), ..target };
+            Some((
+                format!("Soften the limb of {name}"),
+                "Slow the tip before the limb is straight",
+                softer,
+            ))
+        }
+        (RigPopCause::Singular, TargetKind::Limb(limb)) => {
+            let limb = LimbSettings { reference: ElbowReference::Transport, ..limb };
+            let carried = Target { kind: TargetKind::Limb(limb), ..target };
+            let tooltip = "Carry the direction along the motion: it flips nowhere";
+            Some((format!("Use Transport for {name}"), tooltip, carried))
+        }
+        _ => None,
     }
 }
 
