@@ -107,7 +107,7 @@ impl Track {
 
     /// True if the pose at a time in seconds is known, or computed in some hundredths of a second.
     pub fn is_quick_at(&self, time: f64) -> bool {
-        const QUICK: u64 = 1 << 19;
+        const QUICK: u64 = 1 << 17;
         self.motion.missing_work(time) <= QUICK
     }
 

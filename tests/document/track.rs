@@ -185,6 +185,8 @@ fn a_still_document_has_one_pose_at_all_times() {
 /// A session with a chain whose target is dragged.
 fn chain_session(random: &mut Random) -> (Session, JointId) {
     let mut rig = SkeletonRig::new(chain(random, 6, false));
+    // By itself, each pose jumps most with this method.
+    rig.solver = rig.solver.with_method(Method::Transpose);
     let tip = JointId::new(6);
     let home = rig.skeleton.tip(tip);
     rig.targets.push(Target { influence: 1.0, ..Target::new(tip, home, 0.3) });
@@ -239,6 +241,45 @@ fn dragging_continues_from_the_shown_pose_and_saving_keeps_it() {
     ratios.sort_unstable_by(f32::total_cmp);
     let [half, most] = [50, 98].map(|percent| ratios[ratios.len() * percent / 100]);
     assert!(half < 1.5 && most < 3.0, "joints move {half} and {most} times as far as targets");
+}
+
+#[test]
+fn the_first_key_moves_nothing() {
+    let mut random = Random(1209);
+    for _ in 0..20 {
+        let (mut session, tip) = chain_session(&mut random);
+        let home = session.skeleton_rig().targets[0].home;
+        drag_to(&mut session, tip, home * 0.7);
+        let before = session.skeleton_pose().clone();
+        session.apply(KeysEdit::Key(vec![Channel::Target(tip)]));
+        let moved = before.points().zip(session.skeleton_pose().points());
+        let moved = moved.map(|(one, other)| one.distance(other)).fold(0.0, f32::max);
+        assert!(moved < 1e-5, "moved by {moved}");
+    }
+}
+
+#[test]
+fn a_closed_loop_comes_back_to_its_first_pose() {
+    let mut random = Random(1210);
+    let mut apart = Vec::new();
+    for _ in 0..20 {
+        let mut rig = SkeletonRig::new(chain(&mut random, 8, false));
+        rig.solver = rig.solver.with_method(Method::DampedLeastSquares);
+        let tip = JointId::new(8);
+        let home = rig.skeleton.tip(tip) * 0.6;
+        let motion = TargetMotion { path: TargetPath::Circle, radius: 0.8, period: 4.0 };
+        rig.targets.push(Target { influence: 1.0, motion, ..Target::new(tip, home, 0.3) });
+        let length = rig.length_to(tip);
+        let timeline = Timeline { start: 0.0, end: 8.0, frame_rate: 30.0 };
+        let document =
+            Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+        let track = Track::new(&document);
+        let [first, again] = [0.0, 4.0].map(|time| track.at(time).skeleton().pose());
+        let moved = first.points().zip(again.points()).map(|(one, other)| one.distance(other));
+        apart.push(moved.fold(0.0, f32::max) / length);
+    }
+    apart.sort_unstable_by(f32::total_cmp);
+    assert!(apart[17] < 0.05, "90 % come back to {} of the length", apart[17]);
 }
 
 #[test]

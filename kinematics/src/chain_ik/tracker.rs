@@ -52,8 +52,13 @@ impl Tracker {
         motion
     }
 
-    /// Largest distance by which the configuration has moved since [`Tracker::take_along`], in the
-    /// problem's units.
+    /// Lets [`Tracker::displacement`] count from a configuration.
+    pub fn mark(&mut self, config: &Configuration) {
+        self.taken.copy_from(config);
+    }
+
+    /// Largest distance by which the configuration has moved since [`Tracker::take_along`] or
+    /// [`Tracker::mark`], in the problem's units.
     pub fn displacement(&self, config: &Configuration) -> f64 {
         f64::from(config.max_displacement(&self.taken))
     }

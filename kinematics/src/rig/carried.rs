@@ -18,6 +18,8 @@ pub struct Carried {
     posture: Option<Shared<Posture>>,
     /// True if the first step keeps the posture, false if it solves from there.
     rests_at_posture: bool,
+    /// True if the first step brings the pose as near to FK as targets allow.
+    relaxes: bool,
     /// One for each influence of whole-body targets, the greatest first.
     bodies: Vec<Body>,
     /// By the joint of a limb's target.
@@ -111,9 +113,17 @@ impl Carried {
         Self {
             posture: Some(posture.clone()),
             rests_at_posture: false,
+            relaxes: false,
             bodies: Vec::new(),
             limbs: limbs.collect(),
         }
+    }
+
+    /// The state before the first step of a motion without a posture: the first pose is solved from
+    /// the FK pose and then brought as near to it as the targets allow, so that a motion that closes
+    /// a loop comes back to its first pose.
+    pub fn relaxed() -> Self {
+        Self { relaxes: true, ..Self::default() }
     }
 
     /// The posture with which a motion continues from here.
@@ -138,6 +148,11 @@ impl Carried {
     /// About the work of the last step, in the unit of [`ChainSolver::bounded`].
     pub fn work(&self) -> u64 {
         self.bodies.iter().map(|body| body.solver.work()).sum()
+    }
+
+    /// True if whole-body targets posed joints in the last step.
+    pub fn has_body(&self) -> bool {
+        !self.bodies.is_empty()
     }
 
     /// An FK pose with the joints that whole-body targets turn as the last step has posed them,
@@ -182,6 +197,7 @@ impl Carried {
             bodies: std::mem::take(&mut self.bodies).into_iter().map(Some).collect(),
             posture: self.posture.take().filter(|posture| !posture.joints.is_empty()),
             rests_at_posture: self.rests_at_posture,
+            relaxes: std::mem::take(&mut self.relaxes),
             work: ChainSolver::POSE_WORK / influences.len() as u64,
         };
         let last = influences.len() - 1;
@@ -203,6 +219,7 @@ struct Before {
     bodies: Vec<Option<Body>>,
     posture: Option<Shared<Posture>>,
     rests_at_posture: bool,
+    relaxes: bool,
     /// Most work of a body.
     work: u64,
 }
@@ -259,6 +276,9 @@ impl Before {
         }
         if !rests {
             solver.run();
+            if self.relaxes {
+                solver.relax();
+            }
         }
         Ok(Body { solver, step: None, turns: vec![None; fk.joints().len()] })
     }

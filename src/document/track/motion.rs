@@ -105,22 +105,36 @@ impl Motion {
         updated
     }
 
-    /// The state from which the pose at a time in seconds continues; `None` if it continues from
-    /// none.
+    /// The state from which the pose at a time in seconds continues; `None` if poses do not depend
+    /// on those before them.
     pub fn state_before(&self, time: f64) -> Option<Arc<Carried>> {
         let grid = self.grid?;
-        let end = |wanted: usize| self.ended_before(&grid, wanted);
-        match grid.place(time) {
-            // Nothing moves: the first pose is that of all times.
-            _ if self.ended_before(&grid, 1).is_some_and(|end| end.step == 0) => None,
-            Place::Before => Some(self.state(&grid, 0).1.carried),
-            Place::On(step) | Place::After(step) if end(step).is_some_and(|end| end.rests) => {
-                let end = end(step)?.step.checked_sub(1)?;
-                Some(self.state(&grid, end).1.carried)
-            }
-            Place::On(step) => Some(self.state(&grid, step.checked_sub(1)?).1.carried),
-            Place::After(step) => Some(self.state(&grid, step).1.carried),
+        let after = |step: usize| self.state(&grid, step).1.carried;
+        let before = |step: usize| match step.checked_sub(1) {
+            Some(previous) => after(previous),
+            None => self.before_first(&grid),
+        };
+        // Nothing moves: the first pose is that of all times.
+        if self.ended_before(&grid, 1).is_some_and(|end| end.step == 0) {
+            return Some(before(0));
         }
+        Some(match grid.place(time) {
+            Place::Before => after(0),
+            Place::On(step) | Place::After(step) => match self.ended_before(&grid, step) {
+                Some(End { step, rests: true }) => before(step),
+                _ if grid.place(time) == Place::On(step) => before(step),
+                _ => after(step),
+            },
+        })
+    }
+
+    /// The state before the first step.
+    fn before_first(&self, grid: &Grid) -> Arc<Carried> {
+        Arc::new(match &self.document.skeleton_rig.posture {
+            Some(posture) => Carried::from_posture(posture),
+            None if grid.last > 0 => Carried::relaxed(),
+            None => Carried::default(),
+        })
     }
 
     /// About the work of the steps until a time in seconds whose states are not known, in the unit
@@ -136,7 +150,7 @@ impl Motion {
             states.before(wanted).map_or((0, 0), |(step, state)| (step + 1, state.work));
         let of_step = of_known.checked_div(known as u64).unwrap_or_else(|| {
             let rig = &self.document.skeleton_rig;
-            Self::WORK_OF_STEP + (8 * rig.skeleton.joints().len() * rig.targets.len()) as u64
+            Self::WORK_OF_STEP + (2 * rig.skeleton.joints().len() * rig.targets.len()) as u64
         });
         // States after the end, which is not known, are counted, too.
         (wanted.min(grid.last) + 1).saturating_sub(known) as u64 * of_step
@@ -171,10 +185,15 @@ impl Motion {
             return None;
         }
         let [before, after] = [&self.document, edited].map(|it| rig_at(it, grid.start));
+        let present = self.document.skeleton_rig.posture.as_ref();
+        let first = self.state(&grid, 0).1.carried;
         if has_same_inputs(&before, &after) {
-            return self.document.skeleton_rig.posture.clone();
+            // A first key must not move a figure whose motion would begin with a relaxed pose.
+            let begins_to_move = grid.last == 0 && edited.moves_skeleton();
+            let shown = || first.to_posture().into();
+            return present.cloned().or_else(|| begins_to_move.then(shown));
         }
-        let (solved, carried) = after.settle(grid.start, &self.state(&grid, 0).1.carried);
+        let (solved, carried) = after.settle(grid.start, &first);
         if may_start_afresh
             && !after.has_reached_all(&solved)
             && after.has_reached_all(&after.evaluate(grid.start))
@@ -252,9 +271,7 @@ impl Motion {
     }
 
     fn first(&self, grid: &Grid) -> State {
-        let posture = self.document.skeleton_rig.posture.as_ref();
-        let carried = posture.map(Carried::from_posture).unwrap_or_default();
-        let before = State { carried: Arc::new(carried), work: 0 };
+        let before = State { carried: self.before_first(grid), work: 0 };
         self.next(grid.time(0), &before)
     }
 

@@ -129,6 +129,34 @@ impl ChainSolver {
         step
     }
 
+    /// Brings the configuration as near to the FK pose as the targets allow, if they are reached: to
+    /// where [tracking](ChainSolver::track) would bring it after long motions, so that a motion that
+    /// begins here closes its loops.
+    pub fn relax(&mut self) {
+        /// Most steps.
+        const STEPS: usize = 200;
+        /// Assumed motion of a target in a step, in chain lengths.
+        const MOTION: f64 = 1e-2;
+        /// Motion of a joint, in chain lengths, below which the configuration rests.
+        const RESTS: f64 = 1e-4;
+        if !self.report.converged() {
+            return;
+        }
+        let tracker = self.tracker.take();
+        let new = || Box::new(Tracker::new(&self.problem, &self.config));
+        let mut tracker = tracker.unwrap_or_else(new);
+        self.update_angles();
+        for _ in 0..STEPS {
+            tracker.mark(&self.config);
+            self.follow(&mut tracker, MOTION * self.problem.world_length());
+            if tracker.displacement(&self.config) < RESTS * f64::from(self.problem.length) {
+                break;
+            }
+        }
+        tracker.was_held_back = false;
+        self.tracker = Some(tracker);
+    }
+
     fn track_with(
         &mut self,
         tracker: &mut Tracker,

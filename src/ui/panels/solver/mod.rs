@@ -204,7 +204,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Whether runs start from the FK pose, where the motion gives another start.
 fn start(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if session.posed().carried().is_none() {
+    if !session.posed().carried().is_some_and(|carried| carried.has_body()) {
         return;
     }
     let from_fk = session.preferences().runs_from_fk;
