@@ -23,7 +23,8 @@ pub struct InspectionJob {
     progress: Arc<Progress>,
 }
 
-/// Starts and ends inspections.
+/// Starts and ends inspections. From the first one on, the session shows provisional poses of
+/// motions that take long to compute, until an inspection has computed them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InspectAction {
     /// An inspection has started; it replaces the one that runs.

@@ -19,6 +19,8 @@ pub struct Editing {
     track: Track,
     /// The track with unkeyed edits as keys at the playhead.
     shown_track: Track,
+    /// True if threads compute motions, so that a pose may be provisional until its own is known.
+    has_threads: bool,
     /// The last track whose pose at the playhead was known.
     known_track: Track,
     /// The document posed at the playhead, with unkeyed edits.
@@ -61,6 +63,7 @@ impl Editing {
         Self {
             posed: track.pose(document.clone(), 0.0),
             shown_track: track.clone(),
+            has_threads: false,
             known_track: track.clone(),
             track,
             resets_posture: false,
@@ -85,6 +88,7 @@ impl Editing {
             first_revision: revision,
             content: revision,
             saved_content: revision,
+            has_threads: self.has_threads,
             ..Self::new(document)
         }
     }
@@ -292,12 +296,17 @@ impl Editing {
         for (channel, value) in &self.overrides {
             channel.set(&mut shown, *value);
         }
-        self.posed = if self.shown_track.is_quick_at(time) {
+        self.posed = if !self.has_threads || self.shown_track.is_quick_at(time) {
             self.known_track = self.shown_track.clone();
             self.shown_track.pose(shown, time)
         } else {
             self.shown_track.pose_provisionally(shown, time, &self.known_track)
         };
+    }
+
+    /// Lets poses be provisional whose motion takes long to compute, since threads compute it.
+    pub(in crate::session) fn use_threads(&mut self) {
+        self.has_threads = true;
     }
 
     /// The document with the unkeyed edits as keys at `time`, in seconds.

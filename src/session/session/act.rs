@@ -40,7 +40,10 @@ impl Session {
             }
             Action::File(action) => return self.apply_file(action),
             Action::Bake(action) => action.apply(self),
-            Action::Inspect(action) => self.inspections.apply(action),
+            Action::Inspect(action) => {
+                self.editing.use_threads();
+                self.inspections.apply(action)
+            }
             Action::Tour(action) => {
                 self.apply_tour(action);
                 return None;
