@@ -292,10 +292,14 @@ fn seam([before, last, first, second]: [&Frame; 4]) -> Option<FramePop> {
     (ratio > 2.0).then_some(FramePop { time: last.time, pop })
 }
 
-/// True if a solve of the first, the middle or the last of some frames by itself reaches a target.
+/// True if a solve of one of some frames by itself reaches a target. Of many frames, some are looked
+/// at, the first and the last among them.
 fn is_lost(track: &Track, index: usize, times: &[f64]) -> bool {
-    let looked_at = [times[0], times[times.len() / 2], times[times.len() - 1]];
-    looked_at.into_iter().any(|time| {
+    const MOST: usize = 32;
+    let last = times.len() - 1;
+    let step = last.div_ceil(MOST).max(1);
+    let looked_at = (0..last).step_by(step).chain([last]);
+    looked_at.map(|frame| times[frame]).any(|time| {
         let frame = Frame::new(&track.by_itself(time));
         !frame.is_missed(index)
     })

@@ -71,9 +71,9 @@ impl Grid {
 impl Document {
     /// The time in seconds at which the motion of the skeleton begins, before which it does not
     /// move on: [`Document::track_start`], else the earlier of the first key and the start of the
-    /// timeline, but at most ten minutes before that.
+    /// timeline, but at most a minute before that.
     pub fn motion_start(&self) -> f64 {
-        const MOST_BEFORE: f64 = 600.0;
+        const MOST_BEFORE: f64 = 60.0;
         let start = self.timeline.start;
         let first = || self.keys.times().first().map_or(start, |first| first.min(start));
         self.track_start.unwrap_or_else(|| first().max(start - MOST_BEFORE))
