@@ -178,8 +178,10 @@ impl Inspection {
     ) {
         /// Most spans from which a posture is sought.
         const MOST: usize = 3;
+        /// Places in a span, from 0 to 1, from which the motion is tracked backwards.
+        const PLACES: [f64; 5] = [0.5, 1.0, 0.0, 0.75, 0.25];
         for LostSpan { from, to, .. } in self.lost.iter().take(MOST) {
-            for time in [*to, *from] {
+            for time in PLACES.map(|place| from + (to - from) * place) {
                 let Some(posture) = track.posture_reaching(time) else { continue };
                 let mut document = track.document().clone();
                 document.skeleton_rig.posture = Some(posture.clone());

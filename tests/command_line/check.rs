@@ -254,3 +254,19 @@ fn the_help_names_every_cause() {
         assert!(help.contains(cause.name()), "{}", cause.name());
     }
 }
+
+#[test]
+fn a_target_that_another_pose_reaches_is_lost() {
+    let text = include_str!("../data/lost-target.json");
+    let options = io::OpenOptions::default();
+    let document = io::parse("lost-target.json", text, &options).expect("a document").document;
+    let output = check(&document, &["--fail-on", "lost"]);
+    assert_eq!(output.status.code(), Some(1));
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let span = &list(&found, "lost")[0];
+    assert_eq!(span["target"], 10);
+    let [from, to, miss] =
+        ["from", "to", "miss"].map(|name| span[name].as_f64().expect("a number"));
+    assert!(from < to && miss > 0.01, "{span}");
+    assert!(span["sentence"].as_str().expect("text").contains("reaches it from another pose"));
+}

@@ -12,6 +12,7 @@ mod elbow_circle;
 mod examples;
 mod framing;
 mod gallery;
+mod inspection;
 mod keys;
 mod posing;
 mod session;
