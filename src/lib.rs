@@ -12,7 +12,7 @@
 //! | --- | --- | --- |
 //! | `kinematics` | [`ik_arm_kinematics`], re-exported: arms, skeletons and their solvers; its floors are listed there | |
 //! | [`words`] | diagnoses and their remedies as sentences | |
-//! | [`document`] | saved state: both rigs, keys, timeline, camera, display; bakes | |
+//! | [`document`] | saved state: both rigs, keys, timeline, camera, display; motions, their inspections and bakes | |
 //! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
 //! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
 //! | [`scene`] | what to draw, as plain lists | |
@@ -32,7 +32,10 @@
 //! 4. The [scene](scene::Scene) is refilled from the pose and drawn if it changed; then the
 //!    panels are drawn.
 //!
-//! Nothing is drawn while nothing changes.
+//! Nothing is drawn while nothing changes. A figure's motion is a [track](document::Track): each step
+//! continues from the one before, so that a pose late in a long motion takes a while after an edit.
+//! The view then shows a provisional pose, while a thread [inspects](session::InspectionJob) the
+//! motion and computes its states on the way.
 //!
 //! # Conventions
 //!

@@ -27,7 +27,7 @@
 //! | [`skeleton`] | trees of joints and their forward kinematics |
 //! | [`limb_ik`], [`skin`] | limbs of skeletons in closed form; skins and how they follow the joints |
 //! | [`chain_ik`], [`diagnosis`] | iterative solvers, seen from inside; why a target is not reached and what would help |
-//! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets and skin, crowds of arms |
+//! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets and skin, crowds of arms; steps of motions and their pops |
 //!
 //! # Conventions
 //!

@@ -178,8 +178,8 @@ impl Carried {
         self.limbs.entry(joint).or_default()
     }
 
-    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one. Returns the
-    /// report of the solve for all of them.
+    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one; without
+    /// `poses`, it may leave the pose. Returns the report of the solve for all of them.
     ///
     /// # Errors
     ///
@@ -189,6 +189,7 @@ impl Carried {
         options: &SolverOptions,
         pose: &mut Shared<Skeleton>,
         targets: &[BodyTarget],
+        poses: bool,
     ) -> Result<Report, SolveError> {
         let mut influences: Vec<f32> = targets.iter().map(|target| target.influence).collect();
         influences.sort_unstable_by(|one, other| other.total_cmp(one));
@@ -208,8 +209,16 @@ impl Carried {
         };
         self.bodies = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
         let report = self.bodies[last].solver.report();
-        let poses: Vec<Skeleton> = self.bodies.iter().map(|body| body.posed(pose)).collect();
-        blend(pose, poses, &influences, &mut self.bodies);
+        if influences == [1.0] {
+            // Nothing is blended, so that no rotation is carried on.
+            self.bodies[0].turns.fill(None);
+            if poses {
+                *pose = self.bodies[0].posed(pose).into();
+            }
+        } else {
+            let poses: Vec<Skeleton> = self.bodies.iter().map(|body| body.posed(pose)).collect();
+            blend(pose, poses, &influences, &mut self.bodies);
+        }
         Ok(report)
     }
 }

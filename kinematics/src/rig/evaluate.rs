@@ -33,6 +33,17 @@ impl EvaluatedSkeleton {
     }
 }
 
+/// What is needed of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StepUse {
+    /// The pose; nothing is carried of limbs.
+    Pose,
+    /// The pose, and the state that the step carries.
+    PoseAndState,
+    /// The state alone.
+    State,
+}
+
 /// Result of an evaluation for one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetReport {
@@ -82,7 +93,7 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, as a function of the rig and the time alone: a
     /// [step](SkeletonRig::step) that continues from nothing.
     pub fn evaluate(&self, time: f64) -> EvaluatedSkeleton {
-        self.evaluated(time, &mut Carried::default(), false)
+        self.evaluated(time, &mut Carried::default(), StepUse::Pose)
     }
 
     /// The skeleton at a time in seconds, as a step of a motion: continues from what the step
@@ -99,12 +110,12 @@ impl SkeletonRig {
     /// next lower influence by the ratio of the two, and the first one with the FK pose.
     pub fn step(&self, time: f64, before: &Carried) -> (EvaluatedSkeleton, Carried) {
         let mut carried = before.clone();
-        let evaluated = self.evaluated(time, &mut carried, true);
+        let evaluated = self.evaluated(time, &mut carried, StepUse::PoseAndState);
         (evaluated, carried)
     }
 
-    fn evaluated(&self, time: f64, carried: &mut Carried, carries: bool) -> EvaluatedSkeleton {
-        let (fk, solved, outcomes) = self.posed(time, carried, carries);
+    fn evaluated(&self, time: f64, carried: &mut Carried, of: StepUse) -> EvaluatedSkeleton {
+        let (fk, solved, outcomes) = self.posed(time, carried, of);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
             let end = |joint| match outcome {
@@ -125,7 +136,7 @@ impl SkeletonRig {
     /// [`SkeletonRig::step`] without its pose and reports: changes `carried` to what the step
     /// carries.
     pub fn carry(&self, time: f64, carried: &mut Carried) {
-        self.posed(time, carried, true);
+        self.posed(time, carried, StepUse::State);
     }
 
     /// The last of as many steps at a time in seconds, all with these inputs, as bring targets near
@@ -167,16 +178,15 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
     /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
-        self.posed(time, &mut Carried::default(), false).1
+        self.posed(time, &mut Carried::default(), StepUse::Pose).1
     }
 
-    /// The FK pose, the solved pose and the outcome for each target of a step. Without `carries`,
-    /// `carried` holds nothing of limbs afterwards.
+    /// The FK pose, the solved pose and the outcome for each target of a step.
     fn posed(
         &self,
         time: f64,
         carried: &mut Carried,
-        carries: bool,
+        of: StepUse,
     ) -> (Shared<Skeleton>, Shared<Skeleton>, Vec<TargetOutcome>) {
         let leads = |target: &Target| target.enabled && self.leads_path(target);
         let outcome =
@@ -184,8 +194,11 @@ impl SkeletonRig {
         let mut outcomes: Vec<_> = self.targets.iter().map(outcome).collect();
         let fk = self.fk_at(time);
         let mut solved = fk.clone();
-        self.solve_whole_body(&mut solved, time, carried, &mut outcomes);
-        self.solve_limbs(&mut solved, time, carries.then_some(carried), &mut outcomes);
+        let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
+        let poses = of != StepUse::State || has_limbs;
+        self.solve_whole_body(&mut solved, time, carried, poses, &mut outcomes);
+        let carried = (of != StepUse::Pose).then_some(carried);
+        self.solve_limbs(&mut solved, time, carried, &mut outcomes);
         (fk, solved, outcomes)
     }
 
@@ -194,6 +207,7 @@ impl SkeletonRig {
         solved: &mut Shared<Skeleton>,
         time: f64,
         carried: &mut Carried,
+        poses: bool,
         outcomes: &mut [TargetOutcome],
     ) {
         let is_active =
@@ -208,7 +222,7 @@ impl SkeletonRig {
         if active.is_empty() {
             return carried.forget_body();
         }
-        let outcome = match carried.step_body(&self.solver, solved, &active) {
+        let outcome = match carried.step_body(&self.solver, solved, &active, poses) {
             Ok(report) => TargetOutcome::WholeBody(report),
             Err(error) => TargetOutcome::Refused(error),
         };
