@@ -16,6 +16,8 @@ pub(super) struct Tracker {
     pub next: Problem,
     /// True if the last step held a target back and came nearer to it.
     pub was_held_back: bool,
+    /// Motion of the targets in the last step, in world units.
+    pub last_motion: f64,
     /// The configuration as the FK pose takes it along.
     taken: Configuration,
     posture: DampedLeastSquares,
@@ -26,6 +28,7 @@ impl Tracker {
         Self {
             next: problem.clone(),
             was_held_back: false,
+            last_motion: 0.0,
             taken: config.clone(),
             posture: DampedLeastSquares::new(problem, NULL_SPACE_DAMPING),
         }

@@ -167,6 +167,7 @@ impl ChainSolver {
         tracker.next.carry_origins(&self.problem);
         tracker.next.set_targets(targets);
         if self.is_settled() && !tracker.was_held_back && tracker.next == self.problem {
+            tracker.last_motion = 0.0;
             return Ok(TrackStep::at_rest(self.report));
         }
         self.update_angles();
@@ -183,6 +184,7 @@ impl ChainSolver {
             tracker.was_held_back = self.follow(tracker, motion);
             self.problem.set_targets(targets);
         }
+        tracker.last_motion = motion;
         let joint_motion = self.problem.length_to_world(tracker.displacement(&self.config));
         Ok(TrackStep {
             report: self.report,
@@ -203,7 +205,10 @@ impl ChainSolver {
         let most_turn = (POSTURE_RATE * motion / length) as f32;
         tracker.move_to_fk(&self.problem, &mut self.config, most_turn);
         let before = self.config.total_error(&self.problem);
-        let finest = self.tolerance.min(FINENESS * motion).max(FINEST * length);
+        // Not finer than the step before: a short step, such as to a time between two frames, would
+        // iterate from a pose that was solved less finely, and move the joints for that alone.
+        let fineness = FINENESS * motion.max(tracker.last_motion);
+        let finest = self.tolerance.min(fineness).max(FINEST * length);
         self.approach(self.problem.length_from_world(finest));
         let gain = before - self.config.total_error(&self.problem);
         is_far && gain > LEAST_APPROACH * reach
