@@ -32,10 +32,10 @@
 //! 4. The [scene](scene::Scene) is refilled from the pose and drawn if it changed; then the
 //!    panels are drawn.
 //!
-//! Nothing is drawn while nothing changes. A figure's motion is a [track](document::Track): each step
-//! continues from the one before, so that a pose late in a long motion takes a while after an edit.
-//! The view then shows a provisional pose, while a thread [inspects](session::InspectionJob) the
-//! motion and computes its states on the way.
+//! Nothing is drawn while nothing changes. A figure's motion is a [track](document::Track): each
+//! step continues from the one before, so that a pose late in a long motion takes a while after an
+//! edit. The view then shows a provisional pose, while a thread [inspects](session::InspectionJob)
+//! the motion and computes its states on the way.
 //!
 //! # Conventions
 //!

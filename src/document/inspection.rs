@@ -13,7 +13,7 @@ use crate::rig::{
 pub use spans::Slide;
 use spans::{Slides, Spans};
 
-/// What is wrong with the motion of a skeleton, frame by frame.
+/// The faults of the motion of a skeleton, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inspection {
     /// For each target that poses the skeleton in a frame, the frame in which its tip is farthest
@@ -141,8 +141,8 @@ impl Inspection {
 }
 
 impl Inspection {
-    /// Of all pops with the same target and cause that are at most three frames of a timeline apart,
-    /// the one with the highest ratio; in the order of their times.
+    /// Of all pops with the same target and cause that are at most three frames of a timeline
+    /// apart, the one with the highest ratio; in the order of their times.
     pub fn peaks(&self, timeline: Timeline) -> Vec<FramePop> {
         const APART: f64 = 3.5;
         let mut peaks: Vec<(FramePop, f64)> = Vec::new();
@@ -195,7 +195,7 @@ impl Inspection {
     }
 }
 
-/// What an inspection has found so far.
+/// The findings of an inspection so far.
 struct Inspector {
     worst: Vec<Option<WorstMiss>>,
     pops: Vec<FramePop>,
@@ -294,8 +294,8 @@ fn seam([before, last, first, second]: [&Frame; 4]) -> Option<FramePop> {
     (ratio > 2.0).then_some(FramePop { time: last.time, pop })
 }
 
-/// True if a solve of one of some frames by itself reaches a target. Of many frames, some are looked
-/// at, the first and the last among them.
+/// True if a solve of one of some frames by itself reaches a target. Of many frames, some are
+/// looked at, the first and the last among them.
 fn is_lost(track: &Track, index: usize, times: &[f64]) -> bool {
     const MOST: usize = 32;
     let last = times.len() - 1;

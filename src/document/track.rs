@@ -21,9 +21,9 @@ use motion::Motion;
 ///
 /// Small motions of targets must give small motions of joints. No pose that follows from the
 /// targets of one frame alone is continuous everywhere, so a motion goes in steps, each from the
-/// state that the one before has left; between two steps, a pose is one step from the first of them.
-/// All this is a function of the document. The states of steps are kept, and clones of a track
-/// share them.
+/// state that the one before has left; between two steps, a pose is one step from the first of
+/// them. All this is a function of the document. The states of steps are kept, and clones of a
+/// track share them.
 #[derive(Clone, Debug)]
 pub struct Track {
     motion: Arc<Motion>,

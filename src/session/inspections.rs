@@ -6,11 +6,11 @@ use crate::kinematics::Shared;
 use crate::session::history::editing::Editing;
 use crate::session::outcome::{Consequence, Outcome};
 
-/// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs on a thread of its
-/// own.
+/// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs on a thread of
+/// its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inspections {
-    /// What the latest inspection has found, with the revision of the document.
+    /// The findings of the latest inspection, with the revision of the document.
     found: Option<(u64, Shared<Inspection>)>,
     running: Option<InspectionJob>,
 }
@@ -63,7 +63,7 @@ impl PartialEq for InspectionJob {
 }
 
 impl Inspections {
-    /// What was found in the motion of the present document; `None` while that is not known, or if
+    /// The findings in the motion of the present document; `None` while that is not known, or if
     /// nothing moves.
     pub(super) fn found(&self, editing: &Editing) -> Option<&Inspection> {
         let (revision, found) = self.found.as_ref()?;

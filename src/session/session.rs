@@ -121,8 +121,8 @@ impl Session {
         &self.solvers
     }
 
-    /// What was found in the motion of the figure: pops, lost targets, slides. `None` while that is
-    /// not known, or if no targets move a figure.
+    /// The faults that were found in the motion of the figure: pops, lost targets, slides. `None`
+    /// while that is not known, or if no targets move a figure.
     pub fn inspection(&self) -> Option<&Inspection> {
         self.inspections.found(&self.editing)
     }

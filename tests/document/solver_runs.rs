@@ -84,8 +84,8 @@ fn bits(skeleton: &Skeleton) -> Vec<[u32; 6]> {
     skeleton.iter().map(|(_, joint)| of(joint)).collect()
 }
 
-/// The pose of the motion's step before, or the FK pose, after some iterations of a new solver, with
-/// the error that it reports.
+/// The pose of the motion's step before, or the FK pose, after some iterations of a new solver,
+/// with the error that it reports.
 fn fresh(session: &Session, options: &SolverOptions, iterations: u32) -> (Skeleton, f32) {
     let (rig, time) = (session.skeleton_rig(), session.playback().time());
     let mut skeleton = Skeleton::clone(&rig.fk_at(time));

@@ -1,13 +1,12 @@
 mod track;
 
-use core::fmt;
-
 use glam::Vec3;
 
 use super::configuration::Configuration;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
-use super::method::{Method, MethodInputs, MethodState};
+use super::method::{MethodInputs, MethodState};
 use super::problem::{self, Builder, Problem};
+use super::report::{Report, Status};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
 use super::{SolveError, SolverOptions, TipTarget, perturb};
@@ -263,9 +262,9 @@ impl ChainSolver {
         Ok(())
     }
 
-    /// Begins anew with the angles of a pose, and with the offsets of its free roots, in place of the
-    /// FK pose; angles beyond limits are clamped. `pose` must be a pose of the skeleton for which
-    /// the solver was made.
+    /// Begins anew with the angles of a pose, and with the offsets of its free roots, in place of
+    /// the FK pose; angles beyond limits are clamped. `pose` must be a pose of the skeleton for
+    /// which the solver was made.
     pub fn begin_from(&mut self, pose: &Skeleton) {
         for (link, angles) in self.problem.links.iter().zip(&mut self.config.angles) {
             if let Some(joint) = pose.joint(link.joint) {
@@ -284,8 +283,8 @@ impl ChainSolver {
         self.begin();
     }
 
-    /// [Begins from](ChainSolver::begin_from) a pose that is a solution: as long as nothing changes,
-    /// [`ChainSolver::track`] keeps it, also if it misses targets.
+    /// [Begins from](ChainSolver::begin_from) a pose that is a solution: as long as nothing
+    /// changes, [`ChainSolver::track`] keeps it, also if it misses targets.
     pub fn rest_at(&mut self, pose: &Skeleton) {
         self.begin_from(pose);
         if self.report.status == Status::Iterating {
@@ -472,63 +471,6 @@ impl ChainSolver {
                 return true;
             }
         }
-    }
-}
-
-/// Progress of a solver run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Report {
-    /// The method.
-    pub method: Method,
-    /// Number of iterations so far.
-    pub iterations: u32,
-    /// Largest distance from a tip to its target, in world units.
-    pub error: f32,
-    /// The state of the run: running, or the reason for its end.
-    pub status: Status,
-}
-
-impl Report {
-    /// True if the error is within the tolerance.
-    pub fn converged(&self) -> bool {
-        self.status == Status::Converged
-    }
-}
-
-/// State of a solver run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Status {
-    /// The error is above the tolerance, and iterations are left.
-    Iterating,
-    /// The error is within the tolerance.
-    Converged,
-    /// Further iterations would change nothing: targets are out of reach, or limits prevent
-    /// reaching them.
-    Stalled,
-    /// The maximum number of iterations has been made.
-    OutOfIterations,
-    /// The work that [`ChainSolver::bounded`] allows has been done, and
-    /// iterations are left.
-    Bounded,
-}
-
-/// Writes the state in words: "iterating", "converged", "stalled", "out of iterations" or
-/// "stopped at the bound on work".
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Iterating => "iterating",
-            Self::Converged => "converged",
-            Self::Stalled => "stalled",
-            Self::OutOfIterations => "out of iterations",
-            Self::Bounded => "stopped at the bound on work",
-        })
     }
 }
 

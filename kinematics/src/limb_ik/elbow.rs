@@ -71,8 +71,8 @@ impl Bend {
         -self.side(near) * self.axis.cross(lower)
     }
 
-    /// The side of straight that the limb keeps, or on which it is bent at `near`, or to which it may
-    /// bend farther: 1 for a positive rotation, else −1.
+    /// The side of straight that the limb keeps, or on which it is bent at `near`, or to which it
+    /// may bend farther: 1 for a positive rotation, else −1.
     pub fn side(&self, near: f64) -> f64 {
         const STRAIGHT: f64 = 1e-6;
         if let Some(side) = self.kept_side {

@@ -36,6 +36,7 @@
 //!   singular, as for [twist references](super::twist); [`ElbowReference::Fk`] only for a target
 //!   opposite to the tip of the FK pose.
 
+mod carried;
 mod elbow;
 mod solver;
 
@@ -46,9 +47,10 @@ use thiserror::Error;
 
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
+pub use carried::CarriedLimb;
 pub use solver::{
-    CarriedLimb, ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides,
-    fk_twist, solve, step,
+    ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides, fk_twist, solve,
+    step,
 };
 
 /// Two bones of a skeleton that a target poses together, such as an arm or a leg.

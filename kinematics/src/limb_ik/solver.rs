@@ -1,5 +1,6 @@
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
+use super::carried::CarriedLimb;
 use super::elbow::{Aim, Bend, BendWay, orthonormal};
 use super::{JointSpace, Limb};
 use crate::skeleton::{AnglesWithin, Joint, JointId, RotationAxis, Skeleton};
@@ -54,40 +55,6 @@ pub enum ElbowReference {
     /// The direction of the step before, carried to the Pointer by the least rotation, in the space
     /// of the upper joint's parent. Without a step before, it is that of the FK pose.
     Transport,
-}
-
-/// What a limb carries from one step of a motion to the next, so that it does not jump where its
-/// inputs give no direction.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CarriedLimb {
-    /// The way in which the FK pose bends, or bent when it was last bent enough.
-    way: Option<BendWay>,
-    /// The Pointer and the elbow at twist 0, in the space of the upper joint's parent.
-    aim: Option<Aim>,
-    /// Rotations from the FK pose to the solved one of upper joint, lower joint and hand.
-    turns: [Option<DQuat>; 3],
-}
-
-impl CarriedLimb {
-    /// The state in single precision: in the space of the upper joint's parent the Pointer and the
-    /// elbow's direction at twist 0, then in the upper joint's space the axis about which the FK
-    /// pose bends and the direction in which its elbow moves. `None` before the first step.
-    pub fn to_vectors(&self) -> Option<[Vec3; 4]> {
-        let (aim, way) = self.aim.zip(self.way)?;
-        Some([aim.pointer, aim.outward, way.axis, way.outward].map(DVec3::as_vec3))
-    }
-
-    /// The state with the vectors of [`CarriedLimb::to_vectors`]; vectors without a direction are
-    /// ignored.
-    pub fn from_vectors(vectors: [Vec3; 4]) -> Self {
-        let [pointer, outward, axis, bending] =
-            vectors.map(|vector| vector.as_dvec3().try_normalize());
-        let aim = pointer
-            .zip(outward)
-            .map(|(pointer, outward)| Aim { pointer, outward: orthonormal(outward, pointer) });
-        let way = axis.zip(bending).map(|(axis, outward)| BendWay { axis, outward });
-        Self { way, aim, turns: [None; 3] }
-    }
 }
 
 /// The result of a solve.
@@ -211,8 +178,8 @@ impl<'a> LocalTarget<'a> {
         is_valid.then_some(Self { point, pole, hand, target })
     }
 
-    /// The Pointer with the elbow at twist 0; `before` are those of the step before, in the space of
-    /// the upper joint's parent.
+    /// The Pointer with the elbow at twist 0; `before` are those of the step before, in the space
+    /// of the upper joint's parent.
     fn aim(&self, fk: &FkLimb, pointer: DVec3, before: Option<Aim>) -> Aim {
         // Sine of the angle to the Pointer below which a direction gives no elbow.
         const PARALLEL: f64 = 1e-6;

@@ -7,9 +7,10 @@ use crate::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget,
 use crate::limb_ik::CarriedLimb;
 use crate::skeleton::{JointId, JointRemap, Skeleton};
 
-/// What a step of a motion leaves to the next one, so that small motions of targets and FK poses
-/// give small motions of joints: the configuration of the whole-body targets' solver, and how limbs
-/// bend. It is about the poses before influences and, for whole-body targets, before limbs.
+/// The state that a step of a motion leaves to the next one, so that small motions of targets and
+/// FK poses give small motions of joints: the configuration of the whole-body targets' solver, and
+/// how limbs bend. It is about the poses before influences and, for whole-body targets, before
+/// limbs.
 ///
 /// The default continues from nothing: the step solves from its FK pose, with restarts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,8 +106,8 @@ impl Carried {
         Self { rests_at_posture: true, ..Self::near_posture(posture) }
     }
 
-    /// The state before the first step of a motion that begins near a posture, with the pose that is
-    /// solved from there.
+    /// The state before the first step of a motion that begins near a posture, with the pose that
+    /// is solved from there.
     pub fn near_posture(posture: &Shared<Posture>) -> Self {
         let limbs = &posture.limbs;
         let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_vectors(*it)));
@@ -120,8 +121,8 @@ impl Carried {
     }
 
     /// The state before the first step of a motion without a posture: the first pose is solved from
-    /// the FK pose and then brought as near to it as the targets allow, so that a motion that closes
-    /// a loop comes back to its first pose.
+    /// the FK pose and then brought as near to it as the targets allow, so that a motion that
+    /// closes a loop comes back to its first pose.
     pub fn relaxed() -> Self {
         Self { relaxes: true, ..Self::default() }
     }

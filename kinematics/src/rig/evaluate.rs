@@ -22,7 +22,8 @@ pub struct EvaluatedSkeleton {
 }
 
 impl EvaluatedSkeleton {
-    /// About the work of the pose, in the unit of [`ChainSolver::bounded`]: the number of joints,
+    /// About the work of the pose, in the unit of
+    /// [`ChainSolver::bounded`](crate::chain_ik::ChainSolver::bounded): the number of joints,
     /// once and for each iteration of the whole-body targets' solver.
     pub fn work(&self) -> u64 {
         let iterations = self.targets.iter().find_map(|target| match &target.outcome {
@@ -33,7 +34,7 @@ impl EvaluatedSkeleton {
     }
 }
 
-/// What is needed of a step.
+/// The results that are needed of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StepUse {
     /// The pose; nothing is carried of limbs.

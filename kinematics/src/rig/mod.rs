@@ -9,6 +9,7 @@ mod evaluate;
 mod follow_path;
 mod mesh_skin;
 mod path_following;
+mod pop_cause;
 mod pops;
 mod skeleton_rig;
 mod skin;
@@ -25,7 +26,8 @@ pub use follow_path::{FollowPath, PathKind, WavyRing};
 pub use mesh_skin::{
     AttachedMesh, FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture,
 };
-pub use pops::{RigMoment, RigPop, RigPopCause};
+pub use pop_cause::RigPopCause;
+pub use pops::{RigMoment, RigPop};
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{BoneSkin, Skin, SkinMeshError, SkinSource};
 pub use target::{LimbSettings, Target, TargetKind, TargetMotion, TargetPath, TargetSpace};

@@ -260,10 +260,10 @@ impl Joint {
         if second.1 + ROUNDING < first.1 { second.0 } else { first.0 }
     }
 
-    /// The joint's angles turned towards other angles by a fraction of the rotation between the two.
-    /// A hinge turns by a fraction of the difference of its angle. Another joint turns the way that
-    /// `turn`, the rotation in the step before, continues; without one, the shortest way. `turn`
-    /// becomes the rotation of this step. A fraction of 1 gives `angles` bit for bit.
+    /// The joint's angles turned towards other angles by a fraction of the rotation between the
+    /// two. A hinge turns by a fraction of the difference of its angle. Another joint turns the way
+    /// that `turn`, the rotation in the step before, continues; without one, the shortest way.
+    /// `turn` becomes the rotation of this step. A fraction of 1 gives `angles` bit for bit.
     pub(crate) fn angles_towards(
         &self,
         angles: Vec3,

@@ -1,10 +1,11 @@
 //! Skeletons posed by their targets, as a function of rig and time.
 
 use glam::{Affine3A, DMat3, DVec3, Quat, Vec3};
+use ik_arm_kinematics::Shared;
 use ik_arm_kinematics::limb_ik::{ElbowReference, Limb, LimbReach};
 use ik_arm_kinematics::rig::{
-    EvaluatedSkeleton, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetOutcome,
-    TargetPath, TargetSpace,
+    Carried, EvaluatedSkeleton, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion,
+    TargetOutcome, TargetPath, TargetSpace,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
@@ -373,4 +374,41 @@ fn the_missing_angle_of_a_foot_is_the_one_computed_in_f64_and_0_within_its_limit
         assert_eq!(evaluated.targets[0].rotation_error, None, "a hand that follows its bone");
     }
     assert!(missed > 150 && reached > 150, "{missed} {reached}");
+}
+
+#[test]
+fn a_step_carries_the_same_state_whether_its_pose_is_needed_or_not() {
+    let mut random = Random(160);
+    for case in 0..40 {
+        let rig = random_rig(&mut random);
+        let mut carried = Carried::default();
+        for frame in 0..20 {
+            let time = f64::from(frame) / 24.0;
+            let (_, after) = rig.step(time, &carried);
+            rig.carry(time, &mut carried);
+            assert_eq!(after, carried, "{case}: frame {frame}");
+        }
+    }
+}
+
+#[test]
+fn a_motion_that_begins_with_its_own_posture_begins_with_its_pose() {
+    let mut random = Random(161);
+    for case in 0..40 {
+        let mut rig = random_rig(&mut random);
+        rig.targets.iter_mut().for_each(|target| {
+            target.influence = 1.0;
+            target.kind = TargetKind::WholeBody;
+        });
+        let (posed, carried) = rig.settle(0.5, &Carried::default());
+        let posture = Shared::from(carried.to_posture());
+        let (again, _) = rig.step(0.5, &Carried::from_posture(&posture));
+        let [one, other] = [&posed, &again].map(|it| it.solved.pose());
+        let size = one.points().map(Vec3::length).fold(1.0, f32::max);
+        for (one, other) in one.points().zip(other.points()) {
+            assert!(one.distance(other) <= 1e-4 * size, "{case}: {one} {other}");
+        }
+        let limbs = carried.to_posture().limbs;
+        assert!(limbs.is_empty() && posture.fits(rig.skeleton.joints().len()));
+    }
 }

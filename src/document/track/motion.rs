@@ -284,8 +284,8 @@ impl Motion {
         State { carried: Arc::new(carried), work }
     }
 
-    /// The first step, of those until `newest`, at which the inputs of two motions differ; `None` if
-    /// none do.
+    /// The first step, of those until `newest`, at which the inputs of two motions differ; `None`
+    /// if none do.
     fn first_change(&self, other: &Self, newest: usize) -> Option<usize> {
         let (Some(grid), Some(others)) = (self.grid, other.grid) else { return Some(0) };
         let [one, two] = [&self.document, &other.document];

@@ -53,7 +53,7 @@ pub(super) fn measure(rig: &SkeletonRig, scratch: &mut Scratch) -> (Vec3, f32, f
     (Vec3 { y: 0.0, ..centre }, reach.max(radius), SkeletonRig::grid_cell_for(reach))
 }
 
-/// How far the colour of the pose of a frame by itself is mixed with that of the sky, from 0 to 1.
+/// Part of the sky's colour in that of the pose of a frame by itself, from 0 to 1.
 const BY_ITSELF_FADED: f32 = 0.3;
 
 /// Adds the bones with their shadows, the ghosts of other solvers, the targets with their trails,

@@ -43,8 +43,8 @@ pub enum Solvers {
 }
 
 impl Solvers {
-    /// Applies an action on a pose; `from_fk`: see [`SolverInputs::of`]. The page on the right that shows what was started comes to the
-    /// front.
+    /// Applies an action on a pose; `from_fk`: see [`SolverInputs::of`]. The page on the right that
+    /// shows what was started comes to the front.
     pub(in crate::session) fn apply(
         &mut self,
         action: SolverAction,

@@ -157,8 +157,8 @@ impl Problem {
         }
     }
 
-    /// Brings the points to which tips move to at most `most` from the tips, in the problem's units,
-    /// until the targets are set again. Returns whether a point was farther away.
+    /// Brings the points to which tips move to at most `most` from the tips, in the problem's
+    /// units, until the targets are set again. Returns whether a point was farther away.
     pub fn hold_back(&mut self, tips: &[Vec3A], most: f32) -> bool {
         let mut is_held_back = false;
         for (effector, tip) in self.effectors.iter_mut().zip(tips) {

@@ -15,8 +15,9 @@
 //! If s is above 0.1·L, the target or the FK pose has jumped, and the step is a run with restarts.
 //! If nothing has changed since a step that ended, its configuration is kept, bit for bit.
 
-use super::{ChainSolver, Report, Status};
+use super::ChainSolver;
 use crate::chain_ik::inside::Recorder;
+use crate::chain_ik::report::{Report, Status};
 use crate::chain_ik::tracker::Tracker;
 use crate::chain_ik::{SolveError, SolverOptions, TipTarget};
 use crate::skeleton::Skeleton;
@@ -129,9 +130,9 @@ impl ChainSolver {
         step
     }
 
-    /// Brings the configuration as near to the FK pose as the targets allow, if they are reached: to
-    /// where [tracking](ChainSolver::track) would bring it after long motions, so that a motion that
-    /// begins here closes its loops.
+    /// Brings the configuration as near to the FK pose as the targets allow, if they are reached:
+    /// to where [tracking](ChainSolver::track) would bring it after long motions, so that a motion
+    /// that begins here closes its loops.
     pub fn relax(&mut self) {
         /// Most steps.
         const STEPS: usize = 200;

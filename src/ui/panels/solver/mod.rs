@@ -202,7 +202,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     start(ui, session, actions);
 }
 
-/// Whether runs start from the FK pose, where the motion gives another start.
+/// Lets runs start from the FK pose, where the motion gives another start.
 fn start(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if !session.posed().carried().is_some_and(|carried| carried.has_body()) {
         return;
