@@ -255,6 +255,8 @@ fn the_first_key_moves_nothing() {
         let moved = before.points().zip(session.skeleton_pose().points());
         let moved = moved.map(|(one, other)| one.distance(other)).fold(0.0, f32::max);
         assert!(moved < 1e-5, "moved by {moved}");
+        session.apply(KeysEdit::ClearChannels(vec![Channel::Target(tip)]));
+        assert_eq!(*session.skeleton_pose(), before, "nor does the removal of the last key");
     }
 }
 

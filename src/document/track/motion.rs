@@ -137,6 +137,12 @@ impl Motion {
         })
     }
 
+    /// True if the first pose is as near to the FK pose as the targets allow.
+    fn begins_relaxed(&self) -> bool {
+        let has_posture = self.document.skeleton_rig.posture.is_some();
+        !has_posture && self.grid.is_some_and(|grid| grid.last > 0)
+    }
+
     /// About the work of the steps until a time in seconds whose states are not known, in the unit
     /// of [`Motion::MOST_WORK`].
     pub fn missing_work(&self, time: f64) -> u64 {
@@ -188,10 +194,12 @@ impl Motion {
         let present = self.document.skeleton_rig.posture.as_ref();
         let first = self.state(&grid, 0).1.carried;
         if has_same_inputs(&before, &after) {
-            // A first key must not move a figure whose motion would begin with a relaxed pose.
-            let begins_to_move = grid.last == 0 && edited.moves_skeleton();
-            let shown = || first.to_posture().into();
-            return present.cloned().or_else(|| begins_to_move.then(shown));
+            // The first key and the removal of the last one must not move a figure, although a
+            // motion begins with a relaxed pose, and a figure that stands does not.
+            let begins_otherwise = self.begins_relaxed() != Self::new(edited).begins_relaxed();
+            let shown = || Some(first.to_posture()).filter(|posture| !posture.is_empty());
+            let kept = || begins_otherwise.then(shown).flatten().map(Shared::from);
+            return present.cloned().or_else(kept);
         }
         let (solved, carried) = after.settle(grid.start, &first);
         if may_start_afresh
@@ -292,7 +300,7 @@ impl Motion {
         let is_same_grid = grid.has_same_times(&others);
         let is_same_rig = has_same_inputs(&one.skeleton_rig, &two.skeleton_rig)
             && one.skeleton_rig.posture == two.skeleton_rig.posture;
-        if !is_same_grid || !is_same_rig {
+        if !is_same_grid || !is_same_rig || self.begins_relaxed() != other.begins_relaxed() {
             return Some(0);
         }
         let changed = one.keys.changed_channels(&two.keys);
