@@ -3,6 +3,8 @@
 
 mod spans;
 
+use std::collections::BTreeMap;
+
 use super::{Document, Posed, Timeline, Track};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, RotationAxis};
@@ -24,6 +26,8 @@ pub struct Inspection {
     pub lost: Vec<LostSpan>,
     /// Frames in which joints move much farther than targets.
     pub pops: Vec<FramePop>,
+    /// The highest of pops that follow each other.
+    pub peaks: Vec<FramePop>,
     /// Spans of frames in which an angle of a joint that a target turns is at an end of its range.
     pub at_limits: Vec<LimitSpan>,
     /// Spans of frames in which a target with full influence rests and its tip moves.
@@ -136,34 +140,32 @@ impl Inspection {
         if loops && last > 0 {
             inspector.pops.extend(seam([&at(last - 1), &before, &at(0), &at(1)]));
         }
-        Some(inspector.inspection(track))
+        Some(inspector.inspection(track, frames))
     }
 }
 
-impl Inspection {
-    /// Of all pops with the same target and cause that are at most three frames of a timeline
-    /// apart, the one with the highest ratio; in the order of their times.
-    pub fn peaks(&self, timeline: Timeline) -> Vec<FramePop> {
-        const APART: f64 = 3.5;
-        let mut peaks: Vec<(FramePop, f64)> = Vec::new();
-        for pop in &self.pops {
-            let is_like = |(peak, last): &&mut (FramePop, f64)| {
-                let [one, other] = [peak.pop, pop.pop].map(|it| (it.target, it.cause));
-                one == other && (pop.time - *last) * timeline.frame_rate < APART
-            };
-            match peaks.iter_mut().rev().find(is_like) {
-                Some((peak, last)) => {
-                    *last = pop.time;
-                    if pop.pop.ratio > peak.pop.ratio {
-                        *peak = *pop;
-                    }
-                }
-                None => peaks.push((*pop, pop.time)),
-            }
+/// Of all pops with the same target and cause that are at most three frames of a timeline apart, the
+/// one with the highest ratio; in the order of their times.
+fn peaks(pops: &[FramePop], timeline: Timeline) -> Vec<FramePop> {
+    const APART: f64 = 3.5;
+    let mut peaks: Vec<FramePop> = Vec::new();
+    // By target and cause, the latest peak and the time of its latest pop.
+    let mut latest: BTreeMap<(JointId, &str), (usize, f64)> = BTreeMap::new();
+    for pop in pops {
+        let next = (peaks.len(), pop.time);
+        let (peak, last) = latest.entry((pop.pop.target, pop.pop.cause.name())).or_insert(next);
+        if (pop.time - *last) * timeline.frame_rate >= APART {
+            *peak = peaks.len();
         }
-        peaks.sort_by(|(one, _), (other, _)| one.time.total_cmp(&other.time));
-        peaks.into_iter().map(|(peak, _)| peak).collect()
+        *last = pop.time;
+        match peaks.get_mut(*peak) {
+            Some(peak) if peak.pop.ratio >= pop.pop.ratio => {}
+            Some(peak) => *peak = *pop,
+            None => peaks.push(*pop),
+        }
     }
+    peaks.sort_by(|one, other| one.time.total_cmp(&other.time));
+    peaks
 }
 
 /// Remedies.
@@ -251,7 +253,7 @@ impl Inspector {
         self.pops.extend(pops.into_iter().map(|pop| FramePop { time: after.time, pop }));
     }
 
-    fn inspection(self, track: &Track) -> Inspection {
+    fn inspection(self, track: &Track, frames: Timeline) -> Inspection {
         let targets = &track.document().skeleton_rig.targets;
         let lost = self.missed.ended().filter(|span| is_lost(track, span.index, &span.times));
         let lost = lost.map(|span| LostSpan {
@@ -268,6 +270,7 @@ impl Inspector {
         Inspection {
             worst: self.worst.into_iter().flatten().collect(),
             lost: lost.collect(),
+            peaks: peaks(&self.pops, frames),
             pops: self.pops,
             at_limits: limits.collect(),
             slides: self.slides.ended(targets),

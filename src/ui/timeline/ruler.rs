@@ -84,7 +84,7 @@ struct FaultTick {
 fn fault_ticks(session: &Session) -> Vec<FaultTick> {
     let Some(found) = session.inspection() else { return Vec::new() };
     let rig = session.skeleton_rig();
-    let pops = found.peaks(session.document().timeline).into_iter().map(|peak| FaultTick {
+    let pops = found.peaks.iter().map(|peak| FaultTick {
         time: peak.time,
         until: peak.time,
         sentence: words::pop(rig, &peak.pop),

@@ -33,8 +33,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn pops(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Actions) {
-    let timeline = session.document().timeline;
-    let peaks = found.peaks(timeline);
+    let peaks = &found.peaks;
     if peaks.is_empty() {
         ui.label("No pops: joints move as smoothly as their targets.");
     }
@@ -42,7 +41,7 @@ fn pops(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
     let line = |FramePop { time, pop }: &FramePop| (*time, pop.joint, words::pop(rig, pop));
     lines(ui, peaks.iter().map(line), actions);
     let mut offered: Vec<Target> = Vec::new();
-    for FramePop { pop, .. } in &peaks {
+    for FramePop { pop, .. } in peaks {
         let Some((label, tooltip, target)) = remedy(rig, pop) else { continue };
         if !offered.contains(&target) {
             offered.push(target);
