@@ -2,11 +2,13 @@
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{
-    Document, Inspection, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
+    Document, FramePop, Inspection, RigKind, SkeletonRig, Target, TargetMotion, TargetPath,
+    Timeline, Track,
 };
 use ik_arm::io;
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::rig::RigPopCause;
 use ik_arm::session::{Session, SolverEdit, TransactionAction};
 
 use crate::common::Random;
@@ -114,4 +116,24 @@ fn pops_are_the_frames_in_which_joints_move_twice_as_far_as_the_target() {
         all += expected.len();
     }
     assert!(all > 100, "{all} pops");
+}
+
+#[test]
+fn limbs_that_stay_while_the_body_above_them_moves_do_not_pop() {
+    let example = io::Example::find("human").expect("an example").open().expect("valid");
+    let mut document = example.document;
+    let head = document.skeleton().find("head").expect("a head");
+    let home = Track::new(&document).at(0.0).skeleton().pose().tip(head);
+    let motion = TargetMotion { path: TargetPath::Circle, radius: 0.02, period: 2.0 };
+    let target = Target { influence: 1.0, motion, ..Target::new(head, home, 0.1) };
+    document.skeleton_rig.targets.push(target);
+    document.timeline = Timeline { start: 0.0, end: 4.0, frame_rate: 30.0 };
+    let found = inspected(&document);
+    // The arms hang nearly straight, which pops a little; otherwise limbs make up for the motion.
+    let is_of_limb =
+        |pop: &&FramePop| pop.pop.target != head && pop.pop.cause != RigPopCause::Straight;
+    assert_eq!(found.pops.iter().find(is_of_limb), None);
+    assert_eq!((&found.lost, &found.slides), (&vec![], &vec![]));
+    let hands = document.skeleton_rig.targets.iter().filter(|target| target.limb().is_some());
+    assert!(hands.count() >= 4, "hands and feet stay by limb targets");
 }

@@ -61,8 +61,6 @@ impl<'a> RigMoment<'a> {
         if joints(self) != joints(after) || self.rig.targets.len() != after.rig.targets.len() {
             return Vec::new();
         }
-        let step =
-            Step { before: *self, after: *after, taken: taken_along(self, after), is_missed };
         let poses = |index: &usize| {
             let both = [self, after].map(|moment| &moment.rig.targets[*index]);
             both.iter().any(|target| after.rig.is_solved_for(target))
@@ -71,7 +69,7 @@ impl<'a> RigMoment<'a> {
         let (limbs, bodies): (Vec<usize>, Vec<usize>) =
             targets.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
         let groups = limbs.iter().map(|index| vec![*index]).chain([bodies]);
-        groups.filter_map(|group| step.pop(&group)).collect()
+        groups.filter_map(|group| Step::new([self, after], &group, is_missed).pop(&group)).collect()
     }
 }
 
@@ -79,19 +77,32 @@ impl<'a> RigMoment<'a> {
 struct Step<'a> {
     before: RigMoment<'a>,
     after: RigMoment<'a>,
-    /// Base and tip of each joint in the pose before, taken along by FK.
+    /// The joints that the targets turn.
+    joints: Vec<JointId>,
+    /// Base and tip of each joint, if these joints had been taken along by FK.
     taken: Vec<[DVec3; 2]>,
     is_missed: [&'a dyn Fn(usize) -> bool; 2],
+}
+
+impl<'a> Step<'a> {
+    /// The step of the joints that targets turn together.
+    fn new(
+        [before, after]: [&RigMoment<'a>; 2],
+        targets: &[usize],
+        is_missed: [&'a dyn Fn(usize) -> bool; 2],
+    ) -> Self {
+        let turned = |index: &usize| after.rig.moved_by(&after.rig.targets[*index]).turned;
+        let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
+        let taken = taken_along(before, after, &joints);
+        Self { before: *before, after: *after, joints, taken, is_missed }
+    }
 }
 
 impl Step<'_> {
     /// The pop of the joints that targets turn together, if there is one.
     fn pop(&self, targets: &[usize]) -> Option<RigPop> {
         let length = targets.iter().map(|it| self.length(*it)).fold(0.0, f64::max);
-        let turned =
-            |index: &usize| self.after.rig.moved_by(&self.after.rig.targets[*index]).turned;
-        let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
-        let moved = joints.iter().map(|joint| (*joint, self.moved(*joint)));
+        let moved = self.joints.iter().map(|joint| (*joint, self.moved(*joint)));
         let (joint, moved) = moved.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ways = targets.iter().map(|it| (*it, self.way(*it, moved)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
@@ -99,7 +110,7 @@ impl Step<'_> {
         if ratio <= self.bound(targets[0]) || ratio.is_nan() {
             return None;
         }
-        let cause = self.cause(targets, farthest, &joints, joint, length);
+        let cause = self.cause(targets, farthest, joint, length);
         let target = self.after.rig.targets[farthest].joint;
         Some(RigPop { joint, ratio: ratio as f32, cause, target })
     }
@@ -186,7 +197,6 @@ impl Step<'_> {
         &self,
         targets: &[usize],
         farthest: usize,
-        joints: &[JointId],
         joint: JointId,
         length: f64,
     ) -> RigPopCause {
@@ -202,7 +212,7 @@ impl Step<'_> {
         if any(&|it| self.target_way(it) > JUMP * length) {
             return RigPopCause::TargetJump;
         }
-        if joints.iter().any(|joint| self.fk_way(*joint) > JUMP * length) {
+        if self.joints.iter().any(|joint| self.fk_way(*joint) > JUMP * length) {
             return RigPopCause::FkJump;
         }
         let missed = |moment: usize| any(&|index| (self.is_missed[moment])(index));
@@ -217,7 +227,7 @@ impl Step<'_> {
         if !self.after.rig.is_tracked {
             return RigPopCause::ByItself;
         }
-        if let Some(cause) = self.cause_of_limits(joints) {
+        if let Some(cause) = self.cause_of_limits(&self.joints) {
             return cause;
         }
         let is_missed = missed(0) && missed(1);
@@ -229,9 +239,13 @@ impl Step<'_> {
             RigPopCause::Found
         } else if self.turns_over(targets) {
             RigPopCause::TurnsOver
-        } else if self.returns(joints, joint) {
+        } else if self.returns(joint) {
             RigPopCause::Returns
-        } else if joints.iter().any(|it| ends(&self.after.evaluated.solved, *it).contains(&true)) {
+        } else if self
+            .joints
+            .iter()
+            .any(|it| ends(&self.after.evaluated.solved, *it).contains(&true))
+        {
             RigPopCause::AtLimit
         } else {
             RigPopCause::Unknown
@@ -384,7 +398,7 @@ impl Step<'_> {
 
     /// True if a third of the joints' rotation, or half of the way of the joint that moves
     /// farthest, leads towards the FK pose.
-    fn returns(&self, joints: &[JointId], joint: JointId) -> bool {
+    fn returns(&self, joint: JointId) -> bool {
         let rotation = |moment: &RigMoment<'_>, joint: JointId| {
             let EvaluatedSkeleton { fk, solved, .. } = moment.evaluated;
             let [fk, solved] = [fk, solved]
@@ -392,7 +406,7 @@ impl Step<'_> {
             fk.conjugate() * solved
         };
         let (mut before, mut after, mut turned) = (0.0, 0.0, 0.0);
-        for joint in joints {
+        for joint in &self.joints {
             let [one, other] = [&self.before, &self.after].map(|it| rotation(it, *joint));
             let square = |turn: DQuat| turn.xyz().length().atan2(turn.w.abs()).powi(2);
             before += square(one);
@@ -425,23 +439,34 @@ fn places(pose: &Skeleton, joint: JointId) -> [DVec3; 2] {
     [pose.base(joint), pose.tip(joint)].map(Vec3::as_dvec3)
 }
 
-/// Base and tip of each joint in the solved pose of a moment, taken along by the FK pose to another
-/// moment: every joint keeps its rotation and its offset relative to FK.
-fn taken_along(before: &RigMoment<'_>, after: &RigMoment<'_>) -> Vec<[DVec3; 2]> {
+/// Base and tip of each joint in the solved pose of a moment, if those of `turned` had been taken
+/// along by the FK pose from another moment: each keeps its rotation and its offset relative to FK.
+fn taken_along(
+    before: &RigMoment<'_>,
+    after: &RigMoment<'_>,
+    turned: &[JointId],
+) -> Vec<[DVec3; 2]> {
     let joints = before.evaluated.solved.joints().iter();
     let fk = before.evaluated.fk.joints().iter().zip(after.evaluated.fk.joints());
+    let solved_after = after.evaluated.solved.iter();
     let transform = after.evaluated.fk.transform().as_daffine3();
     let mut spaces: Vec<(DMat3, DVec3)> = Vec::with_capacity(joints.len());
     let mut taken = Vec::with_capacity(joints.len());
-    for (solved, (fk, fk_after)) in joints.zip(fk) {
-        let [turned, from, to] = [solved, fk, fk_after].map(|it| it.rotation_f64(it.rotation));
-        let offset = fk_after.offset.as_dvec3() + (solved.offset - fk.offset).as_dvec3();
+    for ((solved, (fk, fk_after)), (joint, solved_after)) in joints.zip(fk).zip(solved_after) {
+        let (local, offset, axis) = if turned.contains(&joint) {
+            let [turned, from, to] = [solved, fk, fk_after].map(|it| it.rotation_f64(it.rotation));
+            let offset = fk_after.offset.as_dvec3() + (solved.offset - fk.offset).as_dvec3();
+            (turned * from.transpose() * to, offset, fk_after.axis)
+        } else {
+            let local = solved_after.rotation_f64(solved_after.rotation);
+            (local, solved_after.offset.as_dvec3(), solved_after.axis)
+        };
         let (above, origin) =
             solved.parent.map_or((DMat3::IDENTITY, DVec3::ZERO), |parent| spaces[parent.index()]);
         let base = origin + above * offset;
-        let rotation = above * turned * from.transpose() * to;
+        let rotation = above * local;
         spaces.push((rotation, base));
-        let tip = base + rotation * fk_after.axis.as_dvec3();
+        let tip = base + rotation * axis.as_dvec3();
         taken.push([base, tip].map(|point| transform.transform_point3(point)));
     }
     taken
