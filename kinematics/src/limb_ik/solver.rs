@@ -140,8 +140,7 @@ pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> O
 pub fn bends_to_several_sides(skeleton: &Skeleton, limb: Limb) -> bool {
     let Some(fk) = FkLimb::new(skeleton, limb) else { return false };
     let lower = &skeleton[limb.lower];
-    let is_movable = RotationAxis::ALL.into_iter().any(|axis| lower.limits.span(axis) >= 1e-6);
-    let is_fixed = lower.locked || !is_movable;
+    let is_fixed = lower.locked || lower.movable_axes().next().is_none();
     !is_fixed && (lower.hinge().is_none() || fk.bend.has_both_sides(fk.angle))
 }
 
@@ -347,8 +346,7 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<RotationAxis>
     let free = |axis: DVec3, limits: (f64, f64)| {
         (Bend::new(axis, mount.origin, turned, limits), 0.0, None)
     };
-    let is_fixed = RotationAxis::ALL.into_iter().all(|axis| lower.limits.span(axis) < 1e-6);
-    if lower.locked || is_fixed {
+    if lower.locked || lower.movable_axes().next().is_none() {
         return free(DVec3::X, (0.0, 0.0));
     }
     let normal = mount.origin.cross(turned);
@@ -362,8 +360,9 @@ fn bend_of(lower: &Joint, mount: JointSpace) -> (Bend, f64, Option<RotationAxis>
         room.min(core::f64::consts::PI) * bend.axis.cross(turned.normalize_or_zero()).length()
     };
     let rank = |one, other| swing(one).total_cmp(&(swing(other) + 1e-6));
-    let movable = RotationAxis::ALL.into_iter().filter(|axis| lower.limits.span(*axis) >= 1e-6);
-    let widest = movable.reduce(|best, hinge| if rank(hinge, best).is_gt() { hinge } else { best });
+    let widest = lower
+        .movable_axes()
+        .reduce(|best, hinge| if rank(hinge, best).is_gt() { hinge } else { best });
     widest.map_or_else(|| free(DVec3::X, (0.0, 0.0)), about)
 }
 

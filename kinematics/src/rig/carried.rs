@@ -141,11 +141,6 @@ impl Carried {
         self.steps().any(|step| step.is_held_back)
     }
 
-    /// True if a target or the FK pose had jumped in the last step.
-    pub fn has_jumped(&self) -> bool {
-        self.steps().any(|step| step.has_jumped)
-    }
-
     /// About the work of the last step, in the unit of [`ChainSolver::bounded`].
     pub fn work(&self) -> u64 {
         self.bodies.iter().map(|body| body.solver.work()).sum()

@@ -362,8 +362,6 @@ impl Step<'_> {
         let joint = self.after.rig.targets[index].joint;
         [&self.before, &self.after].into_iter().any(|moment| {
             let pose = &moment.evaluated.solved;
-            let root = pose.ancestors(joint).last().unwrap_or(joint);
-            let reach = places(pose, joint)[1].distance(places(pose, root)[0]);
             let bones = pose.ancestors(joint).map(|joint| {
                 let [base, tip] = places(pose, joint);
                 let parent = pose[joint].parent.map(|parent| places(pose, parent)[0]);
@@ -372,7 +370,7 @@ impl Step<'_> {
             });
             let bones: Vec<(f64, f64)> = bones.collect();
             let length = bones[0].1 + bones.iter().map(|(offset, _)| offset).sum::<f64>();
-            reach > STRAIGHT * length
+            root_to_tip(pose, joint) > STRAIGHT * length
         })
     }
 
@@ -380,10 +378,7 @@ impl Step<'_> {
     fn is_at_base(&self, index: usize) -> bool {
         const NEAR: f64 = 0.1;
         let joint = self.after.rig.targets[index].joint;
-        let pose = &self.after.evaluated.solved;
-        let root = pose.ancestors(joint).last().unwrap_or(joint);
-        let reach = places(pose, joint)[1].distance(places(pose, root)[0]);
-        reach < NEAR * self.length(index)
+        root_to_tip(&self.after.evaluated.solved, joint) < NEAR * self.length(index)
     }
 
     /// True if the method needed many iterations, in which it turns bones that are in the way of
@@ -432,6 +427,12 @@ fn ends(pose: &Skeleton, joint: JointId) -> [bool; 3] {
     let joint = &pose[joint];
     RotationAxis::ALL
         .map(|axis| joint.limits.span(axis) > 1e-6 && joint.limits.is_at_end(joint.rotation, axis))
+}
+
+/// Distance in the world from the base of a joint's root to the joint's tip.
+fn root_to_tip(pose: &Skeleton, joint: JointId) -> f64 {
+    let root = pose.ancestors(joint).last().unwrap_or(joint);
+    places(pose, joint)[1].distance(places(pose, root)[0])
 }
 
 /// Base and tip of a joint's bone in the world.

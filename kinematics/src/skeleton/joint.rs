@@ -288,10 +288,14 @@ impl Joint {
     /// The only axis about which the limits let the joint turn; `None` if there are several, or
     /// none.
     pub(crate) fn hinge(&self) -> Option<RotationAxis> {
-        const MOVABLE: f32 = 1e-6;
-        let movable = |axis: &RotationAxis| self.limits.span(*axis) >= MOVABLE;
-        let mut movable = RotationAxis::ALL.into_iter().filter(movable);
+        let mut movable = self.movable_axes();
         movable.next().filter(|_| movable.next().is_none())
+    }
+
+    /// The axes about which the limits let the joint turn.
+    pub(crate) fn movable_axes(&self) -> impl Iterator<Item = RotationAxis> {
+        const MOVABLE: f32 = 1e-6;
+        RotationAxis::ALL.into_iter().filter(|axis| self.limits.span(*axis) >= MOVABLE)
     }
 }
 
