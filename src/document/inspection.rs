@@ -171,7 +171,8 @@ fn peaks(pops: &[FramePop], timeline: Timeline) -> Vec<FramePop> {
 /// Remedies.
 impl Inspection {
     /// If targets are lost, looks for a posture with which the motion loses none: the motion is
-    /// tracked backwards from a solve of a frame that is lost, and then inspected from there.
+    /// tracked backwards from a solve of a frame that is lost, and then inspected from there. Ends
+    /// without one if `go_on` returns false.
     pub fn find_better_posture(
         &mut self,
         track: &Track,
@@ -188,7 +189,8 @@ impl Inspection {
                 let mut document = track.document().clone();
                 document.skeleton_rig.posture = Some(posture.clone());
                 let again = Self::new(&Track::new(&document), frames, false, &mut go_on);
-                if again.is_some_and(|again| again.lost.is_empty()) {
+                let Some(again) = again else { return };
+                if again.lost.is_empty() {
                     self.better_posture = Some(posture);
                     return;
                 }
