@@ -8,7 +8,8 @@ use egui::{
 use super::drag;
 use super::time_scale::TimeScale;
 use super::value_scale::ValueScales;
-use crate::document::Timeline;
+use crate::document::{LostSpan, Timeline};
+use crate::rig::RigPop;
 use crate::session::{Actions, PlaybackAction, Session};
 use crate::ui::{style, widgets};
 use crate::words;
@@ -58,12 +59,15 @@ pub(in crate::ui) fn ui(
     let mouse = response.hover_pos().filter(|_| !response.dragged());
     let hovered = mouse.and_then(|mouse| {
         const NEAR: f32 = 4.0;
-        let away = |tick: &FaultTick| (scale.x(tick.time) - mouse.x).abs();
+        let away = |tick: &FaultTick<'_>| (scale.x(tick.time) - mouse.x).abs();
         let nearest = ticks.iter().min_by(|one, other| away(one).total_cmp(&away(other)))?;
         (away(nearest) <= NEAR).then_some(nearest)
     });
     match hovered {
-        Some(tick) => response.on_hover_text(format!("{:.2} s: {}", tick.time, tick.sentence)),
+        Some(tick) => {
+            let sentence = tick.fault.sentence(session);
+            response.on_hover_text(format!("{:.2} s: {sentence}", tick.time))
+        }
         None => response.on_hover_text(
             "Drag to scrub, Ctrl off the frame grid. Wheel zooms, middle drag pans, double-click \
              shows all",
@@ -72,41 +76,52 @@ pub(in crate::ui) fn ui(
 }
 
 /// A fault of the motion: a pop, or a target that is lost.
-struct FaultTick {
+struct FaultTick<'a> {
     /// In seconds.
     time: f64,
     /// The end of a span, in seconds.
     until: f64,
-    sentence: String,
-    is_lost: bool,
+    fault: Fault<'a>,
 }
 
-fn fault_ticks(session: &Session) -> Vec<FaultTick> {
+enum Fault<'a> {
+    Pop(&'a RigPop),
+    Lost(&'a LostSpan),
+}
+
+impl Fault<'_> {
+    fn sentence(&self, session: &Session) -> String {
+        let rig = session.skeleton_rig();
+        match self {
+            Self::Pop(pop) => words::pop(rig, pop),
+            Self::Lost(span) => words::lost(rig, span.target, span.miss),
+        }
+    }
+}
+
+fn fault_ticks(session: &Session) -> Vec<FaultTick<'_>> {
     let Some(found) = session.inspection() else { return Vec::new() };
-    let rig = session.skeleton_rig();
     let pops = found.peaks.iter().map(|peak| FaultTick {
         time: peak.time,
         until: peak.time,
-        sentence: words::pop(rig, &peak.pop),
-        is_lost: false,
+        fault: Fault::Pop(&peak.pop),
     });
     let lost = found.lost.iter().map(|span| FaultTick {
         time: span.from,
         until: span.to,
-        sentence: words::lost(rig, span.target, span.miss),
-        is_lost: true,
+        fault: Fault::Lost(span),
     });
     pops.chain(lost).collect()
 }
 
 /// Draws triangles at pops, and bars where targets are lost.
-fn paint_faults(ui: &Ui, scale: TimeScale, rect: Rect, ticks: &[FaultTick]) {
+fn paint_faults(ui: &Ui, scale: TimeScale, rect: Rect, ticks: &[FaultTick<'_>]) {
     const SIZE: f32 = 4.0;
     let painter = ui.painter().with_clip_rect(rect);
     let (warn, error) = (ui.visuals().warn_fg_color, ui.visuals().error_fg_color);
     for tick in ticks {
         let (x, until, bottom) = (scale.x(tick.time), scale.x(tick.until), rect.bottom());
-        if tick.is_lost {
+        if let Fault::Lost(_) = tick.fault {
             let bar = Rect::from_x_y_ranges(x..=until.max(x + 2.0), bottom - 3.0..=bottom);
             painter.rect_filled(bar, 0.0, error);
         } else {
