@@ -148,7 +148,7 @@ impl Ik {
 }
 
 /// Reach of a hand at `distance` from the shoulder for a cursor at `wanted` from the shoulder.
-pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
+pub(crate) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
     const NEAR: f64 = 1e-6;
     let near = NEAR * (f64::from(bones.upper()) + f64::from(bones.lower()));
     match f64::from(distance) - f64::from(wanted) {
@@ -160,6 +160,6 @@ pub(super) fn reach(distance: f32, wanted: f32, bones: TwoBone) -> Reach {
 
 /// Length of a vector, computed in f64, where no square of an f32 overflows; infinite above
 /// `f32::MAX`.
-pub(super) fn length(v: Vec3) -> f32 {
+pub(crate) fn length(v: Vec3) -> f32 {
     v.as_dvec3().length() as f32
 }

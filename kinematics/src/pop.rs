@@ -37,19 +37,21 @@ use glam::{DVec3, Vec3};
 
 use super::fk::Fk;
 use super::ik::Ik;
-use super::twist::{Stereographic, TransportedFrame, TwistReference};
+use super::twist::{Stereographic, TransportedFrame, TwistReference, TwistReferenceKind};
 use super::two_bone::TwoBonePose;
 
-/// A solved arm with all inputs of its pose.
+/// A solved limb with all inputs of its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct PosedArm {
+pub struct PosedLimb {
     /// The pose.
     pub pose: TwoBonePose,
     /// The cursor in Root space.
     pub cursor: Vec3,
     /// Bones, twist reference and soft limits.
     pub ik: Ik,
+    /// Kind of the twist reference.
+    pub kind: TwistReferenceKind,
     /// Twist ψ, in radians.
     pub twist: f32,
     /// Position of the shoulder in the world if the cursor is pinned to the world; `None` if the
@@ -138,22 +140,24 @@ impl InputChange {
     /// The first input in [`Self::ALL`] that differs between two poses; `None` if all are equal.
     /// Inputs without effect are ignored: the FK angles at influence 1, and the shoulder's position
     /// unless the cursor is pinned to the world.
-    pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
+    pub fn between(before: &PosedLimb, after: &PosedLimb) -> Option<Self> {
         Self::ALL.into_iter().find(|change| change.is_between(before, after))
     }
 
-    fn is_between(self, before: &PosedArm, after: &PosedArm) -> bool {
+    fn is_between(self, before: &PosedLimb, after: &PosedLimb) -> bool {
         let references = (before.ik.reference, after.ik.reference);
+        // With FK as reference, its map follows from the angles.
+        let is_by_fk = before.kind == TwistReferenceKind::Fk && after.kind == before.kind;
         match self {
             Self::Lengths => before.ik.bones != after.ik.bones,
             Self::TwistReference => match references {
-                (TwistReference::Pole(_), TwistReference::Pole(_)) => false,
-                (one, other) => one != other,
+                (TwistReference::Pole(_), TwistReference::Pole(_)) => before.kind != after.kind,
+                (one, other) => one != other && !is_by_fk,
             },
-            Self::Pole => references.0 != references.1,
+            Self::Pole => references.0 != references.1 && !is_by_fk,
             Self::SoftReach => before.ik.soft_reach != after.ik.soft_reach,
             Self::Influence => before.influence != after.influence,
-            Self::Angles => after.influence < 1.0 && before.fk != after.fk,
+            Self::Angles => (after.influence < 1.0 || is_by_fk) && before.fk != after.fk,
             Self::Twist => before.twist != after.twist,
             Self::Root => match (before.pinned_root, after.pinned_root) {
                 (Some(one), Some(other)) => one != other,
@@ -188,7 +192,7 @@ impl ElbowStep {
 
     /// The elbow's step between two poses, for inputs without an [`InputChange`]; `None` if the
     /// cursor moves by less than [`Self::LEAST`].
-    pub fn between(before: &PosedArm, after: &PosedArm) -> Option<Self> {
+    pub fn between(before: &PosedLimb, after: &PosedLimb) -> Option<Self> {
         let went = (after.cursor.as_dvec3() - before.cursor.as_dvec3()).length();
         let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
         if went < f64::from(Self::LEAST) * sum {
@@ -232,7 +236,7 @@ fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
 }
 
 /// Ratio of the elbow's expected displacement to the cursor's: max(1, σd₁ / max(D, L/5)).
-fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
+fn calm(before: &PosedLimb, after: &PosedLimb, sum: f64) -> f64 {
     const NEAR_SHOULDER: f64 = 0.2;
     let stretch = f64::from(before.pose.stretch.max(after.pose.stretch));
     let distance = f64::from(before.pose.distance.min(after.pose.distance));
@@ -242,14 +246,14 @@ fn calm(before: &PosedArm, after: &PosedArm, sum: f64) -> f64 {
 
 /// True if the hand's mean distance in both poses is nearer to the outer limit than to the inner
 /// one.
-fn is_far_out(before: &PosedArm, after: &PosedArm, sum: f64) -> bool {
+fn is_far_out(before: &PosedLimb, after: &PosedLimb, sum: f64) -> bool {
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
 /// Smallest angle in radians between the Pointer, on its way from one pose to the other, and a
 /// singular direction of the twist reference.
-fn nearest_to_singular(before: &PosedArm, after: &PosedArm) -> f64 {
+fn nearest_to_singular(before: &PosedLimb, after: &PosedLimb) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {
         direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_arc(it, from, to))

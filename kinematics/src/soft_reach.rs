@@ -84,6 +84,32 @@ pub struct ReachLimits {
     pub outer: f32,
 }
 
+impl ReachLimits {
+    /// These limits for an elbow whose inner angle is at least `elbow_angle`, radians.
+    pub(crate) fn opened(self, bones: TwoBone, elbow_angle: f32) -> Self {
+        let open = saturate(bones.distance_at(f64::from(elbow_angle)));
+        Self { inner: self.inner.max(open).min(self.outer), ..self }
+    }
+
+    /// These limits in a blend of FK with the stretch `fk_stretch` and IK with soft limits. Stretch
+    /// and smallest elbow angle are blended as poses are.
+    pub(crate) fn blended(
+        self,
+        bones: TwoBone,
+        soft_reach: SoftReach,
+        influence: f32,
+        fk_stretch: f32,
+    ) -> Self {
+        let influence = influence.clamp(0.0, 1.0);
+        let stretched = |ik: f32| fk_stretch + (ik - fk_stretch) * influence;
+        let Self { inner, outer } = self.opened(bones, soft_reach.min_elbow_angle() * influence);
+        Self {
+            inner: (inner * stretched(1.0)).min(f32::MAX),
+            outer: (outer * stretched(soft_reach.max_stretch())).min(f32::MAX),
+        }
+    }
+}
+
 /// Distance of the hand from the shoulder, with stretch and slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandDistance {
@@ -195,7 +221,18 @@ impl SoftReach {
     /// shoulder.
     #[must_use]
     pub fn hand_distance(self, bones: TwoBone, cursor_distance: f32) -> HandDistance {
-        let limits = SoftLimits::new(self, bones);
+        self.distance_in(SoftLimits::new(self, bones), cursor_distance)
+    }
+
+    /// [`Self::hand_distance`] of a hand that can be anywhere within `limits`, without softness and
+    /// stretch.
+    #[must_use]
+    pub fn hand_distance_within(self, limits: ReachLimits, cursor_distance: f32) -> HandDistance {
+        let limits = SoftLimits::between(self, limits.inner.into(), limits.outer.into());
+        self.distance_in(limits, cursor_distance)
+    }
+
+    fn distance_in(self, limits: SoftLimits, cursor_distance: f32) -> HandDistance {
         let d = f64::from(cursor_distance);
         let (distance, slope) = limits.soften(d);
         let (longest, stretch) = (f64::from(self.max_stretch), limits.stretch(d, distance));

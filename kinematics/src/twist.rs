@@ -62,16 +62,20 @@ pub enum TwistReferenceKind {
     Stereographic,
     /// The previous direction, parallel-transported.
     Transport,
+    /// The direction that joint angles give the elbow, carried to the Pointer by the least
+    /// rotation; for limbs of skeletons.
+    Fk,
 }
 
 /// Error for a text that is not the name of a twist reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("twist reference must be up, pole, stereographic or transport")]
+#[error("twist reference must be up, pole, stereographic, transport or fk")]
 pub struct UnknownTwistReference;
 
 impl TwistReferenceKind {
     /// All kinds, in the order in which panels list them.
-    pub const ALL: [Self; 4] = [Self::Up, Self::Pole, Self::Stereographic, Self::Transport];
+    pub const ALL: [Self; 5] =
+        [Self::Up, Self::Pole, Self::Stereographic, Self::Transport, Self::Fk];
 
     /// Name for labels, and the name in files and on the command line.
     fn names(self) -> (&'static str, &'static str) {
@@ -80,6 +84,7 @@ impl TwistReferenceKind {
             Self::Pole => ("Pole", "pole"),
             Self::Stereographic => ("Stereographic", "stereographic"),
             Self::Transport => ("Transport", "transport"),
+            Self::Fk => ("FK", "fk"),
         }
     }
 

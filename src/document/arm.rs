@@ -1,14 +1,15 @@
-use core::fmt;
-use glam::{DMat3, Vec3};
+use glam::{Affine3A, DMat3, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::length_format::LengthFormat;
 use crate::kinematics::angle;
 use crate::kinematics::fk::{Fk, blended_limits, limb_rotations};
-use crate::kinematics::ik::IkState;
+use crate::kinematics::ik::{IkSolution, IkState};
+use crate::kinematics::pop::PosedLimb;
 use crate::kinematics::soft_reach::{ReachLimits, SoftReach};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::kinematics::two_bone::{LengthError, Pointer, TwoBone, TwoBonePose};
-use crate::rig::ArmRig;
+use crate::rig::LimbFrames;
 
 /// The two-bone arm: the values that pose it, and the state from which its next IK solve continues.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,26 +118,33 @@ impl Arm {
         if self.influence == 1.0 { self.cursor_in_root() } else { pose.hand }
     }
 
-    /// The hierarchy Root → Limb → Socket of a pose.
-    pub fn rig(&self, pose: &TwoBonePose) -> ArmRig {
-        ArmRig::new(self.bones, self.reach_limits(), self.root, self.cursor_in_root(), pose)
+    /// The hierarchy Root → Limb → Socket of a pose, and of the IK solve that is a part of it.
+    pub fn frames(&self, solution: &IkSolution, pose: &TwoBonePose) -> LimbFrames {
+        let inner = self.soft_reach.least_distance(self.bones);
+        let range = ReachLimits { inner, outer: self.bones.outer_limit() };
+        LimbFrames {
+            root: Affine3A::from_translation(self.root),
+            posed: PosedLimb {
+                pose: *pose,
+                cursor: self.cursor_in_root(),
+                ik: self.ik(),
+                kind: self.twist_reference,
+                twist: self.twist,
+                pinned_root: self.is_pinned().then_some(self.root),
+                influence: self.influence,
+                fk: self.fk,
+            },
+            solution: *solution,
+            limits: self.reach_limits(),
+            range,
+            limited_by: None,
+            references: TwistReferenceKind::ALL.map(|kind| Some(self.reference_for(kind))),
+        }
     }
 
-    /// Width of a cell of the grid: the power of ten nearest to a fifth of the arm's length.
+    /// Width of a cell of the grid around the arm.
     pub fn grid_cell(&self) -> f32 {
-        const FRACTION: f32 = 0.2;
-        let cell = 10_f32.powf((self.bones.outer_limit() * FRACTION).log10().round());
-        if cell.is_normal() { cell } else { 1.0 }
-    }
-
-    /// A length of the arm as text, rounded to a thousandth of a grid cell.
-    pub fn format_length(&self, length: f32) -> String {
-        ShownLength { length, decimals: self.length_decimals() }.to_string()
-    }
-
-    /// Number of decimals in [`Self::format_length`], from 0 to 8.
-    pub(crate) fn length_decimals(&self) -> usize {
-        (3.0 - self.grid_cell().log10().round()).clamp(0.0, 8.0) as usize
+        LengthFormat::of_limb(self.bones).cell()
     }
 
     /// Centre and radius of a bounding sphere of a pose, in the world. The radius is at least half
@@ -212,24 +220,6 @@ impl Cursor {
 
 fn clamped(point: Vec3) -> Vec3 {
     point.clamp(Vec3::MIN, Vec3::MAX)
-}
-
-/// Writes a length with some decimals, and a very large one in scientific notation.
-pub(crate) struct ShownLength {
-    pub length: f32,
-    pub decimals: usize,
-}
-
-impl fmt::Display for ShownLength {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const LARGE: f32 = 1e9;
-        let Self { length, decimals } = *self;
-        match length.abs() {
-            size if size.is_nan() || size >= f32::MAX => f.write_str("overflow"),
-            LARGE.. => write!(f, "{length:.3e}"),
-            _ => write!(f, "{length:.decimals$}"),
-        }
-    }
 }
 
 impl Default for Arm {

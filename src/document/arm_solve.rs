@@ -29,6 +29,12 @@ impl Arm {
                 TwistReference::Stereographic(Stereographic::default())
             }
             TwistReferenceKind::Transport => TwistReference::Transport,
+            TwistReferenceKind::Fk => {
+                // Least rotations from one direction are the stereographic map opposite to it.
+                let fk = self.fk.pose(self.bones, Pointer::default());
+                let map = Stereographic::new(-fk.pointer.direction, fk.outward());
+                TwistReference::Stereographic(map.unwrap_or_default())
+            }
         }
     }
 
@@ -40,23 +46,6 @@ impl Arm {
     /// Solves the arm by IK alone.
     pub fn solve(&self) -> IkSolution {
         self.ik().solve(self.cursor_in_root(), self.twist, self.ik_state)
-    }
-
-    /// Pose by IK alone with the same twist, measured from a reference of the given kind. The solve
-    /// continues from the arm's own state if the kind is the arm's, and otherwise from
-    /// `transported`.
-    pub fn pose_with_reference(
-        &self,
-        kind: TwistReferenceKind,
-        transported: Option<TransportedFrame>,
-    ) -> TwoBonePose {
-        let state = if kind == self.twist_reference {
-            self.ik_state
-        } else {
-            IkState { transported, ..self.ik_state }
-        };
-        let ik = Ik { reference: self.reference_for(kind), ..self.ik() };
-        ik.solve(self.cursor_in_root(), self.twist, state).pose
     }
 
     /// Pose of the arm: FK and IK, blended by the influence.

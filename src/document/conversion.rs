@@ -12,7 +12,7 @@ use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
 use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::kinematics::twist::TwistReferenceKind;
-use crate::rig::{Target, TargetSpace, UpAxis};
+use crate::rig::{LimbSettings, Target, TargetSpace, UpAxis};
 
 /// Conversions of angles of the arm.
 impl Document {
@@ -77,6 +77,40 @@ impl Document {
         self.convert_target(joint, [Channel::TargetPole(joint)], time, |target, pose, _, _| {
             target.with_pole_in_space(space, pose)
         });
+    }
+
+    /// Changes what the twist of a limb is measured from. The elbow stays where it is at `time`, at
+    /// which this document is evaluated, and at each key of the twist.
+    pub fn set_limb_reference(&mut self, joint: JointId, reference: ElbowReference, time: f64) {
+        let channel = Channel::TargetTwist(joint);
+        let before = Track::new(self);
+        let mut untwisted = self.clone();
+        untwisted.keys.clear(channel);
+        let Some(limb) = untwisted.limb_settings_mut(joint) else { return };
+        (limb.reference, limb.twist) = (reference, 0.0);
+        let after = Track::new(&untwisted);
+        let twist_in = |own: &Posed, zero: &Posed| {
+            let pose = |posed: &Posed| Some(posed.limb_frames(joint)?.solution.pose);
+            Some(pose(zero)?.elbow_turn_to(&pose(own)?))
+        };
+        let mut shift = 0.0;
+        for knot in self.keys.track(channel).map_or(Vec::new(), |keys| keys.knots().to_vec()) {
+            if let Some(twist) = twist_in(&before.at(knot.time), &after.at(knot.time)) {
+                shift = angle::nearest(twist - knot.value.x, shift);
+                self.keys.insert(channel, knot.time, knot.value + Vec3::X * shift);
+            }
+        }
+        let own = before.pose(self.clone(), time);
+        let twist = twist_in(&own, &after.pose(untwisted, time));
+        if let (Some(limb), Some(twist)) = (self.limb_settings_mut(joint), twist) {
+            (limb.reference, limb.twist) = (reference, angle::nearest(twist, limb.twist));
+        }
+    }
+
+    /// Settings of the limb target of a joint.
+    fn limb_settings_mut(&mut self, joint: JointId) -> Option<&mut LimbSettings> {
+        let index = self.skeleton_rig.target(joint)?;
+        self.skeleton_rig.targets[index].limb_mut()
     }
 
     /// Replaces a target by `converted` of it, and the keys of `channels` by their values in the

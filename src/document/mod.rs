@@ -20,6 +20,7 @@ mod display;
 mod dissolve;
 mod inspection;
 mod keys;
+mod length_format;
 mod projection;
 mod timeline;
 mod track;
@@ -30,7 +31,6 @@ pub use crate::kinematics::twist::TwistReferenceKind;
 pub use crate::rig::{
     FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing,
 };
-pub(crate) use arm::ShownLength;
 pub use arm::{Arm, Cursor, HandOrientation, HandSpace};
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};
@@ -38,6 +38,8 @@ pub use channel::{Channel, Quantity, UnknownChannel};
 pub use display::{Display, Overlay, RigKind, Theme};
 pub use inspection::{FramePop, Inspection, LimitSpan, LostSpan, Slide, WorstMiss};
 pub use keys::Keys;
+pub use length_format::LengthFormat;
+pub(crate) use length_format::ShownLength;
 pub use projection::{Projection, Ray};
 pub use timeline::Timeline;
 pub use track::{Posed, Track};

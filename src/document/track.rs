@@ -14,7 +14,7 @@ use crate::kinematics::chain_ik::ChainSolver;
 use crate::kinematics::ik::IkSolution;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{Carried, EvaluatedSkeleton, PathKind, Posture, Skin, TargetReport};
+use crate::rig::{Carried, EvaluatedSkeleton, LimbFrames, PathKind, Posture, Skin, TargetReport};
 use motion::Motion;
 
 /// The motion of a document: its pose at any time.
@@ -236,6 +236,18 @@ impl Posed {
     /// The arm's pose by IK alone, with the state from which the next solve continues.
     pub fn arm_solution(&self) -> &IkSolution {
         &self.solved_arm().solution
+    }
+
+    /// The arm in its frames.
+    pub fn arm_frames(&self) -> LimbFrames {
+        self.document.arm.frames(self.arm_solution(), self.arm_pose())
+    }
+
+    /// The limb of a joint's target in its frames; `None` if it has none: see
+    /// [`SkeletonRig::limb_frames`](crate::rig::SkeletonRig::limb_frames).
+    pub fn limb_frames(&self, joint: JointId) -> Option<LimbFrames> {
+        let rig = &self.document.skeleton_rig;
+        rig.limb_frames(self.evaluated_skeleton(), rig.target(joint)?)
     }
 
     /// The skeleton posed by its targets.

@@ -211,7 +211,7 @@ impl<'de> Deserialize<'de> for ReferenceField {
                         TwistReference::Stereographic(Stereographic::default())
                     }
                     Ok(TwistReferenceKind::Transport) => TwistReference::Transport,
-                    Ok(TwistReferenceKind::Pole) | Err(_) => {
+                    Ok(TwistReferenceKind::Pole | TwistReferenceKind::Fk) | Err(_) => {
                         return Err(E::invalid_value(Unexpected::Str(name), &self));
                     }
                 };

@@ -93,6 +93,7 @@ impl Palette {
             TwistReferenceKind::Pole => [0x8fd460, 0x3f7a15],
             TwistReferenceKind::Stereographic => [0x3fb8a5, 0x0b7466],
             TwistReferenceKind::Transport => [0xf08fb4, 0xb02a63],
+            TwistReferenceKind::Fk => [0xb7a3f5, 0x5b3fc4],
         };
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }

@@ -150,11 +150,14 @@ impl Scene {
         colour: Colour,
     ) {
         let Some(axis) = axis.try_normalize() else { return };
+        let point = |turn| centre + Quat::from_axis_angle(axis, turn) * start;
+        self.add_curve_of(angle, colour, point);
+    }
+
+    /// Adds the arc through the points of the angles from 0 to `angle`, in radians.
+    pub(super) fn add_curve_of(&mut self, angle: f32, colour: Colour, point: impl Fn(f32) -> Vec3) {
         let count = (f32::from(Self::CIRCLE) * angle.abs() / TAU).ceil().clamp(1.0, 256.0) as u16;
-        let point = |index: u16| {
-            centre
-                + Quat::from_axis_angle(axis, angle * f32::from(index) / f32::from(count)) * start
-        };
+        let point = |index: u16| point(angle * f32::from(index) / f32::from(count));
         let line = |index| Line { from: point(index), to: point(index + 1), colour, dashed: false };
         self.lines.extend((0..count).map(line));
     }

@@ -1,4 +1,4 @@
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 use super::Colour;
 use crate::document::{Camera, Display, Overlay};
@@ -196,14 +196,15 @@ pub struct Globe {
     pub centre: Vec3,
     /// Radius in world units.
     pub radius: f32,
-    /// Twist reference, whose gains colour the globe. Its directions are in Root space, which has
-    /// the world's axes.
+    /// Twist reference, whose gains colour the globe, in Root space.
     pub reference: TwistReference,
+    /// Axes of Root space in the world.
+    pub axes: Mat3,
 }
 
 impl Globe {
-    /// Unit vectors of the directions in which the reference is singular: none, one, or two
-    /// opposite ones.
+    /// Unit vectors in the world of the directions in which the reference is singular: none, one,
+    /// or two opposite ones.
     ///
     /// A pole at the shoulder has no direction, so it acts like [`TwistReference::Transport`],
     /// which is singular nowhere.
@@ -218,7 +219,8 @@ impl Globe {
             TwistReference::Stereographic(map) => [Some(map.singular()), None],
             TwistReference::Transport => [None; 2],
         };
-        directions.into_iter().flatten()
+        let axes = self.axes;
+        directions.into_iter().flatten().map(move |it| (axes * it).normalize_or(Vec3::Y))
     }
 
     /// True if the globe can be drawn: its centre and radius are finite, and the radius is above 0.

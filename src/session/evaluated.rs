@@ -4,14 +4,17 @@ use crate::document::{Document, Overlay, Posed, Ray, Track};
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::kinematics::skin::{MeshSection, SkinPose, SkinnedMesh, Skinning, TriangleMesh};
-use crate::session::arm::pops::{CursorMove, Pops, TransportPath};
 use crate::session::cached::Cached;
+use crate::session::limb::ShownLimb;
+use crate::session::pops::{CursorMove, Pops, TransportPath};
 
 /// Values derived from the poses at the playhead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluated {
     skeleton_pose: SkeletonPose,
-    transport_path: TransportPath,
+    /// The shown limb, which the two measurements below are about.
+    limb: Option<ShownLimb>,
+    transport_path: Option<TransportPath>,
     pops: Pops,
     /// Why each target is not reached.
     why: Cached<Vec<Cached<Vec<Diagnosis>>>>,
@@ -24,8 +27,9 @@ impl Evaluated {
     pub(super) fn new(posed: &Posed) -> Self {
         Self {
             skeleton_pose: posed.skeleton().pose(),
-            transport_path: TransportPath::new(posed),
-            pops: Pops::new(posed),
+            limb: None,
+            transport_path: None,
+            pops: Pops::default(),
             why: Cached::default(),
             trail: Cached::default(),
             posed_skin: Cached::default(),
@@ -37,12 +41,18 @@ impl Evaluated {
         &self.skeleton_pose
     }
 
-    /// Transport of a frame along the Pointer's path.
-    pub fn transport_path(&self) -> &TransportPath {
-        &self.transport_path
+    /// The limb that pages and guides are about: that of the selected joint, else the first; `None`
+    /// without a limb.
+    pub fn limb(&self) -> Option<&ShownLimb> {
+        self.limb.as_ref()
     }
 
-    /// Ratios of elbow speed to Cursor speed in the latest steps.
+    /// Transport of a frame along the path of the limb's Pointer; `None` without a limb.
+    pub fn transport_path(&self) -> Option<&TransportPath> {
+        self.transport_path.as_ref()
+    }
+
+    /// Ratios of elbow speed to Cursor speed in the latest steps of the limb.
     pub fn pops(&self) -> &Pops {
         &self.pops
     }
@@ -102,9 +112,7 @@ impl Evaluated {
     }
 
     /// Updates the values to other poses.
-    pub(super) fn update(&mut self, posed: &Posed, cause: CursorMove) {
-        self.transport_path.advance(posed.arm());
-        self.pops.record(posed, cause);
+    pub(super) fn update(&mut self, posed: &Posed) {
         posed.skeleton().write_pose(&mut self.skeleton_pose);
         if posed.document().display.shows(Overlay::ByItself) {
             // Solved here, since drawing takes no memory.
@@ -114,12 +122,30 @@ impl Evaluated {
         self.why.clear();
     }
 
-    pub(super) fn reset_transport(&mut self, posed: &Posed) {
-        self.transport_path = TransportPath::new(posed);
+    /// Measures the step to another pose of the limb, at a time in seconds; of another limb, its
+    /// first pose.
+    pub(super) fn follow_limb(&mut self, limb: Option<ShownLimb>, cause: CursorMove, time: f64) {
+        let before = std::mem::replace(&mut self.limb, limb);
+        let is_same = before.map(|it| it.target) == limb.map(|it| it.target);
+        match (&limb, &mut self.transport_path) {
+            (Some(limb), Some(path)) if is_same => {
+                path.advance(&limb.frames);
+                self.pops.record(limb.frames.posed, cause, time);
+            }
+            _ => {
+                self.reset_transport();
+                self.reset_pops(time);
+            }
+        }
     }
 
-    pub(super) fn reset_pops(&mut self, posed: &Posed) {
-        self.pops = Pops::new(posed);
+    pub(super) fn reset_transport(&mut self) {
+        self.transport_path = self.limb.map(|limb| TransportPath::new(&limb.frames));
+    }
+
+    pub(super) fn reset_pops(&mut self, time: f64) {
+        let new = |limb: ShownLimb| Pops::new(limb.frames.posed, time);
+        self.pops = self.limb.map(new).unwrap_or_default();
     }
 
     /// Discards the trail and the areas of the skin; both are computed again

@@ -6,8 +6,10 @@ use crate::kinematics::chain_ik::{ChainSolver, Method, SubStep, TipTarget};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{ArmPart, Crowd};
-use crate::session::parts::{ArmFigure, BodyPart};
+use crate::rig::{Crowd, LimbFrames, LimbPart};
+use crate::session::limb::ShownLimb;
+use crate::session::parts::{BodyPart, LimbFigure};
+use crate::session::pops::TransportPath;
 use crate::session::session::Session;
 use crate::session::solver::iterates::InsideLayers;
 use crate::session::solver::run::SolverRun;
@@ -20,8 +22,8 @@ pub struct Overlays {
     pub selection: Vec<JointId>,
     /// The part of a body under the mouse, which lights up.
     pub hovered: Option<BodyPart>,
-    /// The line of the arm's figures that lights up.
-    pub figure: Option<ArmFigure>,
+    /// The line of the limb's figures that lights up.
+    pub figure: Option<LimbFigure>,
     /// The joints that keep a tip from its target.
     pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.
@@ -30,9 +32,9 @@ pub struct Overlays {
     pub inside: Option<InsideView>,
     /// An angle that swings.
     pub wiggle: Option<WiggleView>,
-    /// Poses of the arm with the same twist, measured from references of each kind; `None` if twist
-    /// references are hidden or FK alone poses the arm.
-    pub twist_references: Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]>,
+    /// Poses of the limb with the same twist, measured from references of each kind; `None` if
+    /// twist references are hidden or FK alone poses the limb.
+    pub twist_references: Option<TwistReferencePoses>,
     /// World positions of the hand, or of the active joint's tip, in all frames; empty if the trail
     /// is hidden.
     pub trail: Vec<Vec3>,
@@ -44,13 +46,26 @@ pub struct Overlays {
     pub crowd: Option<Crowd>,
 }
 
-/// The arm's pose by IK with its twist measured from a reference of one kind.
+/// A limb's poses by IK with its twist measured from a reference of each kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TwistReferencePose {
-    /// Kind of the twist reference.
-    pub kind: TwistReferenceKind,
-    /// The pose.
-    pub pose: TwoBonePose,
+pub struct TwistReferencePoses {
+    /// By [`TwistReferenceKind::ALL`]; `None` for a pole without a place.
+    poses: [Option<TwoBonePose>; TwistReferenceKind::ALL.len()],
+}
+
+impl TwistReferencePoses {
+    /// The poses of a limb. One with transport that is not the limb's own continues from the frame
+    /// `transported`.
+    pub fn new(limb: &LimbFrames, transported: Option<TransportedFrame>) -> Self {
+        let pose = |kind| limb.pose_with_reference(kind, transported);
+        Self { poses: TwistReferenceKind::ALL.map(pose) }
+    }
+
+    /// The poses with the kinds of their references.
+    pub fn iter(&self) -> impl Iterator<Item = (TwistReferenceKind, &TwoBonePose)> {
+        let poses = TwistReferenceKind::ALL.into_iter().zip(&self.poses);
+        poses.filter_map(|(kind, pose)| Some((kind, pose.as_ref()?)))
+    }
 }
 
 /// A part of an iteration, as the view shows it.
@@ -94,30 +109,23 @@ impl Overlays {
         overlays
     }
 
-    /// Updates onion skins and twist references to another pose of the track.
+    /// Updates onion skins and twist references of the first limb to another pose of the track.
     pub fn follow(&mut self, track: &Track, posed: &Posed) {
         write_onion_skins(track, posed, &mut self.onion_skins);
-        self.twist_references = twist_reference_poses(posed, None);
+        let limb = ShownLimb::frames(posed, None);
+        self.twist_references = twist_reference_poses(posed, limb.as_ref(), None);
     }
 }
 
-/// Poses of the arm for [`Overlays::twist_references`]. A pose with transport that is not the arm's
-/// own continues from the frame `transported`.
-pub(in crate::session) fn twist_reference_poses(
+/// The poses of [`Overlays::twist_references`].
+fn twist_reference_poses(
     posed: &Posed,
+    limb: Option<&LimbFrames>,
     transported: Option<TransportedFrame>,
-) -> Option<[TwistReferencePose; TwistReferenceKind::ALL.len()]> {
-    let arm = posed.arm();
-    let is_shown = posed.document().display.shows(Overlay::TwistReferences) && arm.uses_ik();
-    let pose = |kind| {
-        if kind == arm.twist_reference {
-            posed.arm_solution().pose
-        } else {
-            arm.pose_with_reference(kind, transported)
-        }
-    };
-    is_shown
-        .then(|| TwistReferenceKind::ALL.map(|kind| TwistReferencePose { kind, pose: pose(kind) }))
+) -> Option<TwistReferencePoses> {
+    let is_shown = posed.document().display.shows(Overlay::TwistReferences);
+    let limb = limb.filter(|limb| is_shown && limb.uses_ik())?;
+    Some(TwistReferencePoses::new(limb, transported))
 }
 
 /// The rig in a frame before or after the playhead.
@@ -163,8 +171,8 @@ pub(in crate::session) fn write_onion_skins(
             skins.push(OnionSkin::default());
         }
         let skin = &mut skins[made];
-        let rig = posed.arm().rig(posed.arm_pose());
-        skin.arm = [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+        let arm = posed.arm_frames();
+        skin.arm = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| arm.origin(part));
         posed.skeleton().write_pose(&mut skin.pose);
         (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
         made += 1;
@@ -226,8 +234,9 @@ impl Session {
         }
         overlays.inside = inside_view(self);
         overlays.wiggle = self.view().wiggle_view(self.posed());
-        let transported = Some(self.evaluated().transport_path().transported());
-        overlays.twist_references = twist_reference_poses(self.posed(), transported);
+        let limb = self.limb().map(|limb| &limb.frames);
+        let transported = self.evaluated().transport_path().map(TransportPath::transported);
+        overlays.twist_references = twist_reference_poses(self.posed(), limb, transported);
         overlays.trail.clear();
         overlays.trail.extend_from_slice(trail(self));
         write_ghosts(self.solvers().runs(), &mut overlays.ghosts);

@@ -37,7 +37,7 @@ impl From<JointId> for BodyPart {
     }
 }
 
-/// Sizes of the arm on an arm of [thickness](crate::rig::ArmRig::thickness) 1.
+/// Sizes of the arm on an arm of [thickness](crate::rig::LimbFrames::thickness) 1.
 impl BodyPart {
     /// Radius of the balls of shoulder and elbow: as large as the ends of the limbs, so that no gap
     /// shows when the elbow bends.
@@ -70,9 +70,9 @@ pub enum PoseMode {
     Angles,
 }
 
-/// A line of the arm's figures and formulas, which lights up in the view.
+/// A line of a limb's figures and formulas, which lights up in the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArmFigure {
+pub enum LimbFigure {
     /// The axes of the Root.
     Root,
     /// The axes of the Limb.
@@ -105,7 +105,7 @@ pub enum ArmFigure {
     Elbow,
 }
 
-impl ArmFigure {
+impl LimbFigure {
     /// All lines.
     pub const ALL: [Self; 15] = [
         Self::Root,

@@ -171,9 +171,9 @@ impl Navigation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PanelTab {
-    /// The arm's triangle with its angles and lengths.
+    /// A limb's triangle with its angles and lengths.
     Triangle,
-    /// The four twist references compared.
+    /// The twist references compared.
     Twist,
     /// The distances that the hand can have.
     Reach,
@@ -189,7 +189,15 @@ pub enum PanelTab {
 
 impl PanelTab {
     const ARM: [Self; 5] = [Self::Triangle, Self::Twist, Self::Reach, Self::Pops, Self::Solver];
-    const SKELETON: [Self; 4] = [Self::Solver, Self::Race, Self::Pops, Self::Skin];
+    const SKELETON: [Self; 7] = [
+        Self::Triangle,
+        Self::Twist,
+        Self::Reach,
+        Self::Pops,
+        Self::Solver,
+        Self::Race,
+        Self::Skin,
+    ];
 
     /// The tabs for a rig, in the order of the panel.
     pub fn of(rig: RigKind) -> &'static [Self] {

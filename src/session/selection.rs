@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::outcome::{Consequence, Effect, Outcome};
-use super::parts::{ArmFigure, ArmJoint, BodyPart, Clipboard, Key, SelectedKeys};
+use super::parts::{ArmJoint, BodyPart, Clipboard, Key, LimbFigure, SelectedKeys};
 use glam::Vec3;
 
 use crate::document::{Channel, Document};
@@ -20,7 +20,7 @@ pub enum SelectAction {
     /// Selects a joint of the arm, or none.
     ArmJoint(Option<ArmJoint>),
     /// Lights up a line of the arm's figures in the view; `None` stops it.
-    Figure(Option<ArmFigure>),
+    Figure(Option<LimbFigure>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),
     /// Selects these channels and no others.
@@ -36,7 +36,7 @@ pub struct Selection {
     joints: Vec<JointId>,
     hovered: Option<BodyPart>,
     arm_joint: Option<ArmJoint>,
-    figure: Option<ArmFigure>,
+    figure: Option<LimbFigure>,
     keys: Vec<Key>,
     channels: BTreeSet<Channel>,
     clipboard: Clipboard,
@@ -129,7 +129,7 @@ impl Selection {
     }
 
     /// The line of the arm's figures under the mouse.
-    pub fn figure(&self) -> Option<ArmFigure> {
+    pub fn figure(&self) -> Option<LimbFigure> {
         self.figure
     }
 

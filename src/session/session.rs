@@ -4,7 +4,9 @@ use super::evaluated::Evaluated;
 use super::files::files::Files;
 use super::history::editing::Editing;
 use super::inspections::{InspectionJob, Inspections};
+use super::limb::ShownLimb;
 use super::playback::Playback;
+use super::pops::CursorMove;
 use super::preferences::Preferences;
 use super::selection::Selection;
 use super::shell::Shell;
@@ -77,8 +79,11 @@ impl Session {
     pub fn with_document(preferences: Preferences, document: Document) -> Self {
         let mut editing = Editing::new(document);
         editing.evaluate(Playback::default().time());
+        let mut evaluated = Evaluated::new(editing.posed());
+        let limb = ShownLimb::new(editing.posed(), None);
+        evaluated.follow_limb(limb, CursorMove::Set, editing.posed().time());
         Self {
-            evaluated: Evaluated::new(editing.posed()),
+            evaluated,
             editing,
             selection: Selection::default(),
             playback: Playback::default(),
@@ -218,6 +223,12 @@ impl Session {
     /// The pose of the arm at the playhead.
     pub fn pose(&self) -> &TwoBonePose {
         self.posed().arm_pose()
+    }
+
+    /// The limb that pages and guides are about: that of the selected joint, else the first;
+    /// `None` without a limb.
+    pub fn limb(&self) -> Option<&ShownLimb> {
+        self.evaluated.limb()
     }
 
     /// The pose of the skeleton at the playhead, in world space.

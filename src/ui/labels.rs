@@ -18,6 +18,7 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
         Grip::Tip(joint, _) | Grip::Ring(joint, _) => name(joint).to_owned(),
         Grip::Target(joint, _) => format!("the target of {}", of_joint(joint)),
         Grip::Orientation(joint, _) => of_joint(joint).to_owned(),
+        Grip::LimbTwist(joint) => format!("the limb of {}", of_joint(joint)),
         _ => String::new(),
     }
 }
@@ -66,7 +67,9 @@ pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &
         (RigKind::Skeleton, Overlay::Cursor) => {
             ("Targets", "Show targets, their paths and the gaps to them")
         }
-        (RigKind::Skeleton, Overlay::Pointer) => ("Path", "Show the path that the head follows"),
+        (RigKind::Skeleton, Overlay::Pointer) => {
+            ("Pointer", "Show the axis of the selected limb, and the path that a head follows")
+        }
         (RigKind::Arm, Overlay::Trail) => ("Trail", "Show the path of the hand, one dot a frame"),
         (RigKind::Skeleton, Overlay::Trail) => {
             ("Trail", "Show the path of the selected tip, one dot a frame")
@@ -128,6 +131,9 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
         }
         TwistReferenceKind::Transport => {
             "Transport along the hand's path; never flips; keys use Stereographic"
+        }
+        TwistReferenceKind::Fk => {
+            "Measure from the elbow of the FK pose; flips opposite to its Pointer"
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use egui::{Label, RichText, Ui};
 
-use crate::document::{Arm, PathKind, RigKind, ShownLength};
+use crate::document::{Arm, LengthFormat, PathKind, RigKind, ShownLength};
 use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::{Reach, TwoBonePose};
 use crate::rig::{Crowd, SkeletonRig};
-use crate::session::{Actions, Session, ShownIteration, TargetEdit};
+use crate::session::{Actions, Session, ShownIteration, ShownLimb, TargetEdit};
 use crate::ui::labels::count_of_keys;
 use crate::ui::widgets::text::{decimals_of_cell, grouped};
 use crate::ui::widgets::{self, text};
@@ -23,6 +23,28 @@ pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
         return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
     }
     arm.why(pose).unwrap_or_else(|| "Reached: the hand is at the Cursor.".to_owned())
+}
+
+/// One sentence about the reach of a limb.
+pub(in crate::ui) fn sentence_on_limb(session: &Session, limb: &ShownLimb) -> String {
+    let Some(joint) = limb.target else { return sentence(session.arm(), session.pose()) };
+    let (rig, end) = (session.skeleton_rig(), limb.words.end);
+    let (posed, pose) = (&limb.frames.posed, limb.frames.pose());
+    if posed.influence == 0.0 {
+        return format!("FK (joint angles → {end}): the angles place the {end}.");
+    }
+    let why = rig.target(joint).map_or(&[][..], |index| session.why_target(index, true));
+    if let Some(found) = why.first() {
+        return words::cause(rig, found) + ".";
+    }
+    if pose.stretch > 1.0 {
+        return format!("Stretched: the limbs are {:.2} times as long.", pose.stretch);
+    }
+    match pose.reach {
+        Some(Reach::TooFar) => "Too far: the limb points at the Cursor.".to_owned(),
+        Some(Reach::TooClose) => "Too close: the limb is folded.".to_owned(),
+        Some(Reach::Reached) | None => format!("Reached: the {end} is at the Cursor."),
+    }
 }
 
 /// Description of the pose for screen readers.
@@ -114,8 +136,9 @@ fn describe_pose(session: &Session) -> String {
     };
     let hand = pose.hand;
     let ReachLimits { inner, outer } = arm.reach_limits();
-    let [x, y, z] = hand.to_array().map(|coordinate| arm.format_length(coordinate));
-    let distance = arm.format_length(pose.distance);
+    let lengths = LengthFormat::of_limb(arm.bones);
+    let [x, y, z] = hand.to_array().map(|coordinate| lengths.show(coordinate));
+    let distance = lengths.show(pose.distance);
     let decimals = decimals_of_cell(arm.grid_cell());
     let [inner, outer] = [inner, outer].map(|length| ShownLength { length, decimals });
     format!("{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {inner}–{outer}")

@@ -196,7 +196,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
         | Grip::Orientation(_, axis) => {
             format!("Rotate about {axis}")
         }
-        Grip::Twist | Grip::Limb => "Socket twist".to_owned(),
+        Grip::Twist | Grip::Limb | Grip::LimbTwist(_) => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),
     };
     format!(
@@ -290,6 +290,7 @@ fn drag_of(grip: Grip, name: &str) -> Cow<'static, str> {
         Grip::HandRing(_) => "rotate the hand",
         Grip::Shoulder(_) | Grip::Bend => "rotate the joint",
         Grip::Ring(..) | Grip::Orientation(..) => return format!("rotate {name}").into(),
+        Grip::LimbTwist(_) => return format!("turn {name} about its Pointer").into(),
         Grip::Tip(..) | Grip::Target(..) => return format!("drag {name}").into(),
         Grip::Head(..) => "drag the head",
     };

@@ -7,7 +7,7 @@ use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, Theme, Track, Tw
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::scene::{Line, Scene, Solid};
-use ik_arm::session::{ArmFigure, Overlays};
+use ik_arm::session::{LimbFigure, Overlays};
 
 use crate::common::Random;
 
@@ -36,7 +36,7 @@ struct Lit {
     labels: Vec<String>,
 }
 
-fn scene(arm: Arm, display: &[Overlay], figure: Option<ArmFigure>) -> Scene {
+fn scene(arm: Arm, display: &[Overlay], figure: Option<LimbFigure>) -> Scene {
     let display = Display::from_iter(display.iter().copied());
     let document = Document { arm, display, ..Document::default() };
     let posed = document.at(0.0);
@@ -53,7 +53,7 @@ fn added(with: &Scene, without: &Scene) -> Lit {
     }
 }
 
-fn lit(arm: Arm, figure: ArmFigure) -> Lit {
+fn lit(arm: Arm, figure: LimbFigure) -> Lit {
     added(&scene(arm, &[], Some(figure)), &scene(arm, &[], None))
 }
 
@@ -64,7 +64,7 @@ fn ends(solid: &Solid) -> [DVec3; 2] {
 }
 
 /// The only line of a figure, from end to end.
-fn line(arm: Arm, figure: ArmFigure) -> [DVec3; 2] {
+fn line(arm: Arm, figure: LimbFigure) -> [DVec3; 2] {
     match lit(arm, figure).solids.as_slice() {
         [solid] => ends(solid),
         solids => panic!("{figure:?}: {} solids", solids.len()),
@@ -102,15 +102,15 @@ fn lengths_are_drawn_from_joint_to_joint_with_the_solvers_lengths() {
             let off = (from.distance(to) - length).abs();
             assert!(off < bound, "case {case}, {figure:?}: length off by {off}");
         };
-        check(ArmFigure::Upper, [root, elbow], upper);
-        check(ArmFigure::Lower, [elbow, hand], lower);
-        check(ArmFigure::Distance, [root, hand], pose.distance.into());
+        check(LimbFigure::Upper, [root, elbow], upper);
+        check(LimbFigure::Lower, [elbow, hand], lower);
+        check(LimbFigure::Distance, [root, hand], pose.distance.into());
         // The point of the Pointer nearest to the elbow, from the points alone.
         let axis = (hand - root).normalize();
         let foot = root + axis * (elbow - root).dot(axis);
         if pose.out > 1e-3 * arm.bones.outer_limit() {
-            check(ArmFigure::Along, [root, foot], f64::from(pose.along).abs());
-            check(ArmFigure::Out, [foot, elbow], pose.out.into());
+            check(LimbFigure::Along, [root, foot], f64::from(pose.along).abs());
+            check(LimbFigure::Out, [foot, elbow], pose.out.into());
         }
     }
 }
@@ -133,10 +133,10 @@ fn angles_are_arcs_of_the_solvers_angles_with_their_degrees() {
             ((a * a + b * b - c * c) / (2.0 * a * b)).clamp(-1.0, 1.0).acos()
         };
         for (figure, centre, expected) in [
-            (ArmFigure::Yaw, shoulder, z.atan2(x)),
-            (ArmFigure::Pitch, shoulder, y.atan2(x.hypot(z))),
-            (ArmFigure::ShoulderAngle, shoulder, opposite(d1, d, d2)),
-            (ArmFigure::ElbowAngle, elbow, opposite(d1, d2, d)),
+            (LimbFigure::Yaw, shoulder, z.atan2(x)),
+            (LimbFigure::Pitch, shoulder, y.atan2(x.hypot(z))),
+            (LimbFigure::ShoulderAngle, shoulder, opposite(d1, d, d2)),
+            (LimbFigure::ElbowAngle, elbow, opposite(d1, d2, d)),
         ] {
             let lit = lit(arm, figure);
             let arcs: Vec<_> = lit.lines.iter().filter(|line| !line.dashed).copied().collect();
@@ -164,7 +164,7 @@ fn the_arcs_of_yaw_and_pitch_lead_to_the_cursor() {
         let cursor = if arm.influence == 1.0 { arm.cursor_in_root() } else { pose.hand };
         let level = Vec3 { y: 0.0, ..cursor };
         for (figure, from, to) in
-            [(ArmFigure::Yaw, Vec3::X, level), (ArmFigure::Pitch, level, cursor)]
+            [(LimbFigure::Yaw, Vec3::X, level), (LimbFigure::Pitch, level, cursor)]
         {
             let lit = lit(arm, figure);
             let arc: Vec<_> = lit.lines.iter().filter(|line| !line.dashed).collect();
@@ -182,7 +182,7 @@ fn coordinates_lead_from_the_shoulder_along_the_axes_to_cursor_and_elbow() {
     for (case, arm) in arms() {
         let pose = arm.pose();
         let cursor = if arm.influence == 1.0 { arm.cursor_in_root() } else { pose.hand };
-        for (figure, point) in [(ArmFigure::Cursor, cursor), (ArmFigure::Elbow, pose.elbow)] {
+        for (figure, point) in [(LimbFigure::Cursor, cursor), (LimbFigure::Elbow, pose.elbow)] {
             let lit = lit(arm, figure);
             let ways: Vec<_> = lit.solids.iter().map(ends).collect();
             let bound = 1e-5 * f64::from(arm.bones.outer_limit().max(arm.root.length()));
@@ -214,9 +214,9 @@ fn the_frames_are_the_turns_of_yaw_pitch_and_twist() {
         let [yaw, pitch, twist] = [pose.yaw(), pose.pitch(), pose.twist].map(f64::from);
         let limb = DMat3::from_rotation_y(-yaw) * DMat3::from_rotation_z(pitch);
         let frames = [
-            (ArmFigure::Root, DMat3::IDENTITY),
-            (ArmFigure::Limb, limb),
-            (ArmFigure::Socket, limb * DMat3::from_rotation_x(twist)),
+            (LimbFigure::Root, DMat3::IDENTITY),
+            (LimbFigure::Limb, limb),
+            (LimbFigure::Socket, limb * DMat3::from_rotation_x(twist)),
         ];
         let all = added(&scene(arm, &[Overlay::Frames], None), &scene(arm, &[], None));
         for (nth, (figure, frame)) in frames.into_iter().enumerate() {
@@ -238,7 +238,7 @@ fn the_frames_are_the_turns_of_yaw_pitch_and_twist() {
 fn the_level_lies_flat_below_the_cursor() {
     for (case, arm) in arms() {
         let cursor = if arm.influence == 1.0 { arm.cursor_in_root() } else { arm.pose().hand };
-        let [from, to] = line(arm, ArmFigure::Level);
+        let [from, to] = line(arm, LimbFigure::Level);
         let bound = 1e-5 * f64::from(arm.bones.outer_limit().max(arm.root.length()));
         let length = f64::from(cursor.x).hypot(cursor.z.into());
         assert!((from.distance(to) - length).abs() < bound, "case {case}");

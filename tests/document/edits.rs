@@ -132,6 +132,10 @@ examples! {
             joint: JointId::new(AIMED),
             space: TargetSpace::Joint(JointId::new(INNER)),
         }];
+        SetReference: [TargetEdit::SetReference {
+            joint: JointId::new(AIMED),
+            reference: ElbowReference::Up,
+        }];
         SetPoleSpace: [TargetEdit::SetPoleSpace {
             joint: JointId::new(AIMED),
             space: TargetSpace::Joint(JointId::new(INNER)),

@@ -754,8 +754,8 @@ fn home_frames_all_that_the_hand_can_reach() {
         let rounding = 1e-6 * limits.outer;
         let reach = limits.inner - rounding..=limits.outer + rounding;
         assert!(reach.contains(&distance), "case {case}: {distance} is not in {reach:?}");
-        let rig = arm.rig(session.pose());
-        assert_eq!((rig.limits(), rig.pointer().length), (limits, limits.outer), "case {case}");
+        let frames = session.posed().arm_frames();
+        assert_eq!((frames.limits, frames.pointer().length), (limits, limits.outer), "case {case}");
     }
 }
 

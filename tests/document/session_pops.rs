@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
-use ik_arm::kinematics::pop::{InputChange, PopCause};
+use ik_arm::kinematics::pop::{InputChange, PopCause, PosedLimb};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     ArmEdit, FileAction, KeysEdit, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
@@ -35,8 +35,13 @@ fn past_the_shoulder(session: &mut Session) {
     drag(session, Vec3::new(95.0, 3.0, 5.0), Vec3::new(-95.0, 3.0, 5.0), 19);
 }
 
+/// The pose of the shown limb with its inputs.
+fn posed(session: &Session) -> &PosedLimb {
+    &session.limb().expect("a limb").frames.posed
+}
+
 fn persisting(session: &Session) -> Vec<Spike> {
-    let persists = |spike: &Spike| spike.persists(session.arm());
+    let persists = |spike: &Spike| spike.persists(posed(session));
     session.evaluated().pops().spikes().into_iter().filter(persists).collect()
 }
 
@@ -54,10 +59,11 @@ fn fix_pop(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     drag(session);
     let spikes = persisting(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
-    let pop_fix = PopFix::new(&spikes[0], session.arm()).expect("a fix");
-    session.apply(pop_fix.action());
+    let pop_fix = PopFix::new(&spikes[0], posed(session)).expect("a fix");
+    let edit = pop_fix.edit(session.skeleton_rig(), session.limb().expect("a limb"));
+    session.apply(edit.expect("an edit"));
     assert_eq!(session.shell().message(), None);
-    assert_eq!(PopFix::new(&spikes[0], session.arm()), None, "it is taken");
+    assert_eq!(PopFix::new(&spikes[0], posed(session)), None, "it is taken");
     drag(session);
     assert_eq!(persisting(session), []);
     pop_fix
@@ -106,8 +112,9 @@ fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
 
     let spike = |pop, soft_reach| {
         let arm = Arm { soft_reach, ..Arm::default() };
-        let spike = Spike { at: 0, ratio: 9.0, pop, ik: arm.ik() };
-        PopFix::new(&spike, &arm)
+        let (ik, reference) = (arm.ik(), arm.twist_reference);
+        let spike = Spike { at: 0, ratio: 9.0, pop, ik, reference };
+        PopFix::new(&spike, &arm.frames(&arm.solve(), &arm.pose()).posed)
     };
     let soft = |softness| SoftReach::new(softness, 1.2, 0.3).expect("soft");
     for (from, to) in [(0.1, 0.25), (0.2, 0.4), (0.3, 0.5)] {
@@ -125,7 +132,7 @@ fn a_cursor_that_passes_the_shoulder_has_no_fix() {
     let spikes = persisting(&session);
     assert!(spikes.iter().any(|spike| spike.pop == PopCause::Shoulder), "{spikes:?}");
     for spike in spikes.iter().filter(|spike| spike.pop == PopCause::Shoulder) {
-        assert_eq!(PopFix::new(spike, session.arm()), None);
+        assert_eq!(PopFix::new(spike, posed(&session)), None);
     }
 }
 

@@ -7,7 +7,7 @@ use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    ArmEdit, ArmFigure, DisplayEdit, PlaybackAction, Preferences, SelectAction, Session, SkinEdit,
+    ArmEdit, DisplayEdit, LimbFigure, PlaybackAction, Preferences, SelectAction, Session, SkinEdit,
     SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
@@ -99,7 +99,7 @@ fn the_circles_of_the_elbows_and_knees_of_a_figure() {
 }
 
 /// The arm with a line of its figures lit up.
-fn lit(figure: ArmFigure) -> Session {
+fn lit(figure: LimbFigure) -> Session {
     let mut session = Session::new(Preferences::default());
     session.apply(ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0)));
     session.apply(ArmEdit::SetTwist(0.5));
@@ -111,7 +111,7 @@ fn lit(figure: ArmFigure) -> Session {
 
 #[test]
 fn the_axes_of_root_limb_and_socket() {
-    let mut session = lit(ArmFigure::Distance);
+    let mut session = lit(LimbFigure::Distance);
     session.apply(SelectAction::Figure(None));
     session.apply(DisplayEdit::ShowOverlay(Overlay::Frames, true));
     check("frames", &session);
@@ -119,17 +119,17 @@ fn the_axes_of_root_limb_and_socket() {
 
 #[test]
 fn the_yaw_and_the_pitch_of_the_pointer() {
-    check("figure_yaw", &lit(ArmFigure::Yaw));
-    check("figure_pitch", &lit(ArmFigure::Pitch));
+    check("figure_yaw", &lit(LimbFigure::Yaw));
+    check("figure_pitch", &lit(LimbFigure::Pitch));
 }
 
 #[test]
 fn the_coordinates_of_the_elbow() {
-    check("figure_elbow", &lit(ArmFigure::Elbow));
+    check("figure_elbow", &lit(LimbFigure::Elbow));
 }
 
 #[test]
 fn a_limb_and_the_angle_at_the_elbow() {
-    check("figure_upper", &lit(ArmFigure::Upper));
-    check("figure_elbow_angle", &lit(ArmFigure::ElbowAngle));
+    check("figure_upper", &lit(LimbFigure::Upper));
+    check("figure_elbow_angle", &lit(LimbFigure::ElbowAngle));
 }

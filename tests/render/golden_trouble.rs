@@ -24,7 +24,7 @@ fn scene(document: &Document, theme: Theme) -> Scene {
 
 fn globe(reference: TwistReference) -> Globe {
     let arm = Arm::default();
-    Globe { centre: arm.root, radius: arm.bones.outer_limit(), reference }
+    Globe { centre: arm.root, radius: arm.bones.outer_limit(), reference, axes: Mat3::IDENTITY }
 }
 
 fn globe_scene(reference: TwistReference, theme: Theme) -> Scene {
@@ -195,7 +195,7 @@ fn a_globe_without_a_size_is_not_drawn() {
         (Vec3::ZERO, f32::INFINITY),
         (Vec3::NAN, 1.0),
     ] {
-        let globe = Globe { centre, radius, reference: TwistReference::Up };
+        let globe = Globe { centre, radius, reference: TwistReference::Up, axes: Mat3::IDENTITY };
         let mut with = plain.clone();
         with.add_globe(globe);
         assert_eq!(with, plain, "{globe:?}");
@@ -219,7 +219,12 @@ fn every_singular_direction_is_marked_on_the_globe() {
     for (reference, directions) in expected {
         let mut marked = scene(&Document::default(), Theme::Dark);
         let before = (marked.balls.len(), marked.labels.len());
-        let globe = Globe { centre: Vec3::new(1.0, 2.0, 3.0), radius: 100.0, reference };
+        let globe = Globe {
+            centre: Vec3::new(1.0, 2.0, 3.0),
+            radius: 100.0,
+            reference,
+            axes: Mat3::IDENTITY,
+        };
         marked.add_globe(globe);
         assert_eq!(marked.globe, Some(globe));
         let places: Vec<_> = directions.iter().map(|way| globe.centre + way * 100.0).collect();

@@ -1,6 +1,6 @@
 //! Pictures of transparent spheres, drawn from back to front.
 
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 use ik_arm::document::{Camera, Document, Theme};
 use ik_arm::kinematics::twist::TwistReference;
 use ik_arm::render::PictureRenderer;
@@ -76,7 +76,12 @@ fn each_shell_is_visible() {
 #[test]
 fn the_order_of_the_list_changes_no_pixel() {
     let mut globe = scene(shells());
-    globe.add_globe(Globe { centre: Vec3::ZERO, radius: 150.0, reference: TwistReference::Up });
+    globe.add_globe(Globe {
+        centre: Vec3::ZERO,
+        radius: 150.0,
+        reference: TwistReference::Up,
+        axes: Mat3::IDENTITY,
+    });
     for mut scene in [scene(shells()), globe] {
         let expected = draw(&scene);
         for _ in 1..scene.shells.len() {

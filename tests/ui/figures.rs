@@ -5,34 +5,34 @@ use egui::{Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::Overlay;
-use ik_arm::session::{ArmEdit, ArmFigure, PanelTab};
+use ik_arm::session::{ArmEdit, LimbFigure, PanelTab};
 
 use crate::bench::{Bench, SMALL};
 use crate::common::all_cases;
 
 /// The rows of the page, with what they light up.
-const ROWS: [(&str, ArmFigure); 18] = [
-    ("Root", ArmFigure::Root),
-    ("Limb", ArmFigure::Limb),
-    ("Socket", ArmFigure::Socket),
-    ("Upper limb", ArmFigure::Upper),
-    ("Lower limb", ArmFigure::Lower),
-    ("Yaw theta z", ArmFigure::Yaw),
-    ("Level h c", ArmFigure::Level),
-    ("Pitch theta y", ArmFigure::Pitch),
-    ("Distance D", ArmFigure::Distance),
-    ("Upper d 1", ArmFigure::Upper),
-    ("Lower d 2", ArmFigure::Lower),
-    ("Along h e", ArmFigure::Along),
-    ("Out o e", ArmFigure::Out),
-    ("Shoulder theta e", ArmFigure::ShoulderAngle),
-    ("Elbow angle phi", ArmFigure::ElbowAngle),
-    ("Cursor c", ArmFigure::Cursor),
-    ("Elbow in Socket", ArmFigure::Out),
-    ("Elbow e", ArmFigure::Elbow),
+const ROWS: [(&str, LimbFigure); 18] = [
+    ("Root", LimbFigure::Root),
+    ("Limb", LimbFigure::Limb),
+    ("Socket", LimbFigure::Socket),
+    ("Upper limb", LimbFigure::Upper),
+    ("Lower limb", LimbFigure::Lower),
+    ("Yaw theta z", LimbFigure::Yaw),
+    ("Level h c", LimbFigure::Level),
+    ("Pitch theta y", LimbFigure::Pitch),
+    ("Distance D", LimbFigure::Distance),
+    ("Upper d 1", LimbFigure::Upper),
+    ("Lower d 2", LimbFigure::Lower),
+    ("Along h e", LimbFigure::Along),
+    ("Out o e", LimbFigure::Out),
+    ("Shoulder theta e", LimbFigure::ShoulderAngle),
+    ("Elbow angle phi", LimbFigure::ElbowAngle),
+    ("Cursor c", LimbFigure::Cursor),
+    ("Elbow in Socket", LimbFigure::Out),
+    ("Elbow e", LimbFigure::Elbow),
 ];
 
-fn hover(bench: &mut Bench, at: Pos2) -> Option<ArmFigure> {
+fn hover(bench: &mut Bench, at: Pos2) -> Option<LimbFigure> {
     bench.move_to(at);
     bench.settle();
     bench.session().selection().figure()
@@ -67,7 +67,7 @@ fn every_row_lights_up_what_it_is_about_while_the_mouse_is_over_it() {
             assert_eq!(bench.session().overlays().figure, Some(figure), "{name}");
             seen.push(figure);
         }
-        assert!(ArmFigure::ALL.iter().all(|figure| seen.contains(figure)), "{seen:?}");
+        assert!(LimbFigure::ALL.iter().all(|figure| seen.contains(figure)), "{seen:?}");
         let away = bench.empty_point();
         assert_eq!(hover(&mut bench, away), None);
     }
@@ -78,7 +78,7 @@ fn the_value_at_the_end_of_a_row_lights_up_the_same_thing() {
     let mut bench = Bench::new();
     let row = row(&mut bench, "Pitch theta y");
     let value = Pos2::new(bench.harness.ctx.content_rect().right() - 40.0, row.center().y);
-    assert_eq!(hover(&mut bench, value), Some(ArmFigure::Pitch));
+    assert_eq!(hover(&mut bench, value), Some(LimbFigure::Pitch));
 }
 
 #[test]
@@ -100,13 +100,13 @@ fn the_sides_of_the_triangle_light_up_the_limbs() {
         }
     }
     for figure in [
-        ArmFigure::Upper,
-        ArmFigure::Lower,
-        ArmFigure::Distance,
-        ArmFigure::Along,
-        ArmFigure::Out,
-        ArmFigure::ShoulderAngle,
-        ArmFigure::ElbowAngle,
+        LimbFigure::Upper,
+        LimbFigure::Lower,
+        LimbFigure::Distance,
+        LimbFigure::Along,
+        LimbFigure::Out,
+        LimbFigure::ShoulderAngle,
+        LimbFigure::ElbowAngle,
     ] {
         assert!(seen.contains(&figure), "{figure:?} in {seen:?}");
     }
@@ -138,8 +138,8 @@ fn both_right_triangles_light_up_level_yaw_and_pitch() {
         }
     }
     for (half, figures) in [
-        [ArmFigure::Level, ArmFigure::Yaw, ArmFigure::Cursor],
-        [ArmFigure::Distance, ArmFigure::Pitch, ArmFigure::Cursor],
+        [LimbFigure::Level, LimbFigure::Yaw, LimbFigure::Cursor],
+        [LimbFigure::Distance, LimbFigure::Pitch, LimbFigure::Cursor],
     ]
     .iter()
     .enumerate()
@@ -154,11 +154,11 @@ fn both_right_triangles_light_up_level_yaw_and_pitch() {
 fn another_page_and_a_closed_panel_light_nothing_up() {
     let mut bench = Bench::new();
     let at = row(&mut bench, "Root").center();
-    assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
+    assert_eq!(hover(&mut bench, at), Some(LimbFigure::Root));
     bench.show_tab(PanelTab::Reach);
     assert_eq!(bench.session().selection().figure(), None);
     bench.show_tab(PanelTab::Triangle);
-    assert_eq!(hover(&mut bench, at), Some(ArmFigure::Root));
+    assert_eq!(hover(&mut bench, at), Some(LimbFigure::Root));
     bench.choose(&["View", "Explain panel"]);
     assert_eq!(bench.session().selection().figure(), None);
 }

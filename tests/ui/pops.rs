@@ -104,7 +104,7 @@ fn behind_the_body_stereographic_pops_until_transport_is_used() {
 fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
     let mut bench = from_the_front();
     out_straight(&mut bench);
-    assert!(bench.says("Straight: the arm reached its outer limit"));
+    assert!(bench.says("Straight: the limb reached its outer limit"));
     bench.click(Role::Button, "Add softness");
     assert_eq!(bench.session().arm().soft_reach, softened(0.25));
     out_straight(&mut bench);
@@ -117,7 +117,7 @@ fn a_hand_dragged_out_straight_pops_until_the_reach_is_soft() {
 fn a_hand_dragged_to_the_inner_limit_pops_there() {
     let mut bench = from_the_front();
     drag(&mut bench, Vec3::new(170.0, 10.0, 0.0), Vec3::new(92.0, 10.0, 0.0), 26);
-    assert!(bench.says("Inner limit: the arm folded up"));
+    assert!(bench.says("Inner limit: the limb folded up"));
     assert!(bench.shows(Role::Button, "Add softness"));
 }
 

@@ -277,6 +277,8 @@ fn follow_path_can_be_switched_off_as_its_tooltip_says() {
     bench.click(Role::Button, "None");
     assert_eq!(bench.session().skeleton_rig().follow_paths, []);
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
+    bench.node(Role::SpinButton, "Rotation x value").scroll_to_me();
+    bench.settle();
     bench.enter("Rotation x", "10");
     let angle = bench.session().skeleton().joints()[1].rotation.x;
     assert!((angle.to_degrees() - 10.0).abs() < 1e-3);

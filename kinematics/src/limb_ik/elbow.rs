@@ -140,21 +140,22 @@ impl Law {
     }
 }
 
-/// A vector to the tip of a limb, and the side of the elbow: the axes of the Pointer's frame.
+/// Directions of a limb's tip and elbow from its base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Aim {
-    /// Unit vector from the upper joint to the tip, or to the target.
+pub struct LimbAim {
+    /// The Pointer: the unit vector from the upper joint to the tip, or to the target.
     pub pointer: DVec3,
-    /// Unit vector perpendicular to the Pointer, towards the elbow.
+    /// Unit vector perpendicular to the Pointer, towards the elbow; of a straight or folded limb,
+    /// the direction in which the elbow moves when the limb bends farther.
     pub outward: DVec3,
 }
 
-impl Aim {
+impl LimbAim {
     /// The Pointer and elbow of a bent limb with the upper bone `upper` and the vector `tip` from
     /// the upper joint to the tip. `bending` is the direction in which the elbow would move if the
     /// limb bent farther: it replaces the elbow's own direction where the limb is straight or
     /// folded.
-    pub fn of_limb(upper: DVec3, tip: DVec3, bending: impl Fn() -> DVec3) -> Self {
+    pub(super) fn of_limb(upper: DVec3, tip: DVec3, bending: impl Fn() -> DVec3) -> Self {
         // Sine of the angle at the upper joint below which the elbow's direction is rounding.
         const STRAIGHT: f64 = 1e-6;
         let pointer = tip.try_normalize().unwrap_or_else(|| {
@@ -173,7 +174,7 @@ impl Aim {
 
     /// This elbow direction, carried to another Pointer by the least rotation. For the opposite
     /// Pointer the direction stays.
-    pub fn carried_to(self, pointer: DVec3) -> Self {
+    pub(super) fn carried_to(self, pointer: DVec3) -> Self {
         let turned = DQuat::from_rotation_arc(self.pointer, pointer) * self.outward;
         let opposite = self.pointer.dot(pointer) < -1.0 + 1e-12;
         let outward = if opposite { self.outward } else { turned };
@@ -181,7 +182,7 @@ impl Aim {
     }
 
     /// The elbow turned about the Pointer by an angle in radians.
-    pub fn twisted(self, twist: f64) -> Self {
+    pub(super) fn twisted(self, twist: f64) -> Self {
         let (sin, cos) = twist.sin_cos();
         let side = self.pointer.cross(self.outward);
         Self { outward: orthonormal(cos * self.outward + sin * side, self.pointer), ..self }
@@ -189,55 +190,25 @@ impl Aim {
 
     /// Angle in radians about the Pointer from the elbow of `from` to this one's; both have the
     /// same Pointer.
-    pub fn twist_from(self, from: Self) -> f64 {
+    pub(super) fn twist_from(self, from: Self) -> f64 {
         let side = from.pointer.cross(from.outward);
         self.outward.dot(side).atan2(self.outward.dot(from.outward))
     }
 
     /// Both vectors in another space.
-    pub fn rotated(self, rotation: DMat3) -> Self {
+    pub(super) fn rotated(self, rotation: DMat3) -> Self {
         Self { pointer: rotation * self.pointer, outward: rotation * self.outward }
     }
 
     /// The rotation that turns this Pointer and elbow to another one's.
-    pub fn rotation_to(self, other: Self) -> DMat3 {
+    pub(super) fn rotation_to(self, other: Self) -> DMat3 {
         other.frame() * self.frame().transpose()
     }
 
-    fn frame(self) -> DMat3 {
+    /// The rotation whose x axis is the Pointer and whose y axis points towards the elbow.
+    pub fn frame(self) -> DMat3 {
         DMat3::from_cols(self.pointer, self.outward, self.pointer.cross(self.outward))
     }
-}
-
-/// Which way a limb bends, in the upper joint's space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct BendWay {
-    /// Unit axis about which a positive rotation bends the limb farther.
-    pub axis: DVec3,
-    /// Unit direction to which the elbow moves.
-    pub outward: DVec3,
-}
-
-impl BendWay {
-    /// The other way of a hinge.
-    pub fn reversed(self) -> Self {
-        Self { axis: -self.axis, outward: -self.outward }
-    }
-
-    /// This way turned towards another one by a fraction of the least rotations.
-    pub fn towards(self, other: Self, fraction: f64) -> Self {
-        let turned = |from, to| turned_towards(from, to, fraction);
-        Self { axis: turned(self.axis, other.axis), outward: turned(self.outward, other.outward) }
-    }
-}
-
-/// A unit vector turned towards another one by a fraction of the least rotation.
-fn turned_towards(from: DVec3, to: DVec3, fraction: f64) -> DVec3 {
-    if fraction >= 1.0 {
-        return to;
-    }
-    let rotation = DQuat::from_rotation_arc(from, to);
-    DQuat::IDENTITY.slerp(rotation, fraction) * from
 }
 
 pub(super) fn orthonormal(v: DVec3, normal: DVec3) -> DVec3 {

@@ -23,7 +23,7 @@
 //! plane in which the limb is bent; for a straight limb, the axis about which its limits allow
 //! most.
 //!
-//! # Aim
+//! # LimbAim
 //!
 //! The elbow's direction from the Pointer, the axis from the upper joint to the target, is e₀
 //! turned by the twist; e₀ follows from the [`ElbowReference`].
@@ -38,7 +38,9 @@
 
 mod carried;
 mod elbow;
+mod fk_limb;
 mod solver;
+mod triangle;
 
 use core::f32::consts::FRAC_PI_2;
 
@@ -48,10 +50,13 @@ use thiserror::Error;
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 pub use carried::CarriedLimb;
+pub use elbow::LimbAim;
 pub use solver::{
     ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides, fk_twist, solve,
     step,
 };
+pub(crate) use triangle::base_space;
+pub use triangle::{LimbSolution, LimbTriangle};
 
 /// Two bones of a skeleton that a target poses together, such as an arm or a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

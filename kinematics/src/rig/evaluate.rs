@@ -72,7 +72,7 @@ pub enum TargetOutcome {
     /// The report of the solver of all whole-body targets.
     WholeBody(Report),
     /// The report of the limb.
-    Limb(LimbReport),
+    Limb(Box<LimbReport>),
     /// The solver refuses the whole-body targets.
     Refused(SolveError),
     /// The target's joint does not end a limb.
@@ -262,7 +262,8 @@ impl SkeletonRig {
                         }
                         None => limb_ik::solve(solved, limb, &limb_target),
                     };
-                    report.map_or(TargetOutcome::Refused(SolveError::Singular), TargetOutcome::Limb)
+                    let singular = TargetOutcome::Refused(SolveError::Singular);
+                    report.map_or(singular, |report| TargetOutcome::Limb(Box::new(report)))
                 }
                 Err(error) => TargetOutcome::NoLimb(error),
             };
@@ -306,8 +307,18 @@ impl SkeletonRig {
 
 impl Target {
     fn limb_target(&self, settings: &LimbSettings, pose: &Skeleton, time: f64) -> LimbTarget {
+        self.limb_target_at(settings, pose, self.in_world(pose, time))
+    }
+
+    /// A limb target at a point in the world, for the solver of limbs.
+    pub(super) fn limb_target_at(
+        &self,
+        settings: &LimbSettings,
+        pose: &Skeleton,
+        point: Vec3,
+    ) -> LimbTarget {
         LimbTarget {
-            point: self.in_world(pose, time),
+            point,
             reference: settings.reference_in_world(pose),
             twist: settings.twist,
             soft_reach: settings.soft_reach,

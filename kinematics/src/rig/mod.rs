@@ -1,28 +1,29 @@
 //! Rigs: the arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
-mod arm;
 mod carried;
 mod crowd;
 mod diagnose;
 mod evaluate;
 mod follow_path;
+mod limb_frames;
 mod mesh_skin;
 mod path_following;
 mod pop_cause;
 mod pops;
 mod skeleton_rig;
 mod skin;
+mod tapered_cylinder;
 mod target;
 mod target_match;
 mod up_axis;
 
-pub use arm::{ArmPart, ArmRig, TaperedCylinder};
 pub use carried::{Carried, Posture, PosturedJoint};
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
 pub use diagnose::RemedyError;
 pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport, TargetSpaceError};
 pub use follow_path::{FollowPath, PathKind, WavyRing};
+pub use limb_frames::{LimbFrames, LimbPart};
 pub use mesh_skin::{
     AttachedMesh, FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture,
 };
@@ -30,5 +31,6 @@ pub use pop_cause::RigPopCause;
 pub use pops::{RigMoment, RigPop};
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{BoneSkin, Skin, SkinMeshError, SkinSource};
+pub use tapered_cylinder::TaperedCylinder;
 pub use target::{LimbSettings, Target, TargetKind, TargetMotion, TargetPath, TargetSpace};
 pub use up_axis::UpAxis;

@@ -137,6 +137,31 @@ impl SkeletonRig {
         self.target(joint).or_else(|| self.targets.iter().position(ends_at))
     }
 
+    /// The joints of the limb of a joint's target, from the upper joint's to the end's; none for
+    /// another target.
+    pub fn limb_joints(&self, target: JointId) -> impl Iterator<Item = JointId> + use<> {
+        let target = self.target(target).map(|index| &self.targets[index]);
+        let target = target.filter(|target| target.limb().is_some());
+        let limb = target.and_then(|it| Limb::ending_at(&self.skeleton, it.joint).ok());
+        limb.into_iter().flat_map(Limb::joints)
+    }
+
+    /// Index in [`Self::targets`] of the limb target whose limb has a joint, as the upper joint's
+    /// bone, the lower one's, one between them, or the end.
+    pub fn limb_target_of(&self, joint: JointId) -> Option<usize> {
+        let has = |target: &Target| {
+            let limb =
+                target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
+            limb.is_some_and(|limb| {
+                let bones = self.skeleton.ancestors(limb.hand.unwrap_or(limb.lower));
+                bones
+                    .take_while(|it| Some(*it) != self.skeleton[limb.upper].parent)
+                    .any(|it| it == joint)
+            })
+        };
+        self.targets.iter().position(has)
+    }
+
     /// A target with full influence at the tip of a joint in a pose: for a hand or foot, or the
     /// bone above it, of the limb of two bones that ends there; otherwise for the whole body.
     /// `None` if the joint is missing or has a target.

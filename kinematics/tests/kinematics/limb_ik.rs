@@ -17,7 +17,7 @@ const PELVIS: JointId = JointId::new(1);
 const HIP: JointId = JointId::new(2);
 
 /// A skeleton with a limb: root, pelvis, hip, perhaps a locked joint between the bones, knee, foot.
-fn leg(random: &mut Random) -> (Skeleton, Limb) {
+pub fn leg(random: &mut Random) -> (Skeleton, Limb) {
     let mut skeleton = Skeleton::with_root("root");
     let pelvis = Joint::new("pelvis", Some(JointId::new(0)), random.vector(0.5));
     skeleton.add(Joint { rotation: random.vector(3.0), ..pelvis }).expect("pelvis");
@@ -61,7 +61,11 @@ fn transform(random: &mut Random) -> Affine3A {
 }
 
 /// Fixes all angles of the lower joint but one.
-fn with_hinge(random: &mut Random, mut skeleton: Skeleton, limb: Limb) -> (Skeleton, RotationAxis) {
+pub fn with_hinge(
+    random: &mut Random,
+    mut skeleton: Skeleton,
+    limb: Limb,
+) -> (Skeleton, RotationAxis) {
     let free = random.one_of(&RotationAxis::ALL);
     skeleton
         .change(limb.lower, |knee| {
@@ -82,7 +86,7 @@ fn with_hinge(random: &mut Random, mut skeleton: Skeleton, limb: Limb) -> (Skele
 }
 
 /// Positions of the tip for random angles within the limits of hip and knee: all are in reach.
-fn reachable(random: &mut Random, skeleton: &Skeleton, limb: Limb) -> Vec3 {
+pub fn reachable(random: &mut Random, skeleton: &Skeleton, limb: Limb) -> Vec3 {
     let mut other = skeleton.clone();
     for joint in [limb.upper, limb.lower] {
         let rotation = skeleton[joint].limits.project(random.vector(3.0));

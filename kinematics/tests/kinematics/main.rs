@@ -1,14 +1,15 @@
 //! The library of kinematics against independent twins: f64, finite differences, matrix products.
 
-mod arm_rig;
 mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]
 mod common;
 mod diagnose;
 mod evaluate;
+mod figure_limbs;
 mod fk;
 mod ik;
+mod limb_frames;
 mod limb_ik;
 mod pop;
 mod skeleton;

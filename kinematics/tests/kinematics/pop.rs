@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use ik_arm_kinematics::fk::Fk;
 use ik_arm_kinematics::ik::{Ik, IkState};
-use ik_arm_kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
+use ik_arm_kinematics::pop::{ElbowStep, InputChange, PopCause, PosedLimb};
 use ik_arm_kinematics::soft_reach::SoftReach;
 use ik_arm_kinematics::twist::{Stereographic, TwistReference};
 use ik_arm_kinematics::two_bone::{Pointer, TwoBone};
@@ -27,15 +27,16 @@ fn arm(reference: TwistReference, softness: f32) -> Ik {
 }
 
 /// Moments of a drag: each pose continues from the one before.
-fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<PosedArm> {
+fn moments(ik: Ik, cursors: impl IntoIterator<Item = Vec3>) -> Vec<PosedLimb> {
     let mut state = IkState::default();
     let poses = cursors.into_iter().map(|cursor| {
         let solved = ik.solve(cursor, 0.0, state);
         state = solved.state();
-        PosedArm {
+        PosedLimb {
             pose: solved.pose,
             cursor,
             ik,
+            kind: ik.reference.kind(),
             twist: 0.0,
             pinned_root: None,
             influence: 1.0,
@@ -166,8 +167,8 @@ fn steps_within_rounding_are_ignored() {
 fn every_input_change_except_the_cursors_has_its_own_name() {
     let ik = arm(TwistReference::Pole(Vec3::Y), 0.0);
     let moment = moments(ik, [Vec3::new(300.0, 50.0, 0.0)])[0];
-    let before = PosedArm { pinned_root: Some(Vec3::ZERO), influence: 0.5, ..moment };
-    let with = |ik: Ik| PosedArm { ik, ..before };
+    let before = PosedLimb { pinned_root: Some(Vec3::ZERO), influence: 0.5, ..moment };
+    let with = |ik: Ik| PosedLimb { ik, ..before };
     let bones = TwoBone::new(200.0, 301.0).expect("lengths");
     let fk = Fk { bend: 1.25, ..before.fk };
     let changed = [
@@ -175,10 +176,10 @@ fn every_input_change_except_the_cursors_has_its_own_name() {
         (InputChange::TwistReference, with(Ik { reference: TwistReference::Up, ..ik })),
         (InputChange::Pole, with(Ik { reference: TwistReference::Pole(Vec3::X), ..ik })),
         (InputChange::SoftReach, with(Ik { soft_reach: soft(0.1), ..ik })),
-        (InputChange::Influence, PosedArm { influence: 0.25, ..before }),
-        (InputChange::Angles, PosedArm { fk, ..before }),
-        (InputChange::Twist, PosedArm { twist: 0.1, ..before }),
-        (InputChange::Root, PosedArm { pinned_root: Some(Vec3::Y), ..before }),
+        (InputChange::Influence, PosedLimb { influence: 0.25, ..before }),
+        (InputChange::Angles, PosedLimb { fk, ..before }),
+        (InputChange::Twist, PosedLimb { twist: 0.1, ..before }),
+        (InputChange::Root, PosedLimb { pinned_root: Some(Vec3::Y), ..before }),
     ];
     assert_eq!(changed.map(|(change, _)| change), InputChange::ALL);
     for (change, after) in changed {
@@ -190,9 +191,9 @@ fn every_input_change_except_the_cursors_has_its_own_name() {
 #[test]
 fn settings_that_do_not_pose_the_arm_are_no_input_change() {
     let before = moments(arm(TwistReference::Up, 0.0), [Vec3::X])[0];
-    let elsewhere = PosedArm { cursor: Vec3::Y, ..before };
-    let pinned = PosedArm { pinned_root: Some(Vec3::Y), ..before };
-    let turned = PosedArm { fk: Fk { bend: 2.0, ..before.fk }, ..before };
+    let elsewhere = PosedLimb { cursor: Vec3::Y, ..before };
+    let pinned = PosedLimb { pinned_root: Some(Vec3::Y), ..before };
+    let turned = PosedLimb { fk: Fk { bend: 2.0, ..before.fk }, ..before };
     for after in [elsewhere, pinned, turned] {
         assert_eq!(InputChange::between(&before, &after), None);
     }

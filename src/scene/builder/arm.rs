@@ -1,11 +1,11 @@
 use glam::{Affine3A, Vec3};
 
-use crate::document::{Arm, Display, Overlay, Posed, ShownLength, TwistReferenceKind};
-use crate::kinematics::two_bone::{Reach, TwoBonePose};
-use crate::rig::{ArmPart, ArmRig};
-use crate::scene::{
-    Ball, Colour, Globe, Label, LabelSide, Line, Palette, Scene, Shadow, Solid, SphereShell,
+use crate::document::{
+    Arm, Display, LengthFormat, Overlay, Posed, ShownLength, TwistReferenceKind,
 };
+use crate::kinematics::two_bone::{Reach, TwoBonePose};
+use crate::rig::{LimbFrames, LimbPart};
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Palette, Scene, Shadow, Solid};
 use crate::session::{BodyPart, OnionSkin, Overlays};
 
 /// Sizes on an arm of thickness 1.
@@ -17,22 +17,17 @@ const PIN_HEAD: f32 = 13.0;
 /// Radius of the limbs in an onion skin, as a fraction of the arm's reach.
 const ONION_SKIN_RADIUS: f32 = 0.008;
 
-/// Adds the arm with the guides, labels and shadows that the display shows. The part under the
+/// Adds the arm with its Cursor, labels and shadows, as the display shows them. The part under the
 /// mouse lights up; a hand with handles has no label.
 pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
     let (arm, pose, display) = (posed.arm(), posed.arm_pose(), posed.document().display);
-    let rig = arm.rig(pose);
-    let thickness = ArmRig::thickness(arm.bones);
+    let rig = posed.arm_frames();
+    let thickness = rig.thickness();
     let has_hand = display.shows(Overlay::Hand);
     let colours = BodyColours { palette: scene.palette, hovered: overlays.hovered };
     add_limbs(scene, &rig, thickness, has_hand.then(|| arm.roll(pose)), colours);
     if has_hand {
         add_hand(scene, arm, pose, thickness, colours.of(BodyPart::Hand));
-    }
-    add_guides(scene, &rig, display);
-    if display.shows(Overlay::SingularityGlobe) {
-        let (centre, radius) = (arm.root, rig.limits().outer);
-        scene.add_globe(Globe { centre, radius, reference: arm.reference() });
     }
     if display.shows(Overlay::Cursor) && arm.uses_ik() {
         add_cursor(scene, arm.cursor_in_world(), thickness);
@@ -48,8 +43,8 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
     }
     if display.shows(Overlay::Labels) {
         add_labels(scene, &rig, thickness, |part| match part {
-            ArmPart::Elbow => display.shows(Overlay::TwistReferences),
-            ArmPart::Hand => overlays.has_handles && arm.uses_ik(),
+            LimbPart::Elbow => display.shows(Overlay::TwistReferences),
+            LimbPart::Hand => overlays.has_handles && arm.uses_ik(),
             _ => false,
         });
     }
@@ -95,29 +90,29 @@ impl BodyColours {
 /// Adds the two limbs. With a `roll`, stripes wind along the lower limb by that angle, in radians.
 fn add_limbs(
     scene: &mut Scene,
-    rig: &ArmRig,
+    rig: &LimbFrames,
     thickness: f32,
     roll: Option<f32>,
     colours: BodyColours,
 ) {
     scene.solids.extend([
         Solid {
-            transform: rig.world(ArmPart::UpperLimb),
+            transform: rig.world(LimbPart::UpperLimb),
             shape: rig.upper(),
             colour: colours.of(BodyPart::UpperLimb),
             stripes: None,
         },
         Solid {
-            transform: rig.world(ArmPart::LowerLimb),
+            transform: rig.world(LimbPart::LowerLimb),
             shape: rig.lower(),
             colour: colours.of(BodyPart::LowerLimb),
             stripes: roll,
         },
     ]);
     let joints = [
-        (ArmPart::Root, BodyPart::JOINT_BALL, colours.of(BodyPart::Root)),
-        (ArmPart::Elbow, BodyPart::JOINT_BALL, colours.palette.joint),
-        (ArmPart::Hand, BodyPart::WRIST_BALL, colours.of(BodyPart::Hand)),
+        (LimbPart::Root, BodyPart::JOINT_BALL, colours.of(BodyPart::Root)),
+        (LimbPart::Elbow, BodyPart::JOINT_BALL, colours.palette.joint),
+        (LimbPart::Hand, BodyPart::WRIST_BALL, colours.of(BodyPart::Hand)),
     ];
     scene.balls.extend(joints.map(|(part, radius, colour)| Ball {
         centre: rig.origin(part),
@@ -146,40 +141,20 @@ fn add_pin(scene: &mut Scene, cursor: Vec3, thickness: f32) {
 }
 
 /// Adds the pole and a dashed line from the elbow to the pole.
-fn add_pole(scene: &mut Scene, rig: &ArmRig, pole: Vec3, thickness: f32, display: Display) {
+fn add_pole(scene: &mut Scene, rig: &LimbFrames, pole: Vec3, thickness: f32, display: Display) {
     let (radius, colour) =
         (POLE_BALL * thickness, scene.palette.twist_reference(TwistReferenceKind::Pole));
     scene.guide_balls.push(Ball { centre: pole, radius, colour });
-    scene.lines.push(Line { from: rig.origin(ArmPart::Elbow), to: pole, colour, dashed: true });
+    scene.lines.push(Line { from: rig.origin(LimbPart::Elbow), to: pole, colour, dashed: true });
     if display.shows(Overlay::Labels) {
         let label = Label::new(pole, radius, LabelSide::Above, colour);
         scene.add_label(label, format_args!("Pole"));
     }
 }
 
-fn add_guides(scene: &mut Scene, rig: &ArmRig, display: Display) {
-    let colour = scene.palette.guide;
-    if display.shows(Overlay::Pointer) {
-        scene.guide_solids.push(Solid {
-            transform: rig.world(ArmPart::Pointer),
-            shape: rig.pointer(),
-            colour,
-            stripes: None,
-        });
-    }
-    for (overlay, part, radius) in [
-        (Overlay::InnerLimit, ArmPart::InnerLimit, rig.limits().inner),
-        (Overlay::OuterLimit, ArmPart::OuterLimit, rig.limits().outer),
-    ] {
-        if display.shows(overlay) && radius > 0.0 {
-            scene.shells.push(SphereShell { centre: rig.origin(part), radius, colour });
-        }
-    }
-}
-
 /// Adds a dashed line from the hand to a Cursor out of reach, labelled with the length of the line.
-fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32, has_handles: bool) {
-    let (hand, cursor) = (rig.origin(ArmPart::Hand), arm.cursor_in_world());
+fn add_gap(scene: &mut Scene, rig: &LimbFrames, arm: &Arm, thickness: f32, has_handles: bool) {
+    let (hand, cursor) = (rig.origin(LimbPart::Hand), arm.cursor_in_world());
     let colour = scene.palette.accent;
     scene.lines.push(Line { from: hand, to: cursor, colour, dashed: true });
     // The fingers are on the same line, beyond the hand.
@@ -194,7 +169,8 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32, has_handl
     } else {
         beside(&line)
     };
-    let (length, decimals) = (hand.distance(cursor), arm.length_decimals());
+    let length = hand.distance(cursor);
+    let decimals = LengthFormat::of_limb(rig.bones()).decimals();
     scene.add_label(label, format_args!("{}", ShownLength { length, decimals }));
 }
 
@@ -202,19 +178,19 @@ fn add_gap(scene: &mut Scene, rig: &ArmRig, arm: &Arm, thickness: f32, has_handl
 /// a twist reference, its name is left out, and so is that of a hand with handles.
 fn add_labels(
     scene: &mut Scene,
-    rig: &ArmRig,
+    rig: &LimbFrames,
     thickness: f32,
-    leaves_out: impl Fn(ArmPart) -> bool,
+    leaves_out: impl Fn(LimbPart) -> bool,
 ) {
     let colour = scene.palette.text;
     let [root, elbow, hand] =
-        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+        [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| rig.origin(part));
     // The hand goes on beyond the wrist, and the Pointer beyond the hand.
     let (fingers, pointer) = (hand + (hand - elbow), hand + (hand - root));
     let named = [
-        (ArmPart::Root, root, BodyPart::JOINT_BALL, [elbow, pointer], "Root"),
-        (ArmPart::Elbow, elbow, BodyPart::JOINT_BALL, [root, hand], "Elbow"),
-        (ArmPart::Hand, hand, BodyPart::WRIST_BALL, [elbow, fingers], "Hand"),
+        (LimbPart::Root, root, BodyPart::JOINT_BALL, [elbow, pointer], "Root"),
+        (LimbPart::Elbow, elbow, BodyPart::JOINT_BALL, [root, hand], "Elbow"),
+        (LimbPart::Hand, hand, BodyPart::WRIST_BALL, [elbow, fingers], "Hand"),
     ];
     for (part, at, radius, others, name) in named {
         if !leaves_out(part) {
@@ -225,9 +201,9 @@ fn add_labels(
     }
 }
 
-fn add_shadows(scene: &mut Scene, rig: &ArmRig, thickness: f32) {
+fn add_shadows(scene: &mut Scene, rig: &LimbFrames, thickness: f32) {
     let [root, elbow, hand] =
-        [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+        [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| rig.origin(part));
     let limbs = [
         (root, BodyPart::JOINT_BALL, elbow, rig.upper().tip_radius / thickness),
         (elbow, rig.lower().base_radius / thickness, hand, BodyPart::WRIST_BALL),

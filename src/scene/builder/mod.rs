@@ -4,6 +4,7 @@ mod arm;
 mod drawn_skeleton;
 mod figure;
 mod hand;
+mod limb;
 mod skeleton;
 mod skin;
 mod solver;
@@ -13,7 +14,7 @@ use glam::Vec3;
 
 use super::{Ball, Line, Palette, Planes, Scene};
 use crate::document::{Overlay, Posed, RigKind, Theme};
-use crate::session::Overlays;
+use crate::session::{Overlays, ShownLimb};
 use skeleton::Scratch;
 
 /// Fills scenes from documents. The builder owns the buffers for intermediate results, so that
@@ -72,21 +73,18 @@ impl SceneBuilder {
         match document.rig {
             RigKind::Arm => {
                 arm::add(scene, posed, overlays);
-                if display.shows(Overlay::ElbowCircle) {
-                    twist::add_circle(scene, posed);
-                }
-                if display.shows(Overlay::Frames) {
-                    figure::add_frames(scene, posed);
-                }
-                if let Some(figure) = overlays.figure {
-                    figure::add(scene, posed, figure);
-                }
-                if let Some(poses) = overlays.twist_references {
-                    twist::add_references(scene, posed, poses);
-                }
                 arm::add_onion_skins(scene, &overlays.onion_skins, reach);
             }
             RigKind::Skeleton => skeleton::add(scene, posed, overlays, &mut self.scratch),
+        }
+        if display.shows(Overlay::ElbowCircle) {
+            limb::add_circles(scene, posed, overlays.selection.last().copied());
+        }
+        if let Some(limb) = ShownLimb::frames(posed, overlays.selection.last().copied()) {
+            // Of a figure, the Pointer is shown while a limb of it is selected.
+            let has_pointer = document.rig == RigKind::Arm || !overlays.selection.is_empty();
+            let pointer = display.shows(Overlay::Pointer) && has_pointer;
+            limb::add_guides(scene, &limb, overlays, display.with(Overlay::Pointer, pointer));
         }
         add_trail(scene, overlays, reach);
         scene.spare_skin_pose = None;

@@ -1,5 +1,3 @@
-use core::f32::consts::TAU;
-
 use glam::Vec3;
 
 use super::drawn_skeleton::DrawnSkeleton;
@@ -127,9 +125,6 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
             }
         }
     }
-    if display.shows(Overlay::ElbowCircle) {
-        rig.targets.iter().for_each(|target| drawn.add_elbow_circle(scene, target));
-    }
     if display.shows(Overlay::Pointer) {
         rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, posed.time()));
     }
@@ -231,23 +226,6 @@ impl DrawnSkeleton<'_> {
             let label = if has_handles { label.clear_of_handles() } else { label };
             let shown = ShownLength { length: gap, decimals: residual_decimals(self.reach) };
             scene.add_label(label, format_args!("{shown}"));
-        }
-    }
-
-    /// Adds the circle of all places where the elbow of a limb could be with the tip where it is,
-    /// and a spoke to the elbow; nothing for another target, or for a straight limb.
-    fn add_elbow_circle(&self, scene: &mut Scene, target: &Target) {
-        // Radius as a fraction of the reach from which the circle is drawn.
-        const LEAST: f32 = 1e-4;
-        let Some(upper) = self.upper_of(target).filter(|_| target.is_posing()) else { return };
-        let [base, elbow] = [upper, target.joint].map(|joint| self.pose.base(joint));
-        let Some(axis) = (self.pose.tip(target.joint) - base).try_normalize() else { return };
-        let out = (elbow - base).reject_from_normalized(axis);
-        if out.length() > LEAST * self.reach {
-            let centre = elbow - out;
-            scene.add_arc(centre, out, axis, TAU, scene.palette.guide);
-            let colour = scene.palette.accent;
-            scene.lines.push(Line { from: centre, to: elbow, colour, dashed: false });
         }
     }
 

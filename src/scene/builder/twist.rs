@@ -1,15 +1,15 @@
-//! The arm's twist: the circle of elbows, and the same twist measured from other references.
+//! A limb's twist: the circle of elbows, and the same twist measured from other references.
 
 use core::f32::consts::TAU;
 use core::fmt::{self, Display, Formatter};
 
 use glam::{Quat, Vec3};
 
-use crate::document::{Arm, Posed, TwistReferenceKind};
+use crate::document::TwistReferenceKind;
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::ArmRig;
+use crate::rig::LimbFrames;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
-use crate::session::{BodyPart, TwistReferencePose};
+use crate::session::{BodyPart, TwistReferencePoses};
 
 /// Radii of a ghost's limbs and of its elbow, on an arm of thickness 1.
 const LIMB_RADIUS: f32 = 7.0;
@@ -19,79 +19,85 @@ const ELBOW_RADIUS: f32 = 13.0;
 /// overlap.
 const SHARED_LABEL_ANGLE: f32 = 20.0 * core::f32::consts::PI / 180.0;
 
-/// Adds ghosts of the arm: thin arms with the same twist, each measured from another kind of twist
-/// reference. Labels show the angles from the arm's elbow to those of the ghosts.
-pub(super) fn add_references<const N: usize>(
-    scene: &mut Scene,
-    posed: &Posed,
-    poses: [TwistReferencePose; N],
-) {
-    let (arm, own) = (posed.arm(), posed.arm_solution().pose);
-    let mut ghosts = poses.map(|TwistReferencePose { kind, pose }| ReferenceGhost {
-        twist_reference: kind,
-        pose,
-        turn: own.elbow_turn_to(&pose),
-        is_own: kind == arm.twist_reference,
-    });
-    ghosts.sort_by(|a, b| a.turn.total_cmp(&b.turn));
-    for ghost in ghosts.iter().filter(|ghost| !ghost.is_own) {
-        ghost.add_limbs(scene, arm);
+/// Adds ghosts of a limb: thin limbs with the same twist, each measured from another kind of twist
+/// reference. Labels show the angles from the limb's elbow to those of the ghosts.
+pub(super) fn add_references(scene: &mut Scene, limb: &LimbFrames, poses: TwistReferencePoses) {
+    let own = limb.solution.pose;
+    let mut ghosts = [None; TwistReferenceKind::ALL.len()];
+    for (ghost, (kind, pose)) in ghosts.iter_mut().zip(poses.iter()) {
+        let (turn, is_own) = (own.elbow_turn_to(pose), kind == limb.posed.kind);
+        *ghost = Some(ReferenceGhost { twist_reference: kind, pose: *pose, turn, is_own });
     }
-    for group in ghosts.chunk_by(|a, b| b.turn - a.turn < SHARED_LABEL_ANGLE) {
-        add_label(scene, arm, group);
+    let turn = |ghost: &Option<ReferenceGhost>| ghost.map_or(f32::INFINITY, |it| it.turn);
+    ghosts.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+    let ghosts: &[Option<ReferenceGhost>] = &ghosts;
+    for ghost in ghosts.iter().flatten().filter(|ghost| !ghost.is_own) {
+        ghost.add_limbs(scene, limb);
+    }
+    let present = &ghosts[..ghosts.iter().flatten().count()];
+    for group in present.chunk_by(|a, b| turn(b) - turn(a) < SHARED_LABEL_ANGLE) {
+        add_label(scene, limb, group);
     }
 }
 
-/// The arm posed with one of the kinds of twist reference.
+/// The limb posed with one of the kinds of twist reference.
+#[derive(Clone, Copy)]
 struct ReferenceGhost {
     twist_reference: TwistReferenceKind,
     pose: TwoBonePose,
-    /// Angle in radians about the Pointer from the arm's elbow to the ghost's elbow.
+    /// Angle in radians about the Pointer from the limb's elbow to the ghost's elbow.
     turn: f32,
     is_own: bool,
 }
 
 impl ReferenceGhost {
-    fn add_limbs(&self, scene: &mut Scene, arm: &Arm) {
-        let thickness = ArmRig::thickness(arm.bones);
+    fn add_limbs(&self, scene: &mut Scene, limb: &LimbFrames) {
+        let thickness = limb.thickness();
         let colour = scene.palette.twist_reference(self.twist_reference);
-        let [elbow, hand] = [self.pose.elbow, self.pose.hand].map(|point| arm.root + point);
+        let [base, elbow, hand] =
+            [Vec3::ZERO, self.pose.elbow, self.pose.hand].map(|point| limb.in_world(point));
         let radius = LIMB_RADIUS * thickness;
-        scene.add_solid(arm.root, elbow, radius, radius, colour);
+        scene.add_solid(base, elbow, radius, radius, colour);
         scene.add_solid(elbow, hand, radius, radius, colour);
         scene.balls.push(Ball { centre: elbow, radius: ELBOW_RADIUS * thickness, colour });
     }
 }
 
 /// Adds one label for ghosts with nearly the same elbow, like "Stereographic · Limb −17°". The
-/// arm's own reference has no angle.
-fn add_label(scene: &mut Scene, arm: &Arm, group: &[ReferenceGhost]) {
-    let shown = group.iter().find(|ghost| ghost.is_own).or(group.last());
-    let Some(ghost) = shown else { return };
+/// limb's own reference has no angle.
+fn add_label(scene: &mut Scene, limb: &LimbFrames, group: &[Option<ReferenceGhost>]) {
+    let ghosts = || group.iter().flatten();
+    let Some(ghost) = ghosts().find(|ghost| ghost.is_own).or(ghosts().last()) else { return };
     let (ball, colour) = if ghost.is_own {
         (BodyPart::JOINT_BALL, scene.palette.text)
     } else {
         (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference))
     };
-    let at = arm.root + ghost.pose.elbow;
-    let clearance = ball * ArmRig::thickness(arm.bones);
-    let label = Label::new(at, clearance, LabelSide::Above, colour);
+    let at = limb.in_world(ghost.pose.elbow);
+    let label = Label::new(at, ball * limb.thickness(), LabelSide::Above, colour);
     scene.add_label(label, format_args!("{}", GhostNames(group)));
 }
 
-/// Text of a shared label: the names of its references, the arm's own first.
-struct GhostNames<'a>(&'a [ReferenceGhost]);
+/// Text of a shared label: the names of its references, the limb's own first. Names with the same
+/// angle share it.
+struct GhostNames<'a>(&'a [Option<ReferenceGhost>]);
 
 impl Display for GhostNames<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let own = self.0.iter().filter(|ghost| ghost.is_own);
-        let others = self.0.iter().filter(|ghost| !ghost.is_own);
-        for (index, ghost) in own.chain(others).enumerate() {
-            let between = if index > 0 { " · " } else { "" };
-            write!(f, "{between}{}", ghost.twist_reference.name())?;
-            if !ghost.is_own {
-                let turn = ghost.turn.to_degrees().round();
+        let degrees = |ghost: &ReferenceGhost| ghost.turn.to_degrees().round();
+        let own = self.0.iter().flatten().filter(|ghost| ghost.is_own);
+        let others = self.0.iter().flatten().filter(|ghost| !ghost.is_own);
+        let mut ghosts = own.chain(others).peekable();
+        while let Some(ghost) = ghosts.next() {
+            f.write_str(ghost.twist_reference.name())?;
+            let next = ghosts.peek();
+            let turn = degrees(ghost);
+            let is_shared = next.is_some_and(|next| !ghost.is_own && degrees(next) == turn);
+            if !ghost.is_own && !is_shared {
                 write!(f, " {}{:.0}°", if turn < 0.0 { '−' } else { '+' }, turn.abs())?;
+            }
+            if next.is_some() {
+                f.write_str(if is_shared { ", " } else { " · " })?;
             }
         }
         Ok(())
@@ -110,19 +116,24 @@ const LEAST: f32 = 1e-3;
 const LEAST_TWIST: f32 = 1e-3;
 
 /// Adds the circle with spokes to the twist reference's direction and to the elbow, and the arc of
-/// the twist between them. Where FK has a part in the pose, the elbow has no circle.
-pub(super) fn add_circle(scene: &mut Scene, posed: &Posed) {
-    let (arm, pose) = (posed.arm(), posed.arm_pose());
-    if arm.influence < 1.0 || pose.out < LEAST * arm.bones.outer_limit() {
+/// the twist between them. Where FK has a part in the pose, the elbow has no circle; without marks,
+/// and where limits of the upper joint turn the elbow aside, the circle has one spoke, to the
+/// elbow.
+pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) {
+    let (posed, pose) = (&limb.posed, limb.pose());
+    if posed.influence < 1.0 || pose.out < LEAST * limb.bones().outer_limit() {
         return;
     }
-    let circle = ElbowCircle::new(arm, pose);
+    let circle = ElbowCircle::new(limb);
     let palette = scene.palette;
     let (guide, accent) = (palette.guide, palette.accent);
-    let reference = palette.twist_reference(arm.twist_reference);
     circle.add_arc(scene, TAU, 1.0, guide);
-    circle.add_spoke(scene, 0.0, reference, true);
     circle.add_spoke(scene, circle.twist, accent, false);
+    if limb.limited_by.is_some() || !has_marks {
+        return;
+    }
+    let reference = palette.twist_reference(posed.kind);
+    circle.add_spoke(scene, 0.0, reference, true);
     if circle.twist > LEAST_TWIST {
         circle.add_arc(scene, circle.twist, ARC, accent);
         let at = circle.point(circle.twist / 2.0, LABEL);
@@ -133,32 +144,28 @@ pub(super) fn add_circle(scene: &mut Scene, posed: &Posed) {
 
 /// A circle around the Pointer. Angles are Socket twists: 0 is the direction of the twist
 /// reference.
-struct ElbowCircle {
-    centre: Vec3,
-    axis: Vec3,
-    /// From the centre to the point at twist 0.
-    start: Vec3,
+struct ElbowCircle<'a> {
+    limb: &'a LimbFrames,
     twist: f32,
 }
 
-impl ElbowCircle {
-    fn new(arm: &Arm, pose: &TwoBonePose) -> Self {
-        let (axis, twist) = (pose.pointer.direction, arm.twist.rem_euclid(TAU));
-        Self {
-            centre: arm.root + axis * pose.along,
-            axis,
-            start: Quat::from_axis_angle(axis, -twist) * pose.outward() * pose.out,
-            twist,
-        }
+impl<'a> ElbowCircle<'a> {
+    fn new(limb: &'a LimbFrames) -> Self {
+        Self { limb, twist: limb.posed.twist.rem_euclid(TAU) }
     }
 
-    /// The point at a twist; `part` is its distance from the centre as a fraction of the radius.
+    /// The point of the world at a twist; `part` is its distance from the centre as a fraction of
+    /// the radius.
     fn point(&self, twist: f32, part: f32) -> Vec3 {
-        self.centre + part * (Quat::from_axis_angle(self.axis, twist) * self.start)
+        let pose = self.limb.pose();
+        let axis = pose.pointer.direction;
+        let out = Quat::from_axis_angle(axis, twist - self.twist) * pose.outward() * pose.out;
+        self.limb.in_world(axis * pose.along + part * out)
     }
 
     fn add_spoke(&self, scene: &mut Scene, twist: f32, colour: Colour, dashed: bool) {
-        scene.lines.push(Line { from: self.centre, to: self.point(twist, 1.0), colour, dashed });
+        let [from, to] = [0.0, 1.0].map(|part| self.point(twist, part));
+        scene.lines.push(Line { from, to, colour, dashed });
     }
 
     /// Adds the arc from twist 0 to `end`.

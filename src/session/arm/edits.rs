@@ -2,10 +2,8 @@ use glam::Vec3;
 
 use crate::document::{Arm, Channel, Cursor, Document, HandSpace, TwistReferenceKind};
 use crate::kinematics::angle::wrapped;
-use crate::kinematics::pop::PopCause;
 use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::two_bone::TwoBone;
-use crate::session::arm::pops::Spike;
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::parts::PoseMode;
 use crate::session::session::Session;
@@ -158,72 +156,4 @@ fn switch_pose_mode(session: &Session, mode: PoseMode) -> Outcome {
         PoseMode::Angles => session.arm().switched_to_fk(),
     };
     replace(session, arm).and(Consequence::SayIfArmMoved(Box::new(*session.pose())))
-}
-
-/// A change of settings that prevents a pop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PopFix {
-    /// Another twist reference.
-    ChangeReference(TwistReferenceKind),
-    /// More softness near the limits.
-    Soften(SoftReach),
-    /// A larger minimum elbow angle, which keeps the arm from folding up.
-    KeepOpen(SoftReach),
-}
-
-impl PopFix {
-    /// The fix for a pop. `None` if the pop cannot recur with the settings of `arm`, if its cause
-    /// is a Cursor that passed the shoulder, or if every fix is in use.
-    pub fn new(spike: &Spike, arm: &Arm) -> Option<Self> {
-        if !spike.persists(arm) {
-            return None;
-        }
-        match spike.pop {
-            PopCause::Singular { .. } => match arm.twist_reference {
-                TwistReferenceKind::Up | TwistReferenceKind::Pole => {
-                    Some(Self::ChangeReference(TwistReferenceKind::Stereographic))
-                }
-                TwistReferenceKind::Stereographic => {
-                    Some(Self::ChangeReference(TwistReferenceKind::Transport))
-                }
-                TwistReferenceKind::Transport => None,
-            },
-            PopCause::Straight => softer(arm.soft_reach).map(Self::Soften),
-            PopCause::Folded if arm.soft_reach.softness() == 0.0 => {
-                softer(arm.soft_reach).map(Self::Soften)
-            }
-            PopCause::Folded => wider(arm.soft_reach).map(Self::KeepOpen),
-            PopCause::Shoulder => None,
-        }
-    }
-
-    /// The edit that applies the fix.
-    pub fn action(self) -> ArmEdit {
-        match self {
-            Self::ChangeReference(twist_reference) => ArmEdit::SetTwistReference(twist_reference),
-            Self::Soften(soft_reach) | Self::KeepOpen(soft_reach) => {
-                ArmEdit::SetSoftReach(soft_reach)
-            }
-        }
-    }
-}
-
-/// Soft limits with twice the softness, at least 0.25 and at most 0.5; `None` if the softness is
-/// 0.5 or more already. A softness of 0.25 keeps arms of all proportions calm at both limits.
-fn softer(soft_reach: SoftReach) -> Option<SoftReach> {
-    const ENOUGH: f32 = 0.25;
-    const MOST: f32 = 0.5;
-    let softness = (2.0 * soft_reach.softness()).clamp(ENOUGH, MOST);
-    let softer =
-        SoftReach::new(softness, soft_reach.max_stretch(), soft_reach.min_elbow_angle()).ok()?;
-    (softness > soft_reach.softness()).then_some(softer)
-}
-
-/// Soft limits with a minimum elbow angle that is 30° larger; `None` if that is above 90°.
-fn wider(soft_reach: SoftReach) -> Option<SoftReach> {
-    const OPEN: f32 = core::f32::consts::FRAC_PI_6;
-    const MOST: f32 = core::f32::consts::FRAC_PI_2;
-    let angle = soft_reach.min_elbow_angle() + OPEN;
-    let open = SoftReach::new(soft_reach.softness(), soft_reach.max_stretch(), angle).ok()?;
-    (angle <= MOST).then_some(open)
 }

@@ -2,5 +2,4 @@
 
 pub mod drag;
 pub mod edits;
-pub mod pops;
 pub mod pose_line;

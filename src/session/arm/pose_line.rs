@@ -11,9 +11,9 @@ use crate::kinematics::two_bone::Pointer;
 /// does not give the direction of the Pointer.
 pub(in crate::session) fn of(arm: &Arm) -> String {
     let arm = if arm.influence < 1.0 { arm.switched_to_ik() } else { *arm };
-    // A single line has no previous pose to transport the twist from.
+    // A single line has no previous pose to transport the twist from, and no joint angles.
     let arm = match arm.twist_reference {
-        TwistReferenceKind::Transport => {
+        TwistReferenceKind::Transport | TwistReferenceKind::Fk => {
             arm.with_twist_reference(TwistReferenceKind::Stereographic)
         }
         _ => arm,
@@ -28,9 +28,9 @@ pub(in crate::session) fn of(arm: &Arm) -> String {
     match arm.twist_reference {
         TwistReferenceKind::Up => None,
         TwistReferenceKind::Pole => set("reference", json!({ "pole": arm.pole.to_array() })),
-        TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
-            set("reference", json!("stereographic"))
-        }
+        TwistReferenceKind::Stereographic
+        | TwistReferenceKind::Transport
+        | TwistReferenceKind::Fk => set("reference", json!("stereographic")),
     };
     let (soft_reach, default) = (arm.soft_reach, SoftReach::default());
     // An angle just below π may round to 180°, which is out of range.

@@ -8,7 +8,7 @@ use crate::kinematics::angle;
 use crate::kinematics::fk::limb_rotations;
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
-use crate::rig::{ArmPart, ArmRig, EvaluatedSkeleton, TaperedCylinder, Target};
+use crate::rig::{EvaluatedSkeleton, LimbFrames, LimbPart, TaperedCylinder, Target};
 use crate::session::parts::BodyPart;
 
 /// Drags of the parts of bodies.
@@ -110,10 +110,10 @@ impl BodyPart {
     /// The part of the arm that a ray meets first; `None` if it meets none.
     pub fn of_arm_at(posed: &Posed, ray: Ray) -> Option<Self> {
         let (arm, pose) = (posed.arm(), posed.arm_pose());
-        let rig = arm.rig(pose);
-        let thickness = ArmRig::thickness(arm.bones);
+        let rig = posed.arm_frames();
+        let thickness = rig.thickness();
         let [root, elbow, wrist] =
-            [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+            [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| rig.origin(part));
         let limb = |limb: TaperedCylinder| [limb.base_radius, limb.tip_radius];
         let ball = |radius: f32| [radius * thickness; 2];
         let forwards = arm.hand_rotation(pose).x_axis.as_vec3();
@@ -203,10 +203,7 @@ impl GripRing {
                 };
                 (pose.hand, axis.as_vec3())
             }
-            (Grip::Twist, true) => {
-                let axis = pose.pointer.direction;
-                (axis * pose.along, axis)
-            }
+            (Grip::Twist, true) => return Self::of_twist(&posed.arm_frames()),
             (Grip::Shoulder(axis), false) => (Vec3::ZERO, turned_axis(arm.fk.shoulder, axis)),
             // The lower limb turns clockwise about the hinge as the bend grows.
             (Grip::Bend, false) => {
@@ -215,6 +212,18 @@ impl GripRing {
             _ => return None,
         };
         Some(Self { centre: arm.root + along, axis })
+    }
+
+    /// The ring of the twist of a limb, around the Pointer through the elbow, in world space;
+    /// `None` where FK alone poses the limb or limits turn the elbow aside.
+    pub fn of_twist(limb: &LimbFrames) -> Option<Self> {
+        let is_on_circle = limb.uses_ik() && limb.limited_by.is_none();
+        let pose = limb.pose();
+        // A mirrored Root space reverses every rotation.
+        let sign = limb.root.matrix3.determinant().signum();
+        let axis = Vec3::from(limb.root.matrix3 * Vec3A::from(pose.pointer.direction)) * sign;
+        let centre = limb.in_world(pose.pointer.direction * pose.along);
+        Some(Self { centre, axis: axis.try_normalize().filter(|_| is_on_circle)? })
     }
 
     /// The ring, in world space, of a joint's FK angle about x, y or z. `None` if a limit fixes the

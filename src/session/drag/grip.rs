@@ -30,6 +30,8 @@ pub enum Grip {
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
     LimbPole(JointId, PointHandle),
+    /// The ring of the twist of a limb's target, about the Pointer, by the target's joint.
+    LimbTwist(JointId),
     /// The head of a skeleton that follows a path; dragging it pulls the chain.
     Head(JointId, PointHandle),
     /// The tip of a joint's bone.
@@ -58,6 +60,7 @@ impl Grip {
             | Self::Orientation(..)
             | Self::Bend
             | Self::Twist
+            | Self::LimbTwist(_)
             | Self::Limb
             | Self::UpperLimb => true,
         }
@@ -69,7 +72,7 @@ impl Grip {
             Self::Hand(_) => "Move hand",
             Self::Pole(_) => "Move pole",
             Self::Root(_) => "Move shoulder",
-            Self::Twist | Self::Limb => "Set Socket twist",
+            Self::Twist | Self::Limb | Self::LimbTwist(_) => "Set Socket twist",
             Self::Shoulder(_) | Self::UpperLimb => "Turn shoulder",
             Self::Bend => "Bend elbow",
             Self::HandRing(_) => "Turn hand",
@@ -96,6 +99,7 @@ impl Grip {
             | Self::HandRing(_) => true,
             Self::Target(..)
             | Self::LimbPole(..)
+            | Self::LimbTwist(_)
             | Self::Head(..)
             | Self::Tip(..)
             | Self::Ring(..)

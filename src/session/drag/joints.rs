@@ -36,6 +36,11 @@ pub(in crate::session) fn grab(
             let drag = TurnDrag::new(GripRing::of_joint(session.posed(), joint, axis)?, start, ray);
             return Some(Drag::of_ring(grip, drag));
         }
+        Grip::LimbTwist(joint) => {
+            let start = target(session, joint)?.limb()?.twist;
+            let ring = GripRing::of_twist(&session.posed().limb_frames(joint)?)?;
+            return Some(Drag::of_ring(grip, TurnDrag::new(ring, start, ray)));
+        }
         Grip::Orientation(joint, axis) => {
             let start = target(session, joint)?.limb()?.orientation?[axis.index()];
             let drag =
@@ -79,6 +84,7 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         (Grip::Orientation(joint, axis), Dragged::Angle(angle)) => {
             drag_orientation(session, joint, axis, angle)
         }
+        (Grip::LimbTwist(joint), Dragged::Angle(angle)) => drag_twist(session, joint, angle),
         (Grip::Head(root, _), Dragged::Point { .. }) => drag_head(session, root),
         (_, Dragged::Point { has_moved: false, .. }) => Outcome::default(),
         (Grip::Target(joint, _), Dragged::Point { to, .. }) => drag_target(session, joint, to),
@@ -108,6 +114,17 @@ fn drag_limb_pole(session: &Session, joint: JointId, to: Vec3) -> Outcome {
     };
     let pole = limb.pole_space.point_from_world(&session.posed().evaluated_skeleton().solved, to);
     limb.reference = ElbowReference::Pole(pole);
+    targets::set_target(session, target)
+}
+
+/// Sets the twist of the limb of a joint's target.
+fn drag_twist(session: &Session, joint: JointId, angle: f32) -> Outcome {
+    let Some(mut target) = target(session, joint) else {
+        return Outcome::default();
+    };
+    if let Some(limb) = target.limb_mut() {
+        limb.twist = angle;
+    }
     targets::set_target(session, target)
 }
 

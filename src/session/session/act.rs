@@ -2,12 +2,13 @@ use super::{ASPECT, Session};
 use crate::document::{Document, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::session::arm::pops::CursorMove;
 use crate::session::dialog::Message;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
 use crate::session::history::steps::{Snapshot, TreeChange};
+use crate::session::limb::ShownLimb;
 use crate::session::outcome::{Consequence, Effect, Outcome};
 use crate::session::parts::ArmJoint;
+use crate::session::pops::CursorMove;
 use crate::session::preferences::PanelTab;
 use crate::session::solver::run::SolverInputs;
 use crate::session::solver::solvers::SolverAction;
@@ -177,7 +178,7 @@ impl Session {
                 self.end_glide();
             }
             Consequence::ResetCrowd => self.view.reset_crowd(),
-            Consequence::ResetTransport => self.evaluated.reset_transport(self.editing.posed()),
+            Consequence::ResetTransport => self.evaluated.reset_transport(),
             Consequence::LookInside => {
                 let look = SolverAction::ShowPart { iteration: 1, part: Some(0) };
                 for action in [SolverAction::Step, look] {
@@ -206,10 +207,17 @@ impl Session {
             None if self.playback.is_playing() => CursorMove::Played,
             None => CursorMove::Set,
         };
-        self.evaluated.update(self.editing.posed(), cause);
+        self.evaluated.update(self.editing.posed());
         self.selection.retain_joints(self.evaluated.skeleton_pose().len());
+        self.follow_limb(cause);
         self.update_solvers();
         self.selection.retain_keys(self.editing.document());
+    }
+
+    /// Updates the limb that pages and guides are about.
+    fn follow_limb(&mut self, cause: CursorMove) {
+        let limb = ShownLimb::new(self.editing.posed(), self.selection.active());
+        self.evaluated.follow_limb(limb, cause, self.editing.posed().time());
     }
 
     /// Makes the solver run and the comparison anew if what they solve has changed.
@@ -326,6 +334,7 @@ impl Session {
 impl Session {
     fn select(&mut self, joints: Vec<JointId>) {
         self.selection.select(joints, self.evaluated.skeleton_pose().len());
+        self.follow_limb(CursorMove::Set);
         self.evaluated.forget_trail();
     }
 

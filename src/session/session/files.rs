@@ -61,7 +61,7 @@ impl Session {
             ..Self::with_document(self.preferences, document)
         };
         self.refresh();
-        self.evaluated.reset_pops(self.editing.posed());
+        self.evaluated.reset_pops(self.editing.posed().time());
         self.evaluated.forget_trail();
         if let Some(file) = file {
             self.files.remember(file);

@@ -54,7 +54,7 @@ impl Session {
         let files = std::mem::take(&mut self.files);
         *self = Self { files, playback, ..Self::with_document(preferences, document) };
         self.refresh();
-        self.evaluated.reset_transport(self.editing.posed());
+        self.evaluated.reset_transport();
         self.tour = Some(TourState::new(number, self.shown().clone(), done));
         self.own = Some(own);
         let joints = self.skeleton().iter();

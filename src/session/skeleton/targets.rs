@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::diagnosis::{Diagnosis, Remedy};
+use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::rig::{Carried, TargetSpace};
 use crate::session::outcome::{Consequence, Outcome};
@@ -31,6 +32,13 @@ pub enum TargetEdit {
         /// The space.
         space: TargetSpace,
     },
+    /// Changes what the twist of a joint's limb is measured from; the elbow stays where it is.
+    SetReference {
+        /// Joint of the target.
+        joint: JointId,
+        /// The reference.
+        reference: ElbowReference,
+    },
     /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation
     /// and the elbow's side.
     MatchTargetToFk(JointId),
@@ -56,6 +64,7 @@ impl TargetEdit {
             Self::MatchFkToPose(_) => "Write pose to FK",
             Self::SetTargetSpace { .. } => "Change target space",
             Self::SetPoleSpace { .. } => "Change pole space",
+            Self::SetReference { .. } => "Change twist reference",
             Self::ApplyRemedy { remedy, .. } => remedy_label(remedy),
         }
     }
@@ -80,6 +89,14 @@ impl TargetEdit {
             Self::SetPoleSpace { joint, space } => {
                 Outcome::change(shown, |document| document.set_pole_space(joint, space, time))
             }
+            Self::SetReference { reference: ElbowReference::Pole(pole), .. }
+                if !pole.is_finite() =>
+            {
+                Outcome::fail(format!("The pole of a limb must be finite, got {pole}"))
+            }
+            Self::SetReference { joint, reference } => Outcome::change(shown, |document| {
+                document.set_limb_reference(joint, reference, time);
+            }),
             Self::ApplyRemedy { target, remedy } => apply_remedy(session, target, &remedy),
         }
     }

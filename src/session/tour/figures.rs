@@ -1,10 +1,10 @@
 //! Live numbers of the scene in the texts of the tour.
 
-use crate::document::{Arm, Track};
+use crate::document::{Arm, LengthFormat, Track};
 use crate::kinematics::chain_ik::{Method, Status};
 use crate::kinematics::pop::ElbowStep;
 use crate::kinematics::soft_reach::SoftReach;
-use crate::session::arm::pops::{PopSampleKind, Spike};
+use crate::session::pops::{PopSampleKind, Spike};
 use crate::session::session::Session;
 use crate::session::solver::run::SolverRun;
 use crate::session::solver::status::farthest_target;
@@ -32,7 +32,7 @@ const FIGURES: [(&str, Figure); 31] = [
     ("race", |session| Some(factor(race(&at_start(session)?)))),
     ("hard_race", |session| Some(factor(race(&hard(&at_start(session)?))))),
     ("soft_gap", |session| Some(length(session, gap(&at_start(session)?)))),
-    ("holonomy", |session| Some(degrees(session.evaluated().transport_path().holonomy()))),
+    ("holonomy", |session| Some(degrees(session.evaluated().transport_path()?.holonomy()))),
     ("shoulder_moved", shoulder_moved),
     ("fk_bow", |session| bow(session, 0.0)),
     ("ik_bow", |session| bow(session, 1.0)),
@@ -75,7 +75,7 @@ fn figure(name: &str, session: &Session) -> Option<String> {
 }
 
 fn length(session: &Session, length: f32) -> String {
-    session.arm().format_length(length)
+    LengthFormat::of_limb(session.arm().bones).show(length)
 }
 
 fn degrees(angle: f32) -> String {

@@ -1,10 +1,11 @@
 //! The gizmo of the arm: handles of Cursor, Pole and Root, rings of the angles, and the ring of the
 //! Socket twist.
 
-use egui::{Color32, Painter, Pos2, Stroke, Ui};
+use egui::{Color32, Painter, Pos2, Ui};
 
 use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
 use super::screen::{ScreenProjection, bright};
+use super::twist_ring::TwistRing;
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::kinematics::skeleton::RotationAxis;
 use crate::session::{ArmJoint, Grip, GripRing, PointHandle, Session};
@@ -48,7 +49,10 @@ impl ArmGizmo {
                 .flatten(),
             root: TranslateHandles::new(screen, arm.root, None),
             is_root_selected: session.selection().arm_joint() == Some(ArmJoint::Root),
-            twist: TwistRing::new(screen, session),
+            twist: session.limb().and_then(|limb| {
+                let is_selected = session.selection().arm_joint() == Some(ArmJoint::Elbow);
+                TwistRing::new(screen, Grip::Twist, &limb.frames, is_selected)
+            }),
             rings: angles.filter_map(ring).chain(of_hand.filter_map(outer)).collect(),
         }
     }
@@ -140,51 +144,5 @@ fn look(colour: Color32, stands_out: bool, is_held: bool) -> Color32 {
         (true, _) => bright(colour),
         (false, true) => colour.gamma_multiply(0.25),
         (false, false) => colour,
-    }
-}
-
-/// Radius in points, around the elbow, of the handle that is always there.
-const ELBOW: f32 = 14.0;
-
-/// Screen positions of the ring. Until the elbow is selected, only the elbow can be dragged, and
-/// the ring is shown only under the mouse.
-pub(in crate::ui) struct TwistRing {
-    ring: RotateRing,
-    elbow: Pos2,
-    is_selected: bool,
-}
-
-impl TwistRing {
-    /// The ring of the shown arm. `None` in FK, if a part of the ring is behind the eye, or if the
-    /// arm is so straight or folded that the ring is smaller on screen than the handle.
-    pub fn new(screen: &ScreenProjection, session: &Session) -> Option<Self> {
-        let ring = GripRing::of_arm(session.posed(), Grip::Twist)?;
-        let elbow = session.arm().root + session.pose().elbow;
-        if session.pose().out < ELBOW * screen.units_per_point(ring.centre) {
-            return None;
-        }
-        Some(Self {
-            ring: RotateRing::through(screen, Grip::Twist, ring, elbow)?,
-            elbow: screen.place(elbow)?,
-            is_selected: session.selection().arm_joint() == Some(ArmJoint::Elbow),
-        })
-    }
-
-    /// The handle at a screen position; `None` if there is no handle.
-    pub fn at(&self, mouse: Pos2) -> Option<Grip> {
-        let on_elbow = self.elbow.distance(mouse) <= ELBOW;
-        let on_ring = || RotateRing::at(core::slice::from_ref(&self.ring), mouse);
-        if on_elbow {
-            return Some(Grip::Twist);
-        }
-        self.is_selected.then(on_ring).flatten()
-    }
-
-    /// Draws the ring, and a small circle around the elbow.
-    pub fn paint(&self, painter: &Painter, colour: Color32, stands_out: bool) {
-        if stands_out || self.is_selected {
-            self.ring.paint(painter, colour, stands_out);
-            painter.circle_stroke(self.elbow, ELBOW - 2.0, Stroke::new(1.5, colour));
-        }
     }
 }

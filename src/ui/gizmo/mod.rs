@@ -4,6 +4,7 @@ mod arm;
 mod handles;
 pub(in crate::ui) mod screen;
 mod skeleton;
+mod twist_ring;
 
 pub(in crate::ui) use screen::locked_axis;
 

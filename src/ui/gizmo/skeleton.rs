@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
 use super::screen::{ScreenProjection, bright, to_segment};
+use super::twist_ring::TwistRing;
 use crate::document::Target;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};
 use crate::rig::TargetReport;
@@ -32,6 +33,8 @@ pub(in crate::ui) struct SkeletonGizmo {
     /// Translation handles of the selected joint's target and its pole, or of the selected head.
     handles: Vec<JointHandles>,
     rings: Vec<RotateRing>,
+    /// The ring of the twist of the selected limb.
+    twist: Option<TwistRing>,
 }
 
 /// A bone on screen. `depth` is the distance of its middle from the eye along the view direction.
@@ -68,14 +71,16 @@ impl SkeletonGizmo {
             marks: targets(screen, session).into_iter().chain(heads(screen, session)).collect(),
             handles: handles(screen, session),
             rings: rings(screen, session),
+            twist: twist_ring(screen, session),
         }
     }
 
     /// The handle at a screen position; `None` if there is no handle. The handles of the selected
-    /// joint come first, then rings, then targets, then tips. A target or tip wins over a ring if
+    /// joint come first, then the ring of its limb's twist, other rings, targets, tips. A target or tip wins over a ring if
     /// its centre is clearly nearer.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
-        self.handles.iter().find_map(|of| of.at(mouse)).or_else(|| {
+        let of_twist = || self.twist.as_ref().and_then(|ring| ring.at(mouse));
+        self.handles.iter().find_map(|of| of.at(mouse)).or_else(of_twist).or_else(|| {
             let circle = self.mark_at(mouse).or_else(|| self.tip_at(mouse));
             match (RotateRing::nearest(&self.rings, mouse), circle) {
                 (Some((to_ring, _)), Some((to_centre, grip))) if to_centre + CLEARLY < to_ring => {
@@ -138,6 +143,10 @@ impl SkeletonGizmo {
                 _ => continue,
             };
             ring.paint(painter, faded(ring.grip, colour), stand_out(ring.grip));
+        }
+        if let Some(twist) = &self.twist {
+            let colour = faded(twist.grip(), style::accent(ui));
+            twist.paint(painter, colour, stand_out(twist.grip()));
         }
         let strong = ui.visuals().strong_text_color();
         for mark in &self.marks {
@@ -207,6 +216,13 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
         Some(Mark { grip, at, enabled: target.enabled })
     };
     session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
+}
+
+/// The ring of the twist of the limb that has the selected joint.
+fn twist_ring(screen: &ScreenProjection, session: &Session) -> Option<TwistRing> {
+    session.skeleton_rig().limb_target_of(session.selection().active()?)?;
+    let limb = session.limb()?;
+    TwistRing::new(screen, Grip::LimbTwist(limb.target?), &limb.frames, true)
 }
 
 /// The circles of heads that can be dragged.

@@ -12,7 +12,7 @@ use egui::{ScrollArea, Ui};
 
 use super::widgets;
 use crate::document::{Overlay, RigKind};
-use crate::session::{Actions, ArmFigure, DisplayEdit, PanelTab, Session, ViewAction};
+use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
@@ -58,12 +58,15 @@ fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn guides(session: &Session) -> &'static [Overlay] {
     match session.rig() {
         RigKind::Arm => &Overlay::GUIDES,
-        RigKind::Skeleton if !session.skeleton_rig().follow_paths.is_empty() => {
-            &[Overlay::Cursor, Overlay::Pointer, Overlay::FkPose, Overlay::ElbowCircle]
-        }
-        RigKind::Skeleton => {
-            &[Overlay::Cursor, Overlay::FkPose, Overlay::ElbowCircle, Overlay::ByItself]
-        }
+        RigKind::Skeleton => &[
+            Overlay::Cursor,
+            Overlay::Pointer,
+            Overlay::InnerLimit,
+            Overlay::OuterLimit,
+            Overlay::ElbowCircle,
+            Overlay::FkPose,
+            Overlay::ByItself,
+        ],
     }
 }
 
@@ -91,8 +94,8 @@ pub(super) fn has_room(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() >= WINDOW_WIDTH
 }
 
-/// Shows the chosen page, and returns the arm's figure under the mouse.
-pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Option<ArmFigure> {
+/// Shows the chosen page, and returns the limb's figure under the mouse.
+pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Option<LimbFigure> {
     let shown = shown(session);
     ui.add_space(4.0);
     let tabs: Vec<_> =
@@ -102,16 +105,15 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
     // Each page is scrolled on its own.
     let mut figure = None;
     ScrollArea::vertical().id_salt(shown).auto_shrink(false).show(ui, |ui| {
-        match (session.rig(), shown) {
-            (RigKind::Arm, PanelTab::Solver) => explain::closed_form(ui, session),
-            (RigKind::Arm, PanelTab::Twist) => explain::twist(ui, session, actions),
-            (RigKind::Arm, PanelTab::Reach) => explain::reach(ui, session),
-            (RigKind::Arm, PanelTab::Pops) => explain::pops(ui, session, actions),
-            (RigKind::Arm, _) => figure = explain::triangle(ui, session, actions),
-            (RigKind::Skeleton, PanelTab::Pops) => explain::figure_pops(ui, session, actions),
-            (RigKind::Skeleton, PanelTab::Race) => solver::race(ui, session, actions),
-            (RigKind::Skeleton, PanelTab::Skin) => skeleton::skin_areas(ui, session),
-            (RigKind::Skeleton, _) => solver::solver(ui, session, actions),
+        match shown {
+            PanelTab::Triangle => figure = explain::triangle(ui, session, actions),
+            PanelTab::Twist => explain::twist(ui, session, actions),
+            PanelTab::Reach => explain::reach(ui, session),
+            PanelTab::Pops => explain::pops(ui, session, actions),
+            PanelTab::Solver if session.rig() == RigKind::Arm => explain::closed_form(ui, session),
+            PanelTab::Solver => solver::solver(ui, session, actions),
+            PanelTab::Race => solver::race(ui, session, actions),
+            PanelTab::Skin => skeleton::skin_areas(ui, session),
         }
         ui.add_space(8.0);
     });

@@ -222,7 +222,7 @@ fn select(
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match gizmo.at(mouse) {
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
-        Some(Grip::Ring(..) | Grip::Orientation(..)) => return,
+        Some(Grip::Ring(..) | Grip::Orientation(..) | Grip::LimbTwist(_)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
     let is_first = joint.is_none() && !session.skeleton_rig().has_bones();

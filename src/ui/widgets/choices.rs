@@ -21,8 +21,8 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     tabs: &[Alternative<'_, T>],
 ) -> Option<T> {
     let mut pressed = None;
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(2.0, 0.0);
         ui.spacing_mut().button_padding = vec2(6.0, 5.0);
         for &(value, name, tooltip) in tabs {
             let is_now = value == now;

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{Arm, TwistReferenceKind};
-use ik_arm::rig::ArmPart;
+use ik_arm::rig::LimbPart;
 
 use crate::gallery::EXACT;
 
@@ -57,7 +57,10 @@ fn outward(arm: &Arm, forward: DVec3) -> DVec3 {
             let aside = pole.reject_from_normalized(forward);
             if aside.length() > 1e-6 * pole.length() { aside.normalize() } else { limb }
         }
-        TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
+        // With the default FK pose, straight along x, FK is the stereographic map.
+        TwistReferenceKind::Stereographic
+        | TwistReferenceKind::Transport
+        | TwistReferenceKind::Fk => {
             let k = (forward + DVec3::X).cross(DVec3::Y);
             k.cross(forward).normalize()
         }
@@ -76,8 +79,8 @@ pub fn check(arm: &Arm) {
     within("the elbow", elbow.distance(twin.elbow), elbow_error * length);
     check_limbs(arm, [DVec3::ZERO, elbow, hand], EXACT * length);
 
-    let rig = arm.rig(&pose);
-    let parts = [ArmPart::Root, ArmPart::Elbow, ArmPart::Hand].map(|part| rig.origin(part));
+    let rig = arm.frames(&arm.solve(), &pose);
+    let parts = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| rig.origin(part));
     let largest = parts.iter().map(|at| at.abs().max_element()).fold(0.0, f32::max);
     let coarse = 2.0 * f64::from(largest.next_up() - largest);
     let [root, elbow, hand] = parts.map(Vec3::as_dvec3);

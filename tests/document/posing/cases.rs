@@ -42,7 +42,7 @@ fn a_transported_elbow_comes_back_turned_by_the_solid_angle_of_its_path() {
             session.apply(ArmEdit::SetHand(hand * 300.0));
         }
     }
-    let holonomy = f64::from(session.evaluated().transport_path().holonomy());
+    let holonomy = f64::from(session.evaluated().transport_path().expect("a limb").holonomy());
     assert!((holonomy - PI / 2.0).abs() < 1e-4, "{holonomy}");
     let turned =
         before.cross(session.pose().outward()).x.atan2(before.dot(session.pose().outward()));

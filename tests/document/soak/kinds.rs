@@ -5,8 +5,8 @@ use ik_arm::io::OpenOptions;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmEdit, ArmFigure, ArmJoint, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget,
-    InsideLayer, InspectAction, InspectionJob, JointEdit, KeysEdit, Navigation, PanelTab, PathEdit,
+    Action, ArmEdit, ArmJoint, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget, InsideLayer,
+    InspectAction, InspectionJob, JointEdit, KeysEdit, LimbFigure, Navigation, PanelTab, PathEdit,
     PlaybackAction, PoseMode, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit,
     TargetEdit, TourAction, TransactionAction, ViewAction,
 };
@@ -155,6 +155,7 @@ kinds! {
         MatchFkToPose: Solve 2, |v| TargetEdit::MatchFkToPose(v.aimed());
         SetTargetSpace: Solve 2, |v| TargetEdit::SetTargetSpace { joint: v.aimed(), space: v.space() };
         SetPoleSpace: Solve 1, |v| TargetEdit::SetPoleSpace { joint: v.aimed(), space: v.space() };
+        SetReference: Solve 2, |v| TargetEdit::SetReference { joint: v.aimed(), reference: v.elbow_reference() };
         ApplyRemedy: Solve 3, |v| TargetEdit::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
     }
     Edit (Solver) (SolverEdit) {
@@ -205,7 +206,7 @@ kinds! {
             SelectAction::ArmJoint(v.one_of(&joints))
         };
         Figure: Look 1, |v| {
-            SelectAction::Figure(if v.coin() { None } else { Some(v.one_of(&ArmFigure::ALL)) })
+            SelectAction::Figure(if v.coin() { None } else { Some(v.one_of(&LimbFigure::ALL)) })
         };
         Keys: Look 3, |v| SelectAction::Keys(v.keys());
         Channels: Look 1, |v| SelectAction::Channels(v.channels());

@@ -4,7 +4,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Document, RigKind, Timeline};
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::rig::ArmPart;
+use ik_arm::rig::LimbPart;
 
 use crate::common::Random;
 use crate::common::documents::example;
@@ -29,9 +29,9 @@ fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
                 .collect()
         }
         RigKind::Arm => {
-            let rig = posed.arm().rig(posed.arm_pose());
+            let rig = posed.arm_frames();
             let parts =
-                [("upper", ArmPart::Root), ("lower", ArmPart::Elbow), ("hand", ArmPart::Hand)];
+                [("upper", LimbPart::Root), ("lower", LimbPart::Elbow), ("hand", LimbPart::Hand)];
             parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()
         }
     };

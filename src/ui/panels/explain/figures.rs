@@ -1,4 +1,4 @@
-//! Figures of the arm that light up, here and in the view: lines of drawings with labels beside
+//! Figures of a limb that light up, here and in the view: lines of drawings with labels beside
 //! them, where they cover nothing, and rows of quantities with symbol, formula and value.
 
 use core::f32::consts::PI;
@@ -7,8 +7,7 @@ use std::sync::Arc;
 use egui::{Color32, Galley, Grid, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use crate::document::Arm;
-use crate::session::{ArmFigure, Session};
+use crate::session::{LimbFigure, Session, ShownLimb};
 use crate::ui::gizmo::screen::to_segment;
 use crate::ui::style;
 use crate::ui::widgets::{self, text};
@@ -18,13 +17,13 @@ const NEAR: f32 = 7.0;
 
 /// The figure that is lit up, and the one that the mouse points at.
 pub(super) struct Lit {
-    shown: Option<ArmFigure>,
-    pointed: Option<ArmFigure>,
+    shown: Option<LimbFigure>,
+    pointed: Option<LimbFigure>,
 }
 
 /// A line of a drawing, through these points of the screen.
 pub(super) struct FigureLine {
-    pub figure: ArmFigure,
+    pub figure: LimbFigure,
     pub points: Vec<Pos2>,
 }
 
@@ -34,16 +33,16 @@ impl Lit {
     }
 
     /// The figure that the mouse points at.
-    pub fn pointed(&self) -> Option<ArmFigure> {
+    pub fn pointed(&self) -> Option<LimbFigure> {
         self.pointed
     }
 
-    pub fn shows(&self, figure: ArmFigure) -> bool {
+    pub fn shows(&self, figure: LimbFigure) -> bool {
         self.shown == Some(figure)
     }
 
     /// Shows a row of the figure, with a lit background while it is lit up.
-    pub fn row(&mut self, ui: &mut Ui, figure: ArmFigure, contents: impl FnOnce(&mut Ui) -> Rect) {
+    pub fn row(&mut self, ui: &mut Ui, figure: LimbFigure, contents: impl FnOnce(&mut Ui) -> Rect) {
         let behind = ui.painter().add(Shape::Noop);
         let rect = contents(ui).expand2(vec2(4.0, 0.5 * ui.spacing().item_spacing.y));
         if ui.rect_contains_pointer(rect) {
@@ -66,7 +65,7 @@ impl Lit {
         &mut self,
         drawing: &Response,
         lines: &[FigureLine],
-        labels: &[(Rect, ArmFigure)],
+        labels: &[(Rect, LimbFigure)],
     ) {
         let Some(mouse) = drawing.hover_pos() else { return };
         let label = labels.iter().find(|(rect, _)| rect.contains(mouse)).map(|(_, figure)| *figure);
@@ -140,7 +139,7 @@ pub(super) struct FigureLabels<'a> {
     /// The rectangle that labels stay in.
     room: Rect,
     lines: Vec<[Pos2; 2]>,
-    written: Vec<(Rect, ArmFigure)>,
+    written: Vec<(Rect, LimbFigure)>,
 }
 
 impl<'a> FigureLabels<'a> {
@@ -149,7 +148,7 @@ impl<'a> FigureLabels<'a> {
     }
 
     /// Writes a label at the first clear place, if there is one.
-    pub fn write(&mut self, text: &str, colour: Color32, figure: ArmFigure, places: &[Place]) {
+    pub fn write(&mut self, text: &str, colour: Color32, figure: LimbFigure, places: &[Place]) {
         let galley = self.galley(text, colour);
         let rects = places.iter().map(|place| place.rect(galley.size()));
         if let Some(rect) = rects.into_iter().find(|rect| self.is_clear(*rect)) {
@@ -162,7 +161,7 @@ impl<'a> FigureLabels<'a> {
         &mut self,
         text: &str,
         colour: Color32,
-        figure: ArmFigure,
+        figure: LimbFigure,
         places: &[Place],
     ) {
         let galley = self.galley(text, colour);
@@ -173,7 +172,7 @@ impl<'a> FigureLabels<'a> {
     }
 
     /// The rectangles of the labels that were written.
-    pub fn written(self) -> Vec<(Rect, ArmFigure)> {
+    pub fn written(self) -> Vec<(Rect, LimbFigure)> {
         self.written
     }
 
@@ -186,7 +185,7 @@ impl<'a> FigureLabels<'a> {
         self.ui.fonts_mut(|fonts| fonts.layout_job(text::layout(text, LABEL_SIZE, colour)))
     }
 
-    fn paint(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32, figure: ArmFigure) {
+    fn paint(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32, figure: LimbFigure) {
         self.painter.galley(rect.min, galley, colour);
         self.written.push((rect, figure));
     }
@@ -208,13 +207,13 @@ const FORMULA_SIZE: f32 = 13.5;
 
 /// A quantity with symbol, formula, value and meaning.
 pub(super) struct FormulaRow {
-    pub symbol: &'static str,
+    pub symbol: String,
     /// Empty for a quantity that is given.
     pub formula: &'static str,
     pub value: String,
-    pub meaning: &'static str,
+    pub meaning: String,
     /// Lights up while the mouse is over the row.
-    pub figure: Option<ArmFigure>,
+    pub figure: Option<LimbFigure>,
 }
 
 pub(super) fn table(ui: &mut Ui, id: &str, rows: &[FormulaRow], lit: &mut Lit) {
@@ -236,11 +235,11 @@ pub(super) fn table(ui: &mut Ui, id: &str, rows: &[FormulaRow], lit: &mut Lit) {
 }
 
 /// The colour of a figure's name: that of its limb, or else of text.
-pub(super) fn figure_colour(ui: &Ui, figure: Option<ArmFigure>) -> Color32 {
+pub(super) fn figure_colour(ui: &Ui, figure: Option<LimbFigure>) -> Color32 {
     let palette = style::palette(ui);
     match figure {
-        Some(ArmFigure::Upper) => style::colour(palette.upper),
-        Some(ArmFigure::Lower) => style::colour(palette.lower),
+        Some(LimbFigure::Upper) => style::colour(palette.upper),
+        Some(LimbFigure::Lower) => style::colour(palette.lower),
         _ => ui.visuals().text_color(),
     }
 }
@@ -248,11 +247,11 @@ pub(super) fn figure_colour(ui: &Ui, figure: Option<ArmFigure>) -> Color32 {
 /// Shows a row that ends at `right`, and returns its rectangle.
 fn show(ui: &mut Ui, row: &FormulaRow, is_lit: bool, right: f32) -> Rect {
     let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
-    let symbol = explained(ui, row.symbol, figure_colour(ui, row.figure), row.meaning);
+    let symbol = explained(ui, &row.symbol, figure_colour(ui, row.figure), &row.meaning);
     if row.formula.is_empty() {
         ui.label("");
     } else {
-        explained(ui, row.formula, if is_lit { text } else { weak }, row.meaning);
+        explained(ui, row.formula, if is_lit { text } else { weak }, &row.meaning);
     }
     let value = widgets::value(ui, &row.value);
     let mut rect = symbol.rect.union(value.rect);
@@ -273,7 +272,7 @@ fn explained(ui: &mut Ui, text: &str, colour: Color32, meaning: &str) -> Respons
 pub(super) fn pair(
     ui: &mut Ui,
     lit: &mut Lit,
-    figure: ArmFigure,
+    figure: LimbFigure,
     [name, meaning]: [&str; 2],
     value: String,
 ) {
@@ -297,16 +296,23 @@ pub(super) fn degrees(radians: f32) -> String {
     format!("{:.1}°", tidy(radians.to_degrees()))
 }
 
-/// Formats a length of the arm; a length that rounds to 0 is shown without a sign.
-pub(super) fn length(arm: &Arm, length: f32) -> String {
-    let nothing = 0.0005 * arm.grid_cell();
-    arm.format_length(if length.abs() < nothing { 0.0 } else { length })
+/// Formats a length of a limb; a length that rounds to 0 is shown without a sign.
+pub(super) fn length(limb: &ShownLimb, length: f32) -> String {
+    let lengths = limb.lengths();
+    let nothing = 0.0005 * lengths.cell();
+    lengths.show(if length.abs() < nothing { 0.0 } else { length })
 }
 
-/// Formats a point of the arm.
-pub(super) fn point(arm: &Arm, point: Vec3) -> String {
-    let [x, y, z] = point.to_array().map(|coordinate| length(arm, coordinate));
+/// Formats a point of Root space.
+pub(super) fn point(limb: &ShownLimb, point: Vec3) -> String {
+    let [x, y, z] = point.to_array().map(|coordinate| length(limb, coordinate));
     format!("({x}, {y}, {z})")
+}
+
+/// A word that begins with a capital letter.
+pub(super) fn capital(word: &str) -> String {
+    let (first, rest) = word.split_at_checked(1).unwrap_or((word, ""));
+    first.to_uppercase() + rest
 }
 
 /// Returns 0 for a value that rounds to 0 at one decimal, so that 0 has no sign; otherwise the

@@ -1,4 +1,4 @@
-//! Figures and formulas of the arm with the numbers of the current pose; its hierarchy as a tree,
+//! Figures and formulas of a limb with the numbers of the current pose; its hierarchy as a tree,
 //! each part with what places it in its parent.
 
 mod figure_pops;
@@ -11,49 +11,99 @@ mod twist_references;
 
 use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
-use crate::document::Overlay;
-use crate::session::{Actions, ArmFigure, Session, TourState};
+use crate::document::{Overlay, RigKind};
+use crate::rig::LimbPart;
+use crate::session::{Actions, LimbFigure, LimbWords, Session, ShownLimb, TourState};
 use crate::ui::{pose_summary, widgets};
 use figures::{Lit, degrees, figure_colour, length, point};
 
-pub(super) use figure_pops::ui as figure_pops;
-pub(super) use pops::ui as pops;
-pub(super) use twist_references::ui as twist;
-
-/// The triangle of the arm, a sentence on its pose, and its angles and lengths. Returns the figure
+/// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure
 /// under the mouse.
-pub(in crate::ui) fn triangle(
+pub(super) fn triangle(
     ui: &mut Ui,
     session: &Session,
     actions: &mut Actions,
-) -> Option<ArmFigure> {
+) -> Option<LimbFigure> {
+    let limb = titled_limb(ui, session)?;
     let lit = &mut Lit::new(session);
-    triangle::ui(ui, session, lit);
-    sentence(ui, session);
-    widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, lit, actions));
-    widgets::section(ui, "Pointer", |ui| pointer::ui(ui, session, lit));
-    widgets::section(ui, "Elbow triangle", |ui| triangle::quantities(ui, session, lit));
-    widgets::section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, session, lit));
-    widgets::section(ui, "Positions", |ui| triangle::positions(ui, session, lit));
+    triangle::ui(ui, limb, lit);
+    sentence(ui, session, limb);
+    widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
+    widgets::section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
+    widgets::section(ui, "Elbow triangle", |ui| triangle::quantities(ui, limb, lit));
+    widgets::section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, limb, lit));
+    widgets::section(ui, "Positions", |ui| triangle::positions(ui, limb, lit));
     lit.pointed()
 }
 
+/// The references from which a limb's twist can be measured.
+pub(super) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    if let Some(limb) = titled_limb(ui, session) {
+        twist_references::ui(ui, session, limb, actions);
+    }
+}
+
 /// The distances that the hand can have, and those that it has.
-pub(in crate::ui) fn reach(ui: &mut Ui, session: &Session) {
-    reach::meter(ui, session);
-    sentence(ui, session);
+pub(super) fn reach(ui: &mut Ui, session: &Session) {
+    let Some(limb) = titled_limb(ui, session) else { return };
+    reach::meter(ui, limb);
+    sentence(ui, session, limb);
     // A step of the tour asks for what this section shows.
     if session.tour().is_none_or(TourState::shows_result) {
-        widgets::section(ui, "Same step, two poses", |ui| reach::same_step(ui, session));
+        widgets::section(ui, "Same step, two poses", |ui| reach::same_step(ui, limb));
     }
-    widgets::section(ui, "Reach curve", |ui| reach::curve(ui, session));
+    widgets::section(ui, "Reach curve", |ui| reach::curve(ui, limb));
+}
+
+/// The pops of a limb in the latest drag, and those along the motion of a figure.
+pub(super) fn pops(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    if session.rig() == RigKind::Arm {
+        if let Some(limb) = session.limb() {
+            pops::ui(ui, session, limb, actions);
+        }
+        return;
+    }
+    figure_pops::ui(ui, session, actions);
+    if let Some(limb) = session.limb() {
+        let title = format!("Latest drag of {}", name(session, limb));
+        widgets::named_section(ui, "latest drag", &title, |ui| {
+            pops::ui(ui, session, limb, actions);
+        });
+    }
+}
+
+/// Shows the name of the limb of a figure, and returns the limb; without one, a sentence that says
+/// how to make one.
+fn titled_limb<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a ShownLimb> {
+    let limb = session.limb();
+    match limb {
+        Some(limb) if limb.target.is_some() => {
+            ui.label(RichText::new(format!("Limb of {}", name(session, limb))).strong());
+            ui.add_space(2.0);
+        }
+        Some(_) => {}
+        None => {
+            ui.label(
+                "There is no limb. Add a target to a hand or foot: this page is then about its two bones.",
+            );
+        }
+    }
+    limb
+}
+
+/// The name of what a limb's target moves.
+fn name(session: &Session, limb: &ShownLimb) -> String {
+    let rig = session.skeleton_rig();
+    let end = limb.target.and_then(|target| rig.end_of_target(target));
+    end.and_then(|end| rig.skeleton.joint(end)).map_or("the arm".to_owned(), |it| it.name.clone())
 }
 
 /// A text on why the arm has no solver that iterates.
 pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
-    let arm = session.arm();
-    let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(|it| arm.format_length(it));
-    let distance = arm.format_length(session.pose().distance);
+    let Some(limb) = session.limb() else { return };
+    let (bones, lengths) = (limb.frames.bones(), limb.lengths());
+    let [upper, lower] = [bones.upper(), bones.lower()].map(|it| lengths.show(it));
+    let distance = lengths.show(limb.frames.pose().distance);
     ui.label(format!(
         "Two limbs need no iterations. Their lengths {upper} and {lower} and the distance {distance} from \
          shoulder to hand are the three sides of a triangle, and three sides fix all its angles."
@@ -65,12 +115,12 @@ pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
     );
 }
 
-fn sentence(ui: &mut Ui, session: &Session) {
+fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
     // Always as high as the longest sentence, so that nothing below moves.
     let height = 3.0 * ui.text_style_height(&egui::TextStyle::Body) + 4.0;
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
-        ui.label(pose_summary::sentence(session.arm(), session.pose()));
+        ui.label(pose_summary::sentence_on_limb(session, limb));
     });
 }
 
@@ -81,15 +131,21 @@ const INDENT: f32 = 16.0;
 struct HierarchyRow {
     name: &'static str,
     depth: u8,
-    figure: ArmFigure,
+    figure: LimbFigure,
     value: String,
-    meaning: &'static str,
+    meaning: String,
 }
 
-fn hierarchy(ui: &mut Ui, session: &Session, lit: &mut Lit, actions: &mut Actions) {
+fn hierarchy(
+    ui: &mut Ui,
+    session: &Session,
+    limb: &ShownLimb,
+    lit: &mut Lit,
+    actions: &mut Actions,
+) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        for part in parts(session) {
+        for part in parts(limb) {
             lit.row(ui, part.figure, |ui| show(ui, &part));
         }
     });
@@ -97,45 +153,54 @@ fn hierarchy(ui: &mut Ui, session: &Session, lit: &mut Lit, actions: &mut Action
     widgets::overlay_check_box(ui, session, Overlay::Frames, name, tooltip, None, actions);
 }
 
-fn parts(session: &Session) -> [HierarchyRow; 5] {
-    let (arm, pose) = (session.arm(), session.pose());
-    let [upper, lower] =
-        [arm.bones.upper(), arm.bones.lower()].map(|it| length(arm, it * pose.stretch));
+fn parts(limb: &ShownLimb) -> [HierarchyRow; 5] {
+    let pose = limb.frames.pose();
+    let LimbWords { base, middle, end } = limb.words;
+    let [upper, lower] = [limb.frames.bones().upper(), limb.frames.bones().lower()]
+        .map(|it| length(limb, it * pose.stretch));
     [
         HierarchyRow {
             name: "Root",
             depth: 0,
-            figure: ArmFigure::Root,
-            value: point(arm, arm.root),
-            meaning: "The Root places the shoulder in the world",
+            figure: LimbFigure::Root,
+            value: point(limb, limb.frames.origin(LimbPart::Root)),
+            meaning: format!("The Root places the {base} in the world"),
         },
         HierarchyRow {
             name: "Limb",
             depth: 1,
-            figure: ArmFigure::Limb,
+            figure: LimbFigure::Limb,
             value: format!("yaw {}, pitch {}", degrees(pose.yaw()), degrees(pose.pitch())),
-            meaning: "The Limb turns in the Root until its x axis, the Pointer, goes through the Cursor",
+            meaning:
+                "The Limb turns in the Root until its x axis, the Pointer, goes through the Cursor"
+                    .to_owned(),
         },
         HierarchyRow {
             name: "Socket",
             depth: 2,
-            figure: ArmFigure::Socket,
+            figure: LimbFigure::Socket,
             value: format!("twist {}", degrees(pose.twist)),
-            meaning: "The Socket turns in the Limb about the Pointer and takes the elbow along",
+            meaning: format!(
+                "The Socket turns in the Limb about the Pointer and takes the {middle} along"
+            ),
         },
         HierarchyRow {
             name: "Upper limb",
             depth: 3,
-            figure: ArmFigure::Upper,
+            figure: LimbFigure::Upper,
             value: format!("length {upper}"),
-            meaning: "The Upper limb leads from the shoulder to the elbow, in the Socket's xy-plane",
+            meaning: format!(
+                "The Upper limb leads from the {base} to the {middle}, in the Socket's xy-plane"
+            ),
         },
         HierarchyRow {
             name: "Lower limb",
             depth: 3,
-            figure: ArmFigure::Lower,
+            figure: LimbFigure::Lower,
             value: format!("length {lower}"),
-            meaning: "The Lower limb leads from the elbow to the hand, in the Socket's xy-plane",
+            meaning: format!(
+                "The Lower limb leads from the {middle} to the {end}, in the Socket's xy-plane"
+            ),
         },
     ]
 }
@@ -151,7 +216,7 @@ fn show(ui: &mut Ui, part: &HierarchyRow) -> egui::Rect {
         }
         let colour = figure_colour(ui, Some(part.figure));
         let name = Label::new(RichText::new(part.name).color(colour)).selectable(false);
-        ui.add(name).on_hover_text(part.meaning);
+        ui.add(name).on_hover_text(&part.meaning);
         widgets::value(ui, &part.value);
     });
     row.response.rect

@@ -9,8 +9,7 @@ use glam::Vec3;
 use super::figures::{
     FigureLabels, FigureLine, FormulaRow, Lit, arc, around, beside, degrees, length, table,
 };
-use crate::document::Arm;
-use crate::session::{ArmFigure, Session};
+use crate::session::{LimbFigure, LimbWords, ShownLimb};
 use crate::ui::style;
 
 const HEIGHT: f32 = 140.0;
@@ -19,52 +18,51 @@ const MARGINS: Vec2 = vec2(24.0, 26.0);
 /// Radius of the arcs of the angles, in points.
 const ARC: f32 = 18.0;
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    drawing(ui, session, lit);
-    table(ui, "pointer", &rows(session), lit);
+pub(super) fn ui(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    drawing(ui, limb, lit);
+    table(ui, "pointer", &rows(limb), lit);
 }
 
 /// Shows both triangles side by side, in one scale.
-fn drawing(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    let (arm, pose) = (session.arm(), session.pose());
-    let cursor = arm.pointed_at(pose);
+fn drawing(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    let (pose, cursor) = (limb.frames.pose(), limb.frames.pointed_at());
     let level = cursor.x.hypot(cursor.z);
     let size = vec2(ui.available_width(), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, description(arm, cursor)));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, description(limb, cursor)));
     let (left, right) = rect.split_left_right_at_fraction(0.5);
     let (left, right) = (left.with_max_x(left.right() - 2.0), right.with_min_x(right.left() + 2.0));
-    let scale = scale(arm, left.size() - 2.0 * MARGINS, cursor, level);
+    let scale = scale(limb, left.size() - 2.0 * MARGINS, cursor, level);
     let above = RightTriangle {
         title: "From above",
         // The y axis points at the viewer; z points down.
         legs: scale * vec2(cursor.x, cursor.z),
-        figures: [ArmFigure::Cursor, ArmFigure::Cursor, ArmFigure::Level, ArmFigure::Yaw],
+        figures: [LimbFigure::Cursor, LimbFigure::Cursor, LimbFigure::Level, LimbFigure::Yaw],
         names: ["x_c", "z_c", "h_c", "θ_z"],
         angle: pose.yaw(),
     };
     let beside = RightTriangle {
         title: "From the side",
         legs: scale * vec2(level, -cursor.y),
-        figures: [ArmFigure::Level, ArmFigure::Cursor, ArmFigure::Distance, ArmFigure::Pitch],
+        figures: [LimbFigure::Level, LimbFigure::Cursor, LimbFigure::Distance, LimbFigure::Pitch],
         names: ["h_c", "y_c", "|c|", "θ_y"],
         angle: -pose.pitch(),
     };
     for (triangle, rect) in [(above, left), (beside, right)] {
         triangle.show(ui, rect, &response, lit);
     }
-    response.on_hover_text("Where the Cursor is from the shoulder, to scale");
+    response.on_hover_text("Where the Cursor is from the Root, to scale");
 }
 
-fn description(arm: &Arm, cursor: Vec3) -> String {
-    let [x, y, z] = cursor.to_array().map(|it| length(arm, it));
-    let level = length(arm, cursor.x.hypot(cursor.z));
+fn description(limb: &ShownLimb, cursor: Vec3) -> String {
+    let [x, y, z] = cursor.to_array().map(|it| length(limb, it));
+    let level = length(limb, cursor.x.hypot(cursor.z));
     format!("Cursor from above: x {x}, z {z}, level {level}; from the side: level {level}, y {y}")
 }
 
 /// Points per unit of length. A Cursor near the shoulder is not enlarged, so that it looks near.
-fn scale(arm: &Arm, room: Vec2, cursor: Vec3, level: f32) -> f32 {
-    let least = 0.4 * arm.bones.outer_limit();
+fn scale(limb: &ShownLimb, room: Vec2, cursor: Vec3, level: f32) -> f32 {
+    let least = 0.4 * limb.frames.bones().outer_limit();
     let wide = level.max(least);
     let high = cursor.y.abs().max(cursor.z.abs()).max(0.5 * least);
     (room.x / wide).min(room.y / high)
@@ -76,7 +74,7 @@ struct RightTriangle {
     /// From the shoulder to the right angle, and from there to the Cursor; in points.
     legs: Vec2,
     /// Legs, hypotenuse and angle.
-    figures: [ArmFigure; 4],
+    figures: [LimbFigure; 4],
     names: [&'static str; 4],
     /// From the first axis to the hypotenuse, clockwise on the screen.
     angle: f32,
@@ -129,7 +127,7 @@ impl RightTriangle {
         shoulder: Pos2,
         corner: Pos2,
         cursor: Pos2,
-    ) -> Vec<(Rect, ArmFigure)> {
+    ) -> Vec<(Rect, LimbFigure)> {
         let [text, weak, accent] = colours(ui);
         let sides = [(shoulder, corner), (corner, cursor), (shoulder, cursor)];
         let lines = sides.map(|(from, to)| [from, to]).to_vec();
@@ -150,37 +148,38 @@ fn colours(ui: &Ui) -> [Color32; 3] {
     [ui.visuals().text_color(), ui.visuals().weak_text_color(), style::accent(ui)]
 }
 
-fn rows(session: &Session) -> [FormulaRow; 4] {
-    let (arm, pose) = (session.arm(), session.pose());
-    let cursor = arm.pointed_at(pose);
+fn rows(limb: &ShownLimb) -> [FormulaRow; 4] {
+    let (pose, cursor) = (limb.frames.pose(), limb.frames.pointed_at());
+    let LimbWords { base, end, .. } = limb.words;
+    let is_hard = limb.frames.posed.ik.soft_reach.is_hard();
     [
         FormulaRow {
-            symbol: "Yaw θ_z",
+            symbol: "Yaw θ_z".to_owned(),
             formula: "atan2(z_c, x_c)",
             value: degrees(pose.yaw()),
-            meaning: "Angle of the Pointer about the vertical, from x towards z",
-            figure: Some(ArmFigure::Yaw),
+            meaning: "Angle of the Pointer about the Root's y, from x towards z".to_owned(),
+            figure: Some(LimbFigure::Yaw),
         },
         FormulaRow {
-            symbol: "Level h_c",
+            symbol: "Level h_c".to_owned(),
             formula: "hypot(x_c, z_c)",
-            value: length(arm, cursor.x.hypot(cursor.z)),
-            meaning: "Horizontal distance from the Root to the Cursor (x_c, y_c, z_c)",
-            figure: Some(ArmFigure::Level),
+            value: length(limb, cursor.x.hypot(cursor.z)),
+            meaning: "Level distance from the Root to the Cursor (x_c, y_c, z_c)".to_owned(),
+            figure: Some(LimbFigure::Level),
         },
         FormulaRow {
-            symbol: "Pitch θ_y",
+            symbol: "Pitch θ_y".to_owned(),
             formula: "atan2(y_c, h_c)",
             value: degrees(pose.pitch()),
-            meaning: "Angle of the Pointer above the xz-plane",
-            figure: Some(ArmFigure::Pitch),
+            meaning: "Angle of the Pointer above the Root's xz-plane".to_owned(),
+            figure: Some(LimbFigure::Pitch),
         },
         FormulaRow {
-            symbol: "Distance D",
-            formula: if arm.soft_reach.is_hard() { "|c|, limited" } else { "|c|, softened" },
-            value: length(arm, pose.distance),
-            meaning: "Distance from shoulder to hand: the Cursor's, within the limits",
-            figure: Some(ArmFigure::Distance),
+            symbol: "Distance D".to_owned(),
+            formula: if is_hard { "|c|, limited" } else { "|c|, softened" },
+            value: length(limb, pose.distance),
+            meaning: format!("Distance from {base} to {end}: the Cursor's, within the limits"),
+            figure: Some(LimbFigure::Distance),
         },
     ]
 }

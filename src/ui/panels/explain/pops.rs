@@ -6,11 +6,13 @@ use egui_plot::{
     Text, VLine,
 };
 
-use crate::document::{Arm, TwistReferenceKind};
+use super::figures::capital;
+use crate::document::TwistReferenceKind;
 use crate::kinematics::pop::{InputChange, PopCause};
 use crate::kinematics::soft_reach::SoftReach;
-use crate::kinematics::twist::TwistReference;
-use crate::session::{Actions, PopFix, PopSample, PopSampleKind, Pops, Session, Spike};
+use crate::session::{
+    Actions, LimbWords, PopFix, PopSample, PopSampleKind, Pops, Session, ShownLimb, Spike,
+};
 use crate::ui::style;
 use crate::ui::widgets::{self, plot};
 
@@ -20,21 +22,25 @@ const SHOWN: (f64, f64) = (0.05, 100.0);
 /// Maximum number of pops in the list, which has the newest first.
 const LISTED: usize = 3;
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// Shows the pops of the limb in the latest drag or playback.
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
+    let LimbWords { middle, end, .. } = limb.words;
     let is_step = |sample: &PopSample| matches!(sample.kind, PopSampleKind::Step(_));
     if !session.evaluated().pops().samples().any(is_step) {
-        ui.label("Drag the hand, or play the timeline: this page then shows where the elbow jumped, and why.");
+        ui.label(format!(
+            "Drag the {end}, or play the timeline: this page then shows where the {middle} jumped, and why."
+        ));
         return;
     }
     let spikes = session.evaluated().pops().spikes();
-    ui.weak("Up: elbow speed / Cursor speed · across: steps");
-    show(ui, session.evaluated().pops(), &spikes);
+    ui.weak(format!("Up: {middle} speed / Cursor speed · across: steps"));
+    show(ui, session.evaluated().pops(), &spikes, limb.words);
     if spikes.is_empty() {
-        ui.label("No pops: the elbow moves smoothly.");
+        ui.label(format!("No pops: the {middle} moves smoothly."));
     }
     let mut offered: Vec<PopFix> = Vec::new();
     for spike in spikes.iter().rev().take(LISTED) {
-        list(ui, session.arm(), spike, &mut offered, actions);
+        list(ui, session, limb, spike, &mut offered, actions);
     }
     let changes = InputChange::ALL
         .into_iter()
@@ -51,24 +57,32 @@ fn is_marked(pops: &Pops, change: InputChange) -> bool {
 
 /// Shows one pop and a button for its fix. The button is left out if `offered`, the fixes of the
 /// pops above, contains the same fix.
-fn list(ui: &mut Ui, arm: &Arm, spike: &Spike, offered: &mut Vec<PopFix>, actions: &mut Actions) {
-    let text = format!("{}: {}", name(spike.pop), describe(spike));
-    if !spike.persists(arm) {
+fn list(
+    ui: &mut Ui,
+    session: &Session,
+    limb: &ShownLimb,
+    spike: &Spike,
+    offered: &mut Vec<PopFix>,
+    actions: &mut Actions,
+) {
+    let now = &limb.frames.posed;
+    let text = format!("{}: {}", name(spike.pop), describe(spike, limb.words));
+    if !spike.persists(now) {
         ui.weak(format!("{text} – settings have changed since"));
         return;
     }
     ui.label(RichText::new(text));
-    match PopFix::new(spike, arm) {
+    match PopFix::new(spike, now) {
         Some(pop_fix) if !offered.contains(&pop_fix) => {
             offered.push(pop_fix);
-            let (label, tooltip) = wording(pop_fix, arm.soft_reach);
+            let (label, tooltip) = wording(pop_fix, now.ik.soft_reach);
             if widgets::button(ui, label, &tooltip, None) {
-                actions.push(pop_fix.action());
+                actions.extend(pop_fix.edit(session.skeleton_rig(), limb));
             }
         }
         Some(_) => {}
         None => {
-            ui.weak(why_none(spike.pop, arm));
+            ui.weak(why_none(spike.pop, limb));
         }
     }
 }
@@ -82,23 +96,25 @@ fn name(pop: PopCause) -> &'static str {
     }
 }
 
-fn describe(spike: &Spike) -> String {
+fn describe(spike: &Spike, words: LimbWords) -> String {
+    let LimbWords { base, .. } = words;
     let times = if spike.ratio < 1e3 { format!("{:.1}×", spike.ratio) } else { ">999×".into() };
     match spike.pop {
         PopCause::Singular { nearest } => {
-            let pole = match spike.ik.reference {
-                TwistReference::Up => "the vertical",
-                TwistReference::Pole(_) => "the pole",
-                TwistReference::Stereographic(_) | TwistReference::Transport => {
+            let pole = match spike.reference {
+                TwistReferenceKind::Up => "the vertical",
+                TwistReferenceKind::Pole => "the pole",
+                TwistReferenceKind::Stereographic | TwistReferenceKind::Transport => {
                     "straight behind, −x"
                 }
+                TwistReferenceKind::Fk => "the opposite of its FK pose",
             };
             let degrees = nearest.to_degrees();
             format!("the Pointer passed within {degrees:.1}° of {pole} ({times})")
         }
-        PopCause::Straight => format!("the arm reached its outer limit ({times})"),
-        PopCause::Folded => format!("the arm folded up ({times})"),
-        PopCause::Shoulder => format!("the Cursor passed the shoulder ({times})"),
+        PopCause::Straight => format!("the limb reached its outer limit ({times})"),
+        PopCause::Folded => format!("the limb folded up ({times})"),
+        PopCause::Shoulder => format!("the Cursor passed the {base} ({times})"),
     }
 }
 
@@ -129,24 +145,23 @@ fn wording(pop_fix: PopFix, now: SoftReach) -> (&'static str, String) {
     }
 }
 
-fn why_none(pop: PopCause, arm: &Arm) -> String {
+fn why_none(pop: PopCause, limb: &ShownLimb) -> String {
     match pop {
         PopCause::Shoulder => {
-            let least = arm.soft_reach.least_distance(arm.bones);
-            if least > 1e-3 * arm.bones.outer_limit() {
-                format!(
-                    "No fix: the hand must jump by twice the inner limit, {}.",
-                    arm.format_length(2.0 * least)
-                )
+            let least = limb.frames.range.inner;
+            if least > 1e-3 * limb.frames.bones().outer_limit() {
+                let jump = limb.lengths().show(2.0 * least);
+                let end = limb.words.end;
+                format!("No fix: the {end} must jump by twice the inner limit, {jump}.")
             } else {
-                "No fix: the whole arm must turn around.".to_owned()
+                "No fix: the whole limb must turn around.".to_owned()
             }
         }
         _ => "No fix: all settings that help are in use.".to_owned(),
     }
 }
 
-fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
+fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike], words: LimbWords) {
     let places = places(pops);
     let room = places.last().map_or(0.0, |last| *last).max(60.0);
     let logs = SHOWN.0.log10()..=SHOWN.1.log10();
@@ -173,7 +188,10 @@ fn show(ui: &mut Ui, pops: &Pops, spikes: &[Spike]) {
         [.., last] => format!("Pops: {}, the last one {}", spikes.len(), name(last.pop)),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &said));
-    response.on_hover_text("Elbow speed over Cursor speed per step; above the dashed line it pops");
+    let middle = capital(words.middle);
+    response.on_hover_text(format!(
+        "{middle} speed over Cursor speed per step; above the dashed line it pops"
+    ));
 }
 
 #[derive(Clone, Copy)]

@@ -1,5 +1,5 @@
 //! The page Reach: a bar, a plot of hand distance against Cursor distance, and the same step of the
-//! hand with the arm bent and nearly straight.
+//! hand with the limb bent and nearly straight.
 
 use egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Role, Sense, Shape, Stroke, Ui,
@@ -10,26 +10,28 @@ use egui_plot::{
     Points, VLine,
 };
 
-use crate::document::{Arm, ShownLength};
+use super::figures::capital;
+use crate::document::{LengthFormat, ShownLength};
 use crate::kinematics::soft_reach::{HandDistance, ReachLimits, SoftReach};
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::session::Session;
+use crate::rig::LimbFrames;
+use crate::session::{LimbWords, ShownLimb};
 use crate::ui::style;
 use crate::ui::widgets::{plot, text};
 
-/// Draws the inner limit, the reachable range and the Cursor along a bar from the shoulder.
-pub(in crate::ui) fn meter(ui: &mut Ui, session: &Session) {
+/// Draws the inner limit, the reachable range and the Cursor along a bar from the limb's base.
+pub(in crate::ui) fn meter(ui: &mut Ui, limb: &ShownLimb) {
     const HEIGHT: f32 = 44.0;
     const BAR: f32 = 8.0;
     const BEYOND: f32 = 1.25;
-    let arm = session.arm();
-    let ReachLimits { inner, outer } = arm.reach_limits();
-    let decimals = text::decimals_of_cell(arm.grid_cell());
+    let frames = &limb.frames;
+    let ReachLimits { inner, outer } = frames.limits;
+    let decimals = text::decimals_of_cell(limb.lengths().cell());
     let shown = |length: f32| ShownLength { length, decimals }.to_string();
-    let (what, distance) = if arm.uses_ik() {
-        ("Cursor", arm.cursor_in_root().length())
+    let (what, distance) = if frames.uses_ik() {
+        ("Cursor".to_owned(), frames.posed.cursor.length())
     } else {
-        ("Hand", session.pose().distance)
+        (capital(limb.words.end), frames.pose().distance)
     };
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
@@ -59,8 +61,9 @@ pub(in crate::ui) fn meter(ui: &mut Ui, session: &Session) {
         written(place(inner), egui::Align2::CENTER_TOP, shown(inner));
     }
     written(place(outer), egui::Align2::CENTER_TOP, shown(outer));
-    let [distance, inner, outer] = [distance, inner, outer].map(|it| arm.format_length(it));
-    let summary = format!("{what} at {distance}; the hand reaches from {inner} to {outer}");
+    let [distance, inner, outer] = [distance, inner, outer].map(|it| limb.lengths().show(it));
+    let end = limb.words.end;
+    let summary = format!("{what} at {distance}; the {end} reaches from {inner} to {outer}");
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Reach: {summary}"))
     });
@@ -74,29 +77,29 @@ const EXAMPLE_SOFTNESS: f32 = 0.5;
 /// Stretch factor of the example curve, if stretch is off.
 const EXAMPLE_STRETCH: f32 = 1.5;
 
-pub(in crate::ui) fn curve(ui: &mut Ui, session: &Session) {
-    let arm = session.arm();
-    let curves = ReachCurve::all(ui, arm);
-    ui.weak("Up: hand distance · across: Cursor distance");
-    let shown = show(ui, arm, &curves);
-    let said = reading(arm, arm.cursor_in_root().length());
+pub(in crate::ui) fn curve(ui: &mut Ui, limb: &ShownLimb) {
+    let (frames, words) = (&limb.frames, limb.words);
+    let curves = ReachCurve::all(ui, frames.posed.ik.soft_reach);
+    ui.weak(format!("Up: {} distance · across: Cursor distance", words.end));
+    let shown = show(ui, limb, &curves);
+    let said = reading(frames, words, frames.posed.cursor.length());
     let name = format!("Reach curve: {said}");
     shown.response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     if let Some(at) = shown.response.hover_pos() {
-        let over = shown.transform.value_from_position(at).x * outer(arm);
-        let reading = reading(arm, (over.max(0.0) as f32).min(f32::MAX));
+        let over = shown.transform.value_from_position(at).x * outer(frames);
+        let reading = reading(frames, words, (over.max(0.0) as f32).min(f32::MAX));
         shown.response.on_hover_text_at_pointer(reading);
     }
     ui.horizontal_wrapped(|ui| curves.iter().for_each(|curve| legend(ui, curve)));
     ui.label(said);
-    ui.weak(note(arm.soft_reach));
-    if arm.influence < 1.0 {
+    ui.weak(note(frames.posed.ik.soft_reach));
+    if frames.posed.influence < 1.0 {
         ui.weak("Shown for IK alone, without the FK blend");
     }
 }
 
 /// A curve of hand distance against Cursor distance, both as fractions of L, the length of the
-/// straight arm.
+/// straight limb.
 struct ReachCurve {
     name: String,
     soft_reach: SoftReach,
@@ -106,10 +109,9 @@ struct ReachCurve {
 }
 
 impl ReachCurve {
-    /// The three curves: soft limits off, softness, and stretch. A setting that is off in the arm
+    /// The three curves: soft limits off, softness, and stretch. A setting that is off in `own`
     /// has an example value.
-    fn all(ui: &Ui, arm: &Arm) -> [Self; 3] {
-        let own = arm.soft_reach;
+    fn all(ui: &Ui, own: SoftReach) -> [Self; 3] {
         let (softness, stretch, angle) = (own.softness(), own.max_stretch(), own.min_elbow_angle());
         let softer = if softness > 0.0 { softness } else { EXAMPLE_SOFTNESS };
         let longer = if stretch > 1.0 { stretch } else { EXAMPLE_STRETCH };
@@ -141,27 +143,28 @@ impl ReachCurve {
     }
 }
 
-/// L, the length of the straight arm: the unit of the plot.
-fn outer(arm: &Arm) -> f64 {
-    f64::from(arm.bones.upper()) + f64::from(arm.bones.lower())
+/// The longest distance of the hand without stretch, L if limits allow it: the unit of the plot.
+fn outer(limb: &LimbFrames) -> f64 {
+    f64::from(limb.range.outer)
 }
 
-fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
-    let outer = outer(arm);
-    let least = f64::from(arm.soft_reach.least_distance(arm.bones)) / outer;
+fn show(ui: &mut Ui, limb: &ShownLimb, curves: &[ReachCurve]) -> PlotResponse<()> {
+    let frames = &limb.frames;
+    let outer = outer(frames);
+    let least = f64::from(frames.range.inner) / outer;
     let longest = curves.iter().map(|curve| curve.soft_reach.max_stretch()).fold(1.0, f32::max);
     // Capped so that the limits stay readable.
     let most = f64::from(longest.min(4.0)) + 0.2;
-    let decimals = text::decimals_of_cell(arm.grid_cell());
+    let decimals = text::decimals_of_cell(limb.lengths().cell());
     let length =
         move |part: f64| ShownLength { length: (part * outer) as f32, decimals }.to_string();
     let limits = if least > 0.05 { vec![least, 1.0] } else { vec![1.0] };
     let ticks = limits.clone();
     let weak = ui.visuals().weak_text_color();
-    // The arm's own curve, the widest, is drawn first, so that it does not cover the others.
+    // The limb's own curve, the widest, is drawn first, so that it does not cover the others.
     let (own, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_own);
-    let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(arm, most)).collect();
-    let dot = ReachMarker::new(arm, most);
+    let lines: Vec<_> = own.iter().chain(&others).map(|curve| curve.line(frames, most)).collect();
+    let dot = ReachMarker::new(frames, most);
     let text = ui.visuals().strong_text_color();
     plot::still("reach curve", HEIGHT)
         .label_formatter(|_| None)
@@ -183,11 +186,12 @@ fn show(ui: &mut Ui, arm: &Arm, curves: &[ReachCurve]) -> PlotResponse<()> {
 }
 
 impl ReachCurve {
-    fn line(&self, arm: &Arm, most: f64) -> Line<'static> {
-        let outer = outer(arm);
+    fn line(&self, limb: &LimbFrames, most: f64) -> Line<'static> {
+        let outer = outer(limb);
         let point = |step| {
             let cursor = most * f64::from(step) / f64::from(POINTS);
-            let actual = self.soft_reach.hand_distance(arm.bones, (cursor * outer) as f32).distance;
+            let distance = (cursor * outer) as f32;
+            let actual = self.soft_reach.hand_distance_within(limb.range, distance).distance;
             [cursor, f64::from(actual) / outer]
         };
         let points: PlotPoints<'_> = (0..=POINTS).map(point).collect();
@@ -202,13 +206,13 @@ struct ReachMarker {
 }
 
 impl ReachMarker {
-    /// The mark of the arm's Cursor; an arrow at the right edge of the plot if the Cursor is
+    /// The mark of the limb's Cursor; an arrow at the right edge of the plot if the Cursor is
     /// farther than `most`, in units of L.
-    fn new(arm: &Arm, most: f64) -> Self {
-        let cursor = arm.cursor_in_root().length().min(f32::MAX);
-        let part = f64::from(cursor) / outer(arm);
-        let actual =
-            f64::from(arm.soft_reach.hand_distance(arm.bones, cursor).distance) / outer(arm);
+    fn new(limb: &LimbFrames, most: f64) -> Self {
+        let cursor = limb.posed.cursor.length().min(f32::MAX);
+        let part = f64::from(cursor) / outer(limb);
+        let hand = limb.posed.ik.soft_reach.hand_distance_within(limb.range, cursor);
+        let actual = f64::from(hand.distance) / outer(limb);
         let shape = if part > most { MarkerShape::Right } else { MarkerShape::Circle };
         Self { at: [part.min(most - 0.04), actual.min(most - 0.14)], shape }
     }
@@ -240,11 +244,13 @@ fn legend(ui: &mut Ui, curve: &ReachCurve) {
 }
 
 /// Describes the hand distance and the slope of the curve at a Cursor distance.
-fn reading(arm: &Arm, cursor: f32) -> String {
+fn reading(limb: &LimbFrames, words: LimbWords, cursor: f32) -> String {
     let cursor = cursor.min(f32::MAX);
-    let HandDistance { distance, slope, .. } = arm.soft_reach.hand_distance(arm.bones, cursor);
-    let [cursor, distance] = [cursor, distance].map(|length| ShownLength { length, decimals: 1 });
-    format!("Cursor at {cursor}: hand at {distance}, slope {slope:.2}")
+    let hand = limb.posed.ik.soft_reach.hand_distance_within(limb.range, cursor);
+    let HandDistance { distance, slope, .. } = hand;
+    let decimals = LengthFormat::of_limb(limb.bones()).decimals();
+    let [cursor, distance] = [cursor, distance].map(|length| ShownLength { length, decimals });
+    format!("Cursor at {cursor}: {} at {distance}, slope {slope:.2}", words.end)
 }
 
 /// A sentence that says which curves are examples.
@@ -265,8 +271,8 @@ const STEP: f32 = 0.05;
 /// Where in this range the step ends, from 0 to 1, by its name.
 const ENDS: [(&str, f32); 2] = [("Bent", 0.7), ("Nearly straight", 1.0)];
 
-pub(super) fn same_step(ui: &mut Ui, session: &Session) {
-    let steps = ENDS.map(|(name, end)| SameStep::new(session.arm(), name, end));
+pub(super) fn same_step(ui: &mut Ui, limb: &ShownLimb) {
+    let steps = ENDS.map(|(name, end)| SameStep::new(limb, name, end));
     let highest =
         steps.iter().flat_map(|step| step.poses).map(|pose| pose.out).fold(1e-9, f32::max);
     for step in &steps {
@@ -274,38 +280,36 @@ pub(super) fn same_step(ui: &mut Ui, session: &Session) {
     }
 }
 
-/// Two poses of the arm, before and after a step of the hand away from the shoulder.
+/// Two poses of a limb, before and after a step of the hand away from its base.
 struct SameStep<'a> {
-    arm: &'a Arm,
+    limb: &'a ShownLimb,
     name: &'static str,
     step: f32,
     poses: [TwoBonePose; 2],
 }
 
 impl<'a> SameStep<'a> {
-    /// The step that ends at a part of the range of the hand's distances.
-    fn new(arm: &'a Arm, name: &'static str, end: f32) -> Self {
-        let hard = Arm { influence: 1.0, soft_reach: SoftReach::default(), ..*arm };
-        let ReachLimits { inner, outer } = hard.reach_limits();
-        let direction = arm.pose().pointer.direction;
-        let pose = |part: f32| {
-            let mut posed = hard;
-            posed.set_cursor(direction * (inner + part * (outer - inner)));
-            posed.pose()
-        };
-        let step = STEP * (outer - inner);
-        Self { arm, name, step, poses: [pose(end - STEP), pose(end)] }
+    /// The step that ends at a part of the range of the hand's distances, with hard limits.
+    fn new(limb: &'a ShownLimb, name: &'static str, end: f32) -> Self {
+        let bones = limb.frames.bones();
+        let pose = limb.frames.pose();
+        let ReachLimits { inner, outer } = limb.frames.range;
+        let range = outer - inner;
+        let at = |part: f32| bones.solve_at(pose.pointer, inner + part * range, pose.twist);
+        Self { limb, name, step: STEP * range, poses: [at(end - STEP), at(end)] }
     }
 
-    /// Distance that the elbow moves in the plane of the arm.
+    /// Distance that the elbow moves in the plane of the limb.
     fn elbow(&self) -> f32 {
         let [before, after] = &self.poses;
         (after.along - before.along).hypot(after.out - before.out)
     }
 
     fn text(&self) -> String {
-        let [step, elbow] = [self.step, self.elbow()].map(|length| self.arm.format_length(length));
-        format!("{}: hand {step}, elbow {elbow}", self.name)
+        let lengths = self.limb.lengths();
+        let [step, elbow] = [self.step, self.elbow()].map(|length| lengths.show(length));
+        let LimbWords { middle, end, .. } = self.limb.words;
+        format!("{}: {end} {step}, {middle} {elbow}", self.name)
     }
 }
 
@@ -331,7 +335,9 @@ fn drawing(ui: &mut Ui, step: &SameStep<'_>, highest: f32) {
     let moved = Stroke::new(3.0, style::accent(ui));
     painter.line_segment([before[1], after[1]], moved);
     painter.line_segment([before[2], after[2]], moved);
-    response.on_hover_text("Compare how far the same step of the hand moves the elbow");
+    let LimbWords { middle, end, .. } = step.limb.words;
+    let tooltip = format!("Compare how far the same step of the {end} moves the {middle}");
+    response.on_hover_text(tooltip);
 }
 
 /// Shoulder, elbow and hand of both poses on screen.
@@ -340,7 +346,7 @@ fn corners(rect: Rect, step: &SameStep<'_>, highest: f32) -> [[Pos2; 3]; 2] {
         rect.min + vec2(MARGINS[0], MARGINS[0]),
         rect.max - vec2(MARGINS[0], MARGINS[1]),
     );
-    let outer = step.arm.bones.outer_limit();
+    let outer = step.limb.frames.bones().outer_limit();
     let scale = (inside.width() / outer).min(inside.height() / highest);
     step.poses.map(|pose| {
         let place = |along: f32, out: f32| {

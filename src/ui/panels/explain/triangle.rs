@@ -1,4 +1,4 @@
-//! The triangle of shoulder, elbow and hand: a drawing to scale in the plane of the arm, its
+//! The triangle of shoulder, elbow and hand: a drawing to scale in the plane of the limb, its
 //! quantities, where they place the elbow, and the law of cosines beside the solver's form.
 
 use core::f32::consts::TAU;
@@ -10,12 +10,10 @@ use egui::{
 use glam::Vec3;
 
 use super::figures::{
-    FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, degrees, formula,
-    length, pair, point, table,
+    FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, capital, degrees,
+    formula, length, pair, point, table,
 };
-use crate::document::Arm;
-use crate::kinematics::two_bone::TwoBonePose;
-use crate::session::{ArmFigure, Session};
+use crate::session::{LimbFigure, LimbWords, ShownLimb};
 use crate::ui::style;
 
 const HEIGHT: f32 = 184.0;
@@ -26,29 +24,36 @@ const ARC: f32 = 18.0;
 /// Half of the angle that each compass arc takes, in radians.
 const COMPASS: f32 = 0.2;
 
-pub(super) fn ui(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    let (arm, pose) = (session.arm(), session.pose());
+pub(super) fn ui(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    let pose = limb.frames.pose();
+    let LimbWords { base, middle, .. } = limb.words;
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| {
+        let [upper, lower] = sides(limb);
+        let [upper, lower, distance] =
+            [upper, lower, pose.distance].map(|it| limb.lengths().show(it));
+        let [at_base, at_middle] =
+            [pose.shoulder_angle(), pose.elbow_angle()].map(f32::to_degrees);
         let text = format!(
-            "Triangle: upper limb {}, lower limb {}, distance {}, angle at the shoulder {:.1} degrees, angle at the elbow {:.1} degrees",
-            arm.format_length(arm.bones.upper() * pose.stretch),
-            arm.format_length(arm.bones.lower() * pose.stretch),
-            arm.format_length(pose.distance),
-            pose.shoulder_angle().to_degrees(),
-            pose.elbow_angle().to_degrees(),
+            "Triangle: upper limb {upper}, lower limb {lower}, distance {distance}, angle at the {base} {at_base:.1} degrees, angle at the {middle} {at_middle:.1} degrees",
         );
         WidgetInfo::labeled(Role::Image, true, text)
     });
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 6.0, ui.visuals().extreme_bg_color);
-    let drawing = TriangleDrawing::new(ui, rect, arm, pose);
+    let drawing = TriangleDrawing::new(ui, rect, limb);
     let lines = drawing.figure_lines();
     lit.paint(&painter, ui, &lines);
     let labels = drawing.paint(&painter, ui);
     lit.point(&response, &lines, &labels);
-    response.on_hover_text("The arm in its own plane, to scale");
+    response.on_hover_text("The limb in its own plane, to scale");
+}
+
+/// Lengths of the Upper and the Lower limb, with their stretch.
+fn sides(limb: &ShownLimb) -> [f32; 2] {
+    let bones = limb.frames.bones();
+    [bones.upper(), bones.lower()].map(|length| length * limb.frames.pose().stretch)
 }
 
 /// Screen positions and colours of the triangle. `foot` is the point of the Pointer nearest to the
@@ -64,15 +69,17 @@ struct TriangleDrawing {
     upper: Color32,
     lower: Color32,
     accent: Color32,
+    words: LimbWords,
 }
 
 impl TriangleDrawing {
-    fn new(ui: &Ui, rect: Rect, arm: &Arm, pose: &TwoBonePose) -> Self {
+    fn new(ui: &Ui, rect: Rect, limb: &ShownLimb) -> Self {
+        let pose = limb.frames.pose();
         let (left, right) = (pose.along.min(0.0), pose.distance.max(pose.along));
         let inside = rect.shrink2(MARGINS);
-        // All poses of an arm have the same scale, so that the triangle grows with D; only a
+        // All poses of a limb have the same scale, so that the triangle grows with D; only a
         // triangle that would not fit has a smaller scale.
-        let widest = (right - left).max(arm.bones.outer_limit() * 0.7);
+        let widest = (right - left).max(limb.frames.bones().outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
         let middle = (left + right) / 2.0;
         let place = |along: f32, out: f32| {
@@ -90,6 +97,7 @@ impl TriangleDrawing {
             upper: style::colour(palette.upper),
             lower: style::colour(palette.lower),
             accent: style::colour(palette.accent),
+            words: limb.words,
         }
     }
 
@@ -97,14 +105,14 @@ impl TriangleDrawing {
     fn figure_lines(&self) -> [FigureLine; 7] {
         let Self { shoulder, elbow, hand, foot, .. } = *self;
         [
-            (ArmFigure::Upper, vec![shoulder, elbow]),
-            (ArmFigure::Lower, vec![elbow, hand]),
+            (LimbFigure::Upper, vec![shoulder, elbow]),
+            (LimbFigure::Lower, vec![elbow, hand]),
             // A part of the line of D: the first one counts.
-            (ArmFigure::Along, vec![shoulder, foot]),
-            (ArmFigure::Distance, vec![shoulder, hand]),
-            (ArmFigure::Out, vec![foot, elbow]),
-            (ArmFigure::ShoulderAngle, arc(shoulder, ARC, 0.0, -self.angle)),
-            (ArmFigure::ElbowAngle, self.elbow_arc()),
+            (LimbFigure::Along, vec![shoulder, foot]),
+            (LimbFigure::Distance, vec![shoulder, hand]),
+            (LimbFigure::Out, vec![foot, elbow]),
+            (LimbFigure::ShoulderAngle, arc(shoulder, ARC, 0.0, -self.angle)),
+            (LimbFigure::ElbowAngle, self.elbow_arc()),
         ]
         .map(|(figure, points)| FigureLine { figure, points })
     }
@@ -124,7 +132,7 @@ impl TriangleDrawing {
     }
 
     /// Paints lines and labels, and returns where the labels are.
-    fn paint(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, ArmFigure)> {
+    fn paint(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, LimbFigure)> {
         let thin = Stroke::new(1.0, self.weak);
         painter.extend(Shape::dashed_line(&[self.elbow, self.foot], thin, 3.0, 3.0));
         painter.line_segment([self.shoulder, self.hand], Stroke::new(1.5, self.text));
@@ -161,12 +169,12 @@ impl TriangleDrawing {
 
     /// Writes each label at the first of its positions that is clear of lines and other labels.
     /// Labels without such a position are left out, except those of the sides.
-    fn write(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, ArmFigure)> {
+    fn write(&self, painter: &Painter, ui: &Ui) -> Vec<(Rect, LimbFigure)> {
         let mut labels = FigureLabels::new(painter, ui, self.lines());
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
-        labels.write_always("Upper d_1", self.upper, ArmFigure::Upper, &beside(shoulder, elbow));
-        labels.write_always("Lower d_2", self.lower, ArmFigure::Lower, &beside(elbow, hand));
-        labels.write_always("Distance D", self.text, ArmFigure::Distance, &beside(hand, shoulder));
+        labels.write_always("Upper d_1", self.upper, LimbFigure::Upper, &beside(shoulder, elbow));
+        labels.write_always("Lower d_2", self.lower, LimbFigure::Lower, &beside(elbow, hand));
+        labels.write_always("Distance D", self.text, LimbFigure::Distance, &beside(hand, shoulder));
         let angle = self.angle.min(TAU / 4.0);
         let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             [0.5, 0.65, 0.8, 0.35].map(|part| Place {
@@ -179,20 +187,22 @@ impl TriangleDrawing {
         let left = vec2(-1.0, 0.0);
         let beside_it = Place { at: shoulder + left * 10.0, away: left };
         let in_angle: Vec<_> = in_angle.chain(beneath).chain([beside_it]).collect();
-        labels.write("Shoulder θ_e", self.accent, ArmFigure::ShoulderAngle, &in_angle);
+        let at_base = format!("{} θ_e", capital(self.words.base));
+        labels.write(&at_base, self.accent, LimbFigure::ShoulderAngle, &in_angle);
         let (start, turn) = self.at_elbow();
         let at_elbow = around(elbow, ARC, start + 0.5 * turn);
         let above = [(-1.0, -14.0), (1.0, -14.0), (-1.0, -24.0), (1.0, -24.0)];
         let above = above
             .map(|(side, up)| Place { at: elbow + vec2(side * 12.0, up), away: vec2(side, 0.0) });
         let at_elbow = [at_elbow, above.to_vec()].concat();
-        labels.write("Elbow φ", self.accent, ArmFigure::ElbowAngle, &at_elbow);
+        let at_middle = format!("{} φ", capital(self.words.middle));
+        labels.write(&at_middle, self.accent, LimbFigure::ElbowAngle, &at_elbow);
         let heights = [beside(elbow, foot), beside(foot, elbow)].concat();
-        labels.write("Out o_e", self.weak, ArmFigure::Out, &heights);
+        labels.write("Out o_e", self.weak, LimbFigure::Out, &heights);
         let lengths = [0.5, 0.35, 0.65].map(|part| foot + (shoulder - foot) * part);
         let lengths =
             [4.0, 18.0].map(|down| lengths.map(|at| Place { at: at + below * down, away: below }));
-        labels.write("Along h_e", self.weak, ArmFigure::Along, &lengths.concat());
+        labels.write("Along h_e", self.weak, LimbFigure::Along, &lengths.concat());
         labels.written()
     }
 
@@ -206,98 +216,90 @@ impl TriangleDrawing {
 }
 
 /// Shows the quantities of the triangle.
-pub(super) fn quantities(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    table(ui, "triangle", &quantity_rows(session), lit);
+pub(super) fn quantities(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    table(ui, "triangle", &quantity_rows(limb), lit);
 }
 
 /// Shows the positions of Cursor and elbow.
-pub(super) fn positions(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    let (arm, pose) = (session.arm(), session.pose());
+pub(super) fn positions(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    let pose = limb.frames.pose();
+    let LimbWords { middle, end, .. } = limb.words;
     let in_socket = Vec3::new(pose.along, pose.out, 0.0);
     let cursor =
-        ["Cursor c", "x_c, y_c and z_c: the Cursor in Root space; where FK has a part, the hand"];
-    let socket = ["Elbow in Socket", "h_e along the Pointer and o_e away from it"];
+        format!("x_c, y_c and z_c: the Cursor in Root space; where FK has a part, the {end}");
+    let socket = "h_e along the Pointer and o_e away from it";
     let elbow =
-        ["Elbow e", "x_e, y_e and z_e: the elbow in Root space, turned there by Socket and Limb"];
-    pair(ui, lit, ArmFigure::Cursor, cursor, point(arm, arm.pointed_at(pose)));
-    pair(ui, lit, ArmFigure::Out, socket, point(arm, in_socket));
-    pair(ui, lit, ArmFigure::Elbow, elbow, point(arm, pose.elbow));
+        format!("x_e, y_e and z_e: the {middle} in Root space, turned there by Socket and Limb");
+    let names = ["{} in Socket", "{} e"].map(|name| name.replace("{}", &capital(middle)));
+    let pointed = point(limb, limb.frames.pointed_at());
+    pair(ui, lit, LimbFigure::Cursor, ["Cursor c", &cursor], pointed);
+    pair(ui, lit, LimbFigure::Out, [&names[0], socket], point(limb, in_socket));
+    pair(ui, lit, LimbFigure::Elbow, [&names[1], &elbow], point(limb, pose.elbow));
 }
 
-fn quantity_rows(session: &Session) -> [FormulaRow; 8] {
-    let (arm, pose) = (session.arm(), session.pose());
-    let bones = arm.bones;
-    let [upper, lower] = [bones.upper(), bones.lower()].map(|length| length * pose.stretch);
-    let (outer, difference) = (upper + lower, upper - lower);
+fn quantity_rows(limb: &ShownLimb) -> [FormulaRow; 8] {
+    let pose = limb.frames.pose();
+    let LimbWords { base, middle, .. } = limb.words;
+    let [upper, lower] = sides(limb);
+    let row = |symbol: &str, formula, value, meaning: &str, figure| FormulaRow {
+        symbol: symbol.to_owned(),
+        formula,
+        value,
+        meaning: meaning.to_owned(),
+        figure,
+    };
+    let length = |it| length(limb, it);
     [
-        FormulaRow {
-            symbol: "Upper d_1",
-            formula: "",
-            value: length(arm, upper),
-            meaning: "Length of the Upper limb",
-            figure: Some(ArmFigure::Upper),
-        },
-        FormulaRow {
-            symbol: "Lower d_2",
-            formula: "",
-            value: length(arm, lower),
-            meaning: "Length of the Lower limb",
-            figure: Some(ArmFigure::Lower),
-        },
-        FormulaRow {
-            symbol: "Sum L",
-            formula: "d_1 + d_2",
-            value: length(arm, outer),
-            meaning: "Reach of the straight arm",
-            figure: None,
-        },
-        FormulaRow {
-            symbol: "Difference δ",
-            formula: "d_1 − d_2",
-            value: length(arm, difference),
-            meaning: "Difference of the limb lengths; its size is the inner limit",
-            figure: None,
-        },
-        FormulaRow {
-            symbol: "Along h_e",
-            formula: "(D + δ L / D) / 2",
-            value: length(arm, pose.along),
-            meaning: "Distance of the elbow along the Pointer",
-            figure: Some(ArmFigure::Along),
-        },
-        FormulaRow {
-            symbol: "Out o_e",
-            formula: "√((d_1 − h_e)(d_1 + h_e))",
-            value: length(arm, pose.out),
-            meaning: "Distance of the elbow from the Pointer: twice the triangle's area over D",
-            figure: Some(ArmFigure::Out),
-        },
-        FormulaRow {
-            symbol: "Shoulder θ_e",
-            formula: "atan2(o_e, h_e)",
-            value: degrees(pose.shoulder_angle()),
-            meaning: "Angle at the shoulder, between Pointer and Upper limb",
-            figure: Some(ArmFigure::ShoulderAngle),
-        },
-        FormulaRow {
-            symbol: "Elbow angle φ",
-            formula: "",
-            value: degrees(pose.elbow_angle()),
-            meaning: "Inner angle at the elbow: 180° straight, 0° folded",
-            figure: Some(ArmFigure::ElbowAngle),
-        },
+        row("Upper d_1", "", length(upper), "Length of the Upper limb", Some(LimbFigure::Upper)),
+        row("Lower d_2", "", length(lower), "Length of the Lower limb", Some(LimbFigure::Lower)),
+        row("Sum L", "d_1 + d_2", length(upper + lower), "Reach of the straight limb", None),
+        row(
+            "Difference δ",
+            "d_1 − d_2",
+            length(upper - lower),
+            "Difference of the limb lengths; its size is the inner limit",
+            None,
+        ),
+        row(
+            "Along h_e",
+            "(D + δ L / D) / 2",
+            length(pose.along),
+            &format!("Distance of the {middle} along the Pointer"),
+            Some(LimbFigure::Along),
+        ),
+        row(
+            "Out o_e",
+            "√((d_1 − h_e)(d_1 + h_e))",
+            length(pose.out),
+            &format!("Distance of the {middle} from the Pointer: twice the triangle's area over D"),
+            Some(LimbFigure::Out),
+        ),
+        row(
+            &format!("{} θ_e", capital(base)),
+            "atan2(o_e, h_e)",
+            degrees(pose.shoulder_angle()),
+            &format!("Angle at the {base}, between Pointer and Upper limb"),
+            Some(LimbFigure::ShoulderAngle),
+        ),
+        row(
+            &format!("{} angle φ", capital(middle)),
+            "",
+            degrees(pose.elbow_angle()),
+            &format!("Inner angle at the {middle}: 180° straight, 0° folded"),
+            Some(LimbFigure::ElbowAngle),
+        ),
     ]
 }
 
-pub(super) fn law_of_cosines(ui: &mut Ui, session: &Session, lit: &mut Lit) {
-    let (arm, pose) = (session.arm(), session.pose());
-    let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(|it| it * pose.stretch);
-    let [d1, d2, d] = [upper, lower, pose.distance].map(|it| length(arm, it));
-    let Some(cosine) = Cosine::new(arm, pose) else {
-        ui.label("The hand is at the shoulder: there is no triangle.");
+pub(super) fn law_of_cosines(ui: &mut Ui, limb: &ShownLimb, lit: &mut Lit) {
+    let [upper, lower] = sides(limb);
+    let [d1, d2, d] = [upper, lower, limb.frames.pose().distance].map(|it| length(limb, it));
+    let Some(cosine) = Cosine::new(limb) else {
+        let LimbWords { base, end, .. } = limb.words;
+        ui.label(format!("The {end} is at the {base}: there is no triangle."));
         return;
     };
-    lit.row(ui, ArmFigure::ShoulderAngle, |ui| {
+    lit.row(ui, LimbFigure::ShoulderAngle, |ui| {
         let lines = ui.vertical(|ui| {
             ui.weak("Written out");
             formula(ui, "d_2² = d_1² + D² − 2 d_1 D cos θ_e");
@@ -316,7 +318,7 @@ pub(super) fn law_of_cosines(ui: &mut Ui, session: &Session, lit: &mut Lit) {
     formula(ui, "θ_e = atan2(o_e, h_e)");
     ui.add_space(4.0);
     ui.label(
-        "Near a straight or folded arm the cosine hardly changes with the angle, so a rounded cosine \
+        "Near a straight or folded limb the cosine hardly changes with the angle, so a rounded cosine \
          gives a wrong angle and the elbow trembles. The solver's form subtracts lengths, never their squares.",
     );
     let [theirs, ours] = [cosine.error_of_cosine(), cosine.error_of_solver()].map(micro_degrees);
@@ -341,8 +343,8 @@ struct Cosine {
 
 impl Cosine {
     /// `None` for a hand at the shoulder.
-    fn new(arm: &Arm, pose: &TwoBonePose) -> Option<Self> {
-        let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(|it| it * pose.stretch);
+    fn new(limb: &ShownLimb) -> Option<Self> {
+        let ([upper, lower], pose) = (sides(limb), limb.frames.pose());
         let distance = pose.distance;
         let cosine =
             (upper * upper + distance * distance - lower * lower) / (2.0 * upper * distance);

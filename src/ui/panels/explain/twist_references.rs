@@ -1,23 +1,24 @@
-//! Comparison of the four twist references: elbow rotation, gain, and holonomy.
+//! Comparison of the twist references: elbow rotation, gain, and holonomy.
 
+use super::figures::capital;
 use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
-use crate::session::{Actions, Session, ViewAction};
+use crate::session::{Actions, LimbWords, Session, ShownLimb, TransportPath, ViewAction};
 use crate::ui::{glossary, labels, style, widgets};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let arm = session.arm();
-    if !arm.uses_ik() {
+pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
+    let path = session.evaluated().transport_path().filter(|_| limb.frames.uses_ik());
+    let Some(path) = path else {
         ui.weak("Not used in FK: switch to IK to compare references.");
         return;
-    }
-    table(ui, session, actions);
+    };
+    table(ui, limb, path, actions);
     ui.add_space(4.0);
-    transport_path(ui, session, actions);
+    transport_path(ui, path, limb.words, actions);
     let (ghosts, globe) = (Overlay::TwistReferences, Overlay::SingularityGlobe);
-    let told = "Show the arm with the other twist references";
+    let told = "Show the limb with the other twist references";
     let (globe_name, globe_told) = labels::overlay(session.rig(), globe);
     ui.horizontal(|ui| {
         widgets::overlay_check_box(ui, session, ghosts, "Ghosts", told, None, actions);
@@ -41,45 +42,49 @@ fn legend(ui: &mut Ui) {
     widgets::colour_bar(ui, summary, colour, &marks);
 }
 
-fn table(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let (arm, own) = (session.arm(), session.posed().arm_solution().pose);
-    let transported = session.evaluated().transport_path().transported();
+fn table(ui: &mut Ui, limb: &ShownLimb, path: &TransportPath, actions: &mut Actions) {
+    let (frames, middle) = (&limb.frames, limb.words.middle);
+    let own = frames.solution.pose;
     let palette = style::palette(ui);
     Grid::new("references").num_columns(3).spacing(vec2(10.0, 4.0)).show(ui, |ui| {
         glossary::term_label(ui, "Twist reference", "Twist reference", actions);
         let right = Layout::right_to_left(Align::Center);
-        ui.with_layout(right, |ui| ui.label(RichText::new("Elbow").weak()));
+        ui.with_layout(right, |ui| ui.label(RichText::new(capital(middle)).weak()));
         ui.with_layout(right, |ui| glossary::term_label(ui, "Gain", "Gain", actions));
         ui.end_row();
-        for twist_reference in TwistReferenceKind::ALL {
-            let colour = if twist_reference == arm.twist_reference {
+        for kind in TwistReferenceKind::ALL {
+            let colour = if kind == frames.posed.kind {
                 ui.visuals().strong_text_color()
             } else {
-                style::colour(palette.twist_reference(twist_reference))
+                style::colour(palette.twist_reference(kind))
             };
-            let name = RichText::new(twist_reference.name()).color(colour);
-            ui.label(name).on_hover_text(labels::twist_reference(twist_reference));
-            let pose = arm.pose_with_reference(twist_reference, Some(transported));
-            let apart = turn_in_words(own.elbow_turn_to(&pose));
-            let gain = arm.reference_for(twist_reference).gain(own.pointer);
-            for (value, tooltip) in [
-                (apart, "Elbow rotation from the current elbow at the same twist"),
-                (gain_in_words(gain), "Elbow degrees per degree of the Pointer"),
-            ] {
-                widgets::value(ui, value).on_hover_text(tooltip);
-            }
+            let name = RichText::new(kind.name()).color(colour);
+            ui.label(name).on_hover_text(labels::twist_reference(kind));
+            let pose = frames.pose_with_reference(kind, Some(path.transported()));
+            let Some((pose, reference)) = pose.zip(frames.reference_of(kind)) else {
+                widgets::value(ui, "–").on_hover_text("There is no pole");
+                widgets::value(ui, "–");
+                ui.end_row();
+                continue;
+            };
+            let turned = format!("Rotation from the current {middle} at the same twist");
+            let gain = format!("Degrees of the {middle} per degree of the Pointer");
+            widgets::value(ui, turn_in_words(own.elbow_turn_to(&pose))).on_hover_text(turned);
+            widgets::value(ui, gain_in_words(reference.gain(own.pointer))).on_hover_text(gain);
             ui.end_row();
         }
     });
 }
 
-fn transport_path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+fn transport_path(ui: &mut Ui, path: &TransportPath, words: LimbWords, actions: &mut Actions) {
     widgets::term_pair(ui, "Holonomy", "Holonomy", actions, |ui, actions| {
         widgets::at_right(ui, |ui| {
-            let turned = turn_in_words(session.evaluated().transport_path().holonomy());
-            ui.label(RichText::new(turned).monospace()).on_hover_text(
-                "Elbow rotation after the hand's path so far: its solid angle about the shoulder",
+            let LimbWords { base, middle, end } = words;
+            let tooltip = format!(
+                "Rotation of the {middle} after the {end}'s path so far: its solid angle about the {base}"
             );
+            let turned = turn_in_words(path.holonomy());
+            ui.label(RichText::new(turned).monospace()).on_hover_text(tooltip);
             if widgets::button(ui, "Reset", "Restart the loop from the current pose", None) {
                 actions.push(ViewAction::ResetTransport);
             }

@@ -9,6 +9,7 @@ use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
     Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
+use ik_arm::kinematics::twist::Stereographic;
 use ik_arm::rig::{
     BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
     SkinSource, TargetKind, TargetSpace,
@@ -194,14 +195,19 @@ impl Values<'_> {
     }
 
     fn limb(&mut self) -> TargetKind {
-        let pole = self.small_point();
-        let reference =
-            self.one_of(&[ElbowReference::Fk, ElbowReference::Up, ElbowReference::Pole(pole)]);
+        let reference = self.elbow_reference();
         let orientation = self.chance(0.5).then(|| self.small_point());
         let (twist, pole_space) = (self.number(4.0), self.space());
         let settings =
             LimbSettings { reference, twist, orientation, pole_space, ..Default::default() };
         TargetKind::Limb(settings)
+    }
+
+    pub fn elbow_reference(&mut self) -> ElbowReference {
+        let pole = self.small_point();
+        let map = ElbowReference::Stereographic(Stereographic::default());
+        let (fk, transport) = (ElbowReference::Fk, ElbowReference::Transport);
+        self.one_of(&[fk, ElbowReference::Up, ElbowReference::Pole(pole), map, transport])
     }
 
     /// The world, or the space of any joint; often one in which the target cannot be.

@@ -6,7 +6,7 @@ use crate::io::formats::gltf::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::{ArmPart, ArmRig, TaperedCylinder};
+use crate::rig::{LimbPart, TaperedCylinder};
 
 /// The shown rig, arm or skeleton, as bones in the world, in metres.
 ///
@@ -111,8 +111,9 @@ impl GltfRig {
     }
 
     fn limbs(&self) -> Vec<RigBone> {
-        let Document { arm, keys, .. } = self.track.document();
-        let rig = arm.rig(&arm.pose());
+        let document = self.track.document();
+        let Document { arm, keys, .. } = document;
+        let rig = self.track.pose(document.clone(), document.timeline.start).arm_frames();
         let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
         let radii = |limb: TaperedCylinder| {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
@@ -238,11 +239,11 @@ fn straight_arm(document: &Document) -> Vec<BonePlacement> {
 
 fn posed_arm(posed: &Posed) -> Vec<BonePlacement> {
     let (arm, pose) = (posed.arm(), posed.arm_pose());
-    let rig: ArmRig = arm.rig(pose);
-    let socket = rig.local(ArmPart::Limb) * rig.local(ArmPart::Socket);
+    let rig = posed.arm_frames();
+    let socket = rig.local(LimbPart::Limb) * rig.local(LimbPart::Socket);
     let rotation = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
     let bones = arm.bones.stretched(pose.stretch);
-    limbs(arm, bones, [rotation(ArmPart::UpperLimb), rotation(ArmPart::LowerLimb)])
+    limbs(arm, bones, [rotation(LimbPart::UpperLimb), rotation(LimbPart::LowerLimb)])
 }
 
 /// Placements of the limbs, which have these rotations in the world. A limb is along the x axis of

@@ -50,7 +50,7 @@ pub(super) fn settings(
 ) {
     let set =
         |settings| TargetEdit::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
-    reference(ui, session, &target, settings, actions, &set);
+    reference(ui, session, &target, settings, actions);
     let twist = Slider {
         label: "Twist",
         channel: Some(Channel::TargetTwist(target.joint)),
@@ -78,7 +78,6 @@ fn reference(
     target: &Target,
     settings: LimbSettings,
     actions: &mut Actions,
-    set: &impl Fn(LimbSettings) -> TargetEdit,
 ) {
     let pole = ElbowReference::Pole(new_pole(session, target, settings));
     let map = ElbowReference::Stereographic(Stereographic::default());
@@ -98,7 +97,8 @@ fn reference(
     let tooltip = "Choose the direction of the elbow or knee at twist 0";
     let choice = Choice { label: "Elbow from", name: "Elbow reference", tooltip, shown: "" };
     let chosen = choice.pick(ui, &references, is_now);
-    actions.extend(chosen.map(|reference| set(LimbSettings { reference, ..settings })));
+    let joint = target.joint;
+    actions.extend(chosen.map(|reference| TargetEdit::SetReference { joint, reference }));
 }
 
 /// A pole in front of the elbow as it is posed, in the pole's space.

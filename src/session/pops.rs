@@ -1,17 +1,17 @@
 use std::collections::VecDeque;
 
-use crate::document::{Arm, Posed};
 use crate::kinematics::ik::Ik;
-use crate::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedArm};
-use crate::kinematics::twist::TransportedFrame;
-use crate::kinematics::two_bone::Pointer;
+use crate::kinematics::pop::{ElbowStep, InputChange, PopCause, PosedLimb};
+use crate::kinematics::twist::{TransportedFrame, TwistReferenceKind};
+use crate::rig::LimbFrames;
 
-/// Ratios of elbow speed to Cursor speed in the latest dragged or played steps. Neither saved nor
-/// undone.
-#[derive(Clone, Debug, PartialEq)]
+/// Ratios of elbow speed to Cursor speed in the latest dragged or played steps of a limb. Neither
+/// saved nor undone.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pops {
     samples: VecDeque<PopSample>,
-    previous: PreviousMoment,
+    /// `None` without a limb.
+    previous: Option<PreviousMoment>,
     run: u32,
 }
 
@@ -22,6 +22,8 @@ pub struct PopSample {
     pub run: u32,
     /// The solver's settings in this step.
     pub ik: Ik,
+    /// Kind of the twist reference.
+    pub reference: TwistReferenceKind,
     /// The input that changed.
     pub kind: PopSampleKind,
 }
@@ -46,6 +48,8 @@ pub struct Spike {
     pub pop: PopCause,
     /// The solver's settings at the pop.
     pub ik: Ik,
+    /// Kind of the twist reference at the pop.
+    pub reference: TwistReferenceKind,
 }
 
 /// Cause of a move of the Cursor.
@@ -59,10 +63,10 @@ pub(in crate::session) enum CursorMove {
     Set,
 }
 
-/// The arm in the previous step, to which the next step is compared.
+/// The limb in the previous step, to which the next step is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PreviousMoment {
-    moment: PosedArm,
+    moment: PosedLimb,
     cause: CursorMove,
     time: f64,
 }
@@ -71,11 +75,10 @@ impl Pops {
     /// Maximum number of samples.
     const MOST: usize = 600;
 
-    /// Starts without samples; the first step is compared to this pose.
-    pub(in crate::session) fn new(posed: &Posed) -> Self {
-        let (moment, time) = (moment(posed), posed.time());
+    /// Starts without samples; the first step is compared to this pose at a time in seconds.
+    pub(in crate::session) fn new(moment: PosedLimb, time: f64) -> Self {
         let previous = PreviousMoment { moment, cause: CursorMove::Set, time };
-        Self { samples: VecDeque::new(), previous, run: 0 }
+        Self { samples: VecDeque::new(), previous: Some(previous), run: 0 }
     }
 
     /// The latest samples, at most 600, oldest first.
@@ -93,7 +96,8 @@ impl Pops {
             let PopSampleKind::Step(ElbowStep { ratio, pop: Some(pop), .. }) = sample.kind else {
                 continue;
             };
-            let spike = Spike { at, ratio, pop, ik: sample.ik };
+            let PopSample { ik, reference, .. } = *sample;
+            let spike = Spike { at, ratio, pop, ik, reference };
             match spikes.last_mut() {
                 Some((last, end))
                     if self.samples[*end].run == sample.run
@@ -109,13 +113,9 @@ impl Pops {
         spikes.into_iter().map(|(spike, _)| spike).collect()
     }
 
-    /// Records the step from the previous arm to this one.
-    pub(in crate::session) fn record(&mut self, posed: &Posed, cause: CursorMove) {
-        self.record_moment(moment(posed), cause, posed.time());
-    }
-
-    fn record_moment(&mut self, moment: PosedArm, cause: CursorMove, time: f64) {
-        let previous = &mut self.previous;
+    /// Records the step from the previous pose to this one.
+    pub(in crate::session) fn record(&mut self, moment: PosedLimb, cause: CursorMove, time: f64) {
+        let Some(previous) = &mut self.previous else { return };
         // Playback that loops back to the start is a jump.
         let cause = if cause == CursorMove::Played && time < previous.time {
             CursorMove::Set
@@ -131,19 +131,19 @@ impl Pops {
         match InputChange::between(&before, &moment) {
             _ if has_jumped_in_time => {}
             Some(_) if before.pose == moment.pose => {}
-            Some(change) => self.push(moment.ik, PopSampleKind::Change(change)),
+            Some(change) => self.push(&moment, PopSampleKind::Change(change)),
             None if cause == CursorMove::Set => {}
             None => match ElbowStep::between(&before, &moment) {
-                Some(step) => self.push(moment.ik, PopSampleKind::Step(step)),
+                Some(step) => self.push(&moment, PopSampleKind::Step(step)),
                 // Steps that are too short to measure add up, since the previous arm is kept.
                 None => return,
             },
         }
-        self.previous.moment = moment;
+        self.previous = Some(PreviousMoment { moment, cause, time });
     }
 
-    fn push(&mut self, ik: Ik, kind: PopSampleKind) {
-        let sample = PopSample { run: self.run, ik, kind };
+    fn push(&mut self, moment: &PosedLimb, kind: PopSampleKind) {
+        let sample = PopSample { run: self.run, ik: moment.ik, reference: moment.kind, kind };
         if let (PopSampleKind::Change(_), Some(last)) = (kind, self.samples.back_mut())
             && last.run == sample.run
             && last.kind == kind
@@ -177,24 +177,15 @@ impl Spike {
 
     /// True if the same move of the Cursor would pop again, because the settings that caused the
     /// pop are unchanged.
-    pub fn persists(self, arm: &Arm) -> bool {
+    pub fn persists(self, now: &PosedLimb) -> bool {
         match self.pop {
-            PopCause::Singular { .. } => self.ik.reference == arm.reference(),
-            _ => self.ik.soft_reach == arm.soft_reach && self.ik.bones == arm.bones,
+            PopCause::Singular { .. } => {
+                // The map of the reference FK follows from the angles.
+                let is_same = self.ik.reference == now.ik.reference;
+                self.reference == now.kind && (is_same || now.kind == TwistReferenceKind::Fk)
+            }
+            _ => self.ik.soft_reach == now.ik.soft_reach && self.ik.bones == now.ik.bones,
         }
-    }
-}
-
-fn moment(posed: &Posed) -> PosedArm {
-    let arm = posed.arm();
-    PosedArm {
-        pose: *posed.arm_pose(),
-        cursor: arm.cursor_in_root(),
-        ik: arm.ik(),
-        twist: arm.twist,
-        pinned_root: arm.is_pinned().then_some(arm.root),
-        influence: arm.influence,
-        fk: arm.fk,
     }
 }
 
@@ -206,14 +197,14 @@ pub struct TransportPath {
 }
 
 impl TransportPath {
-    /// A path that starts at the frame from which the arm's twist is measured.
-    pub(in crate::session) fn new(posed: &Posed) -> Self {
-        let start = posed.arm_solution().transported;
+    /// A path that starts at the frame from which the limb's twist is measured.
+    pub(in crate::session) fn new(frames: &LimbFrames) -> Self {
+        let start = frames.solution.transported;
         Self { start, now: start }
     }
 
-    pub(in crate::session) fn advance(&mut self, arm: &Arm) {
-        let direction = Pointer::towards(arm.cursor_in_root(), arm.ik_state.pointer).direction;
+    pub(in crate::session) fn advance(&mut self, frames: &LimbFrames) {
+        let direction = frames.solution.transported.direction;
         if direction != self.now.direction {
             self.now = self.now.to(direction);
         }

@@ -1,8 +1,12 @@
 //! The hierarchy agrees with the solver, in the world.
 
 use glam::{Affine3A, DMat3, DVec3, Mat4, Vec3};
-use ik_arm_kinematics::rig::{ArmPart, ArmRig, TaperedCylinder};
+use ik_arm_kinematics::fk::Fk;
+use ik_arm_kinematics::ik::{Ik, IkSolution};
+use ik_arm_kinematics::pop::PosedLimb;
+use ik_arm_kinematics::rig::{LimbFrames, LimbPart, TaperedCylinder};
 use ik_arm_kinematics::soft_reach::SoftReach;
+use ik_arm_kinematics::twist::{TransportedFrame, TwistReference, TwistReferenceKind};
 use ik_arm_kinematics::two_bone::TwoBonePose;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -13,30 +17,30 @@ use crate::common::strategies::{
 };
 
 /// The hierarchy of Palmieri's report, written out in f64.
-const PARENTS: [(ArmPart, Option<ArmPart>); 11] = [
-    (ArmPart::Root, None),
-    (ArmPart::Limb, Some(ArmPart::Root)),
-    (ArmPart::Socket, Some(ArmPart::Limb)),
-    (ArmPart::UpperLimb, Some(ArmPart::Socket)),
-    (ArmPart::LowerLimb, Some(ArmPart::Socket)),
-    (ArmPart::Elbow, Some(ArmPart::Socket)),
-    (ArmPart::Hand, Some(ArmPart::Socket)),
-    (ArmPart::Pointer, Some(ArmPart::Limb)),
-    (ArmPart::Cursor, Some(ArmPart::Root)),
-    (ArmPart::InnerLimit, Some(ArmPart::Root)),
-    (ArmPart::OuterLimit, Some(ArmPart::Root)),
+const PARENTS: [(LimbPart, Option<LimbPart>); 11] = [
+    (LimbPart::Root, None),
+    (LimbPart::Limb, Some(LimbPart::Root)),
+    (LimbPart::Socket, Some(LimbPart::Limb)),
+    (LimbPart::UpperLimb, Some(LimbPart::Socket)),
+    (LimbPart::LowerLimb, Some(LimbPart::Socket)),
+    (LimbPart::Elbow, Some(LimbPart::Socket)),
+    (LimbPart::Hand, Some(LimbPart::Socket)),
+    (LimbPart::Pointer, Some(LimbPart::Limb)),
+    (LimbPart::Cursor, Some(LimbPart::Root)),
+    (LimbPart::InnerLimit, Some(LimbPart::Root)),
+    (LimbPart::OuterLimit, Some(LimbPart::Root)),
 ];
 
 /// A posed arm with its root anywhere in world space.
 #[derive(Debug)]
-struct PosedArm {
+struct ArmCase {
     case: Case,
     root: Vec3,
     pose: TwoBonePose,
-    rig: ArmRig,
+    rig: LimbFrames,
 }
 
-impl PosedArm {
+impl ArmCase {
     /// A point of Root space in the world.
     fn in_world(&self, at: Vec3) -> DVec3 {
         self.root.as_dvec3() + at.as_dvec3()
@@ -50,7 +54,7 @@ impl PosedArm {
     }
 
     /// The point so far along a part's +x, in the world.
-    fn point(&self, part: ArmPart, x: f32) -> DVec3 {
+    fn point(&self, part: LimbPart, x: f32) -> DVec3 {
         at(self.rig.world(part), x)
     }
 }
@@ -71,12 +75,36 @@ fn places() -> impl Strategy<Value = Vec3> {
     (directions(), power_of_ten(-2.0..6.0)).prop_map(|(to, distance)| (to * distance).as_vec3())
 }
 
-fn posed_arms() -> impl Strategy<Value = PosedArm> {
+/// The frames of an arm with hard limits, posed by IK alone.
+fn frames(case: &Case, root: Vec3, pose: TwoBonePose) -> LimbFrames {
+    let soft_reach = SoftReach::default();
+    let limits = soft_reach.limits(case.arm);
+    let reference = TwistReference::Up;
+    LimbFrames {
+        root: Affine3A::from_translation(root),
+        posed: PosedLimb {
+            pose,
+            cursor: case.cursor,
+            ik: Ik { bones: case.arm, reference, soft_reach },
+            kind: TwistReferenceKind::Up,
+            twist: case.twist,
+            pinned_root: None,
+            influence: 1.0,
+            fk: Fk::default(),
+        },
+        solution: IkSolution { pose, transported: TransportedFrame::new(pose.pointer), slope: 1.0 },
+        limits,
+        range: limits,
+        limited_by: None,
+        references: [Some(reference); TwistReferenceKind::ALL.len()],
+    }
+}
+
+fn arms() -> impl Strategy<Value = ArmCase> {
     (anywhere(), places()).prop_map(|(case, root)| {
         let pose = case.solve();
-        let rig =
-            ArmRig::new(case.arm, SoftReach::default().limits(case.arm), root, case.cursor, &pose);
-        PosedArm { case, root, pose, rig }
+        let rig = frames(&case, root, pose);
+        ArmCase { case, root, pose, rig }
     })
 }
 
@@ -95,7 +123,7 @@ fn largest_entry(matrix: DMat3) -> f64 {
 
 #[test]
 fn parts_are_in_the_order_of_the_enum_and_parents_come_before_children() {
-    assert_eq!(ArmPart::ALL, PARENTS.map(|(part, _)| part));
+    assert_eq!(LimbPart::ALL, PARENTS.map(|(part, _)| part));
     for (index, (part, parent)) in PARENTS.into_iter().enumerate() {
         assert_eq!(part as usize, index);
         assert_eq!(part.parent(), parent);
@@ -107,60 +135,60 @@ proptest! {
     #![proptest_config(config(10_000, 0x2014_1a4e))]
 
     #[test]
-    fn elbow_and_hand_are_where_the_solver_says(arm in posed_arms()) {
-        for (part, solved) in [(ArmPart::Elbow, arm.pose.elbow), (ArmPart::Hand, arm.pose.hand)] {
+    fn elbow_and_hand_are_where_the_solver_says(arm in arms()) {
+        for (part, solved) in [(LimbPart::Elbow, arm.pose.elbow), (LimbPart::Hand, arm.pose.hand)] {
             let origin = arm.rig.origin(part).as_dvec3();
             within("joint", origin.distance(arm.in_world(solved)), arm.bound())?;
         }
     }
 
     #[test]
-    fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in posed_arms()) {
+    fn the_limbs_run_from_shoulder_to_elbow_to_hand(arm in arms()) {
         let (upper, lower) = (arm.rig.upper(), arm.rig.lower());
         for (what, end, joint) in [
-            ("shoulder end", arm.point(ArmPart::UpperLimb, 0.0), Vec3::ZERO),
-            ("upper elbow end", arm.point(ArmPart::UpperLimb, upper.length), arm.pose.elbow),
-            ("lower elbow end", arm.point(ArmPart::LowerLimb, 0.0), arm.pose.elbow),
-            ("hand end", arm.point(ArmPart::LowerLimb, lower.length), arm.pose.hand),
+            ("shoulder end", arm.point(LimbPart::UpperLimb, 0.0), Vec3::ZERO),
+            ("upper elbow end", arm.point(LimbPart::UpperLimb, upper.length), arm.pose.elbow),
+            ("lower elbow end", arm.point(LimbPart::LowerLimb, 0.0), arm.pose.elbow),
+            ("hand end", arm.point(LimbPart::LowerLimb, lower.length), arm.pose.hand),
         ] {
             within(what, end.distance(arm.in_world(joint)), arm.bound())?;
         }
         let (bones, bound) = (bones(arm.case.arm), EXACT * limits(arm.case.arm).1);
         within("upper length", (f64::from(upper.length) - bones.0).abs(), bound)?;
         within("lower length", (f64::from(lower.length) - bones.1).abs(), bound)?;
-        for part in [ArmPart::UpperLimb, ArmPart::LowerLimb] {
+        for part in [LimbPart::UpperLimb, LimbPart::LowerLimb] {
             prop_assert_eq!(arm.rig.local(part).matrix3.z_axis, glam::Vec3A::Z, "not a hinge");
         }
     }
 
     #[test]
-    fn the_pointer_is_as_long_as_the_arm_and_passes_through_hand_and_cursor(arm in posed_arms()) {
-        let PosedArm { case, root, pose, rig } = &arm;
+    fn the_pointer_is_as_long_as_the_arm_and_passes_through_hand_and_cursor(arm in arms()) {
+        let ArmCase { case, root, pose, rig } = &arm;
         let length = limits(case.arm).1;
         within("length", (f64::from(rig.pointer().length) - length).abs(), U * length)?;
 
-        let start = arm.point(ArmPart::Pointer, 0.0);
+        let start = arm.point(LimbPart::Pointer, 0.0);
         prop_assert_eq!(start, root.as_dvec3());
-        let along = (arm.point(ArmPart::Pointer, rig.pointer().length) - start).normalize();
+        let along = (arm.point(LimbPart::Pointer, rig.pointer().length) - start).normalize();
         let cursor = arm.in_world(case.cursor);
         let reach = length.max(case.cursor.as_dvec3().length());
         let cursor_bound = world_bound(reach, &[root.as_dvec3(), cursor]);
         for (point, bound) in [
             (arm.in_world(pose.hand), arm.bound()),
-            (rig.origin(ArmPart::Cursor).as_dvec3(), cursor_bound),
+            (rig.origin(LimbPart::Cursor).as_dvec3(), cursor_bound),
         ] {
             let ahead = (point - start).dot(along);
             prop_assert!(ahead >= -bound, "the pointer points away");
             within("distance from the line", point.distance(start + along * ahead), bound)?;
         }
-        within("cursor", rig.origin(ArmPart::Cursor).as_dvec3().distance(cursor), cursor_bound)?;
+        within("cursor", rig.origin(LimbPart::Cursor).as_dvec3().distance(cursor), cursor_bound)?;
     }
 
     #[test]
-    fn the_limit_spheres_are_centred_on_the_shoulder(arm in posed_arms()) {
+    fn the_limit_spheres_are_centred_on_the_shoulder(arm in arms()) {
         for (part, radius, limit) in [
-            (ArmPart::InnerLimit, arm.rig.limits().inner, limits(arm.case.arm).0),
-            (ArmPart::OuterLimit, arm.rig.limits().outer, limits(arm.case.arm).1),
+            (LimbPart::InnerLimit, arm.rig.limits.inner, limits(arm.case.arm).0),
+            (LimbPart::OuterLimit, arm.rig.limits.outer, limits(arm.case.arm).1),
         ] {
             prop_assert_eq!(arm.rig.world(part), Affine3A::from_translation(arm.root));
             prop_assert_eq!(radius, limit as f32);
@@ -168,10 +196,10 @@ proptest! {
     }
 
     #[test]
-    fn limb_and_socket_rotate_by_the_angles_of_the_report(arm in posed_arms()) {
+    fn limb_and_socket_rotate_by_the_angles_of_the_report(arm in arms()) {
         let turns = [
-            (ArmPart::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
-            (ArmPart::Socket, DMat3::from_rotation_x(arm.case.twist.into())),
+            (LimbPart::Limb, limb_rotation(yaw_and_pitch(arm.case.cursor))),
+            (LimbPart::Socket, DMat3::from_rotation_x(arm.case.twist.into())),
         ];
         for (part, turn) in turns {
             let local = arm.rig.local(part);
@@ -181,7 +209,7 @@ proptest! {
     }
 
     #[test]
-    fn world_transforms_are_rotations_and_products_up_the_parents(arm in posed_arms()) {
+    fn world_transforms_are_rotations_and_products_up_the_parents(arm in arms()) {
         for (part, _) in PARENTS {
             let mut product = Mat4::from(arm.rig.local(part)).as_dmat4();
             let (mut child, mut turns) = (part, 0);

@@ -1,0 +1,77 @@
+//! Guides of a limb: its Pointer, its limits, the circle of elbows, frames, and what its twist is
+//! measured from.
+
+use glam::Mat3;
+
+use super::{figure, twist};
+use crate::document::{Display, Overlay, Posed, RigKind};
+use crate::kinematics::skeleton::JointId;
+use crate::rig::{LimbFrames, LimbPart};
+use crate::scene::{Globe, Scene, Solid, SphereShell};
+use crate::session::{Overlays, ShownLimb};
+
+/// Adds the guides of a limb that the display shows, and the figure that lights up.
+pub(super) fn add_guides(
+    scene: &mut Scene,
+    limb: &LimbFrames,
+    overlays: &Overlays,
+    display: Display,
+) {
+    add_pointer_and_limits(scene, limb, display);
+    if display.shows(Overlay::SingularityGlobe) {
+        scene.add_globe(Globe {
+            centre: limb.origin(LimbPart::Root),
+            radius: limb.limits.outer,
+            reference: limb.posed.ik.reference,
+            axes: Mat3::from(limb.root.matrix3),
+        });
+    }
+    if display.shows(Overlay::Frames) {
+        figure::add_frames(scene, limb);
+    }
+    if let Some(shown) = overlays.figure {
+        figure::add(scene, limb, shown);
+    }
+    if let Some(poses) = overlays.twist_references {
+        twist::add_references(scene, limb, poses);
+    }
+}
+
+/// Adds the circles of elbows: that of the limb of the selected joint, with its twist, or else of
+/// all limbs.
+pub(super) fn add_circles(scene: &mut Scene, posed: &Posed, selected: Option<JointId>) {
+    let document = posed.document();
+    let rig = &document.skeleton_rig;
+    let is_of_limb = |joint: JointId| rig.limb_target_of(joint).is_some();
+    let limbs = || rig.targets.iter().filter(|target| target.limb().is_some());
+    let is_alone = document.rig == RigKind::Arm || limbs().count() == 1;
+    if is_alone || selected.is_some_and(is_of_limb) {
+        if let Some(limb) = ShownLimb::frames(posed, selected) {
+            twist::add_circle(scene, &limb, true);
+        }
+        return;
+    }
+    for limb in limbs().filter_map(|target| posed.limb_frames(target.joint)) {
+        twist::add_circle(scene, &limb, false);
+    }
+}
+
+fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display) {
+    let colour = scene.palette.guide;
+    if display.shows(Overlay::Pointer) {
+        scene.guide_solids.push(Solid {
+            transform: limb.world(LimbPart::Pointer),
+            shape: limb.pointer(),
+            colour,
+            stripes: None,
+        });
+    }
+    for (overlay, part, radius) in [
+        (Overlay::InnerLimit, LimbPart::InnerLimit, limb.limits.inner),
+        (Overlay::OuterLimit, LimbPart::OuterLimit, limb.limits.outer),
+    ] {
+        if display.shows(overlay) && radius > 0.0 {
+            scene.shells.push(SphereShell { centre: limb.origin(part), radius, colour });
+        }
+    }
+}
