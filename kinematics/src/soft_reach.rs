@@ -208,7 +208,18 @@ impl SoftReach {
     /// result is `distance`.
     #[must_use]
     pub fn cursor_distance(self, bones: TwoBone, distance: f32) -> f32 {
-        let limits = SoftLimits::new(self, bones);
+        self.inverse_in(SoftLimits::new(self, bones), distance)
+    }
+
+    /// [`Self::cursor_distance`] of a hand that can be anywhere within `limits`, without softness
+    /// and stretch.
+    #[must_use]
+    pub fn cursor_distance_within(self, limits: ReachLimits, distance: f32) -> f32 {
+        let limits = SoftLimits::between(self, limits.inner.into(), limits.outer.into());
+        self.inverse_in(limits, distance)
+    }
+
+    fn inverse_in(self, limits: SoftLimits, distance: f32) -> f32 {
         let (d, longest) = (f64::from(distance), f64::from(self.max_stretch));
         if d <= limits.outer_join() {
             return saturate(limits.harden(d).max(0.0));

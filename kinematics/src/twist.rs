@@ -257,6 +257,14 @@ impl Stereographic {
         Some(Self { singular: singular.as_vec3(), up: up.as_vec3() })
     }
 
+    /// [`Stereographic::new`], but directions of a map that was saved keep their bits.
+    pub fn from_saved(singular: Vec3, up: Vec3) -> Option<Self> {
+        let checked = Self::new(singular, up)?;
+        let is_same = |a: Vec3, b: Vec3| a.distance(b) <= 4.0 * f32::EPSILON;
+        let is_map = is_same(checked.singular, singular) && is_same(checked.up, up);
+        Some(if is_map { Self { singular, up } } else { checked })
+    }
+
     /// The singular direction R.
     pub fn singular(self) -> Vec3 {
         self.singular
@@ -298,13 +306,8 @@ struct ParallelDirections;
 impl TryFrom<UncheckedMap> for Stereographic {
     type Error = ParallelDirections;
 
-    fn try_from(map: UncheckedMap) -> Result<Self, ParallelDirections> {
-        let UncheckedMap { singular, up } = map;
-        let checked = Self::new(singular, up).ok_or(ParallelDirections)?;
-        // Directions of a map that was saved keep their bits.
-        let is_same = |a: Vec3, b: Vec3| a.distance(b) <= 4.0 * f32::EPSILON;
-        let is_map = is_same(checked.singular, singular) && is_same(checked.up, up);
-        Ok(if is_map { Self { singular, up } } else { checked })
+    fn try_from(UncheckedMap { singular, up }: UncheckedMap) -> Result<Self, ParallelDirections> {
+        Self::from_saved(singular, up).ok_or(ParallelDirections)
     }
 }
 

@@ -6,7 +6,6 @@ use super::Document;
 use super::arm::{Arm, HandOrientation};
 use super::channel::{Channel, Quantity, is_on};
 use super::display::{Overlay, RigKind};
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target};
@@ -205,7 +204,7 @@ impl Channel {
             ),
             Self::TargetPole(joint) => named("target_pole", "target pole", Point).of_target(
                 joint,
-                |it| Some(it.limb()?.pole()?.1),
+                |it| it.limb()?.pole,
                 set_pole,
                 |_| true,
             ),
@@ -371,8 +370,8 @@ fn set_twist(target: &mut Target, twist: Vec3) {
 }
 
 fn set_pole(target: &mut Target, pole: Vec3) {
-    if let Some(limb) = target.limb_mut().filter(|limb| limb.pole().is_some()) {
-        limb.reference = ElbowReference::Pole(pole);
+    if let Some(limb) = target.limb_mut().filter(|limb| limb.pole.is_some()) {
+        limb.pole = Some(pole);
     }
 }
 

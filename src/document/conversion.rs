@@ -8,7 +8,6 @@ use super::channel::Channel;
 use super::display::RigKind;
 use super::track::{Posed, Track};
 use crate::kinematics::angle;
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
 use crate::kinematics::spline::{Knot, Slopes, Spline};
 use crate::kinematics::twist::TwistReferenceKind;
@@ -81,13 +80,22 @@ impl Document {
 
     /// Changes what the twist of a limb is measured from. The elbow stays where it is at `time`, at
     /// which this document is evaluated, and at each key of the twist.
-    pub fn set_limb_reference(&mut self, joint: JointId, reference: ElbowReference, time: f64) {
+    ///
+    /// A limb that has no pole yet gets one in front of its elbow.
+    pub fn set_limb_reference(&mut self, joint: JointId, to: TwistReferenceKind, time: f64) {
         let channel = Channel::TargetTwist(joint);
         let before = Track::new(self);
+        let own = before.pose(self.clone(), time);
+        let index = self.skeleton_rig.target(joint);
+        let pole = index.and_then(|it| self.skeleton_rig.new_pole(own.evaluated_skeleton(), it));
+        let Some(limb) = self.limb_settings_mut(joint) else { return };
+        if to == TwistReferenceKind::Pole {
+            limb.pole = limb.pole.or(pole);
+        }
         let mut untwisted = self.clone();
         untwisted.keys.clear(channel);
         let Some(limb) = untwisted.limb_settings_mut(joint) else { return };
-        (limb.reference, limb.twist) = (reference, 0.0);
+        (limb.reference, limb.twist) = (to, 0.0);
         let after = Track::new(&untwisted);
         let twist_in = |own: &Posed, zero: &Posed| {
             let pose = |posed: &Posed| Some(posed.limb_frames(joint)?.solution.pose);
@@ -100,10 +108,10 @@ impl Document {
                 self.keys.insert(channel, knot.time, knot.value + Vec3::X * shift);
             }
         }
-        let own = before.pose(self.clone(), time);
         let twist = twist_in(&own, &after.pose(untwisted, time));
-        if let (Some(limb), Some(twist)) = (self.limb_settings_mut(joint), twist) {
-            (limb.reference, limb.twist) = (reference, angle::nearest(twist, limb.twist));
+        if let Some(limb) = self.limb_settings_mut(joint) {
+            limb.reference = to;
+            limb.twist = twist.map_or(limb.twist, |twist| angle::nearest(twist, limb.twist));
         }
     }
 
@@ -200,27 +208,30 @@ impl Document {
 
     /// Turns those parts of a target that are in the world.
     fn turn_target(&mut self, index: usize) {
-        let Target { joint, space, .. } = self.skeleton_rig.targets[index];
+        let before = self.skeleton_rig.targets[index];
+        let Target { joint, space, .. } = before;
+        let frame = Mat3A::from_quat(before.hand_frame(self.skeleton()));
+        let is_in_world = before.present_space() == TargetSpace::World;
         let target = &mut self.skeleton_rig.targets[index];
         let (mut turned, mut is_oriented) = (Vec::new(), false);
         if space == TargetSpace::World {
             target.home = TURN * target.home;
             turned.push(Channel::Target(joint));
         }
+        target.pin = TURN * target.pin;
         if let Some(limb) = target.limb_mut() {
-            if let Some((TargetSpace::World, pole)) = limb.pole() {
-                limb.reference = ElbowReference::Pole(TURN * pole);
+            if let (Some(pole), TargetSpace::World) = (&mut limb.pole, limb.pole_space) {
+                *pole = TURN * *pole;
                 turned.push(Channel::TargetPole(joint));
             }
-            if let Some(angles) = limb.orientation.as_mut().filter(|_| space == TargetSpace::World)
-            {
-                *angles = turned_angles(*angles, *angles);
+            if let Some(angles) = limb.orientation.as_mut().filter(|_| is_in_world) {
+                *angles = turned_angles(frame, *angles, *angles);
                 is_oriented = true;
             }
         }
         turned.into_iter().for_each(|channel| self.turn_keys(channel));
         if is_oriented {
-            self.turn_keyed_angles(Channel::TargetOrientation(joint));
+            self.turn_keyed_angles(Channel::TargetOrientation(joint), frame);
         }
     }
 
@@ -243,11 +254,11 @@ impl Document {
 
     /// Turns the keys of angles, each to the equivalent angles nearest to those of the key before.
     /// They lose their own slopes, which turned angles do not have.
-    fn turn_keyed_angles(&mut self, channel: Channel) {
+    fn turn_keyed_angles(&mut self, channel: Channel, frame: Mat3A) {
         let Some(track) = self.keys.track(channel) else { return };
         let mut last = None;
         let turned = |knot: &Knot<Vec3>| {
-            let value = turned_angles(knot.value, last.unwrap_or(knot.value));
+            let value = turned_angles(frame, knot.value, last.unwrap_or(knot.value));
             last = Some(value);
             Knot { value, slopes: None, ..*knot }
         };
@@ -256,8 +267,9 @@ impl Document {
     }
 }
 
-/// The angles of a turned rotation that are nearest to `near`, in radians.
-fn turned_angles(angles: Vec3, near: Vec3) -> Vec3 {
+/// The angles of a turned rotation, measured in a frame, that are nearest to `near`, in radians.
+fn turned_angles(frame: Mat3A, angles: Vec3, near: Vec3) -> Vec3 {
     let rotation = Mat3A::from_euler(EulerRot::ZYX, angles.z, angles.y, angles.x);
-    nearest_angles(TURN * rotation, near)
+    let turned = TURN * frame * rotation * frame.transpose();
+    nearest_angles(frame.transpose() * turned * frame, near)
 }

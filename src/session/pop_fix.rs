@@ -1,7 +1,6 @@
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::pop::{PopCause, PosedLimb};
 use crate::kinematics::soft_reach::SoftReach;
-use crate::kinematics::twist::{Stereographic, TwistReferenceKind};
+use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target, TargetKind};
 use crate::session::action::Edit;
 use crate::session::arm::edits::ArmEdit;
@@ -60,11 +59,7 @@ impl PopFix {
         let target = rig.targets[rig.target(joint)?];
         let settings = *target.limb()?;
         Some(match self {
-            Self::ChangeReference(kind) => {
-                let reference = match kind {
-                    TwistReferenceKind::Transport => ElbowReference::Transport,
-                    _ => ElbowReference::Stereographic(Stereographic::default()),
-                };
+            Self::ChangeReference(reference) => {
                 TargetEdit::SetReference { joint, reference }.into()
             }
             Self::Soften(soft_reach) | Self::KeepOpen(soft_reach) => {

@@ -9,9 +9,9 @@ use ik_arm::document::{
 };
 use ik_arm::io::{self, Example};
 use ik_arm::kinematics::chain_ik::Method;
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::spline::{Interpolation, Knot};
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, RigPopCause, TargetKind};
 use serde_json::Value;
 
@@ -69,7 +69,7 @@ fn circle(target: Target) -> Target {
 }
 
 /// A leg with a hinged knee that bends by `most` radians at most, and a foot with a limb target.
-fn leg(least: f32, most: f32, reference: ElbowReference) -> Document {
+fn leg(least: f32, most: f32, reference: TwistReferenceKind) -> Document {
     let fixed = Some(Limit { min: 0.0, max: 0.0 });
     let limits = JointLimits::new([Some(Limit { min: least, max: most }), fixed, fixed]);
     let mut skeleton = Skeleton::with_root("hips");
@@ -161,14 +161,14 @@ fn a_target_that_is_switched_on_is_named() {
 
 #[test]
 fn limbs_pop_where_they_are_straight_and_where_references_are_singular() {
-    let mut document = leg(0.0, 2.5, ElbowReference::Fk);
+    let mut document = leg(0.0, 2.5, TwistReferenceKind::Fk);
     let shin = document.skeleton_rig.targets[0].joint;
     let ways = [(0.0, Vec3::new(0.0, -1.5, 0.3)), (2.0, Vec3::new(0.0, -2.05, 0.0))];
     key(&mut document, Channel::Target(shin), &ways);
     let straight = causes(&found(&document, &[]));
     assert!(!straight.is_empty() && straight.iter().all(|it| it == "straight"), "{straight:?}");
 
-    let mut document = leg(0.0, 2.5, ElbowReference::Up);
+    let mut document = leg(0.0, 2.5, TwistReferenceKind::Up);
     let ways = [(0.0, Vec3::new(-0.4, -1.4, 0.02)), (2.0, Vec3::new(0.4, -1.4, 0.02))];
     key(&mut document, Channel::Target(shin), &ways);
     let singular = causes(&found(&document, &[]));
@@ -177,7 +177,7 @@ fn limbs_pop_where_they_are_straight_and_where_references_are_singular() {
 
 #[test]
 fn a_knee_at_its_limit_is_listed_with_its_time() {
-    let mut document = leg(0.2, 1.0, ElbowReference::Fk);
+    let mut document = leg(0.2, 1.0, TwistReferenceKind::Fk);
     let shin = document.skeleton_rig.targets[0].joint;
     let ways = [
         (0.0, Vec3::new(0.0, -1.85, 0.0)),
@@ -195,7 +195,7 @@ fn a_knee_at_its_limit_is_listed_with_its_time() {
 
 #[test]
 fn a_planted_foot_that_slides_is_listed_with_its_way() {
-    let mut document = leg(0.0, 2.5, ElbowReference::Fk);
+    let mut document = leg(0.0, 2.5, TwistReferenceKind::Fk);
     let shin = document.skeleton_rig.targets[0].joint;
     // The hips go up, and the leg is too short to keep the foot down.
     let hips = Channel::Offset(JointId::new(0));

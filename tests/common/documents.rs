@@ -11,7 +11,7 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::ik::IkState;
-use ik_arm::kinematics::limb_ik::ElbowReference;
+use ik_arm::kinematics::limb_ik::LimbPosture;
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
@@ -41,6 +41,8 @@ pub fn document(random: &mut Random) -> Document {
                 joint,
                 home,
                 space,
+                pin: if random.coin() { random.finite_vector() } else { home },
+                is_pinned: random.coin(),
                 kind,
                 influence,
                 weight,
@@ -108,26 +110,36 @@ fn posture(random: &mut Random, rig: &SkeletonRig) -> Posture {
         let offset = random.coin().then(|| random.finite_vector());
         posture.joints.insert(joint, PosturedJoint { rotation, offset });
         if random.coin() {
-            posture.limbs.insert(joint, std::array::from_fn(|_| random.finite_vector()));
+            posture.limbs.insert(joint, limb_posture(random));
         }
     }
     posture
+}
+
+fn limb_posture(random: &mut Random) -> LimbPosture {
+    LimbPosture {
+        pointer: random.finite_vector(),
+        elbow: random.finite_vector(),
+        bend_axis: random.finite_vector(),
+        bend: random.finite_vector(),
+        hand: random.coin().then(|| random.finite_vector()),
+    }
 }
 
 fn target_kind(random: &mut Random) -> TargetKind {
     if random.coin() {
         return TargetKind::WholeBody;
     }
-    let reference = match random.below(5) {
-        0 => ElbowReference::Fk,
-        1 => ElbowReference::Up,
-        2 => ElbowReference::Pole(random.finite_vector()),
-        3 => ElbowReference::Transport,
-        _ => ElbowReference::Stereographic(Stereographic::default()),
-    };
+    let reference = random.one_of(&TwistReferenceKind::ALL);
+    let needs_pole = reference == TwistReferenceKind::Pole;
+    let pole = (needs_pole || random.coin()).then(|| random.finite_vector());
+    let map = Stereographic::new(random.direction(), random.direction());
     let soft_reach = SoftReach::new(random.within(0.0..0.9), 1.0 + random.within(0.0..2.0), 0.5);
     TargetKind::Limb(LimbSettings {
         reference,
+        pole,
+        map: map.filter(|_| random.coin()).unwrap_or_default(),
+        fk_stretch: if random.coin() { random.positive() } else { 1.0 },
         twist: random.finite(),
         soft_reach: soft_reach.expect("in range"),
         orientation: random.coin().then(|| random.finite_vector()),

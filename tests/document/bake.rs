@@ -7,10 +7,10 @@ use ik_arm::document::{
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::Spline;
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind};
 
 use crate::common::skeletons::{forest, transform};
@@ -66,7 +66,7 @@ fn random_target(random: &mut Random, joint: JointId, tip: Vec3) -> Target {
         period: random.within(0.5..4.0),
     };
     let settings = LimbSettings {
-        reference: random.one_of(&[ElbowReference::Fk, ElbowReference::Up]),
+        reference: random.one_of(&[TwistReferenceKind::Fk, TwistReferenceKind::Up]),
         twist: random.within(-3.0..3.0),
         soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
             .expect("in range"),

@@ -9,7 +9,6 @@ use ik_arm::io::to_json;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
@@ -134,7 +133,7 @@ examples! {
         }];
         SetReference: [TargetEdit::SetReference {
             joint: JointId::new(AIMED),
-            reference: ElbowReference::Up,
+            reference: TwistReferenceKind::Up,
         }];
         SetPoleSpace: [TargetEdit::SetPoleSpace {
             joint: JointId::new(AIMED),
@@ -204,8 +203,11 @@ fn baked() -> Box<Baked> {
 fn session_for(edit: &Edit) -> Session {
     let mut session = Session::default();
     let target = Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0);
-    let with_pole =
-        LimbSettings { reference: ElbowReference::Pole(Vec3::X), ..LimbSettings::default() };
+    let with_pole = LimbSettings {
+        reference: TwistReferenceKind::Pole,
+        pole: Some(Vec3::X),
+        ..LimbSettings::default()
+    };
     for edit in [
         // Both cameras are saved, and not undone.
         Edit::from(DisplayEdit::ShowRig(RigKind::Skeleton)),

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Target};
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace, TargetSpaceError};
 
 use crate::common::Random;
@@ -164,7 +164,8 @@ fn keyed(random: &mut Random) -> (Document, JointId) {
     let forearm = driver.forearms[0];
     let target = driver.add_target(forearm, Vec3::new(0.3, 1.0, 0.6));
     target.kind = TargetKind::Limb(LimbSettings {
-        reference: ElbowReference::Pole(Vec3::new(2.0, 0.0, 0.0)),
+        reference: TwistReferenceKind::Pole,
+        pole: Some(Vec3::new(2.0, 0.0, 0.0)),
         orientation: Some(random.angles()),
         ..LimbSettings::default()
     });
@@ -194,7 +195,7 @@ fn in_world(document: &Document, time: f64) -> (Vec3, Quat, Vec3) {
     let limb = target.limb().expect("a limb");
     (
         target.in_world(&pose, time),
-        limb.hand_in_world(&pose, target.space).expect("an orientation"),
+        target.hand_in_world(&pose).expect("an orientation"),
         limb.pole_in_world(&pose).expect("a pole"),
     )
 }
@@ -273,7 +274,7 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
             let limb = target.limb_mut().expect("a limb");
             limb.twist = value(Channel::TargetTwist(joint)).x;
             limb.orientation = Some(value(Channel::TargetOrientation(joint)));
-            limb.reference = ElbowReference::Pole(value(Channel::TargetPole(joint)));
+            limb.pole = Some(value(Channel::TargetPole(joint)));
             let solved = document.at(time).skeleton().clone();
             assert_eq!(solved, rig.skeleton_at(time));
         }
@@ -283,7 +284,7 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
 #[test]
 fn a_pole_on_a_missing_joint_is_refused_for_every_reference() {
     let missing = JointId::new(99);
-    for reference in [ElbowReference::Fk, ElbowReference::Pole(Vec3::X)] {
+    for reference in [TwistReferenceKind::Fk, TwistReferenceKind::Pole] {
         let mut driver = Driver::new();
         let [left, _] = driver.forearms;
         let target = driver.add_target(left, Vec3::ONE);

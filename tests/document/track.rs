@@ -8,9 +8,9 @@ use ik_arm::document::{
 };
 use ik_arm::io;
 use ik_arm::kinematics::chain_ik::{Method, Root};
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::spline::{Interpolation, Knot};
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind};
 use ik_arm::session::{
     InspectAction, JointEdit, KeysEdit, PlaybackAction, Session, TargetEdit, TransactionAction,
@@ -325,7 +325,7 @@ fn largest_step(document: &Document) -> f32 {
 
 /// An arm of two bones with a limb target; the lower joint is a hinge that bends to both sides, or
 /// a ball joint.
-fn limb(is_hinge: bool, reference: ElbowReference) -> Document {
+fn limb(is_hinge: bool, reference: TwistReferenceKind) -> Document {
     let fixed = Some(Limit { min: 0.0, max: 0.0 });
     let hinge = JointLimits::new([Some(Limit { min: -2.5, max: 2.5 }), fixed, fixed]);
     let mut skeleton = Skeleton::with_root("root");
@@ -344,7 +344,7 @@ fn limb(is_hinge: bool, reference: ElbowReference) -> Document {
 #[test]
 fn a_knee_whose_fk_pose_swings_through_straight_does_not_jump() {
     for is_hinge in [true, false] {
-        let mut document = limb(is_hinge, ElbowReference::Fk);
+        let mut document = limb(is_hinge, TwistReferenceKind::Fk);
         let lower = document.skeleton_rig.targets[0].joint;
         for (time, degrees) in [(0.0, 3.0_f32), (2.0, -3.0), (4.0, 3.0)] {
             document.keys.insert_auto(
@@ -392,7 +392,7 @@ fn influences_that_begin_do_not_jump() {
 
 #[test]
 fn transport_carries_the_elbow_of_a_limb_through_every_direction() {
-    let mut document = limb(true, ElbowReference::Transport);
+    let mut document = limb(true, TwistReferenceKind::Transport);
     let lower = document.skeleton_rig.targets[0].joint;
     // Up over the shoulder and around: through the directions in which the other references flip.
     for (step, point) in
@@ -402,7 +402,7 @@ fn transport_carries_the_elbow_of_a_limb_through_every_direction() {
     }
     let carried = largest_step(&document);
     assert!(carried < 0.1, "a step of {carried}");
-    let settings = LimbSettings { reference: ElbowReference::Up, ..LimbSettings::default() };
+    let settings = LimbSettings { reference: TwistReferenceKind::Up, ..LimbSettings::default() };
     document.skeleton_rig.targets[0].kind = TargetKind::Limb(settings);
     assert!(largest_step(&document) > 3.0 * carried, "the other references flip there");
 }

@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DMat3, EulerRot, Vec3};
 use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Target};
 use ik_arm::io::{self, OpenOptions, Opened, Upwards};
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::SkeletonPose;
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind};
 
 use crate::common::{Random, skeletons};
@@ -204,7 +204,8 @@ fn rig(random: &mut Random) -> Document {
     let (skeleton, tips) = skeletons::tree(random, 3, 1.0);
     let mut skeleton_rig = SkeletonRig::new(skeleton);
     let limb = LimbSettings {
-        reference: ElbowReference::Pole(random.vector(3.0)),
+        reference: TwistReferenceKind::Pole,
+        pole: Some(random.vector(3.0)),
         orientation: Some(random.angles()),
         ..LimbSettings::default()
     };

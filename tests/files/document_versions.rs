@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use ik_arm::document::TwistReferenceKind;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::chain_ik::Root;
-use ik_arm::kinematics::limb_ik::ElbowReference;
 
 use crate::common::damage::message;
 
@@ -116,7 +115,7 @@ fn the_reference_up_is_read_by_its_former_name_too() {
     assert_eq!(former, document);
     assert_eq!(document.arm.twist_reference, TwistReferenceKind::Up);
     let limb = document.skeleton_rig.targets[0].limb().expect("a limb");
-    assert_eq!(limb.reference, ElbowReference::Up);
+    assert_eq!(limb.reference, TwistReferenceKind::Up);
     let saved = io::to_json(document).expect("finite numbers");
     assert!(saved.contains("\"kind\": \"up\"") && saved.contains("\"reference\": \"up\""));
 }

@@ -10,29 +10,57 @@ pub struct CarriedLimb {
     pub(super) way: Option<BendWay>,
     /// The Pointer and the elbow at twist 0, in the space of the upper joint's parent.
     pub(super) aim: Option<LimbAim>,
+    /// Angles of the hand that a target turns, as solved: the next ones are the nearest to these,
+    /// whole turns included.
+    pub(super) hand: Option<Vec3>,
     /// Rotations from the FK pose to the solved one of upper joint, lower joint and hand.
     pub(super) turns: [Option<DQuat>; 3],
 }
 
+/// [`CarriedLimb`] as a document keeps it: the state with which a motion begins. Vectors have any
+/// length but 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbPosture {
+    /// From the limb's base to its target, in the space of the upper joint's parent.
+    pub pointer: Vec3,
+    /// Towards the elbow at twist 0, in the space of the upper joint's parent.
+    pub elbow: Vec3,
+    /// Axis about which the limb bends, in the upper joint's space.
+    pub bend_axis: Vec3,
+    /// Direction in which the elbow moves when the limb bends, in the upper joint's space.
+    pub bend: Vec3,
+    /// Euler angles in radians of the hand, whole turns included; `None` for a hand that no target
+    /// turns.
+    pub hand: Option<Vec3>,
+}
+
+impl LimbPosture {
+    /// True if all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let vectors = [self.pointer, self.elbow, self.bend_axis, self.bend];
+        vectors.into_iter().chain(self.hand).all(Vec3::is_finite)
+    }
+}
+
 impl CarriedLimb {
-    /// The state in single precision: in the space of the upper joint's parent the Pointer and the
-    /// elbow's direction at twist 0, then in the upper joint's space the axis about which the FK
-    /// pose bends and the direction in which its elbow moves. `None` before the first step.
-    pub fn to_vectors(&self) -> Option<[Vec3; 4]> {
+    /// The state in single precision; `None` before the first step.
+    pub fn to_posture(&self) -> Option<LimbPosture> {
         let (aim, way) = self.aim.zip(self.way)?;
-        Some([aim.pointer, aim.outward, way.axis, way.outward].map(DVec3::as_vec3))
+        let [pointer, elbow, bend_axis, bend] =
+            [aim.pointer, aim.outward, way.axis, way.outward].map(DVec3::as_vec3);
+        Some(LimbPosture { pointer, elbow, bend_axis, bend, hand: self.hand })
     }
 
-    /// The state with the vectors of [`CarriedLimb::to_vectors`]; vectors without a direction are
-    /// ignored.
-    pub fn from_vectors(vectors: [Vec3; 4]) -> Self {
+    /// The state of a posture; vectors without a direction are ignored.
+    pub fn from_posture(posture: &LimbPosture) -> Self {
+        let LimbPosture { pointer, elbow, bend_axis, bend, hand } = *posture;
         let [pointer, outward, axis, bending] =
-            vectors.map(|vector| vector.as_dvec3().try_normalize());
+            [pointer, elbow, bend_axis, bend].map(|vector| vector.as_dvec3().try_normalize());
         let aim = pointer
             .zip(outward)
             .map(|(pointer, outward)| LimbAim { pointer, outward: orthonormal(outward, pointer) });
         let way = axis.zip(bending).map(|(axis, outward)| BendWay { axis, outward });
-        Self { way, aim, turns: [None; 3] }
+        Self { way, aim, hand, turns: [None; 3] }
     }
 }
 

@@ -86,6 +86,17 @@ impl FkLimb {
         self
     }
 
+    /// The limb with bones that were lengthened by a factor, as they are without it.
+    pub fn unstretched(mut self, factor: f64) -> Self {
+        if factor != 1.0 {
+            let Bend { axis, upper, lower, limits, kept_side, .. } = self.bend;
+            self.mount.origin /= factor;
+            self.bend = Bend::new(axis, upper / factor, lower / factor, limits);
+            self.bend.kept_side = kept_side;
+        }
+        self
+    }
+
     /// The way in which the FK pose bends.
     fn way(&self) -> BendWay {
         let side = self.bend.side(self.angle);

@@ -49,8 +49,9 @@ use thiserror::Error;
 
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
-pub use carried::CarriedLimb;
+pub use carried::{CarriedLimb, LimbPosture};
 pub use elbow::LimbAim;
+pub(crate) use solver::lengthen;
 pub use solver::{
     ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides, fk_twist, solve,
     step,

@@ -25,6 +25,8 @@ pub struct LimbTarget {
     pub hand: Option<Quat>,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
     pub influence: f32,
+    /// Factor by which the FK pose that the skeleton has lengthens the bones, above 0.
+    pub fk_stretch: f32,
 }
 
 impl LimbTarget {
@@ -37,6 +39,7 @@ impl LimbTarget {
             soft_reach: SoftReach::default(),
             hand: None,
             influence: 1.0,
+            fk_stretch: 1.0,
         }
     }
 }
@@ -126,9 +129,10 @@ pub fn step(
 ) -> Option<LimbReport> {
     let fk = FkLimb::new(skeleton, limb)?.carrying(&skeleton[limb.lower], carried);
     let local = LocalTarget::new(skeleton, limb, target, &fk)?;
+    let fk = fk.unstretched(target.fk_stretch.into());
     let solved = SolvedLimb::new(skeleton, limb, &fk, &local, carried);
     if target.influence > 0.0 {
-        solved.write(skeleton, limb, target.influence, &mut carried.turns);
+        solved.write(skeleton, limb, target, &mut carried.turns);
     }
     let tip = if target.influence < 1.0 {
         let above = skeleton[limb.upper].parent;
@@ -224,7 +228,11 @@ impl<'a> LocalTarget<'a> {
         let outward = outward.map(|outward| outward.reject_from_normalized(pointer));
         match outward.filter(|outward| outward.length() > PARALLEL) {
             Some(outward) => LimbAim { pointer, outward: outward.normalize() },
-            None => fk.aim().carried_to(pointer),
+            // Singular: the direction of the step before, without one that of the FK pose.
+            None => {
+                let before = before.map_or_else(|| fk.aim(), |aim| aim.rotated(above));
+                before.carried_to(pointer)
+            }
         }
     }
 }
@@ -264,7 +272,8 @@ impl SolvedLimb {
 
         let lower = fk.lower_angles(&skeleton[limb.lower], distance);
         let lower_rotation = fk.mount.rotation * skeleton[limb.lower].rotation_f64(lower.angles);
-        let tip = fk.mount.origin + lower_rotation * skeleton[limb.lower].axis.as_dvec3();
+        let bone = skeleton[limb.lower].axis.as_dvec3() / f64::from(target.fk_stretch);
+        let tip = fk.mount.origin + lower_rotation * bone;
 
         let aim = local.aim(fk, pointer, carried.aim);
         let to_above = fk.above.rotation.transpose();
@@ -281,8 +290,10 @@ impl SolvedLimb {
         let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
             let above_hand = upper_rotation * lower_rotation;
             let turned = above_hand.transpose() * DMat3::from_quat(turned);
-            skeleton[hand].angles_within(turned).angles
+            let near = carried.hand.unwrap_or(skeleton[hand].rotation);
+            skeleton[hand].angles_within_near(turned, near).angles
         });
+        carried.hand = hand;
         let tip = fk.base + upper_rotation * tip * stretch;
 
         let distance = distance * stretch;
@@ -315,25 +326,26 @@ impl SolvedLimb {
         &self,
         skeleton: &mut Skeleton,
         limb: Limb,
-        influence: f32,
+        target: &LimbTarget,
         turns: &mut [Option<DQuat>; 3],
     ) {
         let joints = [Some(limb.upper), Some(limb.lower), limb.hand];
         let angles = [Some(self.upper), Some(self.lower), self.hand];
         for ((joint, angles), turn) in joints.into_iter().zip(angles).zip(turns) {
             let Some((joint, angles)) = joint.zip(angles) else { continue };
-            let angles = skeleton[joint].angles_towards(angles, influence, turn);
+            let angles = skeleton[joint].angles_towards(angles, target.influence, turn);
             skeleton.write_local(joint, |joint| joint.rotation = angles);
         }
-        let stretch = 1.0 + (self.solution.stretch as f32 - 1.0) * influence;
-        if stretch != 1.0 {
-            lengthen(skeleton, limb, stretch);
+        let LimbTarget { influence, fk_stretch, .. } = *target;
+        let stretch = fk_stretch + (self.solution.stretch as f32 - fk_stretch) * influence;
+        if stretch != fk_stretch {
+            lengthen(skeleton, limb, stretch / fk_stretch);
         }
     }
 }
 
 /// Multiplies the lengths of a limb's bones.
-fn lengthen(skeleton: &mut Skeleton, limb: Limb, factor: f32) {
+pub(crate) fn lengthen(skeleton: &mut Skeleton, limb: Limb, factor: f32) {
     let between = skeleton.ancestors(limb.lower).take_while(|joint| *joint != limb.upper);
     for joint in between.chain(limb.hand).collect::<Vec<_>>() {
         skeleton.write_local(joint, |joint| joint.offset *= factor);

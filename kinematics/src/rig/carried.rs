@@ -4,7 +4,7 @@ use glam::{DQuat, Vec3};
 
 use crate::Shared;
 use crate::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget, TrackStep};
-use crate::limb_ik::CarriedLimb;
+use crate::limb_ik::{CarriedLimb, LimbPosture};
 use crate::skeleton::{JointId, JointRemap, Skeleton};
 
 /// The state that a step of a motion leaves to the next one, so that small motions of targets and
@@ -33,8 +33,8 @@ pub struct Carried {
 pub struct Posture {
     /// Joints that whole-body targets turn.
     pub joints: BTreeMap<JointId, PosturedJoint>,
-    /// [`CarriedLimb::to_vectors`] by the joint of a limb's target.
-    pub limbs: BTreeMap<JointId, [Vec3; 4]>,
+    /// States of limbs, by the joints of their targets.
+    pub limbs: BTreeMap<JointId, LimbPosture>,
 }
 
 /// Angles and place of a joint in a [`Posture`].
@@ -59,7 +59,8 @@ impl Posture {
         let has = |joint: &JointId| joint.index() < joints;
         let vectors = self.joints.values().flat_map(|of| [of.rotation, of.offset]).flatten();
         self.joints.keys().chain(self.limbs.keys()).all(has)
-            && vectors.chain(self.limbs.values().flatten().copied()).all(Vec3::is_finite)
+            && vectors.into_iter().all(Vec3::is_finite)
+            && self.limbs.values().all(LimbPosture::is_finite)
     }
 
     /// The same posture after joints were renumbered, without those that were removed.
@@ -110,7 +111,7 @@ impl Carried {
     /// is solved from there.
     pub fn near_posture(posture: &Shared<Posture>) -> Self {
         let limbs = &posture.limbs;
-        let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_vectors(*it)));
+        let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_posture(it)));
         Self {
             posture: Some(posture.clone()),
             rests_at_posture: false,
@@ -131,7 +132,7 @@ impl Carried {
     pub fn to_posture(&self) -> Posture {
         let joints = self.bodies.last().map(Body::joints).unwrap_or_default();
         let limbs = self.limbs.iter();
-        let limbs = limbs.filter_map(|(joint, limb)| Some((*joint, limb.to_vectors()?)));
+        let limbs = limbs.filter_map(|(joint, limb)| Some((*joint, limb.to_posture()?)));
         Posture { joints, limbs: limbs.collect() }
     }
 

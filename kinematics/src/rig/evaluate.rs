@@ -163,7 +163,7 @@ impl SkeletonRig {
     /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a
     /// pose; `None` for a hand that follows its bone and for a target without a hand.
     pub fn rotation_error(&self, target: &Target, pose: &Skeleton) -> Option<f32> {
-        let wanted = target.limb()?.hand_in_world(pose, target.space)?.as_dquat();
+        let wanted = target.hand_in_world(pose)?.as_dquat();
         let hand = Limb::ending_at(pose, target.joint).ok()?.hand?;
         let DQuat { x, y, z, w } = pose.rotation_in_world(hand).inverse() * wanted;
         // Exact for small angles, too, where the arc cosine of w loses half of the digits.
@@ -322,7 +322,8 @@ impl Target {
             reference: settings.reference_in_world(pose),
             twist: settings.twist,
             soft_reach: settings.soft_reach,
-            hand: settings.hand_in_world(pose, self.space),
+            hand: self.hand_in_world(pose),
+            fk_stretch: settings.fk_stretch,
             influence: self.influence,
         }
     }

@@ -139,7 +139,7 @@ pub(super) fn travelled_by_target<'a>(
     body: Vec<Vec3>,
 ) -> impl Iterator<Item = Vec3> + 'a {
     let past = move |time: f64| {
-        let home = keys.and_then(|keys| keys.at(time)).unwrap_or(target.home);
+        let home = keys.and_then(|keys| keys.at(time)).unwrap_or(target.present_home());
         home + target.motion.offset(time)
     };
     let length = body.iter().map(|bone| bone.length()).sum();

@@ -7,8 +7,7 @@ use super::target::{LimbSettings, Target};
 use crate::fk::Fk;
 use crate::ik::{self, Ik, IkSolution};
 use crate::limb_ik::{
-    self, ElbowReference, Limb, LimbAim, LimbReach, LimbReport, LimbSolution, LimbTarget,
-    LimbTriangle,
+    self, Limb, LimbAim, LimbReach, LimbReport, LimbSolution, LimbTarget, LimbTriangle,
 };
 use crate::pop::PosedLimb;
 use crate::skeleton::{JointId, Skeleton};
@@ -267,6 +266,7 @@ impl SkeletonRig {
         let solved = solution(evaluated, limb, target, report)?;
         let LimbReport { solution, reach, .. } = solved;
         let posing = if target.enabled { target.influence } else { 0.0 };
+        let fk_stretch = settings.fk_stretch;
         let limited_by = match reach {
             LimbReach::Limited(joint) if posing > 0.0 => Some(joint),
             _ => None,
@@ -277,17 +277,17 @@ impl SkeletonRig {
         let bones = TwoBone::new(upper, lower).ok()?;
         let cursor = saturate_vector(root.vector(solution.target));
         let by_ik = root.ik_pose(&solution, cursor, soft_reach, bones);
-        let fk = root.pose(LimbTriangle::of(&evaluated.fk, limb)?, 1.0);
+        let fk = root.pose(LimbTriangle::of(&evaluated.fk, limb)?, fk_stretch);
         let pose = if posing >= 1.0 && limited_by.is_none() {
             by_ik
         } else {
-            let stretch = 1.0 + (by_ik.stretch - 1.0) * posing;
+            let stretch = fk_stretch + (by_ik.stretch - fk_stretch) * posing;
             let pose = root.pose(LimbTriangle::of(&evaluated.solved, limb)?, stretch);
             let reach = (posing > 0.0).then(|| blended_reach(&pose, cursor, bones));
             TwoBonePose { reach, ..pose }
         };
-        let references = root.references(&solution, settings, report.pole);
-        let kind = settings.reference.kind();
+        let references = root.references(&solution, settings, &evaluated.solved);
+        let kind = settings.reference;
         let reference = references[kind as usize].unwrap_or_default();
         let [inner, outer] = solution.range.map(|distance| saturate(distance * root.scale));
         let hard = ReachLimits { inner, outer };
@@ -313,7 +313,7 @@ impl SkeletonRig {
                 },
                 slope: soft_reach.hand_distance_within(range, wanted).slope,
             },
-            limits: hard.blended(bones, soft_reach, posing, 1.0),
+            limits: hard.blended(bones, soft_reach, posing, fk_stretch),
             range,
             limited_by,
             references,
@@ -423,7 +423,7 @@ impl RootSpace {
         &self,
         solution: &LimbSolution,
         settings: &LimbSettings,
-        pole: Option<Vec3>,
+        pose: &Skeleton,
     ) -> [Option<TwistReference>; TwistReferenceKind::ALL.len()] {
         TwistReferenceKind::ALL.map(|kind| match kind {
             TwistReferenceKind::Up => {
@@ -432,16 +432,11 @@ impl RootSpace {
                 Some(if up == Vec3::Y { TwistReference::Up } else { TwistReference::Pole(up) })
             }
             TwistReferenceKind::Pole => {
-                let pole = self.to_world.inverse().transform_point3(pole?.as_dvec3());
+                let pole = settings.pole_space.to_world(pose).transform_point3(settings.pole?);
+                let pole = self.to_world.inverse().transform_point3(pole.as_dvec3());
                 Some(TwistReference::Pole(saturate_vector(pole)))
             }
-            TwistReferenceKind::Stereographic => {
-                let map = match settings.reference {
-                    ElbowReference::Stereographic(map) => map,
-                    _ => Stereographic::default(),
-                };
-                Some(TwistReference::Stereographic(map))
-            }
+            TwistReferenceKind::Stereographic => Some(TwistReference::Stereographic(settings.map)),
             TwistReferenceKind::Transport => Some(TwistReference::Transport),
             // Least rotations from one direction are the stereographic map opposite to it.
             TwistReferenceKind::Fk => {

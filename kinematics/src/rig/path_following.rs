@@ -5,6 +5,7 @@ use super::follow_path::{
 };
 use super::skeleton_rig::SkeletonRig;
 use super::target::Target;
+use crate::limb_ik::{self, Limb};
 use crate::skeleton::{JointId, Skeleton, SkeletonPose};
 use crate::spline::Spline;
 use crate::{Shared, follow, rotation_between};
@@ -63,7 +64,7 @@ impl<'a> PathChain<'a> {
     ) -> Option<Self> {
         let bones = bones(skeleton, target.joint);
         let body = posed(skeleton, &bones)?;
-        let to_skeleton = target.space.to_skeleton(skeleton);
+        let to_skeleton = target.present_space().to_skeleton(skeleton);
         let to_target = to_skeleton.inverse();
         let body = body.into_iter().map(|bone| to_target.transform_vector3(bone)).collect();
         let path = travelled_by_target(target, keys, time, body);
@@ -210,7 +211,19 @@ impl SkeletonRig {
     pub fn fk_at(&self, time: f64) -> Shared<Skeleton> {
         let mut fk = self.skeleton.clone();
         self.chains_at(time).for_each(|chain| chain.write(fk.make_mut()));
+        for (target, stretch) in self.fk_stretches() {
+            if let Ok(limb) = Limb::ending_at(&fk, target.joint) {
+                limb_ik::lengthen(fk.make_mut(), limb, stretch);
+            }
+        }
         fk
+    }
+
+    /// The limb targets that lengthen their bones in the FK pose, each with the factor.
+    pub(super) fn fk_stretches(&self) -> impl Iterator<Item = (&Target, f32)> {
+        let stretch = |target: &Target| target.limb().map_or(1.0, |limb| limb.fk_stretch);
+        let all = self.targets.iter().map(move |target| (target, stretch(target)));
+        all.filter(|(_, stretch)| *stretch != 1.0)
     }
 
     /// Writes the pose of [`SkeletonRig::fk_at`] into an existing pose, reusing its memory.

@@ -15,8 +15,9 @@ use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::pop_cause::RigPopCause;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::limb_ik::{ElbowReference, Limb};
+use crate::limb_ik::{Limb, LimbAim};
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
+use crate::twist::TwistReferenceKind;
 
 /// A rig at a time, with its pose.
 #[derive(Clone, Copy, Debug)]
@@ -293,7 +294,7 @@ impl Step<'_> {
             (fk_elbow - places(fk, limb.upper)[0]).angle_between(fk_tip - fk_elbow)
         };
         let singular = match settings.reference {
-            ElbowReference::Fk => {
+            TwistReferenceKind::Fk => {
                 let fk_pointer = places(fk, limb.lower)[1] - places(fk, limb.upper)[0];
                 let away = std::f64::consts::PI - fk_pointer.angle_between(pointer);
                 if fk_bent(fk) < 0.1 {
@@ -301,11 +302,13 @@ impl Step<'_> {
                 }
                 away
             }
-            ElbowReference::Transport => f64::INFINITY,
-            ElbowReference::Up | ElbowReference::Pole(_) | ElbowReference::Stereographic(_) => {
+            TwistReferenceKind::Transport => f64::INFINITY,
+            TwistReferenceKind::Up
+            | TwistReferenceKind::Pole
+            | TwistReferenceKind::Stereographic => {
                 let axis = self.reference_axis(index, limb, base);
                 let angle = axis.angle_between(pointer);
-                let is_one_sided = matches!(settings.reference, ElbowReference::Stereographic(_));
+                let is_one_sided = settings.reference == TwistReferenceKind::Stereographic;
                 if is_one_sided { angle } else { angle.min(std::f64::consts::PI - angle) }
             }
         };
@@ -350,8 +353,12 @@ impl Step<'_> {
         let settings = self.after.rig.targets[index].limb().copied().unwrap_or_default();
         let pole = self.after.evaluated.targets[index].pole;
         match settings.reference {
-            ElbowReference::Stereographic(map) => rotation * map.singular().as_dvec3(),
-            ElbowReference::Pole(_) => pole.map_or(DVec3::ZERO, |pole| pole.as_dvec3() - base),
+            TwistReferenceKind::Stereographic => {
+                let root =
+                    LimbAim::in_bind_pose(pose, limb).map_or(DMat3::IDENTITY, LimbAim::frame);
+                rotation * root * settings.map.singular().as_dvec3()
+            }
+            TwistReferenceKind::Pole => pole.map_or(DVec3::ZERO, |pole| pole.as_dvec3() - base),
             _ => rotation.y_axis,
         }
     }

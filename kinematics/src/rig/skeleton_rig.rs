@@ -8,9 +8,10 @@ use super::skin::Skin;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind};
 use crate::Shared;
 use crate::chain_ik::{SolverOptions, TipTarget};
-use crate::limb_ik::{self, ElbowReference, Limb};
+use crate::limb_ik::{self, Limb};
 use crate::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 use crate::spline::Spline;
+use crate::twist::TwistReferenceKind;
 
 /// The skeleton with its targets and the options of its solver.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +115,7 @@ impl SkeletonRig {
     pub fn is_carried(&self, target: &Target) -> bool {
         let Some(settings) = target.limb() else { return !self.leads_path(target) };
         let limb = Limb::ending_at(&self.skeleton, target.joint);
-        settings.reference == ElbowReference::Transport
+        settings.reference == TwistReferenceKind::Transport
             || limb.is_ok_and(|limb| limb_ik::bends_to_several_sides(&self.skeleton, limb))
     }
 
@@ -186,7 +187,8 @@ impl SkeletonRig {
 
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
-        if self.targets.iter().any(|target| self.is_solved_for(target)) {
+        let is_solved = self.targets.iter().any(|target| self.is_solved_for(target));
+        if is_solved || self.fk_stretches().next().is_some() {
             self.skeleton_at(time).write_pose(pose);
         } else {
             self.write_fk(time, pose);
@@ -290,7 +292,7 @@ impl SkeletonRig {
 
     /// [`SkeletonRig::bounds`] for a `reach` that the caller has already computed.
     pub fn bounds_with_reach(&self, reach: f32, pose: &SkeletonPose, time: f64) -> (Vec3, f32) {
-        let place = |target: &Target| match target.space.joint() {
+        let place = |target: &Target| match target.present_space().joint() {
             Some(joint) => pose.full(joint).transform_point3(target.at(time)),
             None => target.at(time),
         };

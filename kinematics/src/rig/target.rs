@@ -1,21 +1,26 @@
 use core::f32::consts::TAU;
 
-use glam::{Affine3A, EulerRot, Mat3A, Quat, Vec3};
+use glam::{Affine3A, EulerRot, Mat3, Mat3A, Quat, Vec3};
 
 use crate::chain_ik::Root;
 use crate::limb_ik::{ElbowReference, Limb};
 use crate::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
 use crate::soft_reach::SoftReach;
+use crate::twist::{Stereographic, TwistReferenceKind};
 
 /// A target of a skeleton: a point that the tip of a joint's bone should reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// Joint whose tip should reach the target.
     pub joint: JointId,
-    /// Position at time 0, in [`Target::space`].
+    /// Position at time 0, in [`Target::space`], while the target is not pinned.
     pub home: Vec3,
-    /// The space of the position and of the hand's orientation.
+    /// The space of the position and of the hand's orientation while the target is not pinned.
     pub space: TargetSpace,
+    /// Position at time 0, in the world, while the target is pinned.
+    pub pin: Vec3,
+    /// True if the target is pinned to the world: it stays when its space moves.
+    pub is_pinned: bool,
     /// The joints that the target moves, and how.
     pub kind: TargetKind,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
@@ -52,6 +57,8 @@ impl Target {
             joint,
             home,
             space: TargetSpace::World,
+            pin: home,
+            is_pinned: false,
             kind: TargetKind::WholeBody,
             influence: 0.0,
             weight: 1.0,
@@ -97,21 +104,91 @@ impl Target {
         self.motion.path != TargetPath::Still
     }
 
-    /// Position at a time in seconds, in the target's space.
+    /// The space in which the target is at present: the world while it is pinned.
+    pub fn present_space(&self) -> TargetSpace {
+        if self.is_pinned { TargetSpace::World } else { self.space }
+    }
+
+    /// Position at time 0, in [`Target::present_space`].
+    pub fn present_home(&self) -> Vec3 {
+        if self.is_pinned { self.pin } else { self.home }
+    }
+
+    /// Position at a time in seconds, in [`Target::present_space`].
     pub fn at(&self, time: f64) -> Vec3 {
-        self.home + self.motion.offset(time)
+        self.present_home() + self.motion.offset(time)
     }
 
     /// Position at a time in seconds, in the world, for a pose of the skeleton.
     pub fn in_world(&self, pose: &Skeleton, time: f64) -> Vec3 {
-        self.space.to_world(pose).transform_point3(self.at(time))
+        self.present_space().to_world(pose).transform_point3(self.at(time))
     }
 
     /// The target with its position at `time`, in seconds, at `point` in the world.
     #[must_use]
     pub fn placed(self, pose: &Skeleton, time: f64, point: Vec3) -> Self {
-        let home = self.space.point_from_world(pose, point) - self.motion.offset(time);
-        Self { home, ..self }
+        let space = self.present_space();
+        self.with_home(space.point_from_world(pose, point) - self.motion.offset(time))
+    }
+
+    /// The target with another position at time 0, in [`Target::present_space`].
+    #[must_use]
+    pub fn with_home(self, home: Vec3) -> Self {
+        if self.is_pinned { Self { pin: home, ..self } } else { Self { home, ..self } }
+    }
+
+    /// The target pinned to the world, or not pinned, where it is in the world at `time`, in
+    /// seconds; the hand keeps its orientation.
+    #[must_use]
+    pub fn with_pinned(self, is_pinned: bool, pose: &Skeleton, time: f64) -> Self {
+        let after = Self { is_pinned, ..self };
+        if is_pinned == self.is_pinned {
+            return self;
+        }
+        // Where both spaces are the world, no point is computed, so that none is rounded.
+        if self.space == TargetSpace::World {
+            return after.with_home(self.present_home());
+        }
+        let placed = after.placed(pose, time, self.in_world(pose, time));
+        placed.with_hand_of(&self, pose, None)
+    }
+
+    /// The target with the hand's orientation in the world that `other` has; its angles are the
+    /// equivalent ones nearest to `near`, or to those that it has.
+    #[must_use]
+    fn with_hand_of(mut self, other: &Self, pose: &Skeleton, near: Option<Vec3>) -> Self {
+        let rotation = other.hand_in_world(pose);
+        let near = near.or(self.limb().and_then(|limb| limb.orientation)).unwrap_or_default();
+        let angles = rotation.map(|rotation| self.hand_angles(pose, rotation, near));
+        if let Some(limb) = self.limb_mut() {
+            limb.orientation = angles;
+        }
+        self
+    }
+
+    /// Rotation of the hand in the world, for a pose of the skeleton; `None` for a hand that
+    /// follows the lower bone.
+    pub fn hand_in_world(&self, pose: &Skeleton) -> Option<Quat> {
+        let Vec3 { x, y, z } = self.limb()?.orientation?;
+        let (frame, turned) = (self.hand_frame(pose), Quat::from_euler(EulerRot::ZYX, z, y, x));
+        Some(self.present_space().rotation(pose) * (frame * turned * frame.conjugate()))
+    }
+
+    /// Angles of the hand's orientation, in radians, for a rotation in the world: of all equivalent
+    /// angles those nearest to `near`.
+    pub fn hand_angles(&self, pose: &Skeleton, rotation: Quat, near: Vec3) -> Vec3 {
+        let frame = self.hand_frame(pose);
+        let local = self.present_space().rotation(pose).inverse() * rotation;
+        let local = frame.conjugate() * local * frame;
+        nearest_angles(Mat3A::from_quat(local.normalize()), near)
+    }
+
+    /// The frame in which the angles of the hand's orientation are measured, as those of the
+    /// hand's joint.
+    pub fn hand_frame(&self, pose: &Skeleton) -> Quat {
+        let hand = Limb::ending_at(pose, self.joint).ok().and_then(|limb| limb.hand);
+        let frame = hand.map_or(Mat3::IDENTITY, |hand| pose[hand].frame);
+        if frame == Mat3::IDENTITY { Quat::IDENTITY } else { Quat::from_mat3(&frame) }
     }
 
     /// The target in another space, where it is in the world at `time`, in seconds; the hand keeps
@@ -128,23 +205,20 @@ impl Target {
         if space == self.space {
             return self;
         }
-        let mut after = Self { space, ..self }.placed(pose, time, self.in_world(pose, time));
-        if let Some(limb) = after.limb_mut()
-            && let Some(rotation) = limb.hand_in_world(pose, self.space)
-        {
-            let near = near.or(limb.orientation).unwrap_or_default();
-            limb.orientation = Some(space.angles_from_world(pose, rotation, near));
-        }
-        after
+        // The place that it does not have at present keeps its place in the world, too.
+        let unpinned = Self { is_pinned: false, ..self };
+        let moved = Self { space, ..unpinned }.placed(pose, time, unpinned.in_world(pose, time));
+        let after = Self { is_pinned: self.is_pinned, ..moved };
+        after.with_hand_of(&self, pose, near)
     }
 
     /// The target with its limb's pole in another space, where it is in the world.
     #[must_use]
     pub fn with_pole_in_space(mut self, space: TargetSpace, pose: &Skeleton) -> Self {
         if let Some(limb) = self.limb_mut() {
-            let place = limb.pole_in_world(pose);
-            if let Some(place) = place.filter(|_| space != limb.pole_space) {
-                limb.reference = ElbowReference::Pole(space.point_from_world(pose, place));
+            if let Some(pole) = limb.pole.filter(|_| space != limb.pole_space) {
+                let place = limb.pole_space.to_world(pose).transform_point3(pole);
+                limb.pole = Some(space.point_from_world(pose, place));
             }
             limb.pole_space = space;
         }
@@ -212,53 +286,79 @@ impl TargetMotion {
 }
 
 /// Settings of a limb target.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimbSettings {
-    /// Direction of the elbow at twist 0.
-    pub reference: ElbowReference,
+    /// Kind of the direction of the elbow at twist 0.
+    pub reference: TwistReferenceKind,
+    /// The point of [`TwistReferenceKind::Pole`], in [`LimbSettings::pole_space`]; other references
+    /// keep it.
+    pub pole: Option<Vec3>,
+    /// The space of the pole.
+    pub pole_space: TargetSpace,
+    /// The map of [`TwistReferenceKind::Stereographic`], in Root space; other references keep it.
+    pub map: Stereographic,
     /// Angle in radians by which the elbow is turned about the axis from the limb's base to the
     /// target.
     pub twist: f32,
     /// Behaviour near the limits of the reach.
     pub soft_reach: SoftReach,
-    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x; `None`
-    /// for a hand that follows the lower bone.
+    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x in the
+    /// frame of its joint; `None` for a hand that follows the lower bone.
     pub orientation: Option<Vec3>,
-    /// The space of the point of [`ElbowReference::Pole`].
-    pub pole_space: TargetSpace,
+    /// Factor by which the bones are lengthened in the FK pose, above 0.
+    pub fk_stretch: f32,
+}
+
+impl Default for LimbSettings {
+    /// An elbow on the side that it has by FK, hard limits, and a hand that follows the lower bone.
+    fn default() -> Self {
+        Self {
+            reference: TwistReferenceKind::Fk,
+            pole: None,
+            pole_space: TargetSpace::World,
+            map: Stereographic::default(),
+            twist: 0.0,
+            soft_reach: SoftReach::default(),
+            orientation: None,
+            fk_stretch: 1.0,
+        }
+    }
 }
 
 impl LimbSettings {
-    /// The space and the position of the pole; `None` for another reference.
+    /// The space and the position of the pole that is in use; `None` for another reference.
     pub fn pole(&self) -> Option<(TargetSpace, Vec3)> {
-        match self.reference {
-            ElbowReference::Pole(pole) => Some((self.pole_space, pole)),
-            _ => None,
-        }
+        let pole = self.pole.filter(|_| self.reference == TwistReferenceKind::Pole);
+        pole.map(|pole| (self.pole_space, pole))
     }
 
-    /// Position of the pole in the world, for a pose of the skeleton; `None` for another reference.
+    /// Position in the world of the pole that is in use, for a pose of the skeleton; `None` for
+    /// another reference.
     pub fn pole_in_world(&self, pose: &Skeleton) -> Option<Vec3> {
         self.pole().map(|(space, pole)| space.to_world(pose).transform_point3(pole))
     }
 
-    /// The reference with its pole in the world, for a pose of the skeleton.
+    /// The direction of the elbow at twist 0, for a pose of the skeleton. A pole without a place is
+    /// the side of FK.
     pub(super) fn reference_in_world(&self, pose: &Skeleton) -> ElbowReference {
-        self.pole_in_world(pose).map_or(self.reference, ElbowReference::Pole)
+        match self.reference {
+            TwistReferenceKind::Up => ElbowReference::Up,
+            TwistReferenceKind::Pole => {
+                self.pole_in_world(pose).map_or(ElbowReference::Fk, ElbowReference::Pole)
+            }
+            TwistReferenceKind::Stereographic => ElbowReference::Stereographic(self.map),
+            TwistReferenceKind::Transport => ElbowReference::Transport,
+            TwistReferenceKind::Fk => ElbowReference::Fk,
+        }
     }
 
-    /// Rotation of the hand in the world, for a pose of the skeleton and the space of the target;
-    /// `None` for a hand that follows the lower bone.
-    pub fn hand_in_world(&self, pose: &Skeleton, space: TargetSpace) -> Option<Quat> {
-        let turned = |Vec3 { x, y, z }| Quat::from_euler(EulerRot::ZYX, z, y, x);
-        self.orientation.map(|angles| space.rotation(pose) * turned(angles))
-    }
-
-    /// True if all numbers are finite.
+    /// True if all numbers are finite and the FK stretch is above 0.
     pub(super) fn is_finite(&self) -> bool {
-        self.pole().is_none_or(|(_, pole)| pole.is_finite())
+        self.pole.is_none_or(Vec3::is_finite)
             && self.twist.is_finite()
             && self.orientation.is_none_or(Vec3::is_finite)
+            && self.fk_stretch.is_finite()
+            && self.fk_stretch > 0.0
     }
 }
 
@@ -312,13 +412,6 @@ impl TargetSpace {
         }
         let local = self.to_world(pose).inverse().transform_point3(point);
         if local.is_finite() { local } else { point }
-    }
-
-    /// Euler angles in this space, in radians, of a rotation in the world: of all equivalent angles
-    /// those nearest to `near`.
-    pub fn angles_from_world(self, pose: &Skeleton, rotation: Quat, near: Vec3) -> Vec3 {
-        let local = self.rotation(pose).inverse() * rotation;
-        nearest_angles(Mat3A::from_quat(local.normalize()), near)
     }
 
     /// The same space after its joint was renumbered; the world if the joint was removed.

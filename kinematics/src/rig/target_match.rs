@@ -1,11 +1,12 @@
 use glam::{DQuat, Vec3};
 
 use super::carried::Carried;
+use super::evaluate::{EvaluatedSkeleton, TargetOutcome};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, Target, TargetKind};
-use crate::limb_ik::{self, ElbowReference, Limb};
+use crate::angle;
+use crate::limb_ik::{self, Limb};
 use crate::skeleton::Skeleton;
-use crate::{Shared, angle};
 
 /// Matches between the FK pose and the pose that a target solves for.
 impl SkeletonRig {
@@ -14,37 +15,53 @@ impl SkeletonRig {
     /// moving the pole, or by its twist. At any influence the skeleton is then posed as without the
     /// target. `before` is the state from which the poses continue.
     pub fn match_target_to_fk(&mut self, index: usize, time: f64, before: &Carried) {
-        let pose = self.skeleton_at_without(index, time, before);
+        let without = self.without(index);
+        let evaluated = without.step(time, before).0;
+        let pose = &evaluated.solved;
         let target = self.targets[index];
         if pose.joint(target.joint).is_none() {
             return;
         }
-        let mut target = target.placed(&pose, time, pose.tip(target.joint));
+        // Soft limits keep a limb's tip from its target, and the target is as far beyond the tip.
+        let place = match without.limb_frames(&evaluated, index) {
+            Some(frames) if !frames.posed.ik.soft_reach.is_hard() => {
+                let (soft, pose) = (frames.posed.ik.soft_reach, frames.pose());
+                let distance = soft.cursor_distance_within(frames.range, pose.distance);
+                frames.in_world(pose.pointer.direction * distance)
+            }
+            _ => pose.tip(target.joint),
+        };
+        let mut target = target.placed(pose, time, place);
         if let (TargetKind::Limb(settings), Ok(limb)) =
-            (target.kind, Limb::ending_at(&pose, target.joint))
+            (target.kind, Limb::ending_at(pose, target.joint))
         {
-            target.kind = TargetKind::Limb(settings.matched(&pose, limb, &target));
+            target.kind = TargetKind::Limb(settings.matched(pose, limb, &target));
         }
         self.targets[index] = target;
     }
 
     /// Writes the pose at `time`, in seconds, to the FK angles of the joints that a target moves.
     /// With an influence between 0 and 1, the target then moves to the tip, where FK and IK agree.
-    /// The skeleton does not move, unless a part of a stretch is blended in: FK has no stretch.
+    /// The skeleton does not move.
     /// `before` is the state from which the poses continue; afterwards they continue from nothing.
     pub fn match_fk_to_pose(&mut self, index: usize, time: f64, before: &Carried) {
-        let solved = self.step(time, before).0.solved;
+        let EvaluatedSkeleton { solved, targets, .. } = self.step(time, before).0;
         let target = self.targets[index];
         let is_whole_body = target.kind == TargetKind::WholeBody;
         for joint in self.moved_by(&target).turned {
-            // A limb changes offsets only by stretch, which FK does not have.
+            // A limb changes offsets only by its stretch.
             let offset =
                 if is_whole_body { solved[joint].offset } else { self.skeleton[joint].offset };
             let rotation = solved[joint].rotation;
             self.skeleton_mut()
                 .write_local(joint, |joint| (joint.rotation, joint.offset) = (rotation, offset));
         }
-        let pose = self.skeleton_at_without(index, time, &Carried::default());
+        if let TargetOutcome::Limb(report) = &targets[index].outcome
+            && let Some(limb) = self.targets[index].limb_mut()
+        {
+            limb.fk_stretch += (report.stretch - limb.fk_stretch) * target.influence;
+        }
+        let pose = self.without(index).step(time, &Carried::default()).0.solved;
         if let Some(settings) = self.targets[index].limb_mut()
             && let Ok(limb) = Limb::ending_at(&pose, target.joint)
         {
@@ -57,11 +74,21 @@ impl SkeletonRig {
 }
 
 impl SkeletonRig {
-    /// The skeleton at a time in seconds, posed by all targets but one.
-    fn skeleton_at_without(&self, index: usize, time: f64, before: &Carried) -> Shared<Skeleton> {
+    /// A pole in front of the elbow of a target's limb as it is posed, in the pole's space; `None`
+    /// for a target without a limb.
+    pub fn new_pole(&self, evaluated: &EvaluatedSkeleton, index: usize) -> Option<Vec3> {
+        let frames = self.limb_frames(evaluated, index)?;
+        let pose = frames.pose();
+        let pole = frames.in_world(pose.elbow + pose.outward() * frames.bones().upper());
+        let space = self.targets[index].limb()?.pole_space;
+        Some(space.point_from_world(&evaluated.solved, pole))
+    }
+
+    /// The rig without one of its targets.
+    fn without(&self, index: usize) -> Self {
         let mut without = self.clone();
         without.targets[index].enabled = false;
-        without.step(time, before).0.solved
+        without
     }
 }
 
@@ -70,7 +97,7 @@ impl LimbSettings {
     fn matched(mut self, pose: &Skeleton, limb: Limb, target: &Target) -> Self {
         if let (Some(angles), Some(hand)) = (self.orientation, limb.hand) {
             let rotation = pose.rotation_in_world(hand).as_quat();
-            self.orientation = Some(target.space.angles_from_world(pose, rotation, angles));
+            self.orientation = Some(target.hand_angles(pose, rotation, angles));
         }
         self.match_elbow(pose, limb);
         self
@@ -88,7 +115,7 @@ impl LimbSettings {
             return;
         }
         match self.turned_pole(pose, limb, twist - self.twist) {
-            Some(pole) => self.reference = ElbowReference::Pole(pole),
+            Some(pole) => self.pole = Some(pole),
             None => self.twist = twist,
         }
     }

@@ -248,10 +248,15 @@ impl Joint {
     /// The angles for a rotation in the space of the joint's base: of all equivalent angles those
     /// that the limits change least, then those nearest to the joint's own; clamped to the limits.
     pub(crate) fn angles_within(&self, rotation: DMat3) -> AnglesWithin {
+        self.angles_within_near(rotation, self.rotation)
+    }
+
+    /// [`Joint::angles_within`] with the equivalent angles that are nearest to `near`.
+    pub(crate) fn angles_within_near(&self, rotation: DMat3, near: Vec3) -> AnglesWithin {
         const ROUNDING: f32 = 1e-5;
         let rotation = Mat3A::from(rotation.as_mat3());
         let frame = Mat3A::from(self.frame);
-        let all = angle_triples(frame.transpose() * rotation * frame, self.rotation);
+        let all = angle_triples(frame.transpose() * rotation * frame, near);
         let [first, second] = all.map(|angles| {
             let within = self.limits.project(angles);
             let changed = (within - angles).abs().max_element();

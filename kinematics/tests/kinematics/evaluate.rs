@@ -2,13 +2,14 @@
 
 use glam::{Affine3A, DMat3, DVec3, Quat, Vec3};
 use ik_arm_kinematics::Shared;
-use ik_arm_kinematics::limb_ik::{ElbowReference, Limb, LimbReach};
+use ik_arm_kinematics::limb_ik::{Limb, LimbReach};
 use ik_arm_kinematics::rig::{
     Carried, EvaluatedSkeleton, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion,
     TargetOutcome, TargetPath, TargetSpace,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
+use ik_arm_kinematics::twist::TwistReferenceKind;
 
 use crate::common::Random;
 use crate::common::skeletons::{forest, space_f64, transform};
@@ -90,10 +91,11 @@ fn random_rig(random: &mut Random) -> SkeletonRig {
         };
         let settings = LimbSettings {
             reference: random.one_of(&[
-                ElbowReference::Fk,
-                ElbowReference::Up,
-                ElbowReference::Pole(random_pole()),
+                TwistReferenceKind::Fk,
+                TwistReferenceKind::Up,
+                TwistReferenceKind::Pole,
             ]),
+            pole: Some(random_pole()),
             twist: random.within(-3.0..3.0),
             soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
                 .expect("in range"),

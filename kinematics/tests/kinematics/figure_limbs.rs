@@ -3,14 +3,14 @@
 use core::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot, Vec3};
-use ik_arm_kinematics::limb_ik::{ElbowReference, Limb, LimbReach};
+use ik_arm_kinematics::limb_ik::{Limb, LimbReach};
 use ik_arm_kinematics::rig::{
     EvaluatedSkeleton, LimbFrames, LimbPart, LimbSettings, SkeletonRig, Target, TargetKind,
     TargetOutcome,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
-use ik_arm_kinematics::twist::{Stereographic, TwistReferenceKind};
+use ik_arm_kinematics::twist::TwistReferenceKind;
 use ik_arm_kinematics::two_bone::Reach;
 
 use crate::common::Random;
@@ -77,11 +77,11 @@ fn case(random: &mut Random) -> Case {
     }
     let pole = home + random.direction() * scale(&skeleton) as f32;
     let reference = random.one_of(&[
-        ElbowReference::Fk,
-        ElbowReference::Up,
-        ElbowReference::Pole(pole),
-        ElbowReference::Stereographic(Stereographic::default()),
-        ElbowReference::Transport,
+        TwistReferenceKind::Fk,
+        TwistReferenceKind::Up,
+        TwistReferenceKind::Pole,
+        TwistReferenceKind::Stereographic,
+        TwistReferenceKind::Transport,
     ]);
     let soft_reach = random.one_of(&[
         SoftReach::default(),
@@ -89,7 +89,10 @@ fn case(random: &mut Random) -> Case {
         SoftReach::new(0.0, 1.4, 0.3).expect("stretch"),
     ]);
     let twist = if random.coin() { random.within(-3.0..3.0) } else { 0.0 };
-    let settings = LimbSettings { reference, twist, soft_reach, ..LimbSettings::default() };
+    let pole = Some(pole);
+    let fk_stretch = random.one_of(&[1.0, 1.0, 1.3, 0.8]);
+    let settings =
+        LimbSettings { reference, pole, twist, soft_reach, fk_stretch, ..LimbSettings::default() };
     let influence = random.one_of(&[1.0, 1.0, 1.0, 0.4, 0.0]);
     let kind = TargetKind::Limb(settings);
     let target = Target { kind, influence, ..Target::new(limb.lower, home, 1.0) };
@@ -210,25 +213,17 @@ fn the_twist_is_measured_from_the_reference_and_references_agree_with_what_the_j
     assert!(compared > CASES, "{compared}");
 }
 
-/// The rig with its limb measured from a reference of this kind; `None` for a pole, which it may
-/// not have, and for Transport, which begins with the FK pose.
+/// The rig with its limb measured from a reference of this kind; `None` for Transport, which begins
+/// with the FK pose.
 fn with_reference(
     rig: &SkeletonRig,
     frames: &LimbFrames,
     kind: TwistReferenceKind,
 ) -> Option<SkeletonRig> {
-    let reference = match kind {
-        TwistReferenceKind::Up => ElbowReference::Up,
-        TwistReferenceKind::Fk => ElbowReference::Fk,
-        TwistReferenceKind::Stereographic => {
-            ElbowReference::Stereographic(Stereographic::default())
-        }
-        TwistReferenceKind::Pole | TwistReferenceKind::Transport => return None,
-    };
     let mut other = rig.clone();
     let limb = other.targets[0].limb_mut()?;
-    (limb.reference, limb.twist) = (reference, frames.posed.twist);
-    Some(other)
+    (limb.reference, limb.twist) = (kind, frames.posed.twist);
+    (kind != TwistReferenceKind::Transport).then_some(other)
 }
 
 #[test]

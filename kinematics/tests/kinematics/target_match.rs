@@ -1,11 +1,10 @@
 //! Matches between the FK pose and targets: nothing moves.
 
 use glam::{DQuat, Vec3};
-use ik_arm_kinematics::limb_ik::ElbowReference;
 use ik_arm_kinematics::rig::{Carried, LimbSettings, SkeletonRig, Target, TargetKind, TargetSpace};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm_kinematics::soft_reach::SoftReach;
-use ik_arm_kinematics::twist::Stereographic;
+use ik_arm_kinematics::twist::TwistReferenceKind;
 
 use crate::common::Random;
 use crate::common::skeletons::transform;
@@ -46,11 +45,12 @@ fn figure(random: &mut Random) -> Figure {
 fn settings(random: &mut Random) -> LimbSettings {
     LimbSettings {
         reference: random.one_of(&[
-            ElbowReference::Fk,
-            ElbowReference::Up,
-            ElbowReference::Pole(Vec3::new(1.0, -2.0, 3.0)),
-            ElbowReference::Stereographic(Stereographic::default()),
+            TwistReferenceKind::Fk,
+            TwistReferenceKind::Up,
+            TwistReferenceKind::Pole,
+            TwistReferenceKind::Stereographic,
         ]),
+        pole: Some(Vec3::new(1.0, -2.0, 3.0)),
         twist: random.within(-3.0..3.0),
         orientation: random.coin().then(|| random.angles()),
         soft_reach: SoftReach::new(0.0, random.one_of(&[1.0, 1.4]), 0.0).expect("in range"),

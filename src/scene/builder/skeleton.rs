@@ -256,7 +256,7 @@ fn residual_decimals(reach: f32) -> usize {
 
 /// Adds the recent path of a moving target in its present space, fading out with age.
 fn add_trail(scene: &mut Scene, target: &Target, pose: &Skeleton, time: f64) {
-    let to_world = target.space.to_world(pose);
+    let to_world = target.present_space().to_world(pose);
     let (seconds, steps) = TRAIL;
     let seconds = seconds.min(f64::from(target.motion.period));
     let at = |step: usize| -> Vec3 {

@@ -270,7 +270,9 @@ impl GripRing {
             RotationAxis::Y => turn * Vec3::Y,
             RotationAxis::Z => Vec3::Z,
         };
-        let axis = rig.targets[index].space.rotation(posed.skeleton()) * local;
+        let target = &rig.targets[index];
+        let frame = target.hand_frame(posed.skeleton());
+        let axis = target.present_space().rotation(posed.skeleton()) * (frame * local);
         Some(Self { centre: posed.targets().get(index)?.position, axis })
     }
 }

@@ -42,7 +42,7 @@ impl FollowMouse {
         let mut heads: Vec<_> = leaders
             .filter_map(|target| {
                 let beside = home_in_world(rig, solved, target.joint)?;
-                Some(FollowingHead { joint: target.joint, space: target.space, beside })
+                Some(FollowingHead { joint: target.joint, space: target.present_space(), beside })
             })
             .collect();
         let middle = heads.iter().map(|it| it.beside).sum::<Vec3>() / heads.len().max(1) as f32;
@@ -83,7 +83,7 @@ impl FollowMouse {
 
 fn home_in_world(rig: &SkeletonRig, solved: &Skeleton, joint: JointId) -> Option<Vec3> {
     let target = &rig.targets[rig.target(joint)?];
-    Some(target.space.to_world(solved).transform_point3(target.home))
+    Some(target.present_space().to_world(solved).transform_point3(target.present_home()))
 }
 
 /// Removes the keys of a channel that a recording from `before` to `time` replaces: those between,

@@ -3,7 +3,7 @@ use glam::Vec3;
 use crate::document::{Channel, PathKind, Posed, Ray, Target, Track};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
-use crate::kinematics::limb_ik::{ElbowReference, Limb};
+use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::session::drag::body::is_elbow;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
@@ -113,7 +113,7 @@ fn drag_limb_pole(session: &Session, joint: JointId, to: Vec3) -> Outcome {
         return Outcome::default();
     };
     let pole = limb.pole_space.point_from_world(&session.posed().evaluated_skeleton().solved, to);
-    limb.reference = ElbowReference::Pole(pole);
+    limb.pole = Some(pole);
     targets::set_target(session, target)
 }
 

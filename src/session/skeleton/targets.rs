@@ -2,8 +2,8 @@ use glam::Vec3;
 
 use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
 use crate::kinematics::diagnosis::{Diagnosis, Remedy};
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::{Joint, JointId};
+use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{Carried, TargetSpace};
 use crate::session::outcome::{Consequence, Outcome};
 use crate::session::session::Session;
@@ -37,7 +37,7 @@ pub enum TargetEdit {
         /// Joint of the target.
         joint: JointId,
         /// The reference.
-        reference: ElbowReference,
+        reference: TwistReferenceKind,
     },
     /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation
     /// and the elbow's side.
@@ -88,11 +88,6 @@ impl TargetEdit {
             }
             Self::SetPoleSpace { joint, space } => {
                 Outcome::change(shown, |document| document.set_pole_space(joint, space, time))
-            }
-            Self::SetReference { reference: ElbowReference::Pole(pole), .. }
-                if !pole.is_finite() =>
-            {
-                Outcome::fail(format!("The pole of a limb must be finite, got {pole}"))
             }
             Self::SetReference { joint, reference } => Outcome::change(shown, |document| {
                 document.set_limb_reference(joint, reference, time);
@@ -169,10 +164,12 @@ pub(in crate::session) fn set_target(session: &Session, target: Target) -> Outco
 
 /// The rule that a target breaks; `None` for a valid one.
 fn fault(target: &Target) -> Option<String> {
-    let Target { home, motion, weight, softness, influence, .. } = *target;
+    let Target { home, pin, motion, weight, softness, influence, .. } = *target;
     let above_0 = |value: f32| value.is_finite() && value > 0.0;
     if !home.is_finite() {
         Some(format!("The position of a target must be finite, got {home}"))
+    } else if !pin.is_finite() {
+        Some(format!("The position of a pinned target must be finite, got {pin}"))
     } else if !above_0(weight) {
         Some(format!("The weight of a target must be finite and above 0, got {weight}"))
     } else if !(above_0(motion.period) && motion.radius.is_finite()) {
@@ -182,7 +179,10 @@ fn fault(target: &Target) -> Option<String> {
     } else if !(0.0..1.0).contains(&softness) {
         Some(format!("The softness of a target must be from 0 to less than 1, got {softness}"))
     } else if !target.has_finite_kind() {
-        Some("The twist, pole and orientation of a limb's target must be finite".to_owned())
+        Some(
+            "The twist, pole, orientation and FK stretch of a limb's target must be finite"
+                .to_owned(),
+        )
     } else {
         None
     }

@@ -10,9 +10,9 @@ use ik_arm::document::{
 };
 use ik_arm::io::{self, Progress};
 use ik_arm::kinematics::chain_ik::Method;
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::soft_reach::SoftReach;
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Preferences, Session};
@@ -68,10 +68,12 @@ fn target(random: &mut Random, rig: &SkeletonRig, joint: JointId, reach: f32) ->
     let home = rig.skeleton.tip(joint) + random.vector(0.3) * reach;
     let path = random.one_of(&[TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight]);
     let motion = TargetMotion { path, radius: 0.1 * reach, period: 1.3 };
-    let pole = ElbowReference::Pole(random.vector(3.0) * reach);
-    let reference = random.one_of(&[ElbowReference::Fk, ElbowReference::Up, pole]);
+    let pole = Some(random.vector(3.0) * reach);
+    let reference =
+        random.one_of(&[TwistReferenceKind::Fk, TwistReferenceKind::Up, TwistReferenceKind::Pole]);
     let settings = LimbSettings {
         reference,
+        pole,
         twist: random.within(-2.0..2.0),
         // No stretch: bones of exported skeletons keep their lengths.
         soft_reach: SoftReach::new(random.within(0.0..0.5), 1.0, 0.1).expect("in range"),

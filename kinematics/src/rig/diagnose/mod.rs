@@ -148,7 +148,7 @@ impl SkeletonRig {
             let pose = self.skeleton_at(time);
             self.change_target(*joint, |target| {
                 let moved = target.placed(&pose, time, *point);
-                if moved.home.is_finite() {
+                if moved.present_home().is_finite() {
                     *target = moved;
                 }
             });

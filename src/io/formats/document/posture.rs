@@ -1,10 +1,10 @@
 //! Fields of a posture in a file, and conversions between these fields and a [`Posture`].
 
-use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::skeleton::joint;
 use crate::io::json::{AtField, FieldError, JsonObject, JsonPoint, Whole};
+use crate::kinematics::limb_ik::LimbPosture;
 use crate::rig::{Posture, PosturedJoint};
 
 #[derive(Serialize, Deserialize)]
@@ -23,8 +23,7 @@ struct JointFields {
     offset: Option<JsonPoint>,
 }
 
-/// The joint of a limb's target with the vectors of
-/// [`CarriedLimb::to_vectors`](crate::kinematics::limb_ik::CarriedLimb::to_vectors).
+/// The joint of a limb's target with the fields of [`LimbPosture`].
 #[derive(Serialize, Deserialize)]
 struct LimbFields {
     joint: Whole,
@@ -32,6 +31,8 @@ struct LimbFields {
     elbow: JsonPoint,
     bend_axis: JsonPoint,
     bend: JsonPoint,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hand: Option<JsonPoint>,
 }
 
 impl PostureFields {
@@ -41,9 +42,11 @@ impl PostureFields {
             rotation: of.rotation.map(JsonPoint),
             offset: of.offset.map(JsonPoint),
         };
-        let limb = |(joint, vectors): (&_, &[Vec3; 4])| {
-            let [pointer, elbow, bend_axis, bend] = vectors.map(JsonPoint);
-            LimbFields { joint: Whole::from(*joint), pointer, elbow, bend_axis, bend }
+        let limb = |(joint, of): (&_, &LimbPosture)| {
+            let [pointer, elbow, bend_axis, bend] =
+                [of.pointer, of.elbow, of.bend_axis, of.bend].map(JsonPoint);
+            let hand = of.hand.map(JsonPoint);
+            LimbFields { joint: Whole::from(*joint), pointer, elbow, bend_axis, bend, hand }
         };
         let limbs: Vec<_> = posture.limbs.iter().map(limb).map(JsonObject).collect();
         Self {
@@ -62,8 +65,11 @@ impl PostureFields {
         }
         for (index, JsonObject(fields)) in self.limbs.unwrap_or_default().into_iter().enumerate() {
             let at = joint(fields.joint, joints).at("joint").at(index).at("limbs")?;
-            let LimbFields { pointer, elbow, bend_axis, bend, .. } = fields;
-            posture.limbs.insert(at, [pointer, elbow, bend_axis, bend].map(|vector| vector.0));
+            let LimbFields { pointer, elbow, bend_axis, bend, hand, .. } = fields;
+            let [pointer, elbow, bend_axis, bend] =
+                [pointer, elbow, bend_axis, bend].map(|vector| vector.0);
+            let hand = hand.map(|hand| hand.0);
+            posture.limbs.insert(at, LimbPosture { pointer, elbow, bend_axis, bend, hand });
         }
         Ok(posture)
     }

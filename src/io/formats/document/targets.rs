@@ -13,9 +13,8 @@ use crate::io::json::{
     Above0, AtField, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole, value_or,
 };
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
-use crate::kinematics::twist::Stereographic;
+use crate::kinematics::twist::{Stereographic, TwistReferenceKind};
 use crate::rig::{LimbSettings, TargetKind, TargetSpace};
 
 #[derive(Serialize, Deserialize)]
@@ -25,6 +24,11 @@ pub struct TargetFields {
     /// The joint that the target is on; without it, the target is in the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     on_joint: Option<Whole>,
+    /// The place in the world while the target is pinned; without it, `home`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pin: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pinned: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     limb: Option<JsonObject<LimbFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,28 +42,26 @@ pub struct TargetFields {
 
 #[derive(Serialize, Deserialize)]
 struct LimbFields {
-    reference: Option<ElbowReferenceName>,
+    reference: Option<TwistReferenceKind>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pole: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pole_on_joint: Option<Whole>,
+    /// The stereographic map, if it is not the default one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    map: Option<JsonObject<MapFields>>,
     twist: Option<JsonNumber>,
     soft_reach: Option<JsonObject<SoftReachFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     orientation: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fk_stretch: Option<Above0>,
 }
 
-/// An [`ElbowReference`] without its pole or map.
-#[derive(Clone, Copy, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum ElbowReferenceName {
-    #[default]
-    Fk,
-    #[serde(alias = "limb")]
-    Up,
-    Pole,
-    Stereographic,
-    Transport,
+#[derive(Serialize, Deserialize)]
+struct MapFields {
+    singular: JsonPoint,
+    up: JsonPoint,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -116,6 +118,8 @@ impl TargetFields {
             joint: target.joint.into(),
             home: target.home.into(),
             on_joint: target.space.joint().map(Whole::from),
+            pin: (target.is_pinned || target.pin != target.home).then_some(target.pin.into()),
+            pinned: target.is_pinned.then_some(true),
             limb: match &target.kind {
                 TargetKind::WholeBody => None,
                 TargetKind::Limb(settings) => Some(JsonObject(LimbFields::new(settings))),
@@ -142,6 +146,8 @@ impl TargetFields {
         }
         Ok(Target {
             space: space(self.on_joint, joints).at("on_joint")?,
+            pin: value_or(self.pin, default.pin),
+            is_pinned: self.pinned.unwrap_or(default.is_pinned),
             kind,
             influence: value_or(self.influence, default.influence),
             weight: value_or(self.weight, default.weight),
@@ -155,44 +161,48 @@ impl TargetFields {
 
 impl LimbFields {
     fn new(settings: &LimbSettings) -> Self {
-        let (reference, pole) = match settings.reference {
-            ElbowReference::Fk => (ElbowReferenceName::Fk, None),
-            ElbowReference::Up => (ElbowReferenceName::Up, None),
-            ElbowReference::Pole(pole) => (ElbowReferenceName::Pole, Some(pole.into())),
-            ElbowReference::Stereographic(_) => (ElbowReferenceName::Stereographic, None),
-            ElbowReference::Transport => (ElbowReferenceName::Transport, None),
-        };
+        let default = LimbSettings::default();
+        let map =
+            MapFields { singular: settings.map.singular().into(), up: settings.map.up().into() };
         Self {
-            reference: Some(reference),
-            pole,
+            reference: Some(settings.reference),
+            pole: settings.pole.map(JsonPoint),
             pole_on_joint: settings.pole_space.joint().map(Whole::from),
+            map: (settings.map != default.map).then_some(JsonObject(map)),
             twist: Some(settings.twist.into()),
             soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
             orientation: settings.orientation.map(JsonPoint),
+            fk_stretch: (settings.fk_stretch != default.fk_stretch)
+                .then_some(settings.fk_stretch.into()),
         }
     }
 
     fn settings(self, joints: usize) -> Result<LimbSettings, FieldError> {
-        let reference = match (self.reference.unwrap_or_default(), self.pole) {
-            (ElbowReferenceName::Transport, _) => ElbowReference::Transport,
-            (ElbowReferenceName::Fk, _) => ElbowReference::Fk,
-            (ElbowReferenceName::Up, _) => ElbowReference::Up,
-            (ElbowReferenceName::Pole, Some(JsonPoint(pole))) => ElbowReference::Pole(pole),
-            (ElbowReferenceName::Pole, None) => {
-                return Err("must have `pole` for reference `pole`".into());
-            }
-            (ElbowReferenceName::Stereographic, _) => {
-                ElbowReference::Stereographic(Stereographic::default())
-            }
-        };
+        let default = LimbSettings::default();
+        let reference = self.reference.unwrap_or(default.reference);
+        if reference == TwistReferenceKind::Pole && self.pole.is_none() {
+            return Err("must have `pole` for reference `pole`".into());
+        }
+        let map = self.map.map(|JsonObject(fields)| fields.map());
         let soft_reach = self.soft_reach.map(|JsonObject(fields)| fields.soft_reach());
         Ok(LimbSettings {
             reference,
-            twist: value_or(self.twist, 0.0),
+            pole: self.pole.map(Vec3::from),
+            pole_space: space(self.pole_on_joint, joints).at("pole_on_joint")?,
+            map: map.transpose().at("map")?.unwrap_or_default(),
+            twist: value_or(self.twist, default.twist),
             soft_reach: soft_reach.transpose().at("soft_reach")?.unwrap_or_default(),
             orientation: self.orientation.map(Vec3::from),
-            pole_space: space(self.pole_on_joint, joints).at("pole_on_joint")?,
+            fk_stretch: value_or(self.fk_stretch, default.fk_stretch),
         })
+    }
+}
+
+impl MapFields {
+    fn map(self) -> Result<Stereographic, FieldError> {
+        let [singular, up] = [self.singular, self.up].map(Vec3::from);
+        let parallel = "must have directions `singular` and `up` that are not parallel";
+        Stereographic::from_saved(singular, up).ok_or_else(|| parallel.to_owned().into())
     }
 }
 

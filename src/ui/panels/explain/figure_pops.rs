@@ -3,9 +3,9 @@
 use egui::Ui;
 
 use crate::document::{FramePop, Inspection, LostSpan, SkeletonRig, Slide, Target};
-use crate::kinematics::limb_ik::ElbowReference;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, RigPop, RigPopCause, TargetKind};
 use crate::session::{Actions, PlaybackAction, SelectAction, Session, SolverEdit, TargetEdit};
 use crate::ui::widgets;
@@ -87,7 +87,7 @@ fn remedy(rig: &SkeletonRig, pop: &RigPop) -> Option<(String, &'static str, Targ
             ))
         }
         (RigPopCause::Singular, TargetKind::Limb(limb)) => {
-            let limb = LimbSettings { reference: ElbowReference::Transport, ..limb };
+            let limb = LimbSettings { reference: TwistReferenceKind::Transport, ..limb };
             let carried = Target { kind: TargetKind::Limb(limb), ..target };
             let tooltip = "Carry the direction along the motion: it flips nowhere";
             Some((format!("Use Transport for {name}"), tooltip, carried))

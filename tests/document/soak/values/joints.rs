@@ -4,12 +4,11 @@ use glam::{Affine3A, Vec3};
 use ik_arm::document::{PathKind, Target, TargetMotion, TargetPath, WavyRing};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
-use ik_arm::kinematics::limb_ik::ElbowReference;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
     Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
-use ik_arm::kinematics::twist::Stereographic;
+use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{
     BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
     SkinSource, TargetKind, TargetSpace,
@@ -198,16 +197,14 @@ impl Values<'_> {
         let reference = self.elbow_reference();
         let orientation = self.chance(0.5).then(|| self.small_point());
         let (twist, pole_space) = (self.number(4.0), self.space());
+        let pole = self.chance(0.7).then(|| self.small_point());
         let settings =
-            LimbSettings { reference, twist, orientation, pole_space, ..Default::default() };
+            LimbSettings { reference, pole, twist, orientation, pole_space, ..Default::default() };
         TargetKind::Limb(settings)
     }
 
-    pub fn elbow_reference(&mut self) -> ElbowReference {
-        let pole = self.small_point();
-        let map = ElbowReference::Stereographic(Stereographic::default());
-        let (fk, transport) = (ElbowReference::Fk, ElbowReference::Transport);
-        self.one_of(&[fk, ElbowReference::Up, ElbowReference::Pole(pole), map, transport])
+    pub fn elbow_reference(&mut self) -> TwistReferenceKind {
+        self.one_of(&TwistReferenceKind::ALL)
     }
 
     /// The world, or the space of any joint; often one in which the target cannot be.

@@ -1,14 +1,12 @@
 //! The joints that a target moves, the whole body or a limb; settings of a limb's target: elbow,
 //! hand and soft limits; the space in which a target or a pole is fixed.
 
-use core::mem::discriminant;
-
 use egui::Ui;
 use glam::Vec3;
 
 use crate::document::{Channel, Target};
-use crate::kinematics::limb_ik::{ElbowReference, Limb};
-use crate::kinematics::twist::Stereographic;
+use crate::kinematics::limb_ik::Limb;
+use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
 use crate::session::{Actions, Session, TargetEdit};
 use crate::ui::widgets::{
@@ -50,7 +48,7 @@ pub(super) fn settings(
 ) {
     let set =
         |settings| TargetEdit::SetTarget(Target { kind: TargetKind::Limb(settings), ..target });
-    reference(ui, session, &target, settings, actions);
+    reference(ui, &target, settings, actions);
     let twist = Slider {
         label: "Twist",
         channel: Some(Channel::TargetTwist(target.joint)),
@@ -72,44 +70,31 @@ pub(super) fn settings(
     });
 }
 
-fn reference(
-    ui: &mut Ui,
-    session: &Session,
-    target: &Target,
-    settings: LimbSettings,
-    actions: &mut Actions,
-) {
-    let pole = ElbowReference::Pole(new_pole(session, target, settings));
-    let map = ElbowReference::Stereographic(Stereographic::default());
+fn reference(ui: &mut Ui, target: &Target, settings: LimbSettings, actions: &mut Actions) {
     let references = [
-        (ElbowReference::Fk, "FK", "Keep the side that the joint angles give"),
-        (ElbowReference::Up, "Up", "Measure from up"),
-        (pole, "Pole", "Measure from the direction to a point"),
-        (map, "Stereographic", "Measure from a stereographic map"),
+        (TwistReferenceKind::Fk, "FK", "Keep the side that the joint angles give"),
+        (TwistReferenceKind::Up, "Up", "Measure from up"),
+        (TwistReferenceKind::Pole, "Pole", "Measure from the direction to a point"),
+        (TwistReferenceKind::Stereographic, "Stereographic", "Measure from a stereographic map"),
         (
-            ElbowReference::Transport,
+            TwistReferenceKind::Transport,
             "Transport",
             "Carry the direction along the motion: no direction of the target is singular",
         ),
     ];
-    let is_now =
-        |reference: &ElbowReference| discriminant(reference) == discriminant(&settings.reference);
     let tooltip = "Choose the direction of the elbow or knee at twist 0";
     let choice = Choice { label: "Elbow from", name: "Elbow reference", tooltip, shown: "" };
-    let chosen = choice.pick(ui, &references, is_now);
+    let chosen = choice.pick(ui, &references, |kind| *kind == settings.reference);
     let joint = target.joint;
     actions.extend(chosen.map(|reference| TargetEdit::SetReference { joint, reference }));
 }
 
 /// A pole in front of the elbow as it is posed, in the pole's space.
-fn new_pole(session: &Session, target: &Target, settings: LimbSettings) -> Vec3 {
-    let pose = &session.posed().evaluated_skeleton().solved;
-    let Ok(limb) = Limb::ending_at(pose, target.joint) else { return target.home };
-    let (base, elbow, tip) = (pose.base(limb.upper), pose.base(limb.lower), pose.tip(limb.lower));
-    let line = (tip - base).normalize_or_zero();
-    let out = (elbow - base).reject_from(line).normalize_or(line.any_orthonormal_vector());
-    let pole = elbow + out * base.distance(elbow);
-    settings.pole_space.point_from_world(pose, pole)
+fn new_pole(session: &Session, target: &Target) -> Vec3 {
+    let rig = session.skeleton_rig();
+    let index = rig.target(target.joint);
+    let pole = index.and_then(|it| rig.new_pole(session.posed().evaluated_skeleton(), it));
+    pole.unwrap_or(target.present_home())
 }
 
 fn pole(
@@ -125,16 +110,14 @@ fn pole(
         name: "Limb pole",
         labels: ["Pole x", "Pole y", "Pole z"],
         value: pole,
-        default: new_pole(session, target, settings),
+        default: new_pole(session, target),
         range: 1.5 * session.skeleton_rig().reach(),
         step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the pole",
         disabled: None,
         channel: Some(Channel::TargetPole(target.joint)),
     };
-    sliders.show(ui, session, actions, |pole| {
-        set(LimbSettings { reference: ElbowReference::Pole(pole), ..settings })
-    });
+    sliders.show(ui, session, actions, |pole| set(LimbSettings { pole: Some(pole), ..settings }));
     of_pole(ui, session, target, now, actions);
 }
 
@@ -162,7 +145,7 @@ fn hand(
                 && let Some(hand) = hand
             {
                 let rotation = pose.rotation_in_world(hand).as_quat();
-                let angles = target.space.angles_from_world(pose, rotation, Vec3::ZERO);
+                let angles = target.hand_angles(pose, rotation, Vec3::ZERO);
                 actions.push(set(LimbSettings { orientation: Some(angles), ..settings }));
             }
         });

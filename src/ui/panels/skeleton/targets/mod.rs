@@ -126,18 +126,18 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
     let place = PointSliders {
         name: "Target",
         labels: AXES,
-        value: target.home,
-        default: target.placed(pose, session.playback().time(), tip).home,
+        value: target.present_home(),
+        default: target.placed(pose, session.playback().time(), tip).present_home(),
         range: 1.5 * session.skeleton_rig().reach(),
         step,
-        tooltip: match target.space.joint() {
+        tooltip: match target.present_space().joint() {
             None => "Move the target in world space",
             Some(_) => "Move the target in the space of the joint that it is on",
         },
         disabled: None,
         channel: Some(Channel::Target(target.joint)),
     };
-    place.show(ui, session, actions, |home| TargetEdit::SetTarget(Target { home, ..target }));
+    place.show(ui, session, actions, |home| TargetEdit::SetTarget(target.with_home(home)));
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
