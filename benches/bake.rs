@@ -19,7 +19,7 @@ fn example(name: &str) -> Document {
 /// The Human, its hands and feet on circles.
 fn human() -> Document {
     let mut document = example("human");
-    let rig = &mut document.skeleton_rig;
+    let rig = &mut document.rig;
     for target in &mut rig.targets {
         if Limb::ending_at(&rig.skeleton, target.joint).is_ok() {
             target.kind = TargetKind::Limb(LimbSettings::default());

@@ -16,7 +16,7 @@ fn example(name: &str) -> Document {
 /// The Human with a target 5 cm away from each hand and foot; the pelvis is 5 cm lower than the
 /// targets were added for.
 fn human(kind: impl Fn(Target) -> Target) -> SkeletonRig {
-    let mut rig = example("human").skeleton_rig;
+    let mut rig = example("human").rig;
     rig.targets.clear();
     let pose = rig.skeleton_at(0.0);
     for name in ["left_hand", "right_hand", "left_foot", "right_foot"] {
@@ -48,7 +48,7 @@ fn evaluate(criterion: &mut Criterion) {
             let point = |frame: u32| {
                 let time = f64::from(frame) / 30.0;
                 posed.clone_from(&walk.at(time).into_document());
-                posed.skeleton_rig.skeleton_at(time).tip(hand)
+                posed.rig.skeleton_at(time).tip(hand)
             };
             (0..240).map(point).collect()
         });

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
+use ik_arm::document::{Channel, Document, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{Action, Edit, JointEdit, KeysEdit, Preferences, Session};
 
@@ -21,11 +21,7 @@ fn chain() -> Skeleton {
 }
 
 fn session() -> Session {
-    let document = Document {
-        rig: RigKind::Skeleton,
-        skeleton_rig: SkeletonRig::new(chain()),
-        ..Document::default()
-    };
+    let document = Document { rig: SkeletonRig::new(chain()), ..Document::default() };
     Session::with_document(Preferences::default(), document)
 }
 

@@ -13,7 +13,7 @@ fn example(name: &str) -> Document {
 /// The Human with so much detail, and the number of its vertices.
 fn human(detail: f32) -> (Document, SkinShape, u64) {
     let document = example("human");
-    let skin = document.skeleton_rig.skin.as_ref().expect("a skin");
+    let skin = document.rig.skin.as_ref().expect("a skin");
     let SkinSource::Bones(bones) = &skin.source else { panic!("the Human's skin is from bones") };
     let shape = SkinShape { detail, ..bones.shape().clone() };
     let mesh = SkinnedMesh::from_bones(document.skeleton(), &shape).expect("a mesh");
@@ -39,7 +39,7 @@ fn posed(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("skin/posed on the CPU");
     let (document, shape, vertices) = human(1.2);
     let mesh = SkinnedMesh::from_bones(document.skeleton(), &shape).expect("a mesh");
-    let pose = mesh.pose(&document.skeleton_rig.skeleton_at(0.0));
+    let pose = mesh.pose(&document.rig.skeleton_at(0.0));
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     group.throughput(Throughput::Elements(vertices));
     for skinning in Skinning::ALL {
@@ -54,7 +54,7 @@ fn opened(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("skin/opened");
     group.sample_size(10);
     let (mut document, shape, _) = human(1.9);
-    let rig = &mut document.skeleton_rig;
+    let rig = &mut document.rig;
     let source = ik_arm::rig::BoneSkin::new(rig.skeleton.clone(), shape);
     rig.skin.as_mut().expect("a skin").source = SkinSource::Bones(source);
     let bytes = io::glb(&document, None, &Progress::default()).expect("an export");

@@ -7,7 +7,7 @@ use core::hint::black_box;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
+    Channel, Document, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
 };
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::Method;
@@ -18,7 +18,7 @@ use ik_arm::rig::TargetKind;
 /// frames.
 fn human(method: Method, radius: f32) -> Document {
     let example = Example::find("human").expect("an example").open().expect("valid").document;
-    let mut rig = example.skeleton_rig;
+    let mut rig = example.rig;
     rig.targets.clear();
     let pose = rig.skeleton_at(0.0);
     for name in ["left_hand", "right_hand", "left_foot", "right_foot"] {
@@ -32,9 +32,9 @@ fn human(method: Method, radius: f32) -> Document {
     document(rig, 8.0)
 }
 
-fn document(skeleton_rig: SkeletonRig, end: f64) -> Document {
+fn document(rig: SkeletonRig, end: f64) -> Document {
     let timeline = Timeline { start: 0.0, end, frame_rate: 30.0 };
-    Document { rig: RigKind::Skeleton, skeleton_rig, timeline, ..Document::default() }
+    Document { timeline, ..Document::new(rig) }
 }
 
 /// A chain of 100 joints whose tip goes around a circle, over 1,000 frames.
@@ -81,8 +81,8 @@ fn track(criterion: &mut Criterion) {
     for (at, name) in [(0.5, "near the start"), (9.5, "near the end")] {
         let mut keyed = human(Method::Fabrik, 0.1);
         keyed.timeline.end = 10.0;
-        let joint = keyed.skeleton_rig.targets[0].joint;
-        let home = keyed.skeleton_rig.targets[0].home;
+        let joint = keyed.rig.targets[0].joint;
+        let home = keyed.rig.targets[0].home;
         for second in 0_u8..=20 {
             let value = home + Vec3::Y * 0.05 * f32::from(second % 3);
             keyed.keys.insert_auto(Channel::Target(joint), f64::from(second) / 2.0, value);
@@ -100,7 +100,7 @@ fn track(criterion: &mut Criterion) {
         });
     }
     let mut plain = human(Method::Fabrik, 0.1);
-    plain.skeleton_rig.targets.clear();
+    plain.rig.targets.clear();
     for frame in 0..10_000 {
         let turned = Vec3::X * (frame as f32 * 0.1).sin();
         let channel = Channel::Rotation(JointId::new(2));

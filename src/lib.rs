@@ -12,7 +12,7 @@
 //! | --- | --- | --- |
 //! | `kinematics` | [`ik_arm_kinematics`], re-exported: arms, skeletons and their solvers; its floors are listed there | |
 //! | [`words`] | diagnoses and their remedies as sentences | |
-//! | [`document`] | saved state: both rigs, keys, timeline, camera, display; motions, their inspections and bakes | |
+//! | [`document`] | saved state: the rig, keys, timeline, camera, display; motions, their inspections and bakes | |
 //! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
 //! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
 //! | [`scene`] | what to draw, as plain lists | |
@@ -45,12 +45,10 @@
 //! - A target out of reach gives a result, not an error. Errors name the file, the field and the
 //!   rule.
 //! - A pose is a function of document and time, and a [`Track`](document::Track) is the only way
-//!   to it: it gives a [`Posed`](document::Posed), which solves each rig once. All state that
+//!   to it: it gives a [`Posed`](document::Posed), which solves the rig once. All state that
 //!   determines the pose is in the document, except unkeyed edits of keyed channels, which last
 //!   until the time changes.
-//! - Playback writes nothing to the document, except keys while heads follow the mouse. Keys of a
-//!   transported twist are measured from the stereographic map, so that a pose does not depend on
-//!   the poses before it.
+//! - Playback writes nothing to the document, except keys while heads follow the mouse.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

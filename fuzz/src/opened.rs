@@ -58,7 +58,7 @@ fn check(opened: &Opened) {
 }
 
 fn check_skeleton(document: &Document, order: &[JointId]) {
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let joints: Vec<_> = rig.skeleton.iter().map(|(_, joint)| joint.clone()).collect();
     assert!(order.iter().all(|joint| joint.index() < joints.len()), "{order:?}");
     let mut again = Skeleton::from_joints(joints.clone()).expect("one that can be");
@@ -72,7 +72,7 @@ fn check_skeleton(document: &Document, order: &[JointId]) {
 
 /// The vertices of a skin follow joints of the skeleton with the sum 1, in every pose.
 fn check_skin(document: &Document) {
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let Some(skin) = &rig.skin else { return };
     // A mesh from bones takes too long for a fuzzer.
     let SkinSource::Mesh(skin) = &skin.source else { return };
@@ -96,12 +96,17 @@ fn check_poses(document: &Document) {
     let timeline = document.timeline;
     assert!(timeline.is_valid(), "{timeline:?}");
     for time in [-1.0, 0.0, 0.3, 1e9, timeline.start, timeline.end] {
-        let at = document.at(time).into_document();
-        let pose = at.arm.pose();
-        assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
-        let skeleton = at.skeleton_rig.skeleton_at(time);
-        let of_skeleton = at.skeleton_rig.bounds(&skeleton.pose(), time);
-        for (centre, radius) in [at.arm.bounds(&pose), of_skeleton] {
+        let at = document.at(time);
+        let rig = &at.document().rig;
+        for target in &rig.targets {
+            if let Some(limb) = at.limb_frames(target.joint) {
+                let pose = limb.pose();
+                assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{pose:?} at {time}");
+            }
+        }
+        let skeleton = rig.skeleton_at(time);
+        let of_rig = rig.bounds(&skeleton.pose(), time);
+        for (centre, radius) in [at.bounds(), of_rig] {
             assert!(centre.is_finite() && radius.is_finite(), "{centre} ± {radius} at {time}");
         }
         for joint in skeleton.joints() {

@@ -310,7 +310,7 @@ impl AppWindow {
             }
             Effect::Open { path, options } => background::open(path, options, proxy.clone()),
             Effect::LocateSkin(path) => {
-                background::locate_skin(path, session.skeleton_rig(), proxy.clone());
+                background::locate_skin(path, session.rig(), proxy.clone());
             }
             Effect::Save(path) => {
                 let saved = match io::save(session.document(), &path) {

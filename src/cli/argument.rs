@@ -6,7 +6,7 @@ use clap::builder::PossibleValue;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{AxisView, Camera, Display, Document, Overlay, Posed, Theme, Timeline};
+use crate::document::{AxisView, Camera, Display, Document, Overlay, Theme, Timeline};
 use crate::export::ExportOptions;
 use crate::kinematics::two_bone::TwoBone;
 
@@ -144,27 +144,10 @@ impl ViewName {
         }
     }
 
-    /// A camera that looks from this side and frames the shown rig over the timeline, for a picture
+    /// A camera that looks from this side and frames the rig over the timeline, for a picture
     /// of this width and height.
     pub fn framing(self, document: &Document, (width, height): (u32, u32)) -> Camera {
-        let display = document.display;
-        let (centre, radius) = document.motion_bounds_by(|posed| arm_bounds(posed, display));
+        let (centre, radius) = document.motion_bounds_with_guides();
         self.camera().framing(centre, radius, width as f32 / height as f32)
-    }
-}
-
-/// Centre and radius of a bounding sphere of the arm, in world space. The sphere contains the outer
-/// limit if that is shown, otherwise the Cursor if that is shown.
-fn arm_bounds(posed: &Posed, display: Display) -> (Vec3, f32) {
-    let arm = posed.arm();
-    let (centre, radius) = arm.bounds(posed.arm_pose());
-    if display.shows(Overlay::OuterLimit) {
-        (arm.root, arm.reach_limits().outer.max(arm.root.distance(centre) + radius))
-    } else if display.shows(Overlay::Cursor) {
-        let cursor = arm.cursor_in_world();
-        let excess = (centre.distance(cursor) - radius).max(0.0);
-        (centre.move_towards(cursor, excess / 2.0), radius + excess / 2.0)
-    } else {
-        (centre, radius)
     }
 }

@@ -7,7 +7,7 @@ use super::argument::frame_rate;
 use super::open::{self, InputArgs};
 use super::report::{CommandError, print_json};
 use super::time_limit::TimeLimitArgs;
-use crate::document::{FramePop, Inspection, LostSpan, RigKind, SkeletonRig, Timeline, Track};
+use crate::document::{FramePop, Inspection, LostSpan, SkeletonRig, Timeline, Track};
 use crate::io::{Opened, Progress};
 use crate::kinematics::skeleton::JointId;
 use crate::words;
@@ -70,9 +70,6 @@ pub fn run(args: &CheckArgs) -> Result<(), CommandError> {
     let file = args.input.name();
     let limit = args.time_limit.start_long(&args.input.file);
     let Opened { document, order, .. } = args.input.open()?;
-    if document.rig == RigKind::Arm {
-        return Err(CommandError::CheckOfArm(file));
-    }
     let frame_rate = args.fps.unwrap_or(document.timeline.frame_rate);
     let mut frames = Timeline { frame_rate, ..document.timeline };
     if !document.is_animated() {
@@ -86,7 +83,7 @@ pub fn run(args: &CheckArgs) -> Result<(), CommandError> {
     let Some(found) = limit.run(inspect)? else {
         return Err(CommandError::Stopped(file));
     };
-    print_json(&CheckLine::new(&found, &document.skeleton_rig, &order))?;
+    print_json(&CheckLine::new(&found, &document.rig, &order))?;
     args.failure(&found).map_or(Ok(()), |faults| Err(CommandError::Faults { file, faults }))
 }
 

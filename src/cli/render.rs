@@ -13,7 +13,7 @@ use super::argument::{ShownGuides, ViewName, guides, length, number, point, size
 use super::open::{self, OpenArgs};
 use super::report::{CommandError, print_json};
 use super::time_limit::TimeLimitArgs;
-use crate::document::{Arm, Cursor, Document, Posed, Theme, Track};
+use crate::document::{Document, Posed, SkeletonRig, Theme, Track};
 use crate::kinematics::two_bone::{LengthError, TwoBone};
 use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::{Crowd, Processor};
@@ -142,7 +142,7 @@ fn posed(args: &RenderArgs) -> Result<(Track, Posed), CommandError> {
             args.time_limit.start_long(file);
             Track::new(&open::open_to_draw(file, &args.open.options())?.document)
         }
-        None => Track::new(&Document { arm: arm(args)?, ..Document::default() }),
+        None => Track::new(&arm(args)?),
     };
     let mut document = track.at(args.time).into_document();
     if let Some(guides) = &args.guides {
@@ -156,13 +156,17 @@ fn posed(args: &RenderArgs) -> Result<(Track, Posed), CommandError> {
     Ok((track, posed))
 }
 
-fn arm(args: &RenderArgs) -> Result<Arm, LengthError> {
-    let mut arm = Arm::default();
-    arm.bones = TwoBone::new(args.upper, args.lower)?;
-    arm.cursor = Cursor::unpinned(args.hand.unwrap_or(arm.cursor_in_root()));
-    arm.twist = (args.twist % 360.0).to_radians();
-    arm.root = args.root;
-    Ok(arm)
+/// The document of the arm that the arguments describe.
+fn arm(args: &RenderArgs) -> Result<Document, LengthError> {
+    let mut document = Document::arm(TwoBone::new(args.upper, args.lower)?);
+    document.skeleton_mut().write_local(SkeletonRig::ROOT, |root| root.offset = args.root);
+    for target in &mut document.rig.targets {
+        target.home = args.hand.unwrap_or(target.home);
+        if let Some(limb) = target.limb_mut() {
+            limb.twist = (args.twist % 360.0).to_radians();
+        }
+    }
+    Ok(document)
 }
 
 /// Time that the crowd's motion advances from one measured frame to the next, in seconds.

@@ -41,12 +41,6 @@ pub enum CommandError {
     Usage(String),
     #[error("{file}: {error}")]
     Input { file: String, error: Box<dyn Error> },
-    #[error("{0}: a skin needs a skeleton, and the document shows an arm")]
-    SkinOfArm(String),
-    #[error("{0} shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms")]
-    PoseOfArm(String),
-    #[error("{0} shows the arm; check needs a skeleton")]
-    CheckOfArm(String),
     #[error("{0}: the check was cancelled")]
     Stopped(String),
     #[error("{file}: {faults}")]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::argument::number;
 use super::open::{self, InputArgs};
 use super::report::{CommandError, say};
-use crate::document::{Document, Overlay, RigKind, Skin};
+use crate::document::{Document, Overlay, Skin};
 use crate::io::save;
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, SkinSource};
@@ -41,14 +41,11 @@ pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
     let SkinArgs { input, output, .. } = args;
     open::require_document("skin", output)?;
     let mut document = input.open()?.document;
-    if document.rig == RigKind::Arm {
-        return Err(CommandError::SkinOfArm(input.name()));
-    }
     let skin = args.made(&document);
     let made = skin.mesh().map_err(|error| CommandError::of_file(input.name(), error))?;
     let mesh = made.mesh.mesh();
     let report = format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
-    document.skeleton_rig.skin = Some(skin);
+    document.rig.skin = Some(skin);
     document.display = document.display.with(Overlay::Skin, true);
     save(&document, output)?;
     say(&report);
@@ -58,7 +55,7 @@ pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
 impl SkinArgs {
     /// The skin of the document with the settings that are given.
     fn made(&self, document: &Document) -> Skin {
-        let rig = &document.skeleton_rig;
+        let rig = &document.rig;
         let old = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
         let old = match old.source {
             SkinSource::Bones(_) => old,

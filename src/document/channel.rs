@@ -14,33 +14,6 @@ use crate::kinematics::skeleton::{JointId, JointRemap};
 /// x, with y and z 0, and a switch is 0 or 1 in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
-    /// The Cursor in Root space while it is not pinned.
-    Hand,
-    /// Socket twist in radians, unwrapped; with Transport it is measured from the stereographic
-    /// direction.
-    Twist,
-    /// Position of the shoulder in the world.
-    Root,
-    /// Length of the upper limb.
-    Upper,
-    /// Length of the lower limb.
-    Lower,
-    /// The Cursor in the world while it is pinned.
-    Pin,
-    /// Switch: the Cursor is pinned to the world.
-    Pinned,
-    /// The pole: the point in Root space towards which the elbow turns.
-    Pole,
-    /// Influence of IK, from 0 (FK alone) to 1 (IK alone).
-    Influence,
-    /// FK angles of the shoulder in radians, unwrapped.
-    Shoulder,
-    /// FK bend of the elbow in radians, unwrapped.
-    Bend,
-    /// FK stretch: the length of the limbs as a multiple of their unstretched length.
-    Stretch,
-    /// Angles of the hand in radians, unwrapped.
-    HandOrientation,
     /// Position of the skeleton's origin in the world.
     Translation,
     /// Euler angles of a joint in radians, unwrapped.
@@ -48,8 +21,14 @@ pub enum Channel {
     /// Vector from the base of a joint's parent to the joint's base, in the parent's space; from
     /// the skeleton's origin for a root.
     Offset(JointId),
-    /// Position of a joint's target at time 0, in the target's space.
+    /// Length of a joint's bone, in units of the skeleton; children at its tip move with it.
+    Length(JointId),
+    /// Position of a joint's target at time 0, in the target's space, while it is not pinned.
     Target(JointId),
+    /// Position of a joint's target at time 0, in the world, while it is pinned.
+    Pin(JointId),
+    /// Switch: a joint's target is pinned to the world.
+    Pinned(JointId),
     /// Influence of a joint's target, from 0 (FK pose) to 1 (solved pose).
     TargetInfluence(JointId),
     /// Euler angles in radians, unwrapped, of the hand in the space of a limb's target.
@@ -58,6 +37,8 @@ pub enum Channel {
     TargetTwist(JointId),
     /// The pole of a limb's target, in the pole's space.
     TargetPole(JointId),
+    /// Factor by which the bones of a limb's target are lengthened in the FK pose.
+    Stretch(JointId),
     /// Switch: a joint's target is enabled.
     Enabled(JointId),
     /// Switch: an overlay is shown.
@@ -75,8 +56,6 @@ pub enum Quantity {
     Fraction,
     /// An angle in radians.
     Angle,
-    /// Three angles in radians.
-    Angles,
     /// Euler angles in radians of a rotation, R_z · R_y · R_x. Keys can turn it the shortest way:
     /// see [`Interpolation::Slerp`](crate::kinematics::spline::Interpolation::Slerp).
     Rotation,
@@ -88,7 +67,7 @@ impl Quantity {
     /// Number of components in use: 1 or 3.
     pub fn width(self) -> usize {
         match self {
-            Self::Point | Self::Angles | Self::Rotation => 3,
+            Self::Point | Self::Rotation => 3,
             Self::Length | Self::Fraction | Self::Angle | Self::Switch => 1,
         }
     }
@@ -101,43 +80,23 @@ pub(super) fn is_on(value: Vec3) -> bool {
 
 /// Lists of channels. A new channel must be in one of them, or files cannot name it.
 impl Channel {
-    /// All channels of the arm.
-    pub const ARM: [Self; 13] = [
-        Self::Hand,
-        Self::Pinned,
-        Self::Pin,
-        Self::Twist,
-        Self::Pole,
-        Self::Root,
-        Self::Upper,
-        Self::Lower,
-        Self::Influence,
-        Self::Shoulder,
-        Self::Bend,
-        Self::Stretch,
-        Self::HandOrientation,
-    ];
-
-    /// The channels that pose the arm by IK.
-    pub const IK: [Self; 4] = [Self::Hand, Self::Pinned, Self::Pin, Self::Twist];
-
-    /// The channels that pose the arm by FK, and the influence of IK.
-    pub const FK: [Self; 4] = [Self::Influence, Self::Shoulder, Self::Bend, Self::Stretch];
-
     /// The channels of a joint and of its target.
     pub fn of_joint(joint: JointId) -> impl Iterator<Item = Self> {
-        let own = [Self::Rotation(joint), Self::Offset(joint)];
+        let own = [Self::Rotation(joint), Self::Offset(joint), Self::Length(joint)];
         own.into_iter().chain(Self::of_target(joint))
     }
 
     /// The channels of the target of a joint.
-    pub fn of_target(joint: JointId) -> [Self; 6] {
+    pub fn of_target(joint: JointId) -> [Self; 9] {
         [
             Self::Target(joint),
+            Self::Pinned(joint),
+            Self::Pin(joint),
             Self::TargetInfluence(joint),
             Self::TargetOrientation(joint),
             Self::TargetTwist(joint),
             Self::TargetPole(joint),
+            Self::Stretch(joint),
             Self::Enabled(joint),
         ]
     }
@@ -145,9 +104,9 @@ impl Channel {
     /// The channel that has this [`name`](Self::name), for the given joint or overlay if the
     /// channel belongs to one. `None` if the name is unknown, or the joint or overlay is missing.
     pub fn named(name: &str, joint: Option<JointId>, overlay: Option<Overlay>) -> Option<Self> {
-        let of_rigs = Self::ARM.into_iter().chain([Self::Translation]);
         let of_joint = joint.into_iter().flat_map(Self::of_joint);
-        let mut channels = of_rigs.chain(of_joint).chain(overlay.map(Self::Overlay));
+        let mut channels =
+            [Self::Translation].into_iter().chain(of_joint).chain(overlay.map(Self::Overlay));
         channels.find(|channel| channel.name() == name)
     }
 
@@ -173,7 +132,7 @@ impl Channel {
 /// A text that names no channel.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "channel must be a name such as twist, a name and a joint's index such as \"rotation 3\", or \
+    "channel must be translation, a name and a joint's index such as \"rotation 3\", or \
      \"overlay\" and an overlay's name, got {0:?}"
 )]
 pub struct UnknownChannel(String);
@@ -212,7 +171,7 @@ mod tests {
     fn every_channel_reads_back_from_its_text() {
         let joint = JointId::new(12);
         let of_owners = Overlay::all().map(Channel::Overlay).chain(Channel::of_joint(joint));
-        for channel in Channel::ARM.into_iter().chain([Channel::Translation]).chain(of_owners) {
+        for channel in [Channel::Translation].into_iter().chain(of_owners) {
             assert_eq!(channel.to_string().parse(), Ok(channel), "{channel}");
         }
         assert_eq!(Channel::Rotation(joint).to_string(), "rotation 12");
@@ -223,13 +182,13 @@ mod tests {
     fn texts_that_name_no_channel_are_refused() {
         for text in [
             "",
-            "Twist",
+            "Translation",
             "rotation",
             "rotation x",
             "rotation -1",
-            "twist 1",
+            "translation 1",
             "overlay",
-            "hand ",
+            "translation ",
             "offset +1",
         ] {
             let error = text.parse::<Channel>().expect_err(text);

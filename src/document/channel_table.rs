@@ -3,9 +3,8 @@
 use glam::Vec3;
 
 use super::Document;
-use super::arm::{Arm, HandOrientation};
 use super::channel::{Channel, Quantity, is_on};
-use super::display::{Overlay, RigKind};
+use super::display::Overlay;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target};
@@ -27,19 +26,14 @@ struct Heading {
 
 /// The part of a document that holds a channel's value, and the functions that read and write it.
 enum Access {
-    Arm {
-        get: fn(&Arm) -> Vec3,
-        set: fn(&mut Arm, Vec3),
-        /// True if the channel affects the pose with the arm's present settings.
-        shapes: fn(&Arm) -> bool,
-    },
     Skeleton {
         get: fn(&Skeleton) -> Vec3,
         set: fn(&mut SkeletonRig, Vec3),
     },
     Joint {
         joint: JointId,
-        get: fn(&Joint) -> Vec3,
+        /// `None` if the joint has no such value.
+        get: fn(&Joint) -> Option<Vec3>,
         set: fn(&mut SkeletonRig, JointId, Vec3),
     },
     Target {
@@ -47,8 +41,8 @@ enum Access {
         /// `None` if the target has no such setting.
         get: fn(&Target) -> Option<Vec3>,
         set: fn(&mut Target, Vec3),
-        /// True if the channel affects the pose with this value.
-        shapes: fn(Vec3) -> bool,
+        /// True if the channel affects the pose with the target's present settings.
+        shapes: fn(&Target) -> bool,
     },
     Overlay(Overlay),
 }
@@ -58,15 +52,6 @@ fn named(name: &'static str, label: &'static str, quantity: Quantity) -> Heading
 }
 
 impl Heading {
-    fn of_arm(
-        self,
-        get: fn(&Arm) -> Vec3,
-        set: fn(&mut Arm, Vec3),
-        shapes: fn(&Arm) -> bool,
-    ) -> ChannelRow {
-        ChannelRow { heading: self, access: Access::Arm { get, set, shapes } }
-    }
-
     fn of_skeleton(
         self,
         get: fn(&Skeleton) -> Vec3,
@@ -78,7 +63,7 @@ impl Heading {
     fn of_joint(
         self,
         joint: JointId,
-        get: fn(&Joint) -> Vec3,
+        get: fn(&Joint) -> Option<Vec3>,
         set: fn(&mut SkeletonRig, JointId, Vec3),
     ) -> ChannelRow {
         ChannelRow { heading: self, access: Access::Joint { joint, get, set } }
@@ -89,7 +74,7 @@ impl Heading {
         joint: JointId,
         get: fn(&Target) -> Option<Vec3>,
         set: fn(&mut Target, Vec3),
-        shapes: fn(Vec3) -> bool,
+        shapes: fn(&Target) -> bool,
     ) -> ChannelRow {
         ChannelRow { heading: self, access: Access::Target { joint, get, set, shapes } }
     }
@@ -102,93 +87,45 @@ impl Heading {
 /// The table.
 impl Channel {
     fn row(self) -> ChannelRow {
-        use Quantity::{Angle, Angles, Fraction, Length, Point, Rotation, Switch};
+        use Quantity::{Angle, Fraction, Length, Point, Rotation, Switch};
         match self {
-            Self::Hand => named("hand", "Hand", Point).of_arm(
-                |arm| arm.cursor.in_root,
-                |arm, to| arm.cursor.in_root = to,
-                |arm| !arm.is_pinned(),
-            ),
-            Self::Twist => named("twist", "Socket twist", Angle).of_arm(
-                |arm| number(arm.keyed_twist()),
-                |arm, to| arm.set_keyed_twist(to.x),
-                |_| true,
-            ),
-            Self::Root => named("root", "Root", Point).of_arm(
-                |arm| arm.root,
-                |arm, to| arm.root = to,
-                |_| true,
-            ),
-            Self::Upper => named("upper", "Upper length", Length).of_arm(
-                |arm| number(arm.bones.upper()),
-                |arm, to| arm.set_lengths(to.x, arm.bones.lower()),
-                |_| true,
-            ),
-            Self::Lower => named("lower", "Lower length", Length).of_arm(
-                |arm| number(arm.bones.lower()),
-                |arm, to| arm.set_lengths(arm.bones.upper(), to.x),
-                |_| true,
-            ),
-            Self::Pin => named("pin", "Pinned hand", Point).of_arm(
-                |arm| arm.cursor.in_world,
-                |arm, to| arm.cursor.in_world = to,
-                Arm::is_pinned,
-            ),
-            Self::Pinned => named("pinned", "Pinned to world", Switch).of_arm(
-                |arm| switch(arm.cursor.is_pinned),
-                |arm, to| arm.cursor.is_pinned = is_on(to),
-                Arm::is_pinned,
-            ),
-            Self::Pole => named("pole", "Pole", Point).of_arm(
-                |arm| arm.pole,
-                |arm, to| arm.pole = to,
-                |arm| arm.twist_reference == TwistReferenceKind::Pole,
-            ),
-            Self::Influence => named("influence", "IK influence", Fraction).of_arm(
-                |arm| number(arm.influence),
-                |arm, to| arm.influence = fraction(to),
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Shoulder => named("shoulder", "Shoulder angles", Angles).of_arm(
-                |arm| arm.fk.shoulder,
-                |arm, to| arm.fk.shoulder = to,
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Bend => named("bend", "Elbow bend", Angle).of_arm(
-                |arm| number(arm.fk.bend),
-                |arm, to| arm.fk.bend = to.x,
-                |arm| arm.influence < 1.0,
-            ),
-            Self::Stretch => named("stretch", "FK stretch", Length).of_arm(
-                |arm| number(arm.fk.stretch),
-                |arm, to| arm.fk.stretch = to.x.max(f32::MIN_POSITIVE),
-                |arm| arm.influence < 1.0 && arm.is_stretching(),
-            ),
-            Self::HandOrientation => named("hand_orientation", "Hand orientation", Angles).of_arm(
-                |arm| arm.hand_orientation.angles,
-                |arm, to| arm.hand_orientation.angles = to,
-                |arm| arm.hand_orientation != HandOrientation::default(),
-            ),
             Self::Translation => named("translation", "Skeleton translation", Point)
                 .of_skeleton(|skeleton| skeleton.transform().translation.into(), translate),
-            Self::Rotation(joint) => {
-                named("rotation", "rotation", Rotation).of_joint(joint, |it| it.rotation, rotate)
-            }
+            Self::Rotation(joint) => named("rotation", "rotation", Rotation).of_joint(
+                joint,
+                |it| Some(it.rotation),
+                rotate,
+            ),
             Self::Offset(joint) => {
-                named("offset", "offset", Point).of_joint(joint, |it| it.offset, offset)
+                named("offset", "offset", Point).of_joint(joint, |it| Some(it.offset), offset)
+            }
+            Self::Length(joint) => {
+                named("length", "length", Length).of_joint(joint, length, set_length)
             }
             Self::Target(joint) => named("target", "target", Point).of_target(
                 joint,
                 |it| Some(it.home),
                 |it, to| it.home = to,
-                |_| true,
+                |it| !it.is_pinned,
+            ),
+            Self::Pin(joint) => named("pin", "pinned target", Point).of_target(
+                joint,
+                |it| Some(it.pin),
+                |it, to| it.pin = to,
+                |it| it.is_pinned,
+            ),
+            Self::Pinned(joint) => named("pinned", "pinned to world", Switch).of_target(
+                joint,
+                |it| Some(switch(it.is_pinned)),
+                |it, to| it.is_pinned = is_on(to),
+                |it| it.is_pinned,
             ),
             Self::TargetInfluence(joint) => named("target_influence", "target influence", Fraction)
                 .of_target(
                     joint,
                     |it| Some(number(it.influence)),
                     |it, to| it.influence = fraction(to),
-                    |value| value.x < 1.0,
+                    |it| it.influence < 1.0,
                 ),
             Self::TargetOrientation(joint) => named(
                 "target_orientation",
@@ -196,17 +133,23 @@ impl Channel {
                 Rotation,
             )
             .of_target(joint, |it| it.limb()?.orientation, set_orientation, |_| true),
-            Self::TargetTwist(joint) => named("target_twist", "target twist", Angle).of_target(
+            Self::TargetTwist(joint) => named("target_twist", "Socket twist", Angle).of_target(
                 joint,
                 |it| Some(number(it.limb()?.twist)),
                 set_twist,
-                |value| value.x != 0.0,
+                |it| it.limb().is_some_and(has_twist),
             ),
             Self::TargetPole(joint) => named("target_pole", "target pole", Point).of_target(
                 joint,
                 |it| it.limb()?.pole,
                 set_pole,
-                |_| true,
+                |it| it.limb().is_some_and(|limb| limb.pole().is_some()),
+            ),
+            Self::Stretch(joint) => named("stretch", "FK stretch", Length).of_target(
+                joint,
+                |it| Some(number(it.limb()?.fk_stretch)),
+                set_stretch,
+                |it| it.influence < 1.0 && it.limb().is_some_and(LimbSettings::is_stretching),
             ),
             Self::Enabled(joint) => named("enabled", "target enabled", Switch).of_target(
                 joint,
@@ -241,27 +184,16 @@ impl Channel {
         self.row().heading.quantity
     }
 
-    /// True if the channel affects the pose of `arm` with its present settings.
-    pub fn shapes(self, arm: &Arm) -> bool {
-        matches!(self.access(), Access::Arm { shapes, .. } if shapes(arm))
-    }
-
-    /// The rig that the channel belongs to; `None` for overlays.
-    pub fn rig(self) -> Option<RigKind> {
-        match self.access() {
-            Access::Arm { .. } => Some(RigKind::Arm),
-            Access::Skeleton { .. } | Access::Joint { .. } | Access::Target { .. } => {
-                Some(RigKind::Skeleton)
-            }
-            Access::Overlay(_) => None,
-        }
+    /// True if the channel belongs to the rig, and not to an overlay.
+    pub fn is_of_rig(self) -> bool {
+        !matches!(self.access(), Access::Overlay(_))
     }
 
     /// The joint that the channel belongs to; `None` if it belongs to no joint.
     pub fn joint(self) -> Option<JointId> {
         match self.access() {
             Access::Joint { joint, .. } | Access::Target { joint, .. } => Some(joint),
-            Access::Arm { .. } | Access::Skeleton { .. } | Access::Overlay(_) => None,
+            Access::Skeleton { .. } | Access::Overlay(_) => None,
         }
     }
 
@@ -274,65 +206,86 @@ impl Channel {
 
 /// Channels in a document.
 impl Channel {
-    /// The channel of the point that the Cursor of `arm` has: in the world if it is pinned, else in
-    /// Root space.
-    pub fn of_cursor(arm: &Arm) -> Self {
-        if arm.is_pinned() { Self::Pin } else { Self::Hand }
+    /// The channel of the point that a target has at present: in the world if it is pinned, else in
+    /// its space.
+    pub fn of_point(target: &Target) -> Self {
+        if target.is_pinned { Self::Pin(target.joint) } else { Self::Target(target.joint) }
     }
 
-    /// True if the channel is the point that the Cursor of `arm` does not have at present.
-    pub fn is_idle(self, arm: &Arm) -> bool {
-        matches!(self, Self::Hand | Self::Pin) && self != Self::of_cursor(arm)
+    /// True if the channel is the point that its target does not have at present.
+    pub fn is_idle(self, rig: &SkeletonRig) -> bool {
+        let (Self::Target(joint) | Self::Pin(joint)) = self else { return false };
+        rig.target(joint).is_some_and(|index| self != Self::of_point(&rig.targets[index]))
     }
 
-    /// Channels that affect the pose of the shown rig. For a skeleton: its translation, the offsets
-    /// of its roots, the rotations of its joints and its targets; a target's influence only below
-    /// 1, and a twist of 0 not at all.
+    /// Channels that affect the pose: the skeleton's translation, the offsets of its roots, the
+    /// rotations of its joints, and of each target those that matter with its present settings.
     pub fn of_rig(document: &Document) -> Vec<Self> {
-        if document.rig == RigKind::Arm {
-            let shapes = |channel: &Self| channel.shapes(&document.arm);
-            return Self::ARM.into_iter().filter(shapes).collect();
-        }
-        let SkeletonRig { skeleton, targets, .. } = &document.skeleton_rig;
+        let SkeletonRig { skeleton, targets, .. } = &document.rig;
         let joints = skeleton.iter();
         let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
         let mut channels = vec![Self::Translation];
         channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
         channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
-        let of_targets = targets.iter().flat_map(|target| Self::of_target(target.joint));
-        channels.extend(of_targets.filter(|channel| channel.shapes_by_target(document)));
+        channels.extend(targets.iter().flat_map(|target| {
+            Self::of_target(target.joint).into_iter().filter(|channel| channel.shapes(target))
+        }));
         channels
     }
 
-    /// True if this channel of a target affects the pose with its present value.
-    fn shapes_by_target(self, document: &Document) -> bool {
-        let value = self.value(document);
-        matches!(self.access(), Access::Target { shapes, .. } if value.is_some_and(shapes))
+    /// Channels of the lengths of a document's bones.
+    pub fn lengths(document: &Document) -> impl Iterator<Item = Self> {
+        let lengths = document.skeleton().ids().map(Self::Length);
+        lengths.filter(|channel| channel.value(document).is_some())
+    }
+
+    /// The channels by which IK poses the joints of a target: its point, the switch of its pin, and
+    /// the twist of its limb.
+    pub fn of_ik(target: &Target) -> [Self; 4] {
+        let joint = target.joint;
+        [Self::Target(joint), Self::Pinned(joint), Self::Pin(joint), Self::TargetTwist(joint)]
+    }
+
+    /// The channels by which FK poses the limb of a target, and the influence of IK.
+    pub fn of_fk(rig: &SkeletonRig, target: &Target) -> Vec<Self> {
+        let joint = target.joint;
+        let bones = rig.limb_joints(joint).filter(|it| *it != rig.end_of(target) || *it == joint);
+        let rotations = bones.map(Self::Rotation);
+        let own = [Self::TargetInfluence(joint), Self::Stretch(joint)];
+        own.into_iter().chain(rotations).collect()
+    }
+
+    /// True if this channel is one of the target's and affects the pose with its present settings.
+    pub fn shapes(self, target: &Target) -> bool {
+        match self.access() {
+            Access::Target { joint, get, shapes, .. } => {
+                joint == target.joint && get(target).is_some() && shapes(target)
+            }
+            _ => false,
+        }
     }
 
     /// The channel's value in a document; `None` for a joint or target that the document does not
     /// have.
     pub fn value(self, document: &Document) -> Option<Vec3> {
-        let Document { arm, skeleton_rig: rig, display, .. } = document;
+        let Document { rig, display, .. } = document;
         match self.access() {
-            Access::Arm { get, .. } => Some(get(arm)),
             Access::Skeleton { get, .. } => Some(get(&rig.skeleton)),
-            Access::Joint { joint, get, .. } => rig.skeleton.joint(joint).map(get),
+            Access::Joint { joint, get, .. } => rig.skeleton.joint(joint).and_then(get),
             Access::Target { joint, get, .. } => get(&rig.targets[rig.target(joint)?]),
             Access::Overlay(overlay) => Some(switch(display.shows(overlay))),
         }
     }
 
     /// Sets the channel's value in a document, clamped to the channel's range. Changes nothing if
-    /// `value` contains NaN or is an invalid length of a limb, or if [`Self::value`] is `None`.
+    /// `value` contains NaN, or if [`Self::value`] is `None`.
     pub fn set(self, document: &mut Document, value: Vec3) {
-        let Document { arm, skeleton_rig: rig, display, .. } = document;
+        let Document { rig, display, .. } = document;
         let value = value.clamp(Vec3::MIN, Vec3::MAX);
         if value.is_nan() {
             return;
         }
         match self.access() {
-            Access::Arm { set, .. } => set(arm, value),
             Access::Skeleton { set, .. } => set(rig, value),
             Access::Joint { joint, set, .. } => set(rig, joint, value),
             Access::Target { joint, set, .. } => {
@@ -357,6 +310,12 @@ fn fraction(value: Vec3) -> f32 {
     value.x.clamp(0.0, 1.0)
 }
 
+/// True if the twist of a limb can turn its elbow: it is measured from a direction that is not that
+/// of the FK pose, or is not 0.
+fn has_twist(limb: &LimbSettings) -> bool {
+    limb.reference != TwistReferenceKind::Fk || limb.twist != 0.0
+}
+
 fn set_orientation(target: &mut Target, angles: Vec3) {
     if let Some(LimbSettings { orientation: Some(orientation), .. }) = target.limb_mut() {
         *orientation = angles;
@@ -372,6 +331,12 @@ fn set_twist(target: &mut Target, twist: Vec3) {
 fn set_pole(target: &mut Target, pole: Vec3) {
     if let Some(limb) = target.limb_mut().filter(|limb| limb.pole.is_some()) {
         limb.pole = Some(pole);
+    }
+}
+
+fn set_stretch(target: &mut Target, stretch: Vec3) {
+    if let Some(limb) = target.limb_mut() {
+        limb.fk_stretch = stretch.x.max(f32::MIN_POSITIVE);
     }
 }
 
@@ -403,6 +368,23 @@ fn offset(rig: &mut SkeletonRig, joint: JointId, offset: Vec3) {
     }
     if let Some(above) = above.filter(|it| !is_identical(rig.skeleton[*it].axis, offset)) {
         rig.skeleton_mut().write_local(above, |above| above.axis = offset);
+    }
+}
+
+/// Length of a joint's bone; `None` if it has none.
+fn length(joint: &Joint) -> Option<Vec3> {
+    let length = joint.axis.as_dvec3().length() as f32;
+    (length > 0.0 && length.is_finite()).then(|| number(length))
+}
+
+/// Sets the length of a joint's bone; children at its tip move with it.
+fn set_length(rig: &mut SkeletonRig, joint: JointId, to: Vec3) {
+    let Some(before) = rig.skeleton.joint(joint).map(|joint| joint.axis) else { return };
+    let direction = before.as_dvec3().normalize_or_zero();
+    let axis = (direction * f64::from(to.x.max(f32::MIN_POSITIVE))).as_vec3();
+    if axis.is_finite() && !is_identical(before, axis) {
+        // Only an axis that is not finite is refused.
+        let _ = rig.skeleton_mut().set_axis(joint, axis);
     }
 }
 

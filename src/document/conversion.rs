@@ -3,60 +3,14 @@
 use glam::{EulerRot, Mat3A, Vec3, Vec3A};
 
 use super::Document;
-use super::arm::HandSpace;
 use super::channel::Channel;
-use super::display::RigKind;
 use super::track::{Posed, Track};
 use crate::kinematics::angle;
+use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
-use crate::kinematics::spline::{Knot, Slopes, Spline};
+use crate::kinematics::spline::{Knot, Slopes};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, Target, TargetSpace, UpAxis};
-
-/// Conversions of angles of the arm.
-impl Document {
-    /// Changes the kind of the arm's twist reference, and adjusts the present twist and all its
-    /// keys so that the elbow does not move in the present pose or at any key.
-    #[must_use]
-    pub fn with_twist_reference(&self, kind: TwistReferenceKind) -> Self {
-        let mut after = Self { arm: self.arm.with_twist_reference(kind), ..self.clone() };
-        let Some(keys) = self.keys.track(Channel::Twist) else {
-            return after;
-        };
-        let track = Track::new(self);
-        let mut shift = 0.0;
-        for knot in keys.knots() {
-            let mut arm = *track.at(knot.time).arm();
-            arm.ik_state.transported = None;
-            let measured = arm.with_twist_reference(kind).keyed_twist();
-            let (old, turned) = (knot.value.x, measured - knot.value.x);
-            shift = angle::nearest(turned, shift);
-            after.keys.insert(Channel::Twist, knot.time, Vec3::new(old + shift, 0.0, 0.0));
-        }
-        after
-    }
-
-    /// Converts the hand's present angles and all their keys to another space. The hand keeps its
-    /// orientation in the present pose and at every key.
-    #[must_use]
-    pub fn with_hand_space(&self, space: HandSpace) -> Self {
-        let mut after = self.clone();
-        after.arm.hand_orientation = self.arm.hand_orientation.in_space(space, &self.arm.pose());
-        let track = Track::new(self);
-        let mut last = None;
-        let keys = self.keys.track(Channel::HandOrientation);
-        for knot in keys.into_iter().flat_map(Spline::knots) {
-            let posed = track.at(knot.time);
-            let orientation = posed.arm().hand_orientation;
-            // Each key has the equivalent angles nearest to those of the previous key.
-            let near = last.unwrap_or(orientation.angles);
-            let angles = orientation.in_space_near(space, posed.arm_pose(), near).angles;
-            last = Some(angles);
-            after.keys.insert(Channel::HandOrientation, knot.time, angles);
-        }
-        after
-    }
-}
 
 /// Conversions of targets and of the poles of limbs.
 impl Document {
@@ -86,8 +40,8 @@ impl Document {
         let channel = Channel::TargetTwist(joint);
         let before = Track::new(self);
         let own = before.pose(self.clone(), time);
-        let index = self.skeleton_rig.target(joint);
-        let pole = index.and_then(|it| self.skeleton_rig.new_pole(own.evaluated_skeleton(), it));
+        let index = self.rig.target(joint);
+        let pole = index.and_then(|it| self.rig.new_pole(own.evaluated_skeleton(), it));
         let Some(limb) = self.limb_settings_mut(joint) else { return };
         if to == TwistReferenceKind::Pole {
             limb.pole = limb.pole.or(pole);
@@ -115,10 +69,55 @@ impl Document {
         }
     }
 
+    /// Lets the target of a joint turn the hand of its limb, or lets the hand follow the bone above
+    /// it by its own angles. The hand keeps its orientation at `time`, at which this document is
+    /// evaluated, and at each key of the angles that had turned it; those keys become keys of the
+    /// angles that turn it now.
+    pub fn set_hand_kept(&mut self, joint: JointId, is_kept: bool, time: f64) {
+        let limb = Limb::ending_at(self.skeleton(), joint).ok();
+        let (Some(hand), Some(index)) = (limb.and_then(|it| it.hand), self.rig.target(joint))
+        else {
+            return;
+        };
+        let own = [Channel::Rotation(hand), Channel::TargetOrientation(joint)];
+        let [from, to] = if is_kept { own } else { [own[1], own[0]] };
+        let has_kept = self.rig.targets[index].limb().is_some_and(|it| it.orientation.is_some());
+        if has_kept == is_kept {
+            return;
+        }
+        let angles = |posed: &Posed, near: Option<Vec3>| {
+            let (pose, target) = (posed.skeleton(), &posed.document().rig.targets[index]);
+            let rotation = pose[hand].rotation;
+            if is_kept {
+                let in_world = pose.rotation_in_world(hand).as_quat();
+                target.hand_angles(pose, in_world, near.unwrap_or(rotation))
+            } else {
+                let Vec3 { x, y, z } = rotation;
+                let turned = Mat3A::from_euler(EulerRot::ZYX, z, y, x);
+                nearest_angles(turned, near.unwrap_or(rotation))
+            }
+        };
+        let track = Track::new(self);
+        let present = angles(&track.pose(self.clone(), time), None);
+        let mut last = None;
+        for knot in self.keys.track(from).map_or(Vec::new(), |keys| keys.knots().to_vec()) {
+            let value = angles(&track.at(knot.time), last);
+            last = Some(value);
+            self.keys.insert_key(to, Knot { value, slopes: None, ..knot });
+        }
+        self.keys.clear(from);
+        if let Some(limb) = self.limb_settings_mut(joint) {
+            limb.orientation = is_kept.then_some(present);
+        }
+        if !is_kept {
+            to.set(self, present);
+        }
+    }
+
     /// Settings of the limb target of a joint.
     fn limb_settings_mut(&mut self, joint: JointId) -> Option<&mut LimbSettings> {
-        let index = self.skeleton_rig.target(joint)?;
-        self.skeleton_rig.targets[index].limb_mut()
+        let index = self.rig.target(joint)?;
+        self.rig.targets[index].limb_mut()
     }
 
     /// Replaces a target by `converted` of it, and the keys of `channels` by their values in the
@@ -131,10 +130,10 @@ impl Document {
         time: f64,
         converted: impl Fn(Target, &Skeleton, f64, Option<Vec3>) -> Target,
     ) {
-        let Some(index) = self.skeleton_rig.target(joint) else { return };
+        let Some(index) = self.rig.target(joint) else { return };
         let track = Track::new(self);
         let convert = |posed: &Posed, near: Option<Vec3>| {
-            let target = posed.document().skeleton_rig.targets[index];
+            let target = posed.document().rig.targets[index];
             converted(target, posed.skeleton(), posed.time(), near)
         };
         for channel in channels {
@@ -144,14 +143,14 @@ impl Document {
                 let posed = track.at(knot.time);
                 let target = convert(&posed, last);
                 let mut document = posed.into_document();
-                document.skeleton_rig.targets[index] = target;
+                document.rig.targets[index] = target;
                 if let Some(value) = channel.value(&document) {
                     last = Some(value);
                     self.keys.insert(channel, knot.time, value);
                 }
             }
         }
-        self.skeleton_rig.targets[index] = convert(&track.pose(self.clone(), time), None);
+        self.rig.targets[index] = convert(&track.pose(self.clone(), time), None);
     }
 
     /// Moves the targets and poles that are on joints which `remap` removes to the world, where
@@ -159,7 +158,7 @@ impl Document {
     pub(super) fn release_targets(&mut self, remap: &JointRemap) {
         let is_removed =
             |space: TargetSpace| space.joint().is_some_and(|it| remap.get(it).is_none());
-        for target in self.skeleton_rig.targets.clone() {
+        for target in self.rig.targets.clone() {
             if is_removed(target.space) {
                 self.set_target_space(target.joint, TargetSpace::World, 0.0);
             }
@@ -179,9 +178,6 @@ impl Document {
     /// True if the figure stands along the z axis in its bind pose, and not along the y axis at the
     /// start of its motion.
     pub fn looks_z_up(&self) -> bool {
-        if self.rig != RigKind::Skeleton {
-            return false;
-        }
         let bind = UpAxis::of(self.skeleton(), &self.skeleton().bind_pose());
         bind == Some(UpAxis::Z) && {
             let start = self.at(self.timeline.start);
@@ -201,18 +197,18 @@ impl Document {
             return;
         }
         self.turn_keys(Channel::Translation);
-        for index in 0..self.skeleton_rig.targets.len() {
+        for index in 0..self.rig.targets.len() {
             self.turn_target(index);
         }
     }
 
     /// Turns those parts of a target that are in the world.
     fn turn_target(&mut self, index: usize) {
-        let before = self.skeleton_rig.targets[index];
+        let before = self.rig.targets[index];
         let Target { joint, space, .. } = before;
         let frame = Mat3A::from_quat(before.hand_frame(self.skeleton()));
         let is_in_world = before.present_space() == TargetSpace::World;
-        let target = &mut self.skeleton_rig.targets[index];
+        let target = &mut self.rig.targets[index];
         let (mut turned, mut is_oriented) = (Vec::new(), false);
         if space == TargetSpace::World {
             target.home = TURN * target.home;

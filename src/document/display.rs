@@ -15,16 +15,15 @@ pub enum Theme {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Overlay {
-    /// The Cursor of the arm, or the targets of the skeleton.
+    /// The targets.
     Cursor,
-    /// The arm's Pointer (the axis from the shoulder through hand and Cursor), or the path that the
-    /// skeleton follows.
+    /// The Pointer of the limb: the axis from its base through hand and target.
     Pointer,
-    /// The sphere around the shoulder that the hand cannot enter.
+    /// The sphere around the limb's base that the hand cannot enter.
     InnerLimit,
-    /// The sphere around the shoulder that the hand cannot leave.
+    /// The sphere around the limb's base that the hand cannot leave.
     OuterLimit,
-    /// The circle on which the elbow of the arm can be while the hand stays.
+    /// The circle on which the elbow can be while the hand stays.
     ElbowCircle,
     /// The grid on the plane z = 0.
     GridXy,
@@ -40,19 +39,23 @@ pub enum Overlay {
     Labels,
     /// The shadow on the ground.
     Shadow,
-    /// The path of the hand or of the selected joint over time.
+    /// The path of the selected joint's tip over time; without a selection, of the limb's hand.
     Trail,
+    /// The paths that heads follow.
+    Paths,
     /// The rig at some frames before and after the current time.
     OnionSkins,
     /// The Outer Limit, coloured by how fast the elbow swings when the Pointer turns there.
     SingularityGlobe,
-    /// The arm as every other kind of twist reference would pose it.
+    /// The limb as every other kind of twist reference would pose it.
     TwistReferences,
-    /// The hand of the arm, and stripes along its forearm.
+    /// The limbs as tapered cylinders instead of bones.
+    Cylinders,
+    /// A hand at the end of each limb that is a cylinder, and stripes along its forearm.
     Hand,
-    /// The axes of the arm's Root, Limb and Socket.
+    /// The axes of the limb's Root, Limb and Socket.
     Frames,
-    /// The skeleton's FK pose, beside the pose that the targets give it.
+    /// The FK pose, beside the pose that the targets give.
     FkPose,
     /// The skeleton as this frame alone would pose it, beside the pose to which its motion has
     /// come.
@@ -87,9 +90,11 @@ impl Overlay {
             Self::Labels => "labels",
             Self::Shadow => "shadow",
             Self::Trail => "trail",
+            Self::Paths => "paths",
             Self::OnionSkins => "onion_skins",
             Self::SingularityGlobe => "singularity_globe",
             Self::TwistReferences => "twist_references",
+            Self::Cylinders => "cylinders",
             Self::Hand => "hand",
             Self::Frames => "frames",
             Self::FkPose => "fk_pose",
@@ -109,20 +114,20 @@ impl Overlay {
 
     /// All overlays, in the order in which panels list them.
     pub fn all() -> impl Iterator<Item = Self> {
-        let of_arm = Self::GUIDES.into_iter().chain(Self::ARM);
-        of_arm.chain(Self::SKELETON).chain(Self::MOTION).chain(Self::SURROUNDINGS)
+        let of_limb = Self::GUIDES.into_iter().chain(Self::LIMB);
+        of_limb.chain(Self::POSE).chain(Self::MOTION).chain(Self::SURROUNDINGS)
     }
 
-    /// Guides of the arm: Cursor, Pointer, limits and the circle of elbows.
+    /// Guides of a limb: Cursor, Pointer, limits and the circle of elbows.
     pub const GUIDES: [Self; 5] =
         [Self::Cursor, Self::Pointer, Self::InnerLimit, Self::OuterLimit, Self::ElbowCircle];
 
-    /// Overlays of the arm besides [`Self::GUIDES`].
-    pub const ARM: [Self; 4] =
-        [Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
+    /// Overlays of limbs besides [`Self::GUIDES`].
+    pub const LIMB: [Self; 5] =
+        [Self::Cylinders, Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
-    /// Overlays of the skeleton alone.
-    pub const SKELETON: [Self; 7] = [
+    /// Other poses, and the skin.
+    pub const POSE: [Self; 7] = [
         Self::FkPose,
         Self::ByItself,
         Self::Skin,
@@ -133,7 +138,7 @@ impl Overlay {
     ];
 
     /// Overlays that show motion over time.
-    pub const MOTION: [Self; 2] = [Self::Trail, Self::OnionSkins];
+    pub const MOTION: [Self; 3] = [Self::Trail, Self::OnionSkins, Self::Paths];
 
     /// Overlays of the rig's surroundings.
     pub const SURROUNDINGS: [Self; 7] = [
@@ -183,27 +188,23 @@ impl FromIterator<Overlay> for Display {
     }
 }
 
-impl Default for Display {
-    /// A display of the surroundings, Cursor, Pointer, hand, skin and trail. The limits are hidden,
+impl Display {
+    /// The display of the arm: the default, with Pointer, cylinders and hand. The limits are hidden,
     /// since their spheres would cover the arm.
+    pub fn of_arm() -> Self {
+        let limb = [Overlay::Pointer, Overlay::Cylinders, Overlay::Hand];
+        limb.into_iter().fold(Self::default(), |display, overlay| display.with(overlay, true))
+    }
+}
+
+impl Default for Display {
+    /// A display of the surroundings, targets, skin, trail and paths.
     fn default() -> Self {
-        let guides =
-            [Overlay::Cursor, Overlay::Pointer, Overlay::Hand, Overlay::Skin, Overlay::Trail];
-        Overlay::SURROUNDINGS.into_iter().chain(guides).collect()
+        let shown = [Overlay::Cursor, Overlay::Skin, Overlay::Trail, Overlay::Paths];
+        Overlay::SURROUNDINGS.into_iter().chain(shown).collect()
     }
 }
 
 fn bit(overlay: Overlay) -> u32 {
     1 << overlay as u16
-}
-
-/// One of the two rigs of a document.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RigKind {
-    /// The two-bone arm.
-    #[default]
-    Arm,
-    /// The skeleton with its targets.
-    Skeleton,
 }

@@ -28,10 +28,10 @@ impl Document {
     /// overflow.
     pub fn dissolve(&mut self, joints: &[JointId]) -> Result<JointRemap, SkeletonError> {
         let mut after = self.clone();
-        let mut skeleton = self.skeleton_rig.skeleton.clone();
+        let mut skeleton = self.rig.skeleton.clone();
         let remap = skeleton.make_mut().dissolve(joints)?;
         after.release_targets(&remap);
-        after.skeleton_rig.skeleton = skeleton;
+        after.rig.skeleton = skeleton;
         after.remap_joints(&remap);
 
         let orphans = orphans(self.skeleton(), joints);

@@ -89,7 +89,7 @@ struct Frame {
 
 impl Frame {
     fn new(posed: &Posed) -> Self {
-        let (rig, evaluated) = (&posed.document().skeleton_rig, posed.evaluated_skeleton());
+        let (rig, evaluated) = (&posed.document().rig, posed.evaluated_skeleton());
         Self { time: posed.time(), rig: rig.clone(), evaluated: evaluated.clone() }
     }
 
@@ -187,7 +187,7 @@ impl Inspection {
             for time in PLACES.map(|place| from + (to - from) * place) {
                 let Some(posture) = track.posture_reaching(time) else { continue };
                 let mut document = track.document().clone();
-                document.skeleton_rig.posture = Some(posture.clone());
+                document.rig.posture = Some(posture.clone());
                 let again = Self::new(&Track::new(&document), frames, false, &mut go_on);
                 let Some(again) = again else { return };
                 if again.lost.is_empty() {
@@ -210,7 +210,7 @@ struct Inspector {
 
 impl Inspector {
     fn new(document: &Document) -> Self {
-        let targets = document.skeleton_rig.targets.len();
+        let targets = document.rig.targets.len();
         Self {
             worst: vec![None; targets],
             pops: Vec::new(),
@@ -256,7 +256,7 @@ impl Inspector {
     }
 
     fn inspection(self, track: &Track, frames: Timeline) -> Inspection {
-        let targets = &track.document().skeleton_rig.targets;
+        let targets = &track.document().rig.targets;
         let lost = self.missed.ended().filter(|span| is_lost(track, span.index, &span.times));
         let lost = lost.map(|span| LostSpan {
             target: targets[span.index].joint,

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::channel::{Channel, Quantity, is_on};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{JointRemap, exact_angles};
+use crate::kinematics::skeleton::{JointId, JointRemap, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Segment, Spline};
 
 /// The keys of a document: for every keyed channel a track, the spline through its keys.
@@ -148,13 +148,13 @@ impl Keys {
     pub fn value(&self, channel: Channel, time: f64) -> Option<Vec3> {
         let track = self.track(channel)?;
         match (channel, channel.quantity()) {
-            (Channel::Hand, _) => self.hand(time),
-            (Channel::Pin, _) => self.pin(time),
+            (Channel::Target(joint), _) => self.target(joint, time),
+            (Channel::Pin(joint), _) => self.pin(joint, time),
             (_, Quantity::Switch) => track.step(time),
             (_, Quantity::Length) => Some(track.at(time)?.max(Vec3::X * min_length(track))),
             (_, Quantity::Fraction) => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
             (_, Quantity::Rotation) => rotation(track, time),
-            (_, Quantity::Point | Quantity::Angle | Quantity::Angles) => track.at(time),
+            (_, Quantity::Point | Quantity::Angle) => track.at(time),
         }
     }
 
@@ -200,37 +200,38 @@ fn min_length(track: &Spline<Vec3>) -> f32 {
     (FRACTION * longest).max(f32::MIN_POSITIVE)
 }
 
-/// Points of a Cursor whose pin is keyed. A plant is a stretch of time in which a keyed pin holds
-/// the Cursor in the world. The splines of the points end where plants begin and end, so that
-/// keys of one plant move the hand neither in another one nor on the way to it.
+/// Points of a target whose pin is keyed. A plant is a stretch of time in which a keyed pin holds
+/// the target in the world. The splines of the points end where plants begin and end, so that
+/// keys of one plant move the target neither in another one nor on the way to it.
 impl Keys {
     /// Interpolated value of [`Channel::Pin`] at a time in seconds: on the spline through the keys
     /// of one plant alone, its ends included. A plant without keys is at the last key before it.
-    fn pin(&self, time: f64) -> Option<Vec3> {
-        let pin = self.track(Channel::Pin)?;
-        let Some(switch) = self.track(Channel::Pinned) else {
+    fn pin(&self, joint: JointId, time: f64) -> Option<Vec3> {
+        let pin = self.track(Channel::Pin(joint))?;
+        let Some(switch) = self.track(Channel::Pinned(joint)) else {
             return pin.at(time);
         };
         pin.at_among(stretch(switch, time), time).or_else(|| pin.step(time))
     }
 
-    /// Interpolated value of [`Channel::Hand`] at a time in seconds. A key in a plant, its ends
+    /// Interpolated value of [`Channel::Target`] at a time in seconds. A key in a plant, its ends
     /// included, ends the spline before it and begins the one after it.
-    fn hand(&self, time: f64) -> Option<Vec3> {
-        let hand = self.track(Channel::Hand)?;
-        let Some(switch) = self.track(Channel::Pinned) else {
-            return hand.at(time);
+    fn target(&self, joint: JointId, time: f64) -> Option<Vec3> {
+        let target = self.track(Channel::Target(joint))?;
+        let Some(switch) = self.track(Channel::Pinned(joint)) else {
+            return target.at(time);
         };
         let is_end = |knot: &&Knot<Vec3>| is_planted(switch, knot.time);
-        let (past, future) = split(hand, |knot| knot.time <= time);
+        let (past, future) = split(target, |knot| knot.time <= time);
         let start = past.iter().rfind(is_end).map_or(f64::NEG_INFINITY, |knot| knot.time);
         let end = future.iter().find(is_end).map_or(f64::INFINITY, |knot| knot.time);
-        hand.at_among(start..=end, time)
+        target.at_among(start..=end, time)
     }
 
-    /// Time in seconds at which the last plant before `time` begins; `None` if none does.
-    pub(super) fn last_plant_start(&self, time: f64) -> Option<f64> {
-        let (past, _) = split(self.track(Channel::Pinned)?, |knot| knot.time < time);
+    /// Time in seconds at which the last plant of a joint's target before `time` begins; `None` if
+    /// none does.
+    pub(super) fn last_plant_start(&self, joint: JointId, time: f64) -> Option<f64> {
+        let (past, _) = split(self.track(Channel::Pinned(joint))?, |knot| knot.time < time);
         let starts = |pair: &&[Knot<Vec3>]| !is_on(pair[0].value) && is_on(pair[1].value);
         Some(past.windows(2).rfind(starts)?[1].time)
     }

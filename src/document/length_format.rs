@@ -11,8 +11,13 @@ pub struct LengthFormat {
 impl LengthFormat {
     /// The format for limbs of these lengths.
     pub fn of_limb(bones: TwoBone) -> Self {
+        Self::of_length(bones.outer_limit())
+    }
+
+    /// The format for limbs of a length.
+    pub fn of_length(length: f32) -> Self {
         const FRACTION: f32 = 0.2;
-        let cell = 10_f32.powf((bones.outer_limit() * FRACTION).log10().round());
+        let cell = 10_f32.powf((length * FRACTION).log10().round());
         Self { cell: if cell.is_normal() { cell } else { 1.0 } }
     }
 

@@ -6,14 +6,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Document;
-use super::arm::Arm;
 use super::camera::Camera;
 use super::channel::Channel;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::ChainSolver;
-use crate::kinematics::ik::IkSolution;
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{Carried, EvaluatedSkeleton, LimbFrames, PathKind, Posture, Skin, TargetReport};
 use motion::Motion;
 
@@ -29,7 +26,7 @@ pub struct Track {
     motion: Arc<Motion>,
 }
 
-/// A document posed at a time. Each rig is solved when its pose is first read, and only once.
+/// A document posed at a time. The rig is solved when its pose is first read, and only once.
 #[derive(Clone, Debug)]
 pub struct Posed {
     /// Every keyed channel has its value at `time`.
@@ -38,16 +35,8 @@ pub struct Posed {
     motion: Arc<Motion>,
     /// The state of another motion from which the pose continues until its own is known.
     provisional: Option<Arc<Carried>>,
-    arm: OnceCell<SolvedArm>,
     skeleton: OnceCell<EvaluatedSkeleton>,
     by_itself: OnceCell<Shared<Skeleton>>,
-}
-
-/// The arm's IK solution, and its blend with FK.
-#[derive(Clone, Copy, Debug)]
-struct SolvedArm {
-    solution: IkSolution,
-    pose: TwoBonePose,
 }
 
 impl Document {
@@ -99,7 +88,6 @@ impl Track {
             time,
             motion,
             provisional: None,
-            arm: OnceCell::new(),
             skeleton: OnceCell::new(),
             by_itself: OnceCell::new(),
         }
@@ -128,7 +116,7 @@ impl Track {
     pub fn by_itself(&self, time: f64) -> Posed {
         let mut document = self.document().clone();
         document.apply_keys(time);
-        document.skeleton_rig.is_tracked = false;
+        document.rig.is_tracked = false;
         self.pose(document, time)
     }
 
@@ -223,30 +211,10 @@ impl Posed {
         self.time
     }
 
-    /// The arm at the time.
-    pub fn arm(&self) -> &Arm {
-        &self.document.arm
-    }
-
-    /// The pose of the arm: FK and IK, blended by the influence.
-    pub fn arm_pose(&self) -> &TwoBonePose {
-        &self.solved_arm().pose
-    }
-
-    /// The arm's pose by IK alone, with the state from which the next solve continues.
-    pub fn arm_solution(&self) -> &IkSolution {
-        &self.solved_arm().solution
-    }
-
-    /// The arm in its frames.
-    pub fn arm_frames(&self) -> LimbFrames {
-        self.document.arm.frames(self.arm_solution(), self.arm_pose())
-    }
-
     /// The limb of a joint's target in its frames; `None` if it has none: see
     /// [`SkeletonRig::limb_frames`](crate::rig::SkeletonRig::limb_frames).
     pub fn limb_frames(&self, joint: JointId) -> Option<LimbFrames> {
-        let rig = &self.document.skeleton_rig;
+        let rig = &self.document.rig;
         rig.limb_frames(self.evaluated_skeleton(), rig.target(joint)?)
     }
 
@@ -262,13 +230,13 @@ impl Posed {
 
     /// The report of a joint's target; `None` if the joint has none.
     pub fn target_report(&self, joint: JointId) -> Option<&TargetReport> {
-        self.targets().get(self.document.skeleton_rig.target(joint)?)
+        self.targets().get(self.document.rig.target(joint)?)
     }
 
     /// The skeleton posed by FK and by its targets, with a report for each target.
     pub fn evaluated_skeleton(&self) -> &EvaluatedSkeleton {
         self.skeleton.get_or_init(|| {
-            let rig = &self.document.skeleton_rig;
+            let rig = &self.document.rig;
             match self.carried() {
                 Some(before) => rig.step(self.time, &before).0,
                 None => rig.evaluate(self.time),
@@ -295,12 +263,12 @@ impl Posed {
         if let Some(provisional) = &self.provisional {
             return Some(provisional.clone());
         }
-        self.motion.state_before(self.time).filter(|_| self.document.skeleton_rig.is_tracked)
+        self.motion.state_before(self.time).filter(|_| self.document.rig.is_tracked)
     }
 
     /// The skeleton as its rig at this time alone would pose it: solved from the FK pose.
     pub fn skeleton_by_itself(&self) -> &Shared<Skeleton> {
-        self.by_itself.get_or_init(|| self.document.skeleton_rig.skeleton_at(self.time))
+        self.by_itself.get_or_init(|| self.document.rig.skeleton_at(self.time))
     }
 
     /// Work of the skeleton's pose, in the unit of [`ChainSolver::bounded`]; 0 until it is read.
@@ -315,14 +283,7 @@ impl Posed {
 
     /// Sets the skin, on which no pose depends.
     pub(crate) fn set_skin(&mut self, skin: Option<Skin>) {
-        self.document.skeleton_rig.skin = skin;
-    }
-
-    fn solved_arm(&self) -> &SolvedArm {
-        self.arm.get_or_init(|| {
-            let solution = self.document.arm.solve();
-            SolvedArm { solution, pose: self.document.arm.blended_with(&solution.pose) }
-        })
+        self.document.rig.skin = skin;
     }
 }
 
@@ -337,11 +298,6 @@ impl Document {
     /// Sets every keyed channel to its interpolated value at a time in seconds.
     pub(super) fn apply_keys(&mut self, time: f64) {
         let keys = self.keys.clone();
-        let cursor = [Channel::Hand, Channel::Pin, Channel::Pinned, Channel::Root];
-        if cursor.into_iter().any(|channel| keys.has(channel)) {
-            // A pose by keys depends on its time alone, so no frame is transported to it.
-            self.arm.end_transport();
-        }
         for (channel, _) in keys.tracks() {
             if let Some(value) = keys.value(channel, time) {
                 channel.set(self, value);
@@ -352,7 +308,7 @@ impl Document {
 
     /// Gives the rig the keys of the heads that chains follow.
     fn apply_head_keys(&mut self) {
-        let rig = &mut self.skeleton_rig;
+        let rig = &mut self.rig;
         rig.head_tracks.clear();
         for path in &rig.follow_paths {
             let channel = match path.kind {
@@ -371,13 +327,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_rig_is_solved_once() {
+    fn a_rig_is_solved_once() {
         let posed = Document::default().at(0.0);
-        assert!(posed.arm.get().is_none() && posed.skeleton.get().is_none());
-        assert!(core::ptr::eq(posed.arm_pose(), posed.arm_pose()));
+        assert!(posed.skeleton.get().is_none());
         assert!(core::ptr::eq(posed.evaluated_skeleton(), posed.evaluated_skeleton()));
         let moved = posed.clone();
-        assert!(moved.arm.get().is_some() && moved.skeleton.get().is_some(), "copies are solved");
+        assert!(moved.skeleton.get().is_some(), "copies are solved");
     }
 
     #[test]

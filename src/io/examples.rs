@@ -3,7 +3,6 @@
 use super::error::OpenError;
 use super::open::parse;
 use super::opened::{OpenOptions, Opened};
-use crate::document::Document;
 
 /// An example document that is built into the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,14 +46,6 @@ macro_rules! examples {
             text: include_str!(concat!("../../assets/", $folder, $name, ".json")),
         },)*)*]
     };
-}
-
-/// Returns the document of a new window, which shows the arm. Its skeleton, to which the user can
-/// switch, is the one of the Human example.
-pub fn new_document() -> Document {
-    let human = Example::find("human").and_then(|human| human.open().ok());
-    let skeleton_rig = human.map(|opened| opened.document.skeleton_rig).unwrap_or_default();
-    Document { skeleton_rig, ..Document::default() }
 }
 
 impl Example {

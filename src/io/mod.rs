@@ -29,7 +29,7 @@ mod write;
 #[cfg(feature = "app")]
 pub(crate) use error::system_reason;
 pub use error::{OpenError, Remark, SaveError, WriteError};
-pub use examples::{Example, ExampleGroup, new_document};
+pub use examples::{Example, ExampleGroup};
 pub use exported::{BvhUnit, Cancelled, ExportFrames, ExportKind, ExportOption, ExportOptions};
 pub use exported::{Exported, MotionError, Progress};
 pub use formats::bvh::to_bvh;

@@ -8,7 +8,7 @@ use super::formats::Reader;
 use super::json::{FieldWarnings, JsonPath};
 use super::opened::{OpenOptions, Opened, Upwards};
 use super::source::Source;
-use crate::document::{Document, RigKind, Skin};
+use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinSource};
@@ -86,7 +86,7 @@ fn one_of_several(names: &[String]) -> Option<Remark> {
 fn turn_up(opened: &mut Opened, up: Option<Upwards>, seems_z: bool) {
     let document = &mut opened.document;
     let turns = up == Some(Upwards::Z) || up == Some(Upwards::Auto) && seems_z;
-    if turns && document.rig == RigKind::Skeleton {
+    if turns {
         document.turn_y_up();
         document.camera = document.framing_camera();
     }
@@ -105,7 +105,7 @@ fn turn_up(opened: &mut Opened, up: Option<Upwards>, seems_z: bool) {
 /// mesh.
 fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
     let mut warnings = FieldWarnings::default();
-    let rig = &mut document.skeleton_rig;
+    let rig = &mut document.rig;
     let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut rig.skin else { return warnings };
     let Some(file) = skin.file() else { return warnings };
     let path = folder.map_or_else(|| file.path.clone(), |folder| folder.join(&file.path));
@@ -172,7 +172,7 @@ fn read_skin(
         return Ok(None);
     }
     let opened = reader.read(&source, &options)?;
-    Ok(opened.document.skeleton_rig.skin.and_then(|skin| match skin.source {
+    Ok(opened.document.rig.skin.and_then(|skin| match skin.source {
         SkinSource::Mesh(mesh) => Some((mesh.in_file()?.clone(), mesh.file()?.clone())),
         SkinSource::Bones(_) => None,
     }))

@@ -100,6 +100,6 @@ pub fn attach_skin(
     let has_colours = !skin.in_file().is_some_and(|mesh| mesh.parts.iter().all(is_plain));
     let skin = Skin::new(SkinSource::Mesh(skin));
     let colour = if has_colours { skin.colour } else { Skin::DEFAULT_COLOUR };
-    document.skeleton_rig.skin = Some(Skin { colour, ..skin });
+    document.rig.skin = Some(Skin { colour, ..skin });
     document.display = document.display.with(Overlay::Skin, true).with(Overlay::Bones, false);
 }

@@ -64,8 +64,7 @@ pub fn texture_pixels(texture: &SkinTexture) -> Result<&[[u8; 4]], &str> {
 /// Decodes the textures of the document's skin, before they are drawn. Returns a remark for each
 /// that cannot be decoded and is drawn as white.
 pub fn undrawn_textures(document: &Document) -> Vec<Remark> {
-    let Some(SkinSource::Mesh(skin)) = document.skeleton_rig.skin.as_ref().map(|skin| &skin.source)
-    else {
+    let Some(SkinSource::Mesh(skin)) = document.rig.skin.as_ref().map(|skin| &skin.source) else {
         return Vec::new();
     };
     let parts = skin.mesh().map_or(&[][..], |mesh| &mesh.parts);

@@ -133,8 +133,9 @@ mod tests {
             for kind in kinds {
                 for cursor in [[250.0, 120.0, 60.0], [440.0, 320.0, 60.0], [10.0, 220.0, -200.0]] {
                     let mut document = Document::default();
-                    document.arm.set_cursor(Vec3::from(cursor));
-                    document.arm.twist_reference = kind;
+                    let target = &mut document.rig.targets[0];
+                    target.home = Vec3::from(cursor);
+                    target.limb_mut().expect("a limb").reference = kind;
                     document.display = document.display.with(overlay, true);
                     let posed = document.at(0.0);
                     let overlays = Overlays::new(&Track::new(&document), &posed);
@@ -159,7 +160,7 @@ mod tests {
         const ARROW: f32 = 80.0;
         for cursor in [[440.0, 320.0, 60.0], [-300.0, 400.0, 200.0], [300.0, -200.0, 400.0]] {
             let mut document = Document::default();
-            document.arm.set_cursor(Vec3::from(cursor));
+            document.rig.targets[0].home = Vec3::from(cursor);
             document.camera = document.camera.framing(Vec3::ZERO, 900.0, SIZE.x / SIZE.y);
             let overlays = Overlays { has_handles: true, ..Overlays::default() };
             let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);

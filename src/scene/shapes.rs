@@ -304,9 +304,10 @@ impl LabelSide {
             let y = if side.is_above() { 1.0 } else { -1.0 };
             others.iter().map(|other| seen(other).dot(Vec2::new(x, y))).fold(f32::MIN, f32::max)
         };
+        // Rounding must not decide between sides that are equally far.
+        let rounded = |side: &Self| (nearness(*side) * 1e4).round();
         let sides = Self::ALL.into_iter();
-        sides
-            .min_by(|one, other| nearness(*one).total_cmp(&nearness(*other)))
-            .unwrap_or(Self::Above)
+        let clearest = sides.min_by(|one, other| rounded(one).total_cmp(&rounded(other)));
+        clearest.unwrap_or(Self::Above)
     }
 }

@@ -1,4 +1,3 @@
-use crate::session::arm::edits::ArmEdit;
 use crate::session::display::DisplayEdit;
 use crate::session::files::action::FileAction;
 use crate::session::history::transaction::TransactionAction;
@@ -10,7 +9,7 @@ use crate::session::selection::SelectAction;
 use crate::session::session::Session;
 use crate::session::shell::ShellAction;
 use crate::session::skeleton::joints::JointEdit;
-use crate::session::skeleton::targets::{PathEdit, TargetEdit};
+use crate::session::skeleton::targets::{PathEdit, TargetEdit, changed_label};
 use crate::session::skin::SkinEdit;
 use crate::session::solver::edits::SolverEdit;
 use crate::session::solver::solvers::SolverAction;
@@ -80,7 +79,7 @@ macro_rules! from_edit {
     };
 }
 
-from_edit!(ArmEdit, JointEdit, PathEdit, TargetEdit, SolverEdit, SkinEdit, KeysEdit, DisplayEdit);
+from_edit!(JointEdit, PathEdit, TargetEdit, SolverEdit, SkinEdit, KeysEdit, DisplayEdit);
 
 /// Actions in the order in which they are applied.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -138,9 +137,10 @@ macro_rules! edits {
         }
 
         impl Edit {
-            /// Label of the edit's undo step, as in "Undo Move hand".
-            pub fn label(&self) -> &'static str {
+            /// Label of the edit's undo step, as in "Undo Move target", if it is made now.
+            pub fn label(&self, session: &Session) -> &'static str {
                 match self {
+                    Self::Target(TargetEdit::SetTarget(target)) => changed_label(session, target),
                     $(Self::$part(edit) => edit.label(),)*
                 }
             }
@@ -161,9 +161,7 @@ macro_rules! edits {
 }
 
 edits! {
-    /// Of the arm.
-    Arm(ArmEdit),
-    /// Of the skeleton's joints.
+    /// Of the joints.
     Joint(JointEdit),
     /// Of the path that a chain follows.
     Path(PathEdit),
@@ -175,6 +173,6 @@ edits! {
     Skin(SkinEdit),
     /// Of keys and timeline.
     Keys(KeysEdit),
-    /// Of the display and of both rigs alike.
+    /// Of the display, and resets.
     Display(DisplayEdit),
 }

@@ -1,23 +1,20 @@
-use super::arm;
+use super::history::steps::TreeChange;
 use super::outcome::{Consequence, Outcome};
 use super::session::Session;
 use super::skeleton::joints;
-use crate::document::{Arm, Camera, Display, Document, Overlay, RigKind};
+use crate::document::{Display, Document, Overlay};
 
-/// A change of the display, or of both rigs alike.
+/// A change of the display, or a reset.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DisplayEdit {
     /// Shows or hides an overlay.
     ShowOverlay(Overlay, bool),
-    /// Shows the arm or the skeleton.
-    ShowRig(RigKind),
-    /// Resets the shown rig: the arm to its defaults, or the skeleton to its bind pose. The display
-    /// does not change.
+    /// Resets the rig: one with the joints of the arm to the arm's defaults, any other to its bind
+    /// pose. The display does not change.
     ResetPose,
     /// Resets the pose, the display, the camera and the crowd.
     ResetAll,
-    /// Sets the length of a document unit in exports, in metres; `None` for the shown rig's
-    /// default.
+    /// Sets the length of a document unit in exports, in metres; `None` for the default.
     SetMetres(Option<f32>),
 }
 
@@ -26,8 +23,6 @@ impl DisplayEdit {
     pub fn label(&self) -> &'static str {
         match self {
             Self::ShowOverlay(overlay, _) => toggle_label(*overlay),
-            Self::ShowRig(RigKind::Arm) => "Show arm",
-            Self::ShowRig(RigKind::Skeleton) => "Show skeleton",
             Self::ResetPose => "Reset pose",
             Self::ResetAll => "Reset all",
             Self::SetMetres(_) => "Change unit",
@@ -40,7 +35,6 @@ impl DisplayEdit {
                 let display = session.shown().display.with(overlay, is_shown);
                 show(session, display)
             }
-            Self::ShowRig(rig) => show_rig(session, rig),
             Self::ResetPose => reset_pose(session),
             Self::ResetAll => reset_all(session),
             Self::SetMetres(Some(metres)) if !(metres.is_finite() && metres > 0.0) => {
@@ -57,29 +51,39 @@ fn show(session: &Session, display: Display) -> Outcome {
     Consequence::Write(Box::new(Document { display, ..session.shown().clone() })).into()
 }
 
-/// Shows the arm or the skeleton.
-fn show_rig(session: &mut Session, rig: RigKind) -> Outcome {
-    session.act(Consequence::SettleCamera);
-    let mut after = session.shown().clone();
-    after.show(rig);
-    Outcome::from(Consequence::Write(Box::new(after))).and(Consequence::Message(None))
+/// True if a document has the joints of the arm, in any pose.
+fn is_arm_tree(document: &Document) -> bool {
+    let arm = Document::default();
+    let change = TreeChange::between(document.skeleton(), arm.skeleton());
+    change == TreeChange::Kept && document.rig.sole_limb().is_some()
 }
 
 fn reset_pose(session: &Session) -> Outcome {
-    match session.rig() {
-        RigKind::Arm => arm::edits::replace(session, Arm::default()),
-        RigKind::Skeleton => joints::bind_pose(session),
+    if is_arm_tree(session.shown()) {
+        let rig = Document::default().rig;
+        return Outcome::from(Consequence::ResetPosture).and(Outcome::change(
+            session.shown(),
+            |document| {
+                document.rig = rig;
+                document.track_start = None;
+            },
+        ));
     }
+    joints::bind_pose(session)
 }
 
 fn reset_all(session: &mut Session) -> Outcome {
-    let framed = match session.rig() {
-        RigKind::Arm => Consequence::GlideTo(Camera::default()),
-        RigKind::Skeleton => Consequence::FrameAll,
-    };
-    let shown = show(session, Display::default());
-    session.act(Outcome::from(Consequence::ResetCrowd).and(shown).and(framed));
-    reset_pose(session)
+    let is_arm = is_arm_tree(session.shown());
+    let display = if is_arm { Display::of_arm() } else { Display::default() };
+    let shown = show(session, display);
+    session.act(Outcome::from(Consequence::ResetCrowd).and(shown));
+    let reset = reset_pose(session);
+    session.act(reset);
+    if is_arm {
+        Consequence::GlideTo(session.shown().framing_camera()).into()
+    } else {
+        Consequence::FrameAll.into()
+    }
 }
 
 fn toggle_label(overlay: Overlay) -> &'static str {
@@ -108,6 +112,8 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",
         Overlay::TwistReferences => "Toggle references",
+        Overlay::Cylinders => "Toggle cylinders",
+        Overlay::Paths => "Toggle paths",
         Overlay::Hand => "Toggle hand",
     }
 }

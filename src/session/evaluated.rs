@@ -91,14 +91,14 @@ impl Evaluated {
         /// Weight of a root without a bone, as a fraction of the greatest one, from which the skin
         /// is its own.
         const SHARED: f32 = 0.5;
-        let Document { skeleton_rig, display, .. } = posed.document();
-        let skin = skeleton_rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
+        let Document { rig, display, .. } = posed.document();
+        let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
         let mesh = &skin.mesh().ok()?.mesh;
         let pose = || mesh.posed(&mesh.pose(posed.skeleton()), skin.skinning);
         let hit = self.posed_skin.get(pose).hit(ray.origin, ray.direction)?;
         let weights = mesh.weights_at(&hit);
         let least = SHARED * weights.of(weights.first());
-        let is_root = |joint| skeleton_rig.skeleton.joint(joint).is_some_and(Joint::is_root_point);
+        let is_root = |joint| rig.skeleton.joint(joint).is_some_and(Joint::is_root_point);
         let root = weights.iter().find(|(joint, _)| is_root(*joint));
         Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
     }
@@ -176,7 +176,7 @@ impl SkinAreas {
     pub(super) fn new(track: &Track, joint: Option<JointId>) -> Option<Self> {
         const MOST_TIMES: usize = 121;
         let document = track.document();
-        let skin = document.skeleton_rig.skin.as_ref();
+        let skin = document.rig.skin.as_ref();
         let skin = skin.filter(|_| document.display.shows(Overlay::CompareSkinning))?;
         let mesh = &skin.mesh().ok()?.mesh;
         let timeline = document.timeline;

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::document::{Document, Inspection, RigKind, Track};
+use crate::document::{Document, Inspection, Track};
 use crate::io::Progress;
 use crate::kinematics::Shared;
 use crate::session::history::editing::Editing;
@@ -102,7 +102,7 @@ impl Inspections {
     }
 }
 
-/// True if a document shows a figure whose targets move it.
+/// True if targets move the rig of a document.
 fn is_worth(document: &Document) -> bool {
-    document.rig == RigKind::Skeleton && document.is_posed_over_time()
+    document.is_posed_over_time()
 }

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use crate::document::{Bake, Baked, Channel, Document, Keys, Quantity, RigKind, Timeline};
+use crate::document::{Bake, Baked, Channel, Document, Keys, Quantity, Target, Timeline};
 use crate::kinematics::spline::{Interpolation, Knot, Slopes};
 use crate::session::dialog::{BakeJob, Dialog};
 use crate::session::outcome::{Consequence, Effect, Outcome};
@@ -44,8 +44,8 @@ impl KeysEdit {
     pub fn label(&self) -> &'static str {
         match self {
             Self::Key(channels) => match channels[..] {
-                [Channel::Hand] => "Key hand",
-                [Channel::Twist] => "Key Socket twist",
+                [Channel::Target(_)] => "Key target",
+                [Channel::TargetTwist(_)] => "Key Socket twist",
                 [..] => "Set keys",
             },
             Self::DeleteKeys(_) | Self::ClearChannels(_) => "Delete keys",
@@ -178,8 +178,8 @@ fn bake(session: &mut Session, baked: &Baked) -> Outcome {
     session.act(Outcome::from(Consequence::DiscardUnkeyed).and(Consequence::Refresh));
     Outcome::change(session.shown(), |document| {
         document.keys = baked.document.keys.clone();
-        let paths = &baked.document.skeleton_rig.follow_paths;
-        document.skeleton_rig.follow_paths.clone_from(paths);
+        let paths = &baked.document.rig.follow_paths;
+        document.rig.follow_paths.clone_from(paths);
     })
 }
 
@@ -210,7 +210,7 @@ fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
         Quantity::Switch => value,
         Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
         Quantity::Length => sum.max(value * LEAST),
-        Quantity::Point | Quantity::Angle | Quantity::Angles | Quantity::Rotation => sum,
+        Quantity::Point | Quantity::Angle | Quantity::Rotation => sum,
     }
 }
 
@@ -223,56 +223,61 @@ fn of_width(channel: Channel, vector: Vec3) -> Vec3 {
 
 /// Channels for the keys.
 impl KeysEdit {
-    /// Channels that the shortcut K keys: those selected in the timeline, if any. Otherwise, for
-    /// the arm, the channels that pose it and those with unkeyed edits; for the skeleton, the
-    /// channels of the selected joints, or all channels if no joint is selected.
+    /// Channels that the shortcut K keys: those selected in the timeline, if any, else those of the
+    /// selected joints. Without a selection, for a rig that is one limb the channels that pose it
+    /// and those with unkeyed edits, for any other all channels.
     pub fn channels_to_key(session: &Session) -> Vec<Channel> {
         let (shown, selection) = (session.shown(), session.selection());
         let is_there = |channel: &Channel| channel.value(shown).is_some();
         if !selection.channels().is_empty() {
             return selection.channels().iter().copied().filter(is_there).collect();
         }
-        match shown.rig {
-            RigKind::Arm => {
+        let rig = &shown.rig;
+        match (rig.sole_limb(), selection.joints()) {
+            (Some(limb), []) => {
                 let overridden = session.history().overridden_channels().filter(is_there);
-                let all: BTreeSet<_> = posing_channels(shown).chain(overridden).collect();
+                let all: BTreeSet<_> =
+                    posing_channels(shown, limb).into_iter().chain(overridden).collect();
                 all.into_iter().collect()
             }
-            RigKind::Skeleton if selection.joints().is_empty() => Self::all_channels(shown),
-            RigKind::Skeleton => {
-                let rig = &shown.skeleton_rig;
-                let ends = selection.joints().iter().filter_map(|it| rig.target_of_end(*it));
+            (None, []) => Self::all_channels(shown),
+            (_, selected) => {
+                let ends = selected.iter().filter_map(|it| rig.target_of_end(*it));
                 let targeted: Vec<_> = ends.map(|index| rig.targets[index].joint).collect();
                 let is_selected = |channel: &Channel| match channel.target() {
                     Some(joint) => targeted.contains(&joint),
-                    None => channel.joint().is_some_and(|it| selection.joints().contains(&it)),
+                    None => channel.joint().is_some_and(|it| selected.contains(&it)),
                 };
                 Channel::of_rig(shown).into_iter().filter(is_selected).collect()
             }
         }
     }
 
-    /// Channels that affect the pose of the shown rig, and those of [`Self::keyed_channels`].
+    /// Channels that affect the pose, and those of [`Self::keyed_channels`].
     pub fn all_channels(shown: &Document) -> Vec<Channel> {
         let of_rig = Channel::of_rig(shown).into_iter();
         let all: BTreeSet<Channel> = of_rig.chain(Self::keyed_channels(shown)).collect();
         all.into_iter().collect()
     }
 
-    /// All channels with keys, except the point of the arm's Cursor that is not in use.
+    /// All channels with keys, except points of targets that are not in use.
     pub fn keyed_channels(shown: &Document) -> impl Iterator<Item = Channel> {
         let keyed = shown.keys.tracks().map(|(channel, _)| channel);
-        keyed.filter(|channel| !channel.is_idle(&shown.arm))
+        keyed.filter(|channel| !channel.is_idle(&shown.rig))
     }
 }
 
-/// Channels that pose the arm: those of IK if its influence is above 0, and those of FK if that
+/// Channels that pose a limb: those of IK if its influence is above 0, and those of FK if that
 /// influence is below 1. The switch of the pin is among them if it is on or has keys.
-fn posing_channels(Document { arm, keys, .. }: &Document) -> impl Iterator<Item = Channel> {
-    let hand = Channel::IK.into_iter().filter(|_| arm.uses_ik());
-    hand.chain(Channel::FK).filter(|channel| {
-        channel.shapes(arm) || *channel == Channel::Pinned && keys.has(Channel::Pinned)
-    })
+fn posing_channels(document: &Document, target: &Target) -> Vec<Channel> {
+    let (rig, joint) = (&document.rig, target.joint);
+    let is_keyed =
+        |channel: &Channel| *channel == Channel::Pinned(joint) && document.keys.has(*channel);
+    let of_ik = Channel::of_ik(target).into_iter().filter(|_| target.influence > 0.0);
+    let of_ik = of_ik.filter(|channel| channel.shapes(target) || is_keyed(channel));
+    let of_fk = Channel::of_fk(rig, target).into_iter().filter(|_| target.influence < 1.0);
+    let stretch = Channel::Stretch(joint);
+    of_ik.chain(of_fk.filter(|it| *it != stretch || it.shapes(target))).collect()
 }
 
 /// Starts and ends bakes, which run on a thread of their own.

@@ -1,12 +1,12 @@
-use crate::document::{Document, LengthFormat, Posed, RigKind};
+use crate::document::{Document, LengthFormat, Posed};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{LimbFrames, SkeletonRig};
 
 /// The limb that pages and guides are about: that of the selected joint, else the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownLimb {
-    /// The joint of the limb's target; `None` for the arm.
-    pub target: Option<JointId>,
+    /// The joint of the limb's target.
+    pub target: JointId,
     /// The limb in its frames.
     pub frames: LimbFrames,
     /// Words for its joints.
@@ -47,26 +47,22 @@ impl ShownLimb {
     /// without a limb.
     pub fn new(posed: &Posed, selected: Option<JointId>) -> Option<Self> {
         let document = posed.document();
-        let target = Self::target(document, selected);
-        let frames = Self::frames(posed, selected)?;
-        let words = target.map_or(LimbWords::ARM, |it| words_of(&document.skeleton_rig, it));
-        Some(Self { target, frames, words })
+        let target = Self::target(document, selected)?;
+        let frames = posed.limb_frames(target)?;
+        Some(Self { target, frames, words: words_of(&document.rig, target) })
     }
 
     /// [`ShownLimb::new`] without its words, which take memory.
     pub fn frames(posed: &Posed, selected: Option<JointId>) -> Option<LimbFrames> {
-        match posed.document().rig {
-            RigKind::Arm => Some(posed.arm_frames()),
-            RigKind::Skeleton => posed.limb_frames(Self::target(posed.document(), selected)?),
-        }
+        posed.limb_frames(Self::target(posed.document(), selected)?)
     }
 
-    /// The joint of the target of the shown limb of a skeleton.
+    /// The joint of the target of the shown limb.
     fn target(document: &Document, selected: Option<JointId>) -> Option<JointId> {
-        let rig = &document.skeleton_rig;
+        let rig = &document.rig;
         let of_selected = selected.and_then(|joint| rig.limb_target_of(joint));
         let first = || rig.targets.iter().position(|it| it.limb().is_some());
-        let index = of_selected.or_else(first).filter(|_| document.rig == RigKind::Skeleton)?;
+        let index = of_selected.or_else(first)?;
         Some(rig.targets[index].joint)
     }
 

@@ -2,7 +2,6 @@
 //! playhead, solver runs, view, dialogs. Every change by the user is an [`Action`].
 
 mod action;
-mod arm;
 mod cached;
 mod dialog;
 mod display;
@@ -26,13 +25,13 @@ mod session;
 mod shell;
 mod skeleton;
 mod skin;
+mod solve_line;
 mod solver;
 mod tour;
 mod view;
 
 pub use action::Edit;
 pub use action::{Action, Actions};
-pub use arm::edits::ArmEdit;
 pub use dialog::{BakeJob, Dialog};
 pub use display::DisplayEdit;
 pub use drag::grip::{Drag, Grip};
@@ -51,7 +50,7 @@ pub use limb::{LimbWords, ShownLimb};
 pub use outcome::Effect;
 pub use overlays::OnionSkin;
 pub use overlays::{InsideView, Overlays, SolverGhost, TwistReferencePoses};
-pub use parts::{ArmJoint, BodyPart, Key, LimbFigure, PoseMode};
+pub use parts::{Key, LimbFigure, PoseMode};
 pub use playback::{Playback, PlaybackAction};
 pub use pop_fix::PopFix;
 pub use pops::{PopSample, PopSampleKind, Pops, Spike, TransportPath};

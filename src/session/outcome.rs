@@ -1,14 +1,14 @@
 use core::fmt::Display;
 use std::path::PathBuf;
 
-use super::drag::grip::{Drag, Grip};
+use super::drag::grip::Drag;
 use super::files::action::{Export, FileAction, FileContents, PathDialog};
-use super::parts::{BodyPart, Key, SelectedKeys};
+use super::parts::{Key, SelectedKeys};
 use super::preferences::{PanelTab, Preferences};
 use crate::document::{Bake, Camera, Channel, Document, Keys, Ray, SkeletonRig};
 use crate::io::OpenOptions;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, RotationAxis, SkeletonError};
-use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::LimbFrames;
 use crate::session::dialog::{Dialog, Message};
 
 /// A request from the session to the program around it.
@@ -44,8 +44,8 @@ pub enum Effect {
 pub(super) enum Consequence {
     /// Shows a message in the status bar; `None` removes it.
     Message(Option<Message>),
-    /// Says that the arm has moved, if it has moved away from this pose.
-    SayIfArmMoved(Box<TwoBonePose>),
+    /// Says that the limb of a joint's target has moved, if it has moved away from this pose.
+    SayIfLimbMoved(JointId, Box<LimbFrames>),
     /// Replaces the shown document and updates all that depends on it.
     Write(Box<Document>),
     /// Evaluates the document again.
@@ -54,8 +54,8 @@ pub(super) enum Consequence {
     DiscardUnkeyed,
     /// Discards the unkeyed edits of channels.
     ForgetUnkeyed(Vec<Channel>),
-    /// Discards the unkeyed edit of the twist if the keys have the same twist.
-    ForgetTwistLikeKeys,
+    /// Discards the unkeyed edit of an angle if its keys have the same one.
+    ForgetLikeKeys(Channel),
     /// Sets the keys from which the next move of keys in the open transaction starts.
     RestartKeysFrom(Box<Keys>),
     /// Opens a transaction, unless one is open.
@@ -68,16 +68,16 @@ pub(super) enum Consequence {
     Undo,
     /// Redoes a step.
     Redo,
-    /// Ends other moves of the camera and selects the joint of the arm that a grip belongs to.
-    Press(Grip),
+    /// Ends other moves of the camera, because something is dragged.
+    Press,
     /// Lets heads follow the mouse in a transaction of their own, or ends that.
     FollowMouse(bool),
     /// Moves the mouse that heads follow.
     Lead(Ray),
     /// Selects joints.
     Select(Vec<JointId>),
-    /// Sets the part of a body under the mouse.
-    Hover(Option<BodyPart>),
+    /// Sets the joint under the mouse.
+    Hover(Option<JointId>),
     /// Selects keys, also such as will be set.
     SelectKeys(Vec<Key>),
     /// Renumbers the joints of the keys that were selected.
@@ -109,13 +109,11 @@ pub(super) enum Consequence {
     EndGlide,
     /// Glides the camera so that what it follows is in the middle of the picture.
     CentreFollowed,
-    /// Ends the drag of the camera, and its glide at the end.
-    SettleCamera,
     /// Hides the crowd and resets it.
     ResetCrowd,
     /// Starts the measurement of holonomy anew.
     ResetTransport,
-    /// Brings a page of the panel on the right to the front, if the shown rig has it.
+    /// Brings a page of the panel on the right to the front, if it is there.
     ShowTab(PanelTab),
     /// Replaces the preferences.
     Prefer(Preferences),
@@ -203,7 +201,7 @@ impl Outcome {
     ) -> Result<(Self, T), Self> {
         let mut after = shown.clone();
         let value = change(&mut after).map_err(|error| Self::fail(error.to_string()))?;
-        let checked = after.skeleton_rig.check_target_spaces();
+        let checked = after.rig.check_target_spaces();
         checked.map_err(|error| Self::fail(error.to_string()))?;
         Ok((Self::write(after), value))
     }
@@ -213,7 +211,7 @@ impl Outcome {
         shown: &Document,
         change: impl FnOnce(&mut SkeletonRig) -> Result<(), SkeletonError>,
     ) -> Self {
-        Self::edit(shown, |document| change(&mut document.skeleton_rig))
+        Self::edit(shown, |document| change(&mut document.rig))
     }
 
     /// Changes a copy of a joint and writes it; after an error, reports that.

@@ -1,14 +1,14 @@
 use glam::Vec3;
 
-use crate::document::{Document, Overlay, Posed, RigKind, Track, TwistReferenceKind};
+use crate::document::{Document, Overlay, Posed, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, Method, SubStep, TipTarget};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
-use crate::rig::{Crowd, LimbFrames, LimbPart};
+use crate::rig::{Crowd, LimbFrames};
 use crate::session::limb::ShownLimb;
-use crate::session::parts::{BodyPart, LimbFigure};
+use crate::session::parts::LimbFigure;
 use crate::session::pops::TransportPath;
 use crate::session::session::Session;
 use crate::session::solver::iterates::InsideLayers;
@@ -20,8 +20,8 @@ use crate::session::solver::wiggle::WiggleView;
 pub struct Overlays {
     /// Selected joints; the last of them is the active joint.
     pub selection: Vec<JointId>,
-    /// The part of a body under the mouse, which lights up.
-    pub hovered: Option<BodyPart>,
+    /// The joint whose bone or skin is under the mouse, which lights up.
+    pub hovered: Option<JointId>,
     /// The line of the limb's figures that lights up.
     pub figure: Option<LimbFigure>,
     /// The joints that keep a tip from its target.
@@ -131,9 +131,7 @@ fn twist_reference_poses(
 /// The rig in a frame before or after the playhead.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnionSkin {
-    /// Shoulder, elbow and hand of the arm, in the world.
-    pub arm: [Vec3; 3],
-    /// The skeleton's pose, in world space.
+    /// The pose, in world space.
     pub pose: SkeletonPose,
     /// True if the frame is before the playhead.
     pub past: bool,
@@ -171,8 +169,6 @@ pub(in crate::session) fn write_onion_skins(
             skins.push(OnionSkin::default());
         }
         let skin = &mut skins[made];
-        let arm = posed.arm_frames();
-        skin.arm = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| arm.origin(part));
         posed.skeleton().write_pose(&mut skin.pose);
         (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
         made += 1;
@@ -185,28 +181,23 @@ pub(in crate::session) fn has_trail(document: &Document, shown: &Document) -> bo
     document.is_animated() && shown.display.shows(Overlay::Trail)
 }
 
-/// Samples the world positions of the arm's hand, or of a joint's tip: in every frame, or in fewer
-/// frames for a long timeline, a large skeleton or poses that take much work. Empty for a skeleton
-/// without a `joint`.
+/// Samples the world positions of a joint's tip, or without a `joint` of the hand of a rig that is
+/// one limb: in every frame, or in fewer frames for a long timeline, a large skeleton or poses that
+/// take much work. Empty for another rig without a `joint`.
 pub(in crate::session) fn sample_trail(track: &Track, joint: Option<JointId>) -> Vec<Vec3> {
     const MOST_POINTS: usize = 2000;
     /// Maximum of the number of joints times the number of points.
     const MOST_POSES: usize = 100_000;
     let document = track.document();
     let timeline = document.timeline;
-    let joints = match (document.rig, joint) {
-        (RigKind::Arm, _) => 1,
-        (RigKind::Skeleton, Some(_)) => document.skeleton().joints().len(),
-        (RigKind::Skeleton, None) => return Vec::new(),
-    };
+    let hand = || document.rig.sole_limb().map(|target| target.joint);
+    let Some(joint) = joint.or_else(hand) else { return Vec::new() };
+    let joints = document.skeleton().joints().len();
     let frames = timeline.frames();
     let stride = frames.div_ceil((MOST_POSES / joints.max(1)).clamp(1, MOST_POINTS));
-    let point = |posed: &Posed| match document.rig {
-        RigKind::Arm => Some(posed.arm().root + posed.arm_pose().hand),
-        RigKind::Skeleton => Some(posed.skeleton().tip(joint?)),
-    };
+    let point = |posed: &Posed| posed.skeleton().tip(joint);
     let time = |index| timeline.time(index * stride);
-    track.sample(frames.div_ceil(stride), time, point).into_iter().flatten().collect()
+    track.sample(frames.div_ceil(stride), time, point)
 }
 
 /// Overlays of the viewport.
@@ -224,12 +215,15 @@ impl Session {
         overlays.crowd = self.crowd();
         overlays.selection.clear();
         overlays.selection.extend_from_slice(self.selection().joints());
-        overlays.hovered = self.selection().hovered_part();
+        overlays.hovered = self.selection().hovered();
         overlays.figure = self.selection().figure();
         overlays.concerned.clear();
-        if let (Some(found), true) = (self.why(false).first(), self.solvers().is_idle()) {
+        let is_figure = self.rig().sole_limb().is_none();
+        if let (Some(found), true) =
+            (self.why(false).first(), is_figure && self.solvers().is_idle())
+        {
             // The sentence calls a limb's target by its hand.
-            overlays.concerned.extend(self.skeleton_rig().end_of_target(found.target));
+            overlays.concerned.extend(self.rig().end_of_target(found.target));
             overlays.concerned.extend_from_slice(&found.joints);
         }
         overlays.inside = inside_view(self);

@@ -3,70 +3,14 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 
 use crate::document::Channel;
-use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Knot;
 
-/// A part of a body in the viewport, which lights up under the mouse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyPart {
-    /// The ball of the arm's shoulder.
-    Root,
-    /// The Upper limb of the arm.
-    UpperLimb,
-    /// The Lower limb of the arm, with the ball of the elbow.
-    LowerLimb,
-    /// The hand of the arm.
-    Hand,
-    /// The bone of a joint, or the skin that it moves.
-    Joint(JointId),
-}
-
-impl BodyPart {
-    /// The joint of a skeleton; `None` for a part of the arm.
-    pub fn joint(self) -> Option<JointId> {
-        match self {
-            Self::Joint(joint) => Some(joint),
-            Self::Root | Self::UpperLimb | Self::LowerLimb | Self::Hand => None,
-        }
-    }
-}
-
-impl From<JointId> for BodyPart {
-    fn from(joint: JointId) -> Self {
-        Self::Joint(joint)
-    }
-}
-
-/// Sizes of the arm on an arm of [thickness](crate::rig::LimbFrames::thickness) 1.
-impl BodyPart {
-    /// Radius of the balls of shoulder and elbow: as large as the ends of the limbs, so that no gap
-    /// shows when the elbow bends.
-    pub const JOINT_BALL: f32 = 33.0;
-    /// Radius of the ball of the wrist.
-    pub const WRIST_BALL: f32 = 22.0;
-    /// Distance from the wrist to the tip of the middle finger.
-    pub const HAND: f32 = 105.0;
-    /// Radius of the shape that the mouse hits around the fingers.
-    pub(super) const FINGERS: f32 = 24.0;
-}
-
-/// A joint of the arm that can be selected in the viewport, which shows its handles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArmJoint {
-    /// The shoulder, with handles that move the Root.
-    Root,
-    /// The elbow, with the ring of the Socket twist.
-    Elbow,
-    /// The hand, with the rings of its orientation.
-    Hand,
-}
-
-/// The way in which the arm is posed: by FK or by IK.
+/// The way in which a limb is posed: by FK or by IK.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseMode {
-    /// IK (hand → joint angles): the Cursor poses the arm.
+    /// IK (hand → joint angles): the target poses the limb.
     Hand,
-    /// FK (joint angles → hand): the joint angles pose the arm.
+    /// FK (joint angles → hand): the joint angles pose the limb.
     Angles,
 }
 

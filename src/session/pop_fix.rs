@@ -3,7 +3,6 @@ use crate::kinematics::soft_reach::SoftReach;
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target, TargetKind};
 use crate::session::action::Edit;
-use crate::session::arm::edits::ArmEdit;
 use crate::session::limb::ShownLimb;
 use crate::session::pops::Spike;
 use crate::session::skeleton::targets::TargetEdit;
@@ -48,14 +47,7 @@ impl PopFix {
 
     /// The edit that applies the fix to a limb; `None` if the limb has no such target any more.
     pub fn edit(self, rig: &SkeletonRig, limb: &ShownLimb) -> Option<Edit> {
-        let Some(joint) = limb.target else {
-            return Some(match self {
-                Self::ChangeReference(kind) => ArmEdit::SetTwistReference(kind).into(),
-                Self::Soften(soft_reach) | Self::KeepOpen(soft_reach) => {
-                    ArmEdit::SetSoftReach(soft_reach).into()
-                }
-            });
-        };
+        let joint = limb.target;
         let target = rig.targets[rig.target(joint)?];
         let settings = *target.limb()?;
         Some(match self {

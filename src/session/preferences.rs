@@ -2,7 +2,7 @@ use core::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Document, RigKind, Theme};
+use crate::document::{Document, Theme};
 
 /// Settings of the user, kept from one start of the program to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,17 +16,15 @@ pub struct Preferences {
     pub frame_budget: FrameBudget,
     /// True if the panel on the right is open.
     pub explain: bool,
-    /// The page of that panel for the arm.
-    pub arm_tab: PanelTab,
-    /// The page of that panel for the skeleton.
-    pub skeleton_tab: PanelTab,
+    /// The page of that panel.
+    pub tab: PanelTab,
     /// True if the timeline is open above the transport bar; `None`: while the document has keys.
     pub timeline_open: Option<bool>,
     /// True if the timeline shows the graph editor instead of the dope sheet.
     pub curves: bool,
     /// True if solver runs start from the FK pose, false if from the frame before.
     pub runs_from_fk: bool,
-    /// True if the hand of the arm was ever dragged, so that no hint is needed.
+    /// True if a target was ever dragged, so that no hint is needed.
     pub has_dragged_hand: bool,
     /// True if the tour is offered at the start.
     pub offers_tour: bool,
@@ -68,8 +66,7 @@ impl Default for Preferences {
             navigation: Navigation::default(),
             frame_budget: FrameBudget::default(),
             explain: true,
-            arm_tab: PanelTab::Triangle,
-            skeleton_tab: PanelTab::Solver,
+            tab: PanelTab::Triangle,
             timeline_open: None,
             curves: false,
             runs_from_fk: false,
@@ -80,24 +77,6 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// The page of the panel on the right for a rig.
-    pub fn tab(&self, rig: RigKind) -> PanelTab {
-        match rig {
-            RigKind::Arm => self.arm_tab,
-            RigKind::Skeleton => self.skeleton_tab,
-        }
-    }
-
-    /// Brings a page of the panel on the right to the front, if the rig has it.
-    pub(super) fn show_tab(&mut self, rig: RigKind, tab: PanelTab) {
-        if PanelTab::of(rig).contains(&tab) {
-            match rig {
-                RigKind::Arm => self.arm_tab = tab,
-                RigKind::Skeleton => self.skeleton_tab = tab,
-            }
-        }
-    }
-
     /// True if the timeline of a document is open above the transport bar: by choice, else if the
     /// document has keys.
     pub fn shows_timeline(&self, document: &Document) -> bool {
@@ -179,7 +158,7 @@ pub enum PanelTab {
     Reach,
     /// The jumps of the elbow, or of a figure's joints, their causes and their fixes.
     Pops,
-    /// The solver: for a skeleton its settings and iterations, for an arm why there are none.
+    /// The solver: its settings and iterations; for a single limb also why it needs none.
     Solver,
     /// All solvers at once, on the same targets.
     Race,
@@ -188,8 +167,8 @@ pub enum PanelTab {
 }
 
 impl PanelTab {
-    const ARM: [Self; 5] = [Self::Triangle, Self::Twist, Self::Reach, Self::Pops, Self::Solver];
-    const SKELETON: [Self; 7] = [
+    /// All tabs, in the order of the panel.
+    pub const ALL: [Self; 7] = [
         Self::Triangle,
         Self::Twist,
         Self::Reach,
@@ -199,12 +178,9 @@ impl PanelTab {
         Self::Skin,
     ];
 
-    /// The tabs for a rig, in the order of the panel.
-    pub fn of(rig: RigKind) -> &'static [Self] {
-        match rig {
-            RigKind::Arm => &Self::ARM,
-            RigKind::Skeleton => &Self::SKELETON,
-        }
+    /// True for a page that is about a limb.
+    pub fn is_of_limb(self) -> bool {
+        matches!(self, Self::Triangle | Self::Twist | Self::Reach)
     }
 
     /// Name on the tab.

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::outcome::{Consequence, Effect, Outcome};
-use super::parts::{ArmJoint, BodyPart, Clipboard, Key, LimbFigure, SelectedKeys};
+use super::parts::{Clipboard, Key, LimbFigure, SelectedKeys};
 use glam::Vec3;
 
 use crate::document::{Channel, Document};
@@ -13,13 +13,11 @@ use crate::kinematics::spline::Knot;
 pub enum SelectAction {
     /// Selects these joints and no others; the last of them becomes the active joint.
     Joints(Vec<JointId>),
-    /// Sets the part of a body under the mouse; `None` if there is none.
-    Hover(Option<BodyPart>),
+    /// Sets the joint whose bone or skin is under the mouse; `None` if there is none.
+    Hover(Option<JointId>),
     /// Lets an angle of a joint swing in the view; `None` stops it.
     Wiggle(Option<(JointId, RotationAxis)>),
-    /// Selects a joint of the arm, or none.
-    ArmJoint(Option<ArmJoint>),
-    /// Lights up a line of the arm's figures in the view; `None` stops it.
+    /// Lights up a line of the limb's figures in the view; `None` stops it.
     Figure(Option<LimbFigure>),
     /// Selects these keys and no others.
     Keys(Vec<Key>),
@@ -34,8 +32,7 @@ pub enum SelectAction {
 pub struct Selection {
     /// Selected joints; the last of them is the active joint.
     joints: Vec<JointId>,
-    hovered: Option<BodyPart>,
-    arm_joint: Option<ArmJoint>,
+    hovered: Option<JointId>,
     figure: Option<LimbFigure>,
     keys: Vec<Key>,
     channels: BTreeSet<Channel>,
@@ -52,9 +49,8 @@ impl Selection {
     ) -> Outcome {
         match action {
             SelectAction::Joints(selected) => return Consequence::Select(selected).into(),
-            SelectAction::Hover(part) => self.hover(part, joints),
+            SelectAction::Hover(joint) => self.hover(joint, joints),
             SelectAction::Wiggle(wiggled) => return Consequence::Wiggle(wiggled).into(),
-            SelectAction::ArmJoint(joint) => self.arm_joint = joint,
             SelectAction::Figure(figure) => self.figure = figure,
             SelectAction::Keys(keys) => {
                 self.keys = keys;
@@ -75,8 +71,8 @@ impl Selection {
         self.retain_joints(count);
     }
 
-    pub(super) fn hover(&mut self, part: Option<BodyPart>, count: usize) {
-        self.hovered = part;
+    pub(super) fn hover(&mut self, joint: Option<JointId>, count: usize) {
+        self.hovered = joint;
         self.retain_joints(count);
     }
 
@@ -115,20 +111,10 @@ impl Selection {
 
     /// The joint under the mouse, in the viewport or in the outliner.
     pub fn hovered(&self) -> Option<JointId> {
-        self.hovered?.joint()
-    }
-
-    /// The part of a body under the mouse, which lights up.
-    pub fn hovered_part(&self) -> Option<BodyPart> {
         self.hovered
     }
 
-    /// The selected joint of the arm, whose handles are shown; `None` without one.
-    pub fn arm_joint(&self) -> Option<ArmJoint> {
-        self.arm_joint
-    }
-
-    /// The line of the arm's figures under the mouse.
+    /// The line of the limb's figures under the mouse.
     pub fn figure(&self) -> Option<LimbFigure> {
         self.figure
     }
@@ -157,10 +143,6 @@ impl Selection {
         &self.clipboard
     }
 
-    pub(super) fn set_arm_joint(&mut self, joint: Option<ArmJoint>) {
-        self.arm_joint = joint;
-    }
-
     pub(super) fn set_keys(&mut self, keys: Vec<Key>) {
         self.keys = keys;
     }
@@ -172,8 +154,7 @@ impl Selection {
     /// Drops selected and hovered joints whose index is `count` or more.
     pub(super) fn retain_joints(&mut self, count: usize) {
         self.joints.retain(|joint| joint.index() < count);
-        let is_there = |joint: JointId| joint.index() < count;
-        self.hovered = self.hovered.filter(|part| part.joint().is_none_or(is_there));
+        self.hovered = self.hovered.filter(|joint| joint.index() < count);
     }
 
     /// Deselects keys and channels that the document does not have.

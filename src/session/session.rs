@@ -13,10 +13,9 @@ use super::shell::Shell;
 use super::solver::solvers::Solvers;
 use super::tour::state::TourState;
 use super::view::View;
-use crate::document::{Arm, Camera, Document, Inspection, Posed, RigKind, SkeletonRig};
-use crate::io;
+use crate::document::{Camera, Document, Inspection, Posed, SkeletonRig};
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
-use crate::kinematics::two_bone::TwoBonePose;
+use crate::kinematics::two_bone::TwoBone;
 use crate::rig::Crowd;
 use crate::session::drag::follow_mouse::FollowMouse;
 
@@ -70,9 +69,9 @@ impl Default for Session {
 }
 
 impl Session {
-    /// A session with a new document: the arm, and the example "Human" as its skeleton.
+    /// A session with a new document: the arm.
     pub fn new(preferences: Preferences) -> Self {
-        Self::with_document(preferences, io::new_document())
+        Self::with_document(preferences, Document::default())
     }
 
     /// A session with a document.
@@ -200,29 +199,14 @@ impl Session {
         self.editing.shown()
     }
 
-    /// The rig that is shown.
-    pub fn rig(&self) -> RigKind {
-        self.document().rig
-    }
-
-    /// The arm at the playhead.
-    pub fn arm(&self) -> &Arm {
-        &self.shown().arm
-    }
-
-    /// The skeleton with its targets at the playhead.
-    pub fn skeleton_rig(&self) -> &SkeletonRig {
-        &self.shown().skeleton_rig
+    /// The joints with their targets at the playhead.
+    pub fn rig(&self) -> &SkeletonRig {
+        &self.shown().rig
     }
 
     /// The joints of the skeleton at the playhead.
     pub fn skeleton(&self) -> &Skeleton {
         self.shown().skeleton()
-    }
-
-    /// The pose of the arm at the playhead.
-    pub fn pose(&self) -> &TwoBonePose {
-        self.posed().arm_pose()
     }
 
     /// The limb that pages and guides are about: that of the selected joint, else the first;
@@ -258,15 +242,34 @@ impl Session {
         self.view.glide_target().unwrap_or(*self.camera())
     }
 
-    /// The crowd that is shown instead of the rig, with the bones of the document's arm; `None` if
-    /// the crowd is hidden.
+    /// The crowd that is shown instead of the rig, with the bones of the shown limb; `None` if the
+    /// crowd is hidden.
     pub fn crowd(&self) -> Option<Crowd> {
-        self.view.crowd(self.arm().bones)
+        self.view.crowd(self.crowd_bones().ok()?)
+    }
+
+    /// The bones of the arms of a crowd: those of the shown limb.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is none: the arms of a crowd are straight hinges without limits.
+    pub fn crowd_bones(&self) -> Result<TwoBone, &'static str> {
+        const SAME: f32 = 1e-4;
+        let limb = self.limb().ok_or("A crowd is of limbs, and the figure has none")?;
+        let (bones, range) = (limb.frames.bones(), limb.frames.range);
+        let is_near = |a: f32, b: f32| (a - b).abs() <= SAME * bones.outer_limit();
+        let opened = limb.frames.posed.ik.soft_reach.least_distance(bones);
+        let upper = self.rig().limb_joints(limb.target).next();
+        let is_limited = upper.is_some_and(|it| self.skeleton()[it].limits.is_limited());
+        let is_free = is_near(range.inner, opened) && is_near(range.outer, bones.outer_limit());
+        if is_limited || !is_free {
+            return Err("A crowd is of limbs without limits, whose bones are straight");
+        }
+        Ok(bones)
     }
 
     /// True if targets move heads, which can follow the mouse.
     pub fn can_follow_mouse(&self) -> bool {
-        let is_shown = self.rig() == RigKind::Skeleton && self.crowd().is_none();
-        is_shown && FollowMouse::new(self.posed()).is_some()
+        self.crowd().is_none() && FollowMouse::new(self.posed()).is_some()
     }
 }

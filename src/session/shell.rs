@@ -1,8 +1,9 @@
-use crate::document::{Arm, Theme};
-use crate::session::arm::pose_line;
+use crate::document::Theme;
 use crate::session::dialog::{Dialog, Message};
+use crate::session::limb::ShownLimb;
 use crate::session::outcome::{Consequence, Effect, Outcome};
 use crate::session::preferences::{FrameBudget, Navigation, Preferences};
+use crate::session::solve_line;
 
 /// Changes dialogs, messages or preferences.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub enum ShellAction {
     Fail(String),
     /// Removes the message, whose moment is over.
     ClearMessage,
-    /// Copies the arm's pose to the clipboard, as a line for `ik-arm solve`.
+    /// Copies the pose of the shown limb to the clipboard, as a line for `ik-arm solve`.
     CopyPose,
     /// Sets the theme.
     SetTheme(Theme),
@@ -40,17 +41,17 @@ pub struct Shell {
 
 impl ShellAction {
     /// Applies an action; `preferences` are the present ones.
-    pub(super) fn apply(self, arm: Option<&Arm>, preferences: Preferences) -> Outcome {
+    pub(super) fn apply(self, limb: Option<&ShownLimb>, preferences: Preferences) -> Outcome {
         match self {
             Self::OpenDialog(dialog) => Consequence::OpenDialog(Box::new(dialog)).into(),
             Self::CloseDialog => Consequence::CloseDialog.into(),
             Self::Report(message) => Outcome::say(message),
             Self::Fail(why) => Outcome::fail(why),
             Self::ClearMessage => Consequence::Message(None).into(),
-            Self::CopyPose => match arm {
-                Some(arm) => Outcome::say("Pose copied as a line for ik-arm solve")
-                    .and(Effect::CopyText(pose_line::of(arm))),
-                None => Outcome::say("Only the pose of the arm can be copied"),
+            Self::CopyPose => match limb {
+                Some(limb) => Outcome::say("Pose copied as a line for ik-arm solve")
+                    .and(Effect::CopyText(solve_line::of(&limb.frames))),
+                None => Outcome::say("There is no limb whose pose could be copied"),
             },
             Self::SetTheme(theme) => {
                 Consequence::Prefer(Preferences { theme, ..preferences }).into()

@@ -52,10 +52,10 @@ impl SkinEdit {
 
 /// Gives the skeleton a skin from its bones, and shows it.
 fn add(session: &Session) -> Outcome {
-    let skin = Skin::from_bones(&session.skeleton_rig().skeleton);
+    let skin = Skin::from_bones(&session.rig().skeleton);
     Outcome::edit(session.shown(), |document| {
         skin.mesh()?;
-        document.skeleton_rig.skin = Some(skin);
+        document.rig.skin = Some(skin);
         document.display = document.display.with(Overlay::Skin, true);
         Ok::<(), SkinMeshError>(())
     })
@@ -69,7 +69,7 @@ fn show(shown: &Document, skin: bool, bones: bool) -> Outcome {
 
 /// Makes the mesh of a file, which the skin has, a part of the document.
 fn pack(session: &Session) -> Outcome {
-    let packed = session.skeleton_rig().skin.as_ref().and_then(|skin| match &skin.source {
+    let packed = session.rig().skin.as_ref().and_then(|skin| match &skin.source {
         SkinSource::Mesh(mesh) => {
             Some(Skin { source: SkinSource::Mesh(mesh.packed()?), ..skin.clone() })
         }
@@ -87,7 +87,7 @@ fn set(session: &Session, skin: Option<Skin>) -> Outcome {
     });
     let is_dragging = session.history().is_editing();
     Outcome::edit(session.shown(), |document| {
-        let rig = &mut document.skeleton_rig;
+        let rig = &mut document.rig;
         rig.skin = skin;
         if !is_dragging {
             rig.refresh_skin();
@@ -119,7 +119,7 @@ pub(super) fn located(
         let dialog = PathDialog::LocateSkin { path, problem }.into();
         Outcome::fail(error.to_string()).and(Consequence::OpenDialog(Box::new(dialog)))
     })?;
-    let skin = session.skeleton_rig().skin.clone();
+    let skin = session.rig().skin.clone();
     match skin.filter(|skin| skin.can_become(&mesh, before)) {
         Some(skin) => {
             let source = SkinSource::Mesh(mesh.attached_to(session.skeleton()));

@@ -1,6 +1,6 @@
 use glam::{Vec2, Vec3};
 
-use crate::document::{Camera, Document, Posed, RigKind};
+use crate::document::{Camera, Posed};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{Crowd, Processor};
@@ -163,9 +163,7 @@ impl View {
 
     /// The angle that swings on a pose, with the paths of the tip; `None` if none does.
     pub fn wiggle_view(&self, posed: &Posed) -> Option<WiggleView> {
-        let Document { rig, skeleton_rig, .. } = posed.document();
-        let wiggle = self.wiggle.filter(|_| *rig == RigKind::Skeleton)?;
-        wiggle.view(skeleton_rig, posed.evaluated_skeleton())
+        self.wiggle?.view(&posed.document().rig, posed.evaluated_skeleton())
     }
 
     /// The layers that are shown of the chosen part of an iteration.

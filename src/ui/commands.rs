@@ -67,7 +67,7 @@ pub(in crate::ui) fn rename(session: &Session, joint: JointId) -> ShellAction {
 /// selected.
 pub(in crate::ui) fn toggle_target(session: &Session) -> Option<Edit> {
     let joint = session.selection().active()?;
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     Some(match rig.target_of_end(joint) {
         Some(target) => TargetEdit::RemoveTarget(rig.targets[target].joint).into(),
         None => TargetEdit::AddTarget(joint).into(),

@@ -1,13 +1,13 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
-use crate::document::{Channel, Overlay, PathKind, RigKind, Target, TwistReferenceKind};
+use crate::document::{Channel, Overlay, PathKind, Target, TwistReferenceKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Grip, Session};
 
-/// Name of the part that a grip of a skeleton moves, such as "pelvis", "the limb of left_hand" or
+/// Name of the part that a grip moves, such as "pelvis", "the limb of left_hand" or
 /// "the target of left_hand"; empty for other grips.
 pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let name = |joint: JointId| rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
     let end = |target: Option<&Target>| target.map_or("–", |target| name(rig.end_of(target)));
     let of_joint = |joint: JointId| end(rig.target(joint).map(|index| &rig.targets[index]));
@@ -26,10 +26,10 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
 /// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of
 /// the joint that the target is named after.
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
-    let name = channel_of_joint(session, channel);
+    let name = channel_of_joint(channel);
     match joint_of_channel(session, channel) {
         Some(joint) => {
-            let joint = session.skeleton_rig().skeleton.joint(joint);
+            let joint = session.rig().skeleton.joint(joint);
             format!("{} · {name}", joint.map_or("–", |joint| &joint.name))
         }
         None => name,
@@ -38,17 +38,17 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
 
 /// The joint that the name of a channel begins with; `None` if it belongs to no joint.
 pub(in crate::ui) fn joint_of_channel(session: &Session, channel: Channel) -> Option<JointId> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let target = channel.target().and_then(|joint| rig.target(joint));
     let end = target.map(|index| rig.end_of(&rig.targets[index]));
     end.or(channel.joint())
 }
 
 /// Name of a channel beside that of its joint, such as "rotation".
-pub(in crate::ui) fn channel_of_joint(session: &Session, channel: Channel) -> String {
+pub(in crate::ui) fn channel_of_joint(channel: Channel) -> String {
     let label = channel.label();
     match channel {
-        Channel::Overlay(shown) => format!("{} {label}", overlay(session.rig(), shown).0),
+        Channel::Overlay(shown) => format!("{} {label}", overlay(shown).0),
         _ => label.to_owned(),
     }
 }
@@ -62,60 +62,48 @@ pub(in crate::ui) fn count_of_keys(count: usize) -> String {
 }
 
 /// Name and tooltip of an overlay.
-pub(in crate::ui) fn overlay(rig: RigKind, overlay: Overlay) -> (&'static str, &'static str) {
-    match (rig, overlay) {
-        (RigKind::Skeleton, Overlay::Cursor) => {
-            ("Targets", "Show targets, their paths and the gaps to them")
+pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
+    match overlay {
+        Overlay::Cursor => ("Cursor", "Show the targets of hands and feet, and the gaps to them"),
+        Overlay::Pointer => ("Pointer", "Show the axis from the shoulder through hand and Cursor"),
+        Overlay::Trail => {
+            ("Trail", "Show the path of the hand or the selected tip, one dot a frame")
         }
-        (RigKind::Skeleton, Overlay::Pointer) => {
-            ("Pointer", "Show the axis of the selected limb, and the path that a head follows")
-        }
-        (RigKind::Arm, Overlay::Trail) => ("Trail", "Show the path of the hand, one dot a frame"),
-        (RigKind::Skeleton, Overlay::Trail) => {
-            ("Trail", "Show the path of the selected tip, one dot a frame")
-        }
-        (_, Overlay::OnionSkins) => {
-            ("Onion skins", "Show the rig 5, 10 and 15 frames before and after")
-        }
-        (RigKind::Skeleton, Overlay::Labels) => ("Labels", "Show names of the selected joints"),
-        (RigKind::Arm, Overlay::Cursor) => ("Cursor", "Show the Cursor, the hand's target"),
-        (RigKind::Arm, Overlay::Pointer) => {
-            ("Pointer", "Show the axis from the shoulder through hand and Cursor")
-        }
-        (_, Overlay::InnerLimit) => ("Inner limit", "Show the sphere that the hand cannot enter"),
-        (_, Overlay::OuterLimit) => ("Outer limit", "Show the sphere that the hand cannot leave"),
-        (_, Overlay::ElbowCircle) => ("Elbow circle", "Show all places where the elbow could be"),
-        (_, Overlay::FkPose) => {
+        Overlay::Paths => ("Paths", "Show the paths that heads follow"),
+        Overlay::Cylinders => ("Cylinders", "Draw limbs as tapered cylinders instead of bones"),
+        Overlay::Labels => ("Labels", "Show names of joints"),
+        Overlay::OnionSkins => ("Onion skins", "Show the rig 5, 10 and 15 frames before and after"),
+        Overlay::InnerLimit => ("Inner limit", "Show the sphere that the hand cannot enter"),
+        Overlay::OuterLimit => ("Outer limit", "Show the sphere that the hand cannot leave"),
+        Overlay::ElbowCircle => ("Elbow circle", "Show all places where the elbow could be"),
+        Overlay::FkPose => {
             ("FK pose", "Show the pose of the joint angles alone; shown anyway while blended")
         }
-        (_, Overlay::ByItself) => (
+        Overlay::ByItself => (
             "Frame by itself",
             "Show the pose that this frame would have without the frames before it",
         ),
-        (_, Overlay::Skin) => ("Skin", "Show the skin"),
-        (_, Overlay::Bones) => ("Bones", "Show the bones through the skin"),
-        (_, Overlay::Wireframe) => ("Wireframe", "Show the edges of the skin's triangles"),
-        (_, Overlay::SkinWeights) => {
-            ("Weights", "Colour the skin by the weights of the selected joint")
-        }
-        (_, Overlay::CompareSkinning) => {
+        Overlay::Skin => ("Skin", "Show the skin"),
+        Overlay::Bones => ("Bones", "Show the bones through the skin"),
+        Overlay::Wireframe => ("Wireframe", "Show the edges of the skin's triangles"),
+        Overlay::SkinWeights => ("Weights", "Colour the skin by the weights of the selected joint"),
+        Overlay::CompareSkinning => {
             ("Compare", "Show the skin three times, once for each way of blending")
         }
-        (_, Overlay::Hand) => ("Hand", "Show the hand, and stripes for the forearm roll"),
-        (_, Overlay::Frames) => ("Frames", "Show the axes of Root, Limb and Socket"),
-        (_, Overlay::SingularityGlobe) => {
+        Overlay::Hand => ("Hand", "Show the hand, and stripes for the forearm roll"),
+        Overlay::Frames => ("Frames", "Show the axes of Root, Limb and Socket"),
+        Overlay::SingularityGlobe => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")
         }
-        (_, Overlay::TwistReferences) => {
-            ("Twist references", "Show the arm with each of the four twist references")
+        Overlay::TwistReferences => {
+            ("Twist references", "Show the limb with each of the other twist references")
         }
-        (_, Overlay::GridXy) => ("XY grid", "Show the grid at z = 0"),
-        (_, Overlay::GridXz) => ("XZ grid", "Show the grid at y = 0"),
-        (_, Overlay::GridYz) => ("YZ grid", "Show the grid at x = 0"),
-        (_, Overlay::Ground) => ("Ground", "Show a floor at y = 0"),
-        (_, Overlay::Axes) => ("Axes", "Show rods along world x, y and z"),
-        (RigKind::Arm, Overlay::Labels) => ("Labels", "Show names at root, elbow and hand"),
-        (_, Overlay::Shadow) => ("Shadow", "Show a soft shadow on the floor"),
+        Overlay::GridXy => ("XY grid", "Show the grid at z = 0"),
+        Overlay::GridXz => ("XZ grid", "Show the grid at y = 0"),
+        Overlay::GridYz => ("YZ grid", "Show the grid at x = 0"),
+        Overlay::Ground => ("Ground", "Show a floor at y = 0"),
+        Overlay::Axes => ("Axes", "Show rods along world x, y and z"),
+        Overlay::Shadow => ("Shadow", "Show a soft shadow on the floor"),
     }
 }
 
@@ -129,9 +117,7 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
         TwistReferenceKind::Stereographic => {
             "Measure from a map of all directions; flips only at −x"
         }
-        TwistReferenceKind::Transport => {
-            "Transport along the hand's path; never flips; keys use Stereographic"
-        }
+        TwistReferenceKind::Transport => "Transport along the hand's path; never flips",
         TwistReferenceKind::Fk => {
             "Measure from the elbow of the FK pose; flips opposite to its Pointer"
         }
@@ -140,7 +126,7 @@ pub(in crate::ui) fn twist_reference(twist_reference: TwistReferenceKind) -> &'s
 
 /// The reason why a joint's own angles do not pose it; `None` if they do.
 pub fn why_on_path(session: &Session, joint: JointId) -> Option<&'static str> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let reason = match rig.path_kind(rig.root_of(joint)?)? {
         PathKind::Ring(_) => "The joints follow a ring; set Path → Follow to None",
         PathKind::Head => {

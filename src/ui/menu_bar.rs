@@ -3,7 +3,7 @@
 use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::{commands, labels, panels, widgets};
-use crate::document::{Channel, Overlay, RigKind, Theme};
+use crate::document::{Channel, Overlay, Theme};
 use crate::io::{Example, ExampleGroup, OpenOptions};
 use crate::session::{
     Action, Actions, Dialog, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation, Session,
@@ -18,15 +18,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         ui.menu_button("Examples", |ui| examples(ui, actions));
         ui.menu_button("Help", |ui| help(ui, actions));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let rig = match session.rig() {
-                RigKind::Arm => match session.arm().influence {
-                    1.0 => "Arm · IK (hand → joint angles)".to_owned(),
-                    0.0 => "Arm · FK (joint angles → hand)".to_owned(),
-                    influence => format!("Arm · {:.0} % IK, rest FK", influence * 100.0),
-                },
-                RigKind::Skeleton => {
-                    format!("Skeleton · {}", session.skeleton_rig().solver.method.title())
-                }
+            let rig = match session.rig().sole_limb().map(|target| target.influence) {
+                Some(1.0) => "Limb · IK (hand → joint angles)".to_owned(),
+                Some(0.0) => "Limb · FK (joint angles → hand)".to_owned(),
+                Some(influence) => format!("Limb · {:.0} % IK, rest FK", influence * 100.0),
+                None => format!("Figure · {}", session.rig().solver.method.title()),
             };
             ui.add(Label::new(RichText::new(rig).weak()).selectable(false));
             ui.separator();
@@ -74,8 +70,11 @@ fn explained_item(ui: &mut Ui, button: Button<'_>, tooltip: &str, why_not: Optio
 }
 
 fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    item(ui, "New", "Ctrl+N", || FileAction::New, actions);
-    item(ui, "New skeleton", "Ctrl+Shift+N", || FileAction::NewSkeleton, actions);
+    ui.menu_button("New", |ui| {
+        item(ui, "Arm", "Ctrl+N", || FileAction::New, actions);
+        item(ui, "Figure", "Ctrl+Alt+N", || FileAction::NewFigure, actions);
+        item(ui, "Empty", "Ctrl+Shift+N", || FileAction::NewEmpty, actions);
+    });
     item(ui, "Open…", "Ctrl+O", commands::open, actions);
     ui.add_enabled_ui(!session.files().recent().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| recent(ui, session, actions));
@@ -126,15 +125,13 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     bake(ui, session, actions);
-    let is_skeleton = session.rig() == RigKind::Skeleton;
-    let tooltip = "Turn a skeleton that stands along z by −90° about x";
-    let why_not = (!is_skeleton).then_some("Show a skeleton: the arm is not turned");
-    if explained_item(ui, Button::new("Turn to y up"), tooltip, why_not) {
+    let tooltip = "Turn a figure that stands along z by −90° about x";
+    if explained_item(ui, Button::new("Turn to y up"), tooltip, None) {
         actions.push(JointEdit::TurnYUp);
     }
     ui.separator();
     let copy = Button::new("Copy pose as JSON line").shortcut_text("Ctrl+C");
-    let why_no_copy = is_skeleton.then_some("Only the pose of the arm can be copied");
+    let why_no_copy = session.limb().is_none().then_some("There is no limb to copy");
     if explained_item(ui, copy, "", why_no_copy) {
         actions.push(ShellAction::CopyPose);
     }
@@ -154,15 +151,8 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// Shows the item that opens the bake dialog; disabled if there is nothing to bake.
 fn bake(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let document = session.document();
-    let why_not = match session.rig() {
-        RigKind::Arm => Some("Show a skeleton: the arm is not baked"),
-        RigKind::Skeleton
-            if document.skeleton_rig.targets.is_empty() && !document.follows_path() =>
-        {
-            Some("Add a target or a path: nothing else poses the skeleton")
-        }
-        RigKind::Skeleton => None,
-    };
+    let is_posed = !document.rig.targets.is_empty() || document.follows_path();
+    let why_not = (!is_posed).then_some("Add a target or a path: nothing else poses the joints");
     let button = Button::new("Bake to keys…");
     if explained_item(ui, button, "Replace targets and path by keys", why_not) {
         actions.push(ShellAction::OpenDialog(Dialog::bake(session.document())));
@@ -179,16 +169,14 @@ fn key(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             actions.push(KeysEdit::Key(vec![channel]));
         }
     };
-    match session.rig() {
-        RigKind::Arm => Channel::ARM.into_iter().for_each(|channel| one(ui, channel, actions)),
-        RigKind::Skeleton => {
-            one(ui, Channel::Translation, actions);
-            for joint in session.selection().joints() {
-                let there =
-                    Channel::of_joint(*joint).filter(|it| it.value(session.shown()).is_some());
-                there.for_each(|channel| one(ui, channel, actions));
-            }
-        }
+    one(ui, Channel::Translation, actions);
+    let joints: Vec<_> = match session.rig().sole_limb() {
+        Some(_) => session.skeleton().ids().collect(),
+        None => session.selection().joints().to_vec(),
+    };
+    for joint in joints {
+        let there = Channel::of_joint(joint).filter(|it| it.value(session.shown()).is_some());
+        there.for_each(|channel| one(ui, channel, actions));
     }
     ui.menu_button("Guides and display", |ui| {
         Overlay::all().map(Channel::Overlay).for_each(|channel| one(ui, channel, actions));
@@ -242,7 +230,7 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     });
     ui.separator();
     let mut overlays = vec![(Overlay::Trail, "Motion trail"), (Overlay::OnionSkins, "Onion skins")];
-    if session.rig() == RigKind::Arm {
+    if session.limb().is_some() {
         overlays.push((Overlay::SingularityGlobe, "Singularity globe"));
         overlays.push((Overlay::TwistReferences, "Twist references"));
     }
@@ -250,7 +238,8 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         widgets::overlay_check_box(ui, session, overlay, name, "", None, actions);
     }
     let tooltip = "Show up to a million arms, each with its own target";
-    let crowd = widgets::check_box(ui, "Crowd", tooltip, session.crowd().is_some(), None);
+    let why_no_crowd = session.crowd_bones().err();
+    let crowd = widgets::check_box(ui, "Crowd", tooltip, session.crowd().is_some(), why_no_crowd);
     actions.extend(crowd.map(ViewAction::ShowCrowd));
     let why_not = (!panels::has_room(ui)).then_some("Make the window wider: it has no room");
     let explains = session.preferences().explain;

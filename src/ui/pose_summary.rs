@@ -2,10 +2,10 @@
 
 use egui::{Label, RichText, Ui};
 
-use crate::document::{Arm, LengthFormat, PathKind, RigKind, ShownLength};
+use crate::document::{PathKind, ShownLength};
 use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
 use crate::kinematics::soft_reach::ReachLimits;
-use crate::kinematics::two_bone::{Reach, TwoBonePose};
+use crate::kinematics::two_bone::Reach;
 use crate::rig::{Crowd, SkeletonRig};
 use crate::session::{Actions, Session, ShownIteration, ShownLimb, TargetEdit};
 use crate::ui::labels::count_of_keys;
@@ -13,22 +13,9 @@ use crate::ui::widgets::text::{decimals_of_cell, grouped};
 use crate::ui::widgets::{self, text};
 use crate::words;
 
-/// One sentence about the reach of the arm.
-pub(in crate::ui) fn sentence(arm: &Arm, pose: &TwoBonePose) -> String {
-    if !arm.uses_ik() {
-        return "FK (joint angles → hand): the angles place the hand.".to_owned();
-    }
-    if arm.influence == 1.0 && pose.stretch > 1.0 {
-        let reached = if pose.reach == Some(Reach::Reached) { "" } else { ", the maximum" };
-        return format!("Stretched: the limbs are {:.2} times as long{reached}.", pose.stretch);
-    }
-    arm.why(pose).unwrap_or_else(|| "Reached: the hand is at the Cursor.".to_owned())
-}
-
 /// One sentence about the reach of a limb.
 pub(in crate::ui) fn sentence_on_limb(session: &Session, limb: &ShownLimb) -> String {
-    let Some(joint) = limb.target else { return sentence(session.arm(), session.pose()) };
-    let (rig, end) = (session.skeleton_rig(), limb.words.end);
+    let (rig, joint, end) = (session.rig(), limb.target, limb.words.end);
     let (posed, pose) = (&limb.frames.posed, limb.frames.pose());
     if posed.influence == 0.0 {
         return format!("FK (joint angles → {end}): the angles place the {end}.");
@@ -52,19 +39,25 @@ pub(in crate::ui) fn summary(session: &Session) -> String {
     if let Some(crowd) = session.crowd() {
         return describe_crowd(&crowd);
     }
-    match session.rig() {
-        RigKind::Arm => sentence(session.arm(), session.pose()),
-        RigKind::Skeleton => describe_skeleton(session),
+    match sole_limb(session) {
+        Some(limb) => sentence_on_limb(session, limb),
+        None => describe_skeleton(session),
     }
+}
+
+/// The limb of a figure that is nothing else, while no joint is selected.
+fn sole_limb(session: &Session) -> Option<&ShownLimb> {
+    let is_shown = session.selection().joints().is_empty() && session.rig().sole_limb().is_some();
+    session.limb().filter(|_| is_shown)
 }
 
 pub(in crate::ui) fn describe(session: &Session) -> String {
     if let Some(crowd) = session.crowd() {
         return describe_crowd(&crowd);
     }
-    let mut line = match session.rig() {
-        RigKind::Arm => describe_pose(session),
-        RigKind::Skeleton => describe_skeleton(session),
+    let mut line = match sole_limb(session) {
+        Some(limb) => describe_limb(session, limb),
+        None => describe_skeleton(session),
     };
     let keys = session.selection().keys().len();
     if keys > 0 {
@@ -81,7 +74,7 @@ fn describe_crowd(crowd: &Crowd) -> String {
 }
 
 fn describe_skeleton(session: &Session) -> String {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     if let (Some(found), None) = (session.why(false).first(), session.solvers().shown_iteration()) {
         return words::cause(rig, found);
     }
@@ -124,24 +117,27 @@ fn describe_solver(session: &Session) -> Option<String> {
     })
 }
 
-fn describe_pose(session: &Session) -> String {
-    let (arm, pose) = (session.arm(), session.pose());
+fn describe_limb(session: &Session, limb: &ShownLimb) -> String {
+    let (frames, pose) = (&limb.frames, limb.frames.pose());
+    let soft_reach = frames.posed.ik.soft_reach;
+    let ReachLimits { inner, outer } = frames.limits;
+    let is_softened =
+        soft_reach.softness() > 0.0 && (inner..=outer).contains(&frames.posed.cursor.length());
     let reach = match pose.reach {
-        _ if !arm.uses_ik() => "FK",
-        _ if arm.influence < 1.0 => "Between FK and IK",
+        _ if !frames.uses_ik() => "FK",
+        _ if frames.posed.influence < 1.0 => "Between FK and IK",
         Some(Reach::Reached) | None => "Reached",
-        Some(_) if arm.is_softened() => "Softened",
+        Some(_) if is_softened => "Softened",
         Some(Reach::TooFar) => "Too far",
         Some(Reach::TooClose) => "Too close",
     };
-    let hand = pose.hand;
-    let ReachLimits { inner, outer } = arm.reach_limits();
-    let lengths = LengthFormat::of_limb(arm.bones);
-    let [x, y, z] = hand.to_array().map(|coordinate| lengths.show(coordinate));
+    let lengths = limb.lengths();
+    let [x, y, z] = pose.hand.to_array().map(|coordinate| lengths.show(coordinate));
     let distance = lengths.show(pose.distance);
-    let decimals = decimals_of_cell(arm.grid_cell());
+    let decimals = decimals_of_cell(session.shown().grid_cell());
     let [inner, outer] = [inner, outer].map(|length| ShownLength { length, decimals });
-    format!("{reach} · hand ({x}, {y}, {z}) · distance D {distance} of {inner}–{outer}")
+    let end = limb.words.end;
+    format!("{reach} · {end} ({x}, {y}, {z}) · distance D {distance} of {inner}–{outer}")
 }
 
 /// Why the target is not reached that the session examines. While a mouse button is down nothing is
@@ -156,7 +152,7 @@ pub(in crate::ui) fn is_held(ui: &Ui) -> bool {
 
 /// Shows the cause of a diagnosis as a sentence.
 pub(in crate::ui) fn cause(ui: &mut Ui, session: &Session, found: &Diagnosis) {
-    let sentence = words::cause(session.skeleton_rig(), found);
+    let sentence = words::cause(session.rig(), found);
     ui.add(Label::new(RichText::new(sentence)).wrap());
 }
 
@@ -170,7 +166,7 @@ pub(in crate::ui) fn remedies(
 ) {
     for tried in found.remedies.iter().take(most) {
         let remedy = &tried.remedy;
-        let name = words::remedy(session.skeleton_rig(), remedy);
+        let name = words::remedy(session.rig(), remedy);
         let tooltip = format!("Apply this; {}", left(session, found, tried));
         if widgets::button(ui, &name, &tooltip, None) {
             let (target, remedy) = (found.target, remedy.clone());
@@ -189,7 +185,7 @@ fn left(session: &Session, found: &Diagnosis, tried: &TriedRemedy) -> String {
             format!("{} are then missing", text::degrees(rotation_residual))
         };
     }
-    if residual <= session.skeleton_rig().tolerance() {
+    if residual <= session.rig().tolerance() {
         "the tip is then at its target".to_owned()
     } else {
         format!("the tip is then {} away", text::short(residual))

@@ -11,7 +11,6 @@ use egui::{
 
 use super::widgets::{self, text};
 use super::{labels, pose_summary};
-use crate::document::RigKind;
 use crate::kinematics::chain_ik::Swing;
 use crate::kinematics::skeleton::Joint;
 use crate::session::{
@@ -154,15 +153,12 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         Grip::Tip(..) => format!("Pose {name}"),
         Grip::Target(..) => "Target".to_owned(),
         Grip::Head(..) => "Head".to_owned(),
-        Grip::Pole(_) => "Pole".to_owned(),
-        Grip::Root(_) => "Root".to_owned(),
-        Grip::UpperLimb => "Upper limb".to_owned(),
+        Grip::LimbPole(..) => "Pole".to_owned(),
         _ => "Move".to_owned(),
     };
-    let digits = match session.rig() {
-        RigKind::Arm => text::decimals_of_cell(session.shown().grid_cell() * 0.1),
-        RigKind::Skeleton => text::decimals_of_cell(session.shown().grid_cell()),
-    };
+    // A figure is measured in metres, a measured limb in smaller units.
+    let step = if session.shown().measured_limb().is_some() { 0.1 } else { 1.0 };
+    let digits = text::decimals_of_cell(session.shown().grid_cell() * step);
     let [x, y, z] = moved.to_array().map(|way| {
         if text::has_overflowed(way.into()) {
             text::OVERFLOW.to_owned()
@@ -190,13 +186,8 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));
     let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
-        Grip::Ring(_, axis)
-        | Grip::Shoulder(axis)
-        | Grip::HandRing(axis)
-        | Grip::Orientation(_, axis) => {
-            format!("Rotate about {axis}")
-        }
-        Grip::Twist | Grip::Limb | Grip::LimbTwist(_) => "Socket twist".to_owned(),
+        Grip::Ring(_, axis) | Grip::Orientation(_, axis) => format!("Rotate about {axis}"),
+        Grip::LimbTwist(_) => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),
     };
     format!(
@@ -282,13 +273,7 @@ fn hints(navigation: Navigation, pointed: Option<(Grip, &str)>) -> Vec<MouseHint
 /// Effect of a drag of a grip with a name.
 fn drag_of(grip: Grip, name: &str) -> Cow<'static, str> {
     let effect = match grip {
-        Grip::Hand(_) => "drag the hand",
-        Grip::Pole(_) | Grip::LimbPole(..) => "drag the Pole",
-        Grip::Root(_) => "drag the Root",
-        Grip::Twist | Grip::Limb => "turn the elbow",
-        Grip::UpperLimb => "turn the shoulder",
-        Grip::HandRing(_) => "rotate the hand",
-        Grip::Shoulder(_) | Grip::Bend => "rotate the joint",
+        Grip::LimbPole(..) => "drag the Pole",
         Grip::Ring(..) | Grip::Orientation(..) => return format!("rotate {name}").into(),
         Grip::LimbTwist(_) => return format!("turn {name} about its Pointer").into(),
         Grip::Tip(..) | Grip::Target(..) => return format!("drag {name}").into(),
@@ -372,7 +357,11 @@ mod tests {
         let spoken = |grip, name| -> Vec<_> {
             hints(Navigation::Default, Some((grip, name))).iter().map(spoken).collect()
         };
-        assert_eq!(spoken(Grip::Twist, ""), ["left drag: turn the elbow", "wheel: zoom"]);
+        let twist = Grip::LimbTwist(JointId::default());
+        assert_eq!(
+            spoken(twist, "the arm"),
+            ["left drag: turn the arm about its Pointer", "wheel: zoom"]
+        );
         let tip = Grip::Tip(JointId::new(0), PointHandle::Free);
         assert_eq!(spoken(tip, "pelvis")[0], "left drag: drag pelvis");
     }

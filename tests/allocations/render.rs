@@ -1,9 +1,10 @@
 //! Allocations per picture once everything has been drawn. The test has its own binary because its
 //! allocator counts.
 
+use crate::common::arm::{Arm, Cursor};
 use allocation_counter::measure;
 use glam::Vec3;
-use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, RigKind, Theme};
+use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Theme};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, Renderer};
 use ik_arm::scene::{Ball, Line, Scene, SphereShell};
@@ -15,7 +16,7 @@ const SIZE: (u32, u32) = (480, 300);
 fn scene(hand: Vec3, more: usize) -> Scene {
     let arm = Arm { cursor: Cursor::unpinned(hand), ..Arm::default() };
     let display: Display = Overlay::all().collect();
-    let document = Document { arm, display, ..Document::default() };
+    let document = Document { display, ..arm.document() };
     let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
     let colour = scene.palette.joint;
     for index in 0..more {
@@ -79,7 +80,7 @@ fn an_unchanged_scene_allocates_and_uploads_nothing() {
 
 /// A skeleton of one joint with its name.
 fn named(name: &str) -> Scene {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     *document.skeleton_mut() = Skeleton::with_root(name);
     let overlays = Overlays { selection: vec![JointId::new(0)], ..Overlays::default() };
     Scene::new(&document.at(0.0), &overlays, Theme::Dark)

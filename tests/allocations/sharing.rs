@@ -3,7 +3,7 @@
 
 use allocation_counter::{AllocationInfo, measure};
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, RigKind, SkeletonRig};
+use ik_arm::document::{Channel, Document, SkeletonRig};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::spline::Knot;
 use ik_arm::session::{
@@ -31,11 +31,7 @@ fn chain() -> Skeleton {
 
 /// A session that has shown a chain of 1,000 joints for a while.
 fn session() -> Session {
-    let document = Document {
-        rig: RigKind::Skeleton,
-        skeleton_rig: SkeletonRig::new(chain()),
-        ..Document::default()
-    };
+    let document = Document { rig: SkeletonRig::new(chain()), ..Document::default() };
     let mut session = Session::with_document(Preferences::default(), document);
     session.apply(turn(JointId::new(1), 0.1));
     session

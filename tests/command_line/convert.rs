@@ -60,7 +60,7 @@ fn a_file_of_another_program_becomes_a_document_and_goes_on_from_there() {
     let (glb, document) = (opened("walk.glb"), opened("back.json"));
     assert_eq!((document.keys, document.timeline), (glb.keys, glb.timeline));
     let (before, after) = (opened("walk.json"), opened("again.json"));
-    let reach = before.skeleton_rig.reach();
+    let reach = before.rig.reach();
     let end = before.timeline.end;
     for time in [0.0, 0.5 * end, end] {
         let at = |document: &ik_arm::document::Document, scale: f32| {

@@ -114,6 +114,23 @@ struct Target {
     tip: Vec3,
     error: f32,
     rotation_error_deg: Option<f32>,
+    limb: Option<Limb>,
+}
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Limb {
+    root: Vec3,
+    pointer: Vec3,
+    twist_deg: f32,
+    reach: Option<String>,
+    upper: f32,
+    lower: f32,
+    distance: f32,
+    along: f32,
+    out: f32,
+    shoulder_angle_deg: f32,
+    elbow_angle_deg: f32,
 }
 
 #[derive(Debug, Deserialize, PartialEq)]
@@ -145,7 +162,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
             r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
             r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,5.0],"#,
-            r#""tip":[0.0,1.0,5.0],"error":0.0,"rotation_error_deg":null}],"#,
+            r#""tip":[0.0,1.0,5.0],"error":0.0,"rotation_error_deg":null,"limb":null}],"#,
             r#""report":null,"why":[]}"#,
             "\n"
         )
@@ -174,10 +191,8 @@ fn joints_keep_the_order_of_the_file_and_are_in_world_space() {
 fn a_transform_maps_the_joints_own_space_to_the_world() {
     for name in ["human", "snake", "degenerate"] {
         let scene = Scene::example(name);
-        let skeleton = io::open(&scene.path, &io::OpenOptions::default())
-            .expect("opens")
-            .document
-            .skeleton_rig;
+        let skeleton =
+            io::open(&scene.path, &io::OpenOptions::default()).expect("opens").document.rig;
         for (joint, own) in scene.pose(&[]).joints.iter().zip(skeleton.skeleton.joints()) {
             let full = Mat4::from_cols_array(&joint.transform);
             assert!(full.transform_point3(Vec3::ZERO).distance(joint.base) < 1e-5);
@@ -279,7 +294,7 @@ fn the_humans_targets_are_in_reach() {
 /// The figure of the Human example without targets.
 fn human() -> Document {
     let mut human = example("human");
-    human.skeleton_rig.targets.clear();
+    human.rig.targets.clear();
     human.keys = Default::default();
     human
 }
@@ -363,7 +378,7 @@ fn a_given_target_moves_the_one_that_the_file_has() {
         (1.0, 1.0, on_head),
     ] {
         (own.influence, own.space) = (influence, space);
-        document.skeleton_rig.targets = vec![own];
+        document.rig.targets = vec![own];
         let scene = Scene::document(&document);
         let text = fs::read(&scene.path).expect("read");
         let point = Vec3::new(0.4, 1.2, 0.3);
@@ -386,7 +401,7 @@ fn the_fk_pose_ignores_targets_and_solvers_start_from_it() {
     let mut document = human();
     let bare = Scene::document(&document).pose(&[]);
     let hand = joint(&document, "right_forearm");
-    document.skeleton_rig.targets =
+    document.rig.targets =
         vec![RigTarget { influence: 1.0, ..RigTarget::new(hand, Vec3::new(-0.4, 1.1, 0.4), 0.1) }];
     let scene = Scene::document(&document);
     let (fk, posed) = (scene.pose(&["--fk"]), scene.pose(&[]));
@@ -396,10 +411,7 @@ fn the_fk_pose_ignores_targets_and_solvers_start_from_it() {
     assert!((error - f64::from(fk.targets[0].error)).abs() < 1e-6);
     let unmoved = scene.pose(&["--solver", "ccd", "--iterations", "0"]);
     assert_eq!(unmoved.joints, fk.joints);
-    assert_eq!(
-        posed.report.expect("it was solved").solver,
-        document.skeleton_rig.solver.method.name()
-    );
+    assert_eq!(posed.report.expect("it was solved").solver, document.rig.solver.method.name());
 }
 
 #[test]
@@ -485,9 +497,31 @@ fn a_missing_skeleton_is_an_error_that_lists_the_existing_ones() {
 }
 
 #[test]
-fn a_document_of_the_arm_is_an_error_that_points_to_solve() {
-    let expected = " shows the arm; pose needs a skeleton, and `ik-arm solve` poses arms";
-    assert_eq!(Scene::example("arm").refusal(&[]), expected);
+fn a_limb_tells_its_triangle() {
+    let answer = Scene::example("arm").pose(&["--target", "hand=0,400,0"]);
+    let limb = answer.targets[0].limb.as_ref().expect("a limb");
+    let angle = |opposite: f64, a: f64, b: f64| {
+        ((a * a + b * b - opposite * opposite) / (2.0 * a * b)).acos().to_degrees()
+    };
+    let (shoulder, elbow) = (angle(300.0, 200.0, 400.0), angle(400.0, 200.0, 300.0));
+    let (along, out) = (200.0 * shoulder.to_radians().cos(), 200.0 * shoulder.to_radians().sin());
+    for (told, expected) in [
+        (limb.upper, 200.0),
+        (limb.lower, 300.0),
+        (limb.distance, 400.0),
+        (limb.along, along),
+        (limb.out, out),
+        (limb.shoulder_angle_deg, shoulder),
+        (limb.elbow_angle_deg, elbow),
+        (limb.twist_deg, 0.0),
+    ] {
+        assert!((f64::from(told) - expected).abs() < 1e-3, "{told} for {expected}");
+    }
+    assert_eq!((limb.root, limb.reach.as_deref()), (Vec3::ZERO, Some("reached")));
+    assert!(limb.pointer.distance(Vec3::Y) < 1e-6);
+    let far = Scene::example("arm").pose(&["--target", "hand=0,600,0"]);
+    let reach = far.targets[0].limb.as_ref().expect("a limb").reach.clone();
+    assert_eq!(reach.as_deref(), Some("too_far"));
 }
 
 #[test]
@@ -572,7 +606,7 @@ fn a_time_moves_path_followers_and_targets() {
     assert_eq!(snake.pose(&["--time", "2.5"]).joints[0].base, pose.base(JointId::new(0)));
 
     let mut document = keyed_chain();
-    let target = &mut document.skeleton_rig.targets[0];
+    let target = &mut document.rig.targets[0];
     target.motion.path = TargetPath::Circle;
     let expected = target.at(1.0);
     let scene = Scene::new(&io::to_json(&document).expect("written"));
@@ -600,7 +634,7 @@ fn a_bvh_motion_is_posed_at_a_time() {
 #[test]
 fn a_solver_without_a_target_says_so_and_prints_the_fk_pose() {
     let mut document = example("human");
-    document.skeleton_rig.targets.clear();
+    document.rig.targets.clear();
     let scene = Scene::document(&document);
     for method in ["transpose", "ccd", "fabrik", "relaxation", "dls", "two-bone"] {
         let output = scene.run(&["--solver", method]);
@@ -657,7 +691,7 @@ fn a_target_too_far_away_is_out_of_reach_with_every_solver() {
 /// The Human with its left foot asked to turn about x by so many degrees.
 fn foot_turned_by(degrees: f32) -> Scene {
     let mut document = example("human");
-    let rig = &mut document.skeleton_rig;
+    let rig = &mut document.rig;
     let shin = rig.skeleton.find("left_shin").expect("a shin");
     let index = rig.target(shin).expect("a target");
     let limb = rig.targets[index].limb_mut().expect("a limb");

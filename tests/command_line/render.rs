@@ -1,5 +1,6 @@
 //! `ik-arm render` as a user runs it: the built program, its pictures, and its exit codes.
 
+use crate::common::arm::channels;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -298,12 +299,12 @@ fn an_arm_of_arguments_and_a_file_are_a_usage_error_together() {
 
 #[test]
 fn a_time_moves_keyed_channels() {
-    use ik_arm::document::{Channel, Document, Overlay};
+    use ik_arm::document::{Document, Overlay};
     let folder = tempfile::tempdir().expect("a folder");
     let mut document = Document::default();
     document.display = document.display.with(Overlay::Trail, false);
     for (time, x) in [(-1.0, -100.0), (0.0, 100.0), (2.0, 300.0), (3.0, 0.0)] {
-        document.keys.insert(Channel::Hand, time, glam::Vec3::new(x, 200.0, 50.0));
+        document.keys.insert(channels::HAND, time, glam::Vec3::new(x, 200.0, 50.0));
     }
     let json = |document: &Document| ik_arm::io::to_json(document).expect("written");
     let moving = file(&folder, "moving.json", &json(&document));

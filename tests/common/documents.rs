@@ -1,21 +1,20 @@
 //! Random documents, built-in examples, and a snake with keys.
 
+use super::arm::{Arm, Cursor, HandOrientation, HandSpace};
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm::document::{
-    Arm, Camera, Channel, Cursor, Display, Document, HandOrientation, HandSpace, Keys, Overlay,
-    PathKind, Quantity, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
-    TwistReferenceKind, WavyRing,
+    Camera, Channel, Display, Document, Keys, Overlay, PathKind, Quantity, SkeletonRig, Target,
+    TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::{Example, OpenOptions, parse};
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
-use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::limb_ik::LimbPosture;
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::kinematics::twist::{Stereographic, TransportedFrame};
-use ik_arm::kinematics::two_bone::{Pointer, TwoBone};
+use ik_arm::kinematics::twist::Stereographic;
+use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::rig::{LimbSettings, Posture, PosturedJoint, TargetKind, TargetSpace};
 use ik_arm::session::FileAction;
 
@@ -23,9 +22,10 @@ use super::Random;
 
 /// A document with any finite numbers.
 pub fn document(random: &mut Random) -> Document {
-    let arm = arm(random);
-    let mut rig = SkeletonRig::new(skeleton(random));
-    for joint in rig.skeleton.ids() {
+    let mut rig =
+        if random.coin() { arm(random).document().rig } else { SkeletonRig::new(skeleton(random)) };
+    let is_arm = !rig.targets.is_empty();
+    for joint in rig.skeleton.ids().filter(|_| !is_arm) {
         if random.below(3) == 0 {
             let paths = [TargetPath::Still, TargetPath::Circle, TargetPath::FigureEight];
             let motion = TargetMotion {
@@ -52,7 +52,9 @@ pub fn document(random: &mut Random) -> Document {
             });
         }
     }
-    put_on_joints(random, &mut rig);
+    if !is_arm {
+        put_on_joints(random, &mut rig);
+    }
     rig.solver.method = random.one_of(&Method::ALL);
     rig.solver.iterations = random.coin().then(|| 1 + random.below(1 << 31) as u32);
     rig.solver.tolerance = random.coin().then(|| random.positive());
@@ -83,9 +85,7 @@ pub fn document(random: &mut Random) -> Document {
         frame_rate: (1 + random.below(100_000)) as f64 / 100.0,
     };
     Document {
-        rig: random.one_of(&[RigKind::Arm, RigKind::Skeleton]),
-        arm,
-        skeleton_rig: rig,
+        rig,
         keys,
         timeline,
         track_start: random.coin().then(|| start - f64::from(random.within(0.0..3.0))),
@@ -98,7 +98,6 @@ pub fn document(random: &mut Random) -> Document {
             distance: random.positive(),
             orthographic: random.coin(),
         },
-        other_rig_camera: random.coin().then(Camera::default),
         display: Overlay::all().filter(|_| random.coin()).collect::<Display>(),
     }
 }
@@ -148,7 +147,6 @@ fn target_kind(random: &mut Random) -> TargetKind {
 }
 
 fn arm(random: &mut Random) -> Arm {
-    let pointer = Pointer::towards(random.finite_vector(), Pointer::default());
     let soft_reach = SoftReach::new(
         random.within(0.0..0.99),
         1.0 + random.finite().abs().min(9.0),
@@ -159,10 +157,6 @@ fn arm(random: &mut Random) -> Arm {
         twist: random.finite(),
         root: random.finite_vector(),
         bones: TwoBone::new(random.positive(), random.positive()).expect("lengths"),
-        ik_state: IkState {
-            pointer: Pointer::towards(random.finite_vector(), Pointer::default()),
-            transported: random.coin().then(|| TransportedFrame::new(pointer)),
-        },
         twist_reference: random.one_of(&TwistReferenceKind::ALL),
         pole: random.finite_vector(),
         soft_reach: soft_reach.expect("a softening"),
@@ -175,7 +169,6 @@ fn arm(random: &mut Random) -> Arm {
         hand_orientation: HandOrientation {
             space: random.one_of(&[HandSpace::LowerLimb, HandSpace::World]),
             angles: random.finite_vector(),
-            roll: random.finite(),
         },
     }
 }
@@ -214,7 +207,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     });
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| Channel::of_target(it.joint));
-    let all = Channel::ARM.into_iter().chain(overlays).chain([Channel::Translation]);
+    let all = overlays.chain([Channel::Translation]);
     let mut keys = Keys::default();
     for channel in all.chain(joints).chain(targets) {
         if random.below(3) > 0 {
@@ -222,7 +215,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
         }
         for _ in 0..1 + random.below(5) {
             let value = match channel.quantity() {
-                Quantity::Point | Quantity::Angles | Quantity::Rotation => random.finite_vector(),
+                Quantity::Point | Quantity::Rotation => random.finite_vector(),
                 Quantity::Fraction => Vec3::new(random.within(0.0..1.0), 0.0, 0.0),
                 Quantity::Angle => Vec3::new(random.finite(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.positive(), 0.0, 0.0),

@@ -2,6 +2,7 @@
 //! library's tests.
 #![allow(dead_code, unused_imports, reason = "each program takes what it needs")]
 
+pub mod arm;
 pub mod damage;
 pub mod documents;
 #[path = "../../kinematics/tests/common/mod.rs"]

@@ -1,9 +1,10 @@
 //! The arm's figures, lit up in the view: what is drawn has the solver's numbers.
 
+use crate::common::arm::{Arm, Cursor};
 use core::f32::consts::TAU;
 
 use glam::{DMat3, DVec3, Vec3};
-use ik_arm::document::{Arm, Cursor, Display, Document, Overlay, Theme, Track, TwistReferenceKind};
+use ik_arm::document::{Display, Document, Overlay, Theme, Track, TwistReferenceKind};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::scene::{Line, Scene, Solid};
@@ -38,7 +39,7 @@ struct Lit {
 
 fn scene(arm: Arm, display: &[Overlay], figure: Option<LimbFigure>) -> Scene {
     let display = Display::from_iter(display.iter().copied());
-    let document = Document { arm, display, ..Document::default() };
+    let document = Document { display, ..arm.document() };
     let posed = document.at(0.0);
     let overlays = Overlays { figure, ..Overlays::new(&Track::new(&document), &posed) };
     Scene::new(&posed, &overlays, Theme::Dark)

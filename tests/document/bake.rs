@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Bake, BakeError, Baked, Channel, Document, FollowPath, PathKind, RigKind, SkeletonRig, Target,
+    Bake, BakeError, Baked, Channel, Document, FollowPath, PathKind, SkeletonRig, Target,
     TargetMotion, TargetPath, Timeline, WavyRing,
 };
 use ik_arm::io::Example;
@@ -95,8 +95,8 @@ fn waving() -> Document {
     shown(rig)
 }
 
-fn shown(skeleton_rig: SkeletonRig) -> Document {
-    Document { rig: RigKind::Skeleton, skeleton_rig, timeline: WHOLE, ..Document::default() }
+fn shown(rig: SkeletonRig) -> Document {
+    Document { timeline: WHOLE, ..Document::new(rig) }
 }
 
 fn bake(document: &Document, settings: &Bake) -> Baked {
@@ -110,7 +110,7 @@ fn pose_at(document: &Document, time: f64) -> SkeletonPose {
 /// The document without its targets.
 fn untargeted(document: &Document) -> Document {
     let mut document = document.clone();
-    document.skeleton_rig.targets.clear();
+    document.rig.targets.clear();
     document
 }
 
@@ -137,7 +137,7 @@ fn largest_distance(
 
 /// Asserts that a document's bake moves as the document does, with its targets and without them.
 fn assert_moves_as_before(name: &str, document: &Document, settings: &Bake, baked: &Baked) {
-    let reach = document.at(settings.frames.start).into_document().skeleton_rig.reach();
+    let reach = document.at(settings.frames.start).into_document().rig.reach();
     let tolerance = settings.tolerance * reach;
     let shortened: Vec<JointId> = baked.shortened.iter().map(|bone| bone.joint).collect();
     for after in [&baked.document, &untargeted(&baked.document)] {
@@ -164,7 +164,7 @@ fn baked_examples_move_as_before() {
     let mut tried = 0;
     for example in Example::ALL {
         let mut document = example.open().expect("it opens").document;
-        document.skeleton_rig.targets.iter_mut().for_each(|target| target.influence = 1.0);
+        document.rig.targets.iter_mut().for_each(|target| target.influence = 1.0);
         let frames = Timeline { frame_rate: 12.0, ..document.timeline };
         let settings = Bake { frames, ..Bake::of_timeline(&document) };
         if settings.check(&document).is_ok() {
@@ -202,7 +202,7 @@ fn documents_with_any_numbers_are_baked_or_refused() {
         let mut document = documents::document(&mut random);
         let start = document.timeline.start;
         document.timeline = Timeline { start, end: start + 0.5, frame_rate: 20.0 };
-        document.skeleton_rig.solver.iterations = Some(20);
+        document.rig.solver.iterations = Some(20);
         let _ = Bake::of_timeline(&document).run(&document, |_, _| true);
     }
 }
@@ -223,7 +223,7 @@ fn a_coarser_tolerance_leaves_fewer_keys_and_the_keys_are_counted() {
 #[test]
 fn a_still_pose_takes_one_key_a_channel() {
     let mut document = waving();
-    document.skeleton_rig.targets[0].motion.path = TargetPath::Still;
+    document.rig.targets[0].motion.path = TargetPath::Still;
     let baked = bake(&document, &Bake::of_timeline(&document));
     assert_eq!(baked.keys, 3);
 }
@@ -254,12 +254,12 @@ fn angles_go_on_over_full_turns_instead_of_jumping_back() {
 fn a_bake_of_a_part_leaves_the_rest_to_the_targets() {
     let mut document = waving();
     // Along a track, poses after the range depend on those in it.
-    document.skeleton_rig.is_tracked = false;
+    document.rig.is_tracked = false;
     let settings = Bake { frames: PART, ..Bake::of_timeline(&document) };
     let baked = bake(&document, &settings).document;
     for frame in 0..WHOLE.frames() {
         let time = WHOLE.time(frame);
-        let influence = baked.at(time).into_document().skeleton_rig.targets[0].influence;
+        let influence = baked.at(time).into_document().rig.targets[0].influence;
         let is_baked = (PART.start..=PART.end).contains(&time);
         assert_eq!(influence, if is_baked { 0.0 } else { 1.0 }, "at {time}");
         if !is_baked {
@@ -319,7 +319,7 @@ fn a_path_is_replaced_by_keys() {
     let document = crate::common::documents::keyed_snake();
     let frames = Timeline { frame_rate: 10.0, ..document.timeline };
     let baked = bake(&document, &Bake { frames, tolerance: 1e-2 });
-    assert_eq!(baked.document.skeleton_rig.follow_paths, []);
+    assert_eq!(baked.document.rig.follow_paths, []);
     let root = Channel::Offset(JointId::new(0));
     assert!(baked.document.keys.track(root).is_some_and(|track| !Spline::is_empty(track)));
 }
@@ -348,11 +348,9 @@ fn what_cannot_be_baked_is_refused_with_a_reason() {
     };
     let nothing = "nothing to bake: no target and no path poses the skeleton in this range";
     let mut idle = document.clone();
-    idle.skeleton_rig.targets[0].influence = 0.0;
+    idle.rig.targets[0].influence = 0.0;
     refused(&idle, settings, nothing);
     refused(&untargeted(&document), settings, nothing);
-    let arm = Document { rig: RigKind::Arm, ..document.clone() };
-    refused(&arm, settings, "only a skeleton can be baked, and the document shows the arm");
     refused(
         &document,
         Bake { frames: Timeline { end: -1.0, ..WHOLE }, ..settings },

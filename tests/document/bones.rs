@@ -1,7 +1,7 @@
 //! The bones of imported rigs: from joint to joint, and nothing floats.
 
 use glam::Vec3;
-use ik_arm::document::{Document, RigKind, SkeletonRig, Theme, Track};
+use ik_arm::document::{Document, SkeletonRig, Theme, Track};
 use ik_arm::io::{self, OpenOptions};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::scene::{Scene, Solid};
@@ -192,8 +192,8 @@ fn every_joint_is_drawn_in_touch_with_its_parent() {
     let mut random = Random(62);
     for _ in 0..100 {
         let (skeleton, _) = skeletons::tree(&mut random, 4, 1.0);
-        let skeleton_rig = SkeletonRig::new(skeleton);
-        let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+        let rig = SkeletonRig::new(skeleton);
+        let document = Document::new(rig);
         let posed = document.at(0.0);
         let scene = Scene::new(&posed, &Overlays::new(&Track::new(&document), &posed), Theme::Dark);
         let pose = document.skeleton().pose();

@@ -9,7 +9,7 @@ use crate::common::documents::example;
 /// Positions of bases and tips in world space, by joint name.
 fn positions(document: &Document, time: f64) -> Vec<(String, Vec3, Vec3)> {
     let evaluated = document.at(time).into_document();
-    let pose = evaluated.skeleton_rig.skeleton_at(time).pose();
+    let pose = evaluated.rig.skeleton_at(time).pose();
     let joints = evaluated.skeleton().iter();
     joints.map(|(at, joint)| (joint.name.clone(), pose.base(at), pose.tip(at))).collect()
 }
@@ -35,7 +35,7 @@ fn assert_children_stay(document: &Document, deleted: &[JointId], times: &[f64])
 /// The figure of the Human example with other angles, posed by them alone.
 fn human() -> Document {
     let mut document = example("human");
-    document.skeleton_rig.targets.clear();
+    document.rig.targets.clear();
     for joint in document.skeleton().ids() {
         let turn = |axis: f32| (joint.index() as f32 * 1.7 + axis).sin() * 0.8;
         let rotation = Vec3::new(turn(0.0), turn(1.0), turn(2.0));

@@ -1,7 +1,7 @@
 //! Parts of a skeleton in a scene: bones, shadows and onion skins.
 
 use glam::Vec3;
-use ik_arm::document::{Display, Document, Overlay, RigKind, Target, Theme};
+use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Target, Theme};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
@@ -19,9 +19,9 @@ fn chain(bones: usize) -> Document {
         let joint = Joint { offset, radius: 0.02, ..Joint::new(&nth.to_string(), parent, axis) };
         parent = Some(skeleton.add(joint).expect("a joint"));
     }
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
-    document.skeleton_rig.skeleton = skeleton.into();
-    document.skeleton_rig.targets = vec![Target::new(JointId::new(bones - 1), Vec3::Y, 0.1)];
+    let mut document = Document::new(SkeletonRig::default());
+    document.rig.skeleton = skeleton.into();
+    document.rig.targets = vec![Target::new(JointId::new(bones - 1), Vec3::Y, 0.1)];
     document.display = Display::default().with(Overlay::Axes, false);
     document
 }
@@ -97,7 +97,7 @@ fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
         let broadest = scene.balls.iter().filter(|it| it.centre.distance(shin) < 1e-4);
         let broadest = broadest.map(|it| it.radius).fold(0.0, f32::max);
         // A stick, as they were, has 0.8 % of the reach.
-        let stick = 0.008 * shown.skeleton_rig().reach();
+        let stick = 0.008 * shown.rig().reach();
         assert!(broadest > 1.2 * stick, "the knee has {broadest}, a stick {stick}");
     }
 }

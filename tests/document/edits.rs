@@ -2,22 +2,20 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Baked, Channel, HandSpace, Overlay, PathKind, RigKind, Target, Timeline, TwistReferenceKind,
-    WavyRing,
+    Baked, Channel, Overlay, PathKind, Target, Timeline, TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
-use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
     FileMesh, LimbSettings, MeshSkin, Posture, PosturedJoint, Skin, SkinFile, SkinSource,
     TargetKind, TargetSpace,
 };
 use ik_arm::session::{
-    ArmEdit, DisplayEdit, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, PoseMode,
+    DisplayEdit, Edit, FileAction, JointEdit, KeysEdit, PathEdit, PlaybackAction, PoseMode,
     SelectAction, Session, SkinEdit, SolverAction, SolverEdit, TargetEdit, TransactionAction,
 };
 
@@ -50,29 +48,6 @@ macro_rules! examples {
 }
 
 examples! {
-    Arm(ArmEdit) {
-        SetHand: [ArmEdit::SetHand(Vec3::new(100.0, 200.0, -50.0))];
-        SetTwist: [ArmEdit::SetTwist(-0.5)];
-        SetRoot: [ArmEdit::SetRoot(Vec3::X * 20.0)];
-        SetPin: [ArmEdit::SetPin(Vec3::Y * 90.0)];
-        PinHand: [ArmEdit::PinHand(true)];
-        SetTwistReference: [
-            ArmEdit::SetTwistReference(TwistReferenceKind::Pole),
-            ArmEdit::SetTwistReference(TwistReferenceKind::Transport),
-        ];
-        SetPole: [ArmEdit::SetPole(Vec3::Z * 77.0)];
-        SetSoftReach: [
-            ArmEdit::SetSoftReach(SoftReach::new(0.3, 1.2, 0.1).expect("a soft reach")),
-        ];
-        SetInfluence: [ArmEdit::SetInfluence(0.5)];
-        SwitchPoseMode: [ArmEdit::SwitchPoseMode(PoseMode::Angles)];
-        SetShoulder: [ArmEdit::SetShoulder(Vec3::new(0.1, 0.2, 0.3))];
-        SetBend: [ArmEdit::SetBend(1.25)];
-        SetHandOrientation: [ArmEdit::SetHandOrientation(Vec3::new(0.3, 0.2, 0.1))];
-        SetHandSpace: [ArmEdit::SetHandSpace(HandSpace::World)];
-        SetUpper: [ArmEdit::SetUpper(180.0)];
-        SetLower: [ArmEdit::SetLower(310.0)];
-    }
     Display(DisplayEdit) {
         ResetPose: [DisplayEdit::ResetPose];
         ResetAll: [DisplayEdit::ResetAll];
@@ -80,7 +55,6 @@ examples! {
             DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true),
             DisplayEdit::ShowOverlay(Overlay::Labels, false),
         ];
-        ShowRig: [DisplayEdit::ShowRig(RigKind::Skeleton)];
     }
     Joint(JointEdit) {
         AddChild: [JointEdit::AddChild { parent: JointId::new(LEAF), tip: Some(Vec3::ONE) }];
@@ -95,6 +69,8 @@ examples! {
         ReparentJoint: [JointEdit::ReparentJoint { joint: JointId::new(AIMED), parent: None }];
         SetRotation: [JointEdit::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.2) }];
         SetAxis: [JointEdit::SetAxis { joint: JointId::new(INNER), axis: Vec3::splat(0.3) }];
+        SetLength: [JointEdit::SetLength { joint: JointId::new(INNER), length: 0.4 }];
+        SetOffset: [JointEdit::SetOffset { joint: JointId::new(INNER), offset: Vec3::Y * 0.2 }];
         SetLimits: [JointEdit::SetLimits {
             joint: JointId::new(INNER),
             limits: JointLimits::new([None, Some(Limit { min: -0.1, max: 0.1 }), None]),
@@ -135,6 +111,12 @@ examples! {
             joint: JointId::new(AIMED),
             reference: TwistReferenceKind::Up,
         }];
+        Pin: [TargetEdit::Pin { joint: JointId::new(AIMED), is_pinned: true }];
+        KeepHand: [TargetEdit::KeepHand { joint: JointId::new(AIMED), is_kept: true }];
+        SwitchPoseMode: [TargetEdit::SwitchPoseMode {
+            joint: JointId::new(AIMED),
+            mode: PoseMode::Angles,
+        }];
         SetPoleSpace: [TargetEdit::SetPoleSpace {
             joint: JointId::new(AIMED),
             space: TargetSpace::Joint(JointId::new(INNER)),
@@ -163,9 +145,12 @@ examples! {
     }
     Keys(KeysEdit) {
         Key: [
-            KeysEdit::Key(vec![Channel::Hand]),
-            KeysEdit::Key(vec![Channel::Twist]),
-            KeysEdit::Key(vec![Channel::Upper, Channel::Lower]),
+            KeysEdit::Key(vec![Channel::Target(JointId::new(AIMED))]),
+            KeysEdit::Key(vec![Channel::TargetTwist(JointId::new(AIMED))]),
+            KeysEdit::Key(vec![
+                Channel::Length(JointId::new(INNER)),
+                Channel::Length(JointId::new(AIMED)),
+            ]),
         ];
         DeleteKeys: [KeysEdit::DeleteKeys(vec![(KEYED, 0.0)])];
         ClearChannels: [KeysEdit::ClearChannels(vec![KEYED])];
@@ -183,7 +168,7 @@ examples! {
 
 /// The mesh of the skin as from a file.
 fn skin_of_a_file(session: &Session) -> Skin {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let mesh = rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh.clone();
     let parents = rig.skeleton.joints().iter().map(|joint| joint.parent).collect();
     let file = SkinFile { path: "x.glb".into(), checksum: 5, skeleton: "x".to_owned() };
@@ -199,9 +184,10 @@ fn baked() -> Box<Baked> {
     Box::new(Baked { document, keys_at_frames: 1, keys: 1, error: 0.0, shortened: Vec::new() })
 }
 
-/// The arm with the Human behind it, changed so that every edit has something to do.
+/// The Human, changed so that every edit has something to do.
 fn session_for(edit: &Edit) -> Session {
     let mut session = Session::default();
+    session.apply(FileAction::NewFigure);
     let target = Target::new(JointId::new(AIMED), Vec3::new(1.0, 2.0, 3.0), 1.0);
     let with_pole = LimbSettings {
         reference: TwistReferenceKind::Pole,
@@ -209,12 +195,8 @@ fn session_for(edit: &Edit) -> Session {
         ..LimbSettings::default()
     };
     for edit in [
-        // Both cameras are saved, and not undone.
-        Edit::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
-        DisplayEdit::ShowRig(RigKind::Arm).into(),
-        ArmEdit::SetTwist(1.0).into(),
-        ArmEdit::SetHandOrientation(Vec3::new(0.1, -0.4, 0.2)).into(),
-        DisplayEdit::ShowOverlay(Overlay::Axes, true).into(),
+        Edit::from(DisplayEdit::ShowOverlay(Overlay::Axes, true)),
+        JointEdit::SetRotation { joint: JointId::new(INNER), rotation: Vec3::splat(0.1) }.into(),
         TargetEdit::SetTarget(Target {
             kind: TargetKind::Limb(with_pole),
             influence: 1.0,
@@ -232,13 +214,12 @@ fn session_for(edit: &Edit) -> Session {
         session.apply(SkinEdit::SetSkin(Some(skin_of_a_file(&session))));
     }
     if *edit == Edit::Solver(SolverEdit::ResetPosture) {
-        let target = Target { kind: TargetKind::WholeBody, ..session.skeleton_rig().targets[0] };
+        let target = Target { kind: TargetKind::WholeBody, ..session.rig().targets[0] };
         session.apply(TargetEdit::SetTarget(target));
         session.apply(TargetEdit::SetTarget(Target { home: target.home * 0.9, ..target }));
-        assert!(session.document().skeleton_rig.posture.is_some());
+        assert!(session.document().rig.posture.is_some());
     }
     if *edit == Edit::Solver(SolverEdit::ApplyPose) {
-        session.apply(DisplayEdit::ShowRig(RigKind::Skeleton));
         session.apply(SolverAction::Step);
     }
     session
@@ -249,7 +230,7 @@ fn every_edit_is_one_labelled_step_that_is_undone_and_redone_to_the_same_bytes()
     let bytes = |session: &Session| to_json(session.document()).expect("saved");
     for edit in examples() {
         let mut session = session_for(&edit);
-        let (before, label) = (bytes(&session), edit.label());
+        let (before, label) = (bytes(&session), edit.label(&session));
         session.apply(edit.clone());
         let after = bytes(&session);
         assert!(
@@ -274,9 +255,10 @@ fn every_edit_in_a_transaction_is_cancelled_to_the_same_bytes() {
     for edit in examples() {
         let mut session = session_for(&edit);
         let (before, last) = (bytes(&session), session.history().undo_label());
+        let label = edit.label(&session);
         session.apply(TransactionAction::Begin);
         session.apply(edit.clone());
-        assert_eq!(session.history().undo_label(), Some(edit.label()));
+        assert_eq!(session.history().undo_label(), Some(label));
         session.apply(TransactionAction::Cancel);
         assert!(bytes(&session) == before, "cancelled {}", name(&edit));
         assert_eq!(session.history().undo_label(), last);
@@ -290,7 +272,7 @@ fn labels_are_in_sentence_case_and_every_variant_has_an_example() {
         assert!(all.iter().any(|edit| name(edit) == *variant), "{variant}");
     }
     for edit in all {
-        let label = edit.label();
+        let label = edit.label(&session_for(&edit));
         assert!(label.starts_with(char::is_uppercase) && !label.ends_with('.'), "{label}");
     }
 }

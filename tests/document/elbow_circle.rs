@@ -1,11 +1,10 @@
 //! The circle of elbows: what is drawn of it, and dragging the elbow along it.
 
+use crate::common::arm::{Arm, ArmSession, Cursor, LOWER};
 use core::f32::consts::TAU;
 
 use glam::{DQuat, DVec3, Vec3};
-use ik_arm::document::{
-    Arm, Cursor, Display, Document, Overlay, Ray, Theme, Track, TwistReferenceKind,
-};
+use ik_arm::document::{Display, Document, Overlay, Ray, Theme, Track, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::TwoBone;
 use ik_arm::scene::{Palette, Scene};
 use ik_arm::session::{DragInput, Grip, Overlays, Preferences, Session, TransactionAction};
@@ -35,7 +34,7 @@ fn arm(random: &mut Random) -> Arm {
 
 fn scene_of(arm: Arm) -> Scene {
     let display = Display::from_iter([Overlay::ElbowCircle]);
-    let document = Document { arm, display, ..Document::default() };
+    let document = Document { display, ..arm.document() };
     let posed = document.at(0.0);
     Scene::new(&posed, &Overlays::new(&Track::new(&document), &posed), Theme::Dark)
 }
@@ -88,7 +87,7 @@ fn an_elbow_dragged_along_the_circle_gets_the_twist_of_that_place() {
     let mut random = Random(18);
     for case in 0..1000 {
         let arm = arm(&mut random);
-        let document = Document { arm, ..Document::default() };
+        let document = arm.document();
         let mut session = Session::with_document(Preferences::default(), document);
         // An eye from which the circle is not seen edge-on.
         let outer = arm.bones.outer_limit();
@@ -99,7 +98,7 @@ fn an_elbow_dragged_along_the_circle_gets_the_twist_of_that_place() {
         let [start, end] = [on_circle(&arm, 0.0), on_circle(&arm, turned)];
         let forward = (arm.root - eye).normalize();
         let grab = ray_from(eye, start);
-        session.apply(TransactionAction::Grab { grip: Grip::Twist, ray: grab, forward });
+        session.apply(TransactionAction::Grab { grip: Grip::LimbTwist(LOWER), ray: grab, forward });
         let ray = ray_from(eye, end);
         session.apply(TransactionAction::Drag(DragInput { ray, precise: false, snap: false }));
         session.apply(TransactionAction::Commit);

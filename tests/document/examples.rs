@@ -110,7 +110,7 @@ fn the_human_stands_at_its_targets_by_its_own_angles() {
     }
     let ends = ["left_hand", "right_hand", "left_foot", "right_foot"];
     assert_eq!(targets.len(), ends.len());
-    for (target, end) in human.skeleton_rig.targets.iter().zip(ends) {
+    for (target, end) in human.rig.targets.iter().zip(ends) {
         let limb = Limb::for_end(&fk, fk.find(end).expect("a joint")).expect("a limb");
         assert_eq!((target.joint, target.influence), (limb.lower, 1.0), "{end}");
         assert!(target.limb().is_some() && target.enabled, "{end}");
@@ -277,7 +277,7 @@ fn arms_swing_against_the_legs_and_the_shoulders_against_the_hips() {
     let shoulders = heading("left_upper_arm", "right_upper_arm");
     let together = correlation(&shoulders, &heading("left_thigh", "right_thigh"));
     assert!(together < -0.8, "{together}");
-    let posed: Vec<JointId> = walk.skeleton_rig.targets.iter().map(|it| it.joint).collect();
+    let posed: Vec<JointId> = walk.rig.targets.iter().map(|it| it.joint).collect();
     assert_eq!(posed, ["left_shin", "right_shin"].map(|name| poses[0].id(name)));
 }
 
@@ -315,7 +315,7 @@ fn both_hands_stay_on_the_turning_wheel() {
         turned = turned.max(posed.joint("wheel").rotation.z.abs());
     }
     assert!(turned.to_degrees() > 45.0, "{turned}");
-    for target in &wheel.skeleton_rig.targets[..2] {
+    for target in &wheel.rig.targets[..2] {
         assert_eq!(target.space, TargetSpace::Joint(joint));
     }
 }
@@ -330,7 +330,7 @@ fn hands_and_feet_of_all_examples_turn_as_their_targets_ask() {
         let (from, to) = (document.timeline.start, document.timeline.end);
         for step in 0..=24 {
             let time = from + (to - from) * f64::from(step) / 24.0;
-            let rig = document.at(time).into_document().skeleton_rig;
+            let rig = document.at(time).into_document().rig;
             for (target, report) in rig.targets.iter().zip(&rig.evaluate(time).targets) {
                 let is_posed = target.is_posing() && !target.is_blended();
                 assert!(

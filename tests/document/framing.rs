@@ -1,7 +1,7 @@
 //! Cameras that frame a rig: they see its whole motion, and follow it.
 
 use glam::Vec3;
-use ik_arm::document::{Camera, Channel, Document, Projection, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Camera, Channel, Document, Projection, SkeletonRig, Timeline};
 use ik_arm::io::{self, OpenOptions};
 use ik_arm::kinematics::skeleton::{JointId, SkeletonPose};
 
@@ -12,8 +12,7 @@ fn walk(random: &mut Random) -> Document {
     let (skeleton, _) = skeletons::tree(random, 3, 1.0);
     let rig = SkeletonRig::new(skeleton);
     let reach = rig.reach();
-    let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+    let mut document = Document::new(rig);
     let seconds = random.within(1.0..200.0);
     document.timeline = Timeline { start: -1.0, end: f64::from(seconds), frame_rate: 29.97 };
     for corner in 0..5 {
@@ -54,8 +53,7 @@ fn a_still_rig_fills_the_picture_as_before() {
         let (skeleton, _) = skeletons::tree(&mut random, 3, 1.0);
         let rig = SkeletonRig::new(skeleton);
         let bounds = rig.bounds(&rig.skeleton.pose(), 0.0);
-        let document =
-            Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+        let document = Document::new(rig);
         assert_eq!(document.motion_bounds(), bounds);
         let (centre, radius) = bounds;
         assert_eq!(document.framing_camera(), Camera::default().framing(centre, radius, 1.0));
@@ -106,7 +104,7 @@ mod following {
             let joint = JointId::new(random.below(document.skeleton().joints().len()));
             let mut session = follower(&document, &[joint]);
             let before = session.skeleton_pose().base(joint) - session.camera().target;
-            let size = session.skeleton_rig().reach();
+            let size = session.rig().reach();
             assert!(before.length() < 1e-4 * size, "it starts in the middle");
             let near = session.camera().zoomed(0.05, glam::Vec2::ZERO, 1.6);
             session.apply(ViewAction::SetCamera(near));

@@ -2,8 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use ik_arm::document::{
-    Document, FramePop, Inspection, RigKind, SkeletonRig, Target, TargetMotion, TargetPath,
-    Timeline, Track,
+    Document, FramePop, Inspection, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
 };
 use ik_arm::io;
 use ik_arm::kinematics::chain_ik::Method;
@@ -34,7 +33,7 @@ fn a_target_that_another_pose_reaches_is_lost_and_another_start_finds_it() {
         let track = Track::new(&document);
         let posed = track.at(time);
         let error = posed.targets()[0].error;
-        assert!(error > posed.document().skeleton_rig.tolerance(), "missed at {time}: {error}");
+        assert!(error > posed.document().rig.tolerance(), "missed at {time}: {error}");
     }
     found.find_better_posture(&Track::new(&document), document.timeline, |_| true);
     let posture = found.better_posture.expect("a posture from which nothing is lost");
@@ -42,7 +41,7 @@ fn a_target_that_another_pose_reaches_is_lost_and_another_start_finds_it() {
     session.apply(SolverEdit::SetPosture(posture));
     assert!(inspected(session.document()).lost.is_empty());
     session.apply(TransactionAction::Undo);
-    assert_eq!(session.document().skeleton_rig.posture, None);
+    assert_eq!(session.document().rig.posture, None);
 }
 
 /// A chain of eight bones whose tip goes around, tracked or each frame by itself.
@@ -63,7 +62,7 @@ fn random_motion(random: &mut Random) -> Document {
     let motion = TargetMotion { path: TargetPath::Circle, radius: 1.5, period: 4.0 };
     rig.targets.push(Target { influence: 1.0, motion, ..Target::new(last, home, 0.3) });
     let timeline = Timeline { start: 0.0, end: 4.0, frame_rate: 30.0 };
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() }
+    Document { timeline, ..Document::new(rig) }
 }
 
 /// With a still FK pose, a pop is a frame in which a base or tip moves more than twice as far as
@@ -76,7 +75,7 @@ fn pops_are_the_frames_in_which_joints_move_twice_as_far_as_the_target() {
         let document = random_motion(&mut random);
         let timeline = document.timeline;
         let track = Track::new(&document);
-        let length = f64::from(document.skeleton_rig.length_to(JointId::new(8)));
+        let length = f64::from(document.rig.length_to(JointId::new(8)));
         let frames: Vec<(Vec<DVec3>, DVec3)> = (0..timeline.frames())
             .map(|frame| {
                 let posed = track.at(timeline.time(frame));
@@ -126,7 +125,7 @@ fn limbs_that_stay_while_the_body_above_them_moves_do_not_pop() {
     let home = Track::new(&document).at(0.0).skeleton().pose().tip(head);
     let motion = TargetMotion { path: TargetPath::Circle, radius: 0.02, period: 2.0 };
     let target = Target { influence: 1.0, motion, ..Target::new(head, home, 0.1) };
-    document.skeleton_rig.targets.push(target);
+    document.rig.targets.push(target);
     document.timeline = Timeline { start: 0.0, end: 4.0, frame_rate: 30.0 };
     let found = inspected(&document);
     // The arms hang nearly straight, which pops a little; otherwise limbs make up for the motion.
@@ -134,6 +133,6 @@ fn limbs_that_stay_while_the_body_above_them_moves_do_not_pop() {
         |pop: &&FramePop| pop.pop.target != head && pop.pop.cause != RigPopCause::Straight;
     assert_eq!(found.pops.iter().find(is_of_limb), None);
     assert_eq!((&found.lost, &found.slides), (&vec![], &vec![]));
-    let hands = document.skeleton_rig.targets.iter().filter(|target| target.limb().is_some());
+    let hands = document.rig.targets.iter().filter(|target| target.limb().is_some());
     assert!(hands.count() >= 4, "hands and feet stay by limb targets");
 }

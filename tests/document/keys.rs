@@ -1,9 +1,10 @@
 //! Documents evaluated at a time.
 
+use crate::common::arm::{ArmDocument, channels};
 use std::f64::consts::{PI, TAU};
 
 use glam::{DQuat, Vec3};
-use ik_arm::document::{Channel, Document, Keys, Overlay, RigKind, Target, Timeline};
+use ik_arm::document::{Channel, Document, Keys, Overlay, Target, Timeline};
 use ik_arm::kinematics::skeleton::{JointId, Limit};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 
@@ -20,15 +21,11 @@ fn human() -> Document {
 
 #[test]
 fn setting_a_channel_changes_its_value_alone() {
-    let mut document = human();
-    document.rig = RigKind::Arm;
+    let document = human();
     let (point, on) = (Vec3::new(1.5, -2.5, 0.25), Vec3::ZERO);
     for (channel, value) in [
-        (Channel::Hand, point),
-        (Channel::Twist, number(1.25)),
-        (Channel::Root, point),
-        (Channel::Upper, number(123.0)),
-        (Channel::Lower, number(45.0)),
+        (Channel::Length(JointId::new(2)), number(123.0)),
+        (Channel::TargetTwist(JointId::new(14)), number(1.25)),
         (Channel::Translation, point),
         (Channel::Rotation(JointId::new(2)), Vec3::new(0.1, 0.05, -0.1)),
         (Channel::Offset(JointId::new(2)), point),
@@ -56,10 +53,10 @@ fn a_document_without_keys_is_the_same_at_every_time() {
 fn a_keyed_hand_goes_along_a_spline() {
     let mut document = Document::default();
     for (time, x) in [(0.0, 0.0), (1.0, 100.0), (3.0, 400.0), (4.0, 300.0)] {
-        document.keys.insert(Channel::Hand, time, Vec3::new(x, 2.0 * x, 5.0));
+        document.keys.insert(channels::HAND, time, Vec3::new(x, 2.0 * x, 5.0));
     }
     // 8/3 · 100: see the spline's tests.
-    let hand = document.at(2.0).into_document().arm.cursor_in_root();
+    let hand = document.at(2.0).into_document().arm().cursor_in_root();
     assert!(hand.distance(Vec3::new(266.666_67, 533.333_3, 5.0)) < 1e-3, "{hand}");
 }
 
@@ -67,13 +64,13 @@ fn a_keyed_hand_goes_along_a_spline() {
 fn lengths_stay_above_0_where_their_spline_does_not() {
     let mut document = Document::default();
     for (time, length) in [(0.0, 1000.0), (1.0, 10.0), (2.0, 10.0), (3.0, 1000.0)] {
-        document.keys.insert(Channel::Upper, time, number(length));
+        document.keys.insert(channels::UPPER_LENGTH, time, number(length));
     }
-    let upper = |time| document.at(time).into_document().arm.bones.upper();
+    let upper = |time| document.at(time).into_document().arm().bones.upper();
     assert_eq!(upper(1.5), 1.0);
     assert_eq!((upper(0.0), upper(1.0), upper(9.0)), (1000.0, 10.0, 1000.0));
     for step in 0..400 {
-        let arm = document.at(f64::from(step) * 0.01).into_document().arm;
+        let arm = document.at(f64::from(step) * 0.01).into_document().arm();
         assert!(arm.bones.upper() > 0.0 && arm.pose().elbow.is_finite());
     }
 }
@@ -106,12 +103,12 @@ fn switches_step() {
 fn huge_values_stay_finite() {
     let mut document = Document::default();
     for (time, x) in [(0.0, f32::MAX), (1.0, f32::MAX), (1.5, f32::MIN), (2.0, f32::MAX)] {
-        document.keys.insert(Channel::Hand, time, Vec3::splat(x));
-        document.keys.insert(Channel::Twist, time, number(x));
-        document.keys.insert(Channel::Upper, time, number(x.abs()));
+        document.keys.insert(channels::HAND, time, Vec3::splat(x));
+        document.keys.insert(channels::TWIST, time, number(x));
+        document.keys.insert(channels::UPPER_LENGTH, time, number(x.abs()));
     }
     for step in 0..100 {
-        let arm = document.at(f64::from(step) * 0.03).into_document().arm;
+        let arm = document.at(f64::from(step) * 0.03).into_document().arm();
         assert!(arm.cursor_in_root().is_finite() && arm.twist.is_finite(), "{arm:?}");
         assert!(arm.pose().hand.is_finite());
     }
@@ -120,25 +117,25 @@ fn huge_values_stay_finite() {
 #[test]
 fn keys_that_are_not_finite_are_refused() {
     let mut keys = Keys::default();
-    keys.insert(Channel::Hand, f64::NAN, Vec3::ZERO);
-    keys.insert(Channel::Hand, 0.0, Vec3::new(0.0, f32::INFINITY, 0.0));
+    keys.insert(channels::HAND, f64::NAN, Vec3::ZERO);
+    keys.insert(channels::HAND, 0.0, Vec3::new(0.0, f32::INFINITY, 0.0));
     assert!(keys.is_empty());
 }
 
 #[test]
 fn keys_follow_their_joints() {
     let mut document = human();
-    let target: &Target = &document.skeleton_rig.targets[0];
+    let target: &Target = &document.rig.targets[0];
     let (hand, joints) = (target.joint, document.skeleton().joints().to_vec());
     for joint in [hand, JointId::new(15)] {
         document.keys.insert(Channel::Rotation(joint), 0.0, Vec3::X);
     }
-    document.keys.insert(Channel::Root, 0.0, Vec3::X);
+    document.keys.insert(channels::ROOT_OFFSET, 0.0, Vec3::X);
     let moved = document.skeleton_mut().remove(&[hand]).expect("removed");
     document.keys.remap(&moved);
     let tracks: Vec<Channel> = document.keys.tracks().map(|(channel, _)| channel).collect();
     let foot = document.skeleton().find(&joints[15].name).expect("it is still there");
-    assert_eq!(tracks, [Channel::Root, Channel::Rotation(foot)]);
+    assert_eq!(tracks, [Channel::Rotation(foot), channels::ROOT_OFFSET]);
 }
 
 #[test]
@@ -206,9 +203,9 @@ fn pinned_at_random(random: &mut Random) -> Keys {
     let mut keys = Keys::default();
     let time = |random: &mut Random| f64::from(random.within(0.0..8.0).round()) / 2.0;
     for _ in 0..1 + random.below(5) {
-        keys.insert(Channel::Pinned, time(random), number(random.below(2) as f32));
+        keys.insert(channels::PINNED, time(random), number(random.below(2) as f32));
     }
-    for channel in [Channel::Hand, Channel::Pin] {
+    for channel in [channels::HAND, channels::PIN] {
         for _ in 0..1 + random.below(6) {
             keys.insert(channel, time(random), random.vector(100.0));
         }
@@ -231,7 +228,7 @@ fn a_plant_has_a_spline_through_its_own_keys() {
     let mut random = Random(0x91a);
     for _ in 0..2_000 {
         let keys = pinned_at_random(&mut random);
-        let (track, is_on) = (keys.track(Channel::Pin), |at| keys.value(Channel::Pinned, at));
+        let (track, is_on) = (keys.track(channels::PIN), |at| keys.value(channels::PINNED, at));
         let track = track.expect("keyed");
         for time in samples() {
             // The switch does not change from the time to the key.
@@ -240,7 +237,7 @@ fn a_plant_has_a_spline_through_its_own_keys() {
                 samples().filter(is_between).chain([time]).all(|at| is_on(at) == is_on(time))
             };
             let expected = part(track, is_own).at(time).or_else(|| track.step(time));
-            assert_eq!(keys.value(Channel::Pin, time), expected, "at {time} of {keys:?}");
+            assert_eq!(keys.value(channels::PIN, time), expected, "at {time} of {keys:?}");
         }
     }
 }
@@ -250,8 +247,8 @@ fn a_key_of_the_hand_in_a_plant_ends_its_spline() {
     let mut random = Random(0x4a4d);
     for _ in 0..2_000 {
         let keys = pinned_at_random(&mut random);
-        let track = keys.track(Channel::Hand).expect("keyed");
-        let is_on = |at| keys.value(Channel::Pinned, at) == Some(Vec3::X);
+        let track = keys.track(channels::HAND).expect("keyed");
+        let is_on = |at| keys.value(channels::PINNED, at) == Some(Vec3::X);
         let times = || track.knots().iter().map(|knot| knot.time);
         let planted: Vec<f64> = times().filter(|at| is_on(*at) || is_on(*at - 0.125)).collect();
         for time in samples() {
@@ -263,7 +260,7 @@ fn a_key_of_the_hand_in_a_plant_ends_its_spline() {
                 }
             };
             let expected = part(track, is_own).at(time);
-            assert_eq!(keys.value(Channel::Hand, time), expected, "at {time} of {keys:?}");
+            assert_eq!(keys.value(channels::HAND, time), expected, "at {time} of {keys:?}");
         }
     }
 }
@@ -273,7 +270,7 @@ fn without_keys_of_the_switch_hand_and_pin_follow_all_their_keys() {
     let mut random = Random(0x5711);
     for _ in 0..200 {
         let mut keys = pinned_at_random(&mut random);
-        keys.clear(Channel::Pinned);
+        keys.clear(channels::PINNED);
         for (channel, track) in keys.tracks() {
             assert!(samples().all(|time| keys.value(channel, time) == track.at(time)));
         }

@@ -1,22 +1,26 @@
 //! A session stays valid under any actions.
 
+use crate::common::arm::{
+    Arm, ArmDocument, ArmEdit, ArmPosed, ArmSession, HandSpace, LOWER, ROOT, Step, UPPER, WRIST,
+    channels,
+};
+use ik_arm::rig::LimbFrames;
 use std::path::PathBuf;
 
 use glam::Vec3;
 use ik_arm::document::{
-    Arm, Camera, Channel, Display, Document, HandSpace, Overlay, PathKind, Ray, RigKind,
-    SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
+    Camera, Channel, Display, Document, Overlay, PathKind, Ray, SkeletonRig, Target, TargetMotion,
+    TargetPath, Timeline, TwistReferenceKind, WavyRing,
 };
 use ik_arm::io::{FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, ArmEdit, Dialog, DisplayEdit, DragInput, Effect, Export, FileAction, FileContents,
-    Grip, GripRing, JointEdit, KeysEdit, PathDialog, PathEdit, PlaybackAction, PointHandle,
-    PoseMode, SelectAction, Session, ShellAction, SolverAction, SolverEdit, TargetEdit,
-    TransactionAction, ViewAction,
+    Action, Dialog, DisplayEdit, DragInput, Effect, Export, FileAction, FileContents, Grip,
+    GripRing, JointEdit, KeysEdit, PathDialog, PathEdit, PlaybackAction, PointHandle, PoseMode,
+    SelectAction, Session, ShellAction, SolverAction, SolverEdit, TargetEdit, TransactionAction,
+    ViewAction,
 };
 use ik_arm::words;
 use proptest::collection::vec;
@@ -59,15 +63,14 @@ fn grips() -> impl Strategy<Value = Grip> {
         (0..3_usize).prop_map(PointHandle::Plane)
     ];
     prop_oneof![
-        handles.clone().prop_map(Grip::Hand),
-        handles.clone().prop_map(Grip::Pole),
-        handles.clone().prop_map(Grip::Root),
-        Just(Grip::Twist),
-        rotation_axes().prop_map(Grip::Shoulder),
-        Just(Grip::Bend),
-        Just(Grip::Limb),
-        Just(Grip::UpperLimb),
-        rotation_axes().prop_map(Grip::HandRing),
+        handles.clone().prop_map(|handle| Grip::Target(LOWER, handle)),
+        handles.clone().prop_map(|handle| Grip::LimbPole(LOWER, handle)),
+        handles.clone().prop_map(|handle| Grip::Tip(ROOT, handle)),
+        Just(Grip::LimbTwist(LOWER)),
+        rotation_axes().prop_map(|axis| Grip::Ring(UPPER, axis)),
+        Just(Grip::Ring(LOWER, RotationAxis::Z)),
+        Just(Grip::Tip(UPPER, PointHandle::Free)),
+        rotation_axes().prop_map(|axis| Grip::Ring(WRIST, axis)),
         (joints(), rotation_axes()).prop_map(|(joint, axis)| Grip::Orientation(joint, axis)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Head(joint, handle)),
@@ -143,36 +146,33 @@ fn posing() -> impl Strategy<Value = Action> {
     ]
 }
 
-fn arming() -> impl Strategy<Value = Action> {
+fn arming() -> impl Strategy<Value = Step> {
     let parts = || prop_oneof![3 => 0.0..1.0_f32, 1 => Just(0.0), 1 => Just(1.0), 1 => numbers()];
     let soft_reach = (0.0..0.9_f32, 1.0..2.0_f32, 0.0..3.0_f32);
     prop_oneof![
-        3 => points().prop_map(ArmEdit::SetHand).prop_map(Action::from),
-        2 => points().prop_map(ArmEdit::SetRoot).prop_map(Action::from),
-        2 => any::<bool>().prop_map(ArmEdit::PinHand).prop_map(Action::from),
-        1 => points().prop_map(ArmEdit::SetPin).prop_map(Action::from),
-        3 => (0..4_usize).prop_map(|twist_reference| Action::from(ArmEdit::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
-        2 => points().prop_map(ArmEdit::SetPole).prop_map(Action::from),
-        2 => soft_reach.prop_map(|(softness, stretch, angle)| Action::from(ArmEdit::SetSoftReach(
+        3 => points().prop_map(ArmEdit::SetHand).prop_map(Step::from),
+        2 => points().prop_map(ArmEdit::SetRoot).prop_map(Step::from),
+        2 => any::<bool>().prop_map(ArmEdit::PinHand).prop_map(Step::from),
+        1 => points().prop_map(ArmEdit::SetPin).prop_map(Step::from),
+        3 => (0..4_usize).prop_map(|twist_reference| Step::from(ArmEdit::SetTwistReference(TwistReferenceKind::ALL[twist_reference]))),
+        2 => points().prop_map(ArmEdit::SetPole).prop_map(Step::from),
+        2 => soft_reach.prop_map(|(softness, stretch, angle)| Step::from(ArmEdit::SetSoftReach(
             SoftReach::new(softness, stretch, angle).expect("a softening")
         ))),
-        2 => parts().prop_map(ArmEdit::SetInfluence).prop_map(Action::from),
-        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(ArmEdit::SwitchPoseMode).prop_map(Action::from),
-        1 => points().prop_map(ArmEdit::SetShoulder).prop_map(Action::from),
-        1 => numbers().prop_map(ArmEdit::SetBend).prop_map(Action::from),
-        1 => points().prop_map(ArmEdit::SetHandOrientation).prop_map(Action::from),
-        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(ArmEdit::SetHandSpace).prop_map(Action::from),
-        1 => Just(Action::from(ViewAction::ResetTransport)),
-        1 => any::<bool>().prop_map(|arm| {
-            Action::from(DisplayEdit::ShowRig(if arm { RigKind::Arm } else { RigKind::Skeleton }))
-        }),
+        2 => parts().prop_map(ArmEdit::SetInfluence).prop_map(Step::from),
+        2 => prop_oneof![Just(PoseMode::Hand), Just(PoseMode::Angles)].prop_map(ArmEdit::SwitchPoseMode).prop_map(Step::from),
+        1 => points().prop_map(ArmEdit::SetShoulder).prop_map(Step::from),
+        1 => numbers().prop_map(ArmEdit::SetBend).prop_map(Step::from),
+        1 => points().prop_map(ArmEdit::SetHandOrientation).prop_map(Step::from),
+        1 => prop_oneof![Just(HandSpace::LowerLimb), Just(HandSpace::World)].prop_map(ArmEdit::SetHandSpace).prop_map(Step::from),
+        1 => Just(Step::from(ViewAction::ResetTransport)),
     ]
 }
 
 fn channels() -> impl Strategy<Value = Channel> + Clone {
     prop_oneof![
         prop_oneof![
-            (0..Channel::ARM.len()).prop_map(|channel| Channel::ARM[channel]),
+            (0..channels::ALL.len()).prop_map(|channel| channels::ALL[channel]),
             Just(Channel::Translation),
             Just(Channel::Overlay(Overlay::Cursor)),
         ],
@@ -200,9 +200,6 @@ fn keying() -> impl Strategy<Value = Action> {
         1 => (times.clone(), times, 0.0..70.0).prop_map(|(start, end, frame_rate)| {
             Action::from(KeysEdit::SetTimeline(Timeline { start, end, frame_rate }))
         }),
-        1 => points().prop_map(ArmEdit::SetHand).prop_map(Action::from),
-        1 => numbers().prop_map(ArmEdit::SetTwist).prop_map(Action::from),
-        1 => numbers().prop_map(ArmEdit::SetUpper).prop_map(Action::from),
         1 => any::<bool>().prop_map(|shown| Action::from(DisplayEdit::ShowOverlay(Overlay::Cursor, shown))),
         1 => points().prop_map(JointEdit::SetTranslation).prop_map(Action::from),
         1 => numbers().prop_map(|metres| Action::from(DisplayEdit::SetMetres(Some(metres)))),
@@ -230,20 +227,31 @@ fn dragging() -> impl Strategy<Value = Action> {
     ]
 }
 
-fn actions() -> impl Strategy<Value = Vec<Action>> {
+fn actions() -> impl Strategy<Value = Vec<Step>> {
     vec(
-        prop_oneof![3 => building(), 3 => posing(), 2 => dragging(), 3 => keying(), 3 => arming()],
+        prop_oneof![
+            3 => building().prop_map(Step::from),
+            3 => posing().prop_map(Step::from),
+            2 => dragging().prop_map(Step::from),
+            3 => keying().prop_map(Step::from),
+            4 => arming(),
+        ],
         1..80,
     )
 }
 
 fn session() -> Session {
-    let document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let document = Document::new(SkeletonRig::default());
     Session::with_document(Default::default(), document)
 }
 
+/// A new document: with the arm, or with one joint.
+fn sessions() -> impl Strategy<Value = Session> {
+    any::<bool>().prop_map(|has_arm| if has_arm { Session::default() } else { session() })
+}
+
 fn check(session: &Session) -> Result<(), TestCaseError> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let joints = rig.skeleton.joints();
     prop_assert_eq!(session.skeleton_pose().len(), joints.len());
     prop_assert!(
@@ -265,7 +273,9 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
         prop_assert!(target.joint < JointId::new(joints.len()) && targeted.insert(target.joint));
         prop_assert!(target.home.is_finite() && target.weight > 0.0);
     }
-    check_arm(session.arm(), session.pose())?;
+    for target in &session.rig().targets {
+        session.posed().limb_frames(target.joint).as_ref().map_or(Ok(()), check_limb)?;
+    }
     let document = session.document();
     prop_assert!(document.timeline.is_valid());
     for (channel, track) in document.keys.tracks() {
@@ -280,14 +290,11 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
 }
 
 /// The limbs have their lengths.
-fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
+fn check_limb(limb: &LimbFrames) -> Result<(), TestCaseError> {
+    let pose = limb.pose();
     prop_assert!(pose.elbow.is_finite() && pose.hand.is_finite(), "{:?}", pose);
-    prop_assert!((0.0..=1.0).contains(&arm.influence) && arm.cursor_in_root().is_finite());
-    prop_assert!(
-        arm.ik_state.transported.is_none_or(|it| it.direction.dot(it.outward).abs() < 1e-3)
-    );
-    let bones =
-        [arm.bones.upper(), arm.bones.lower()].map(|length| f64::from(length * pose.stretch));
+    let bones = limb.bones();
+    let bones = [bones.upper(), bones.lower()].map(|length| f64::from(length * pose.stretch));
     let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
     let tolerance = 2e-6 * (bones[0] + bones[1]);
     prop_assert!((elbow.length() - bones[0]).abs() <= tolerance, "{:?}", pose);
@@ -295,33 +302,33 @@ fn check_arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// A document without its cameras, which undo leaves alone.
+/// A document without its camera, which undo leaves alone.
 fn without_views(document: &Document) -> Document {
-    Document { camera: Camera::default(), other_rig_camera: None, ..document.clone() }
+    Document { camera: Camera::default(), ..document.clone() }
 }
 
-/// A document without cameras, shown rig and overlays.
+/// A document without camera and overlays.
 fn content(document: &Document) -> Document {
-    Document { rig: RigKind::Arm, display: Display::default(), ..without_views(document) }
+    Document { display: Display::default(), ..without_views(document) }
 }
 
 proptest! {
     #![proptest_config(config(200, 0x5ce1_e70e))]
 
     #[test]
-    fn any_actions_leave_a_valid_session(actions in actions()) {
-        let mut session = session();
+    fn any_actions_leave_a_valid_session(session in sessions(), actions in actions()) {
+        let mut session = session;
         for action in actions {
-            session.apply(action);
+            action.apply(&mut session);
             check(&session)?;
         }
     }
 
     #[test]
-    fn a_cancelled_drag_restores_the_session(before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
-        let mut session = session();
+    fn a_cancelled_drag_restores_the_session(session in sessions(), before in actions(), grip in grips(), drag in vec(dragging(), 1..20)) {
+        let mut session = session;
         for action in before {
-            session.apply(action);
+            action.apply(&mut session);
         }
         for action in [Action::from(TransactionAction::Cancel), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
@@ -339,18 +346,17 @@ proptest! {
         }
         session.apply(TransactionAction::Cancel);
         if held {
-            prop_assert!(same(session.skeleton_rig(), &shown.skeleton_rig));
-            prop_assert_eq!(session.arm(), &shown.arm);
+            prop_assert!(same(session.rig(), &shown.rig));
             prop_assert_eq!(&session.document().keys, &document.keys);
         }
     }
 
     #[test]
-    fn undo_returns_to_the_first_document_and_redo_to_the_last(actions in actions()) {
-        let mut session = session();
+    fn undo_returns_to_the_first_document_and_redo_to_the_last(session in sessions(), actions in actions()) {
+        let mut session = session;
         let first = session.document().clone();
         for action in actions {
-            session.apply(action);
+            action.apply(&mut session);
         }
         for action in [Action::from(TransactionAction::Commit), Action::from(PlaybackAction::Play(false))] {
             session.apply(action);
@@ -379,8 +385,8 @@ fn halfway() -> Session {
     let mut session = Session::default();
     for (time, hand) in [(0.0, Vec3::X * 200.0), (1.0, Vec3::Y * 200.0)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(ArmEdit::SetHand(hand));
-        session.apply(KeysEdit::Key(vec![Channel::Hand]));
+        session.edit_arm(ArmEdit::SetHand(hand));
+        session.apply(KeysEdit::Key(vec![channels::HAND]));
     }
     session.apply(PlaybackAction::SetAutoKey(false));
     session.apply(PlaybackAction::SetTime(0.5));
@@ -393,8 +399,8 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
     let mut session = halfway();
     let document = session.document().clone();
     session.apply(FileAction::Saved("x.json".into()));
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
-    assert!(session.history().is_overridden(Channel::Hand));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
+    assert!(session.history().is_overridden(channels::HAND));
     assert_eq!(
         session.shell().message(),
         Some("Unkeyed change: press K or it is lost when the time changes")
@@ -405,19 +411,19 @@ fn an_unkeyed_edit_is_shown_until_the_time_changes() {
         session.apply(PlaybackAction::SetTime(time));
         let expected = Vec3::new(200.0 * (1.0 - time as f32), 200.0 * time as f32, 0.0);
         assert!(session.arm().cursor_in_root().distance(expected) < 1e-3);
-        assert!(!session.history().is_overridden(Channel::Hand));
+        assert!(!session.history().is_overridden(channels::HAND));
     }
 }
 
 #[test]
 fn an_unkeyed_edit_can_be_undone_and_keyed() {
     let mut session = halfway();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Undo);
     assert_eq!(session.arm().cursor_in_root(), Vec3::new(100.0, 100.0, 0.0));
     session.apply(TransactionAction::Redo);
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
-    session.apply(KeysEdit::Key(vec![Channel::Hand]));
+    session.apply(KeysEdit::Key(vec![channels::HAND]));
     session.apply(PlaybackAction::SetTime(0.0));
     session.apply(PlaybackAction::SetTime(0.5));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 50.0);
@@ -428,7 +434,7 @@ fn an_unkeyed_edit_leaves_the_document_unchanged() {
     let mut session = halfway();
     session.apply(FileAction::Saved("x.json".into()));
     let document = session.document().clone();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetTime(0.6));
     assert_eq!(session.document(), &document);
     assert!(!session.history().is_unsaved());
@@ -437,7 +443,7 @@ fn an_unkeyed_edit_leaves_the_document_unchanged() {
 #[test]
 fn an_unkeyed_edit_that_a_time_change_discards_comes_back_with_undo() {
     let mut session = halfway();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::Play(true));
     session.apply(PlaybackAction::Advance(0.0));
     session.apply(PlaybackAction::Advance(0.1));
@@ -474,13 +480,13 @@ fn a_cancelled_drag_during_playback_leaves_the_playhead_alone() {
     session.apply(PlaybackAction::Play(true));
     session.apply(PlaybackAction::Advance(0.0));
     session.apply(TransactionAction::Begin);
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::Advance(0.1));
-    session.apply(ArmEdit::SetHand(Vec3::Z * 51.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 51.0));
     let time = session.playback().time();
     session.apply(TransactionAction::Cancel);
     assert_eq!((session.playback().time(), session.playback().is_playing()), (time, true));
-    assert!(!session.history().is_overridden(Channel::Hand));
+    assert!(!session.history().is_overridden(channels::HAND));
 }
 
 #[test]
@@ -514,10 +520,12 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
         session.apply(PlaybackAction::SetTime(2.0));
         let at_2 = |session: &Session| session.document().keys.times().contains(&2.0);
         match name {
-            None => session.apply(ArmEdit::SetHand(Vec3::X * 300.0)),
-            Some(_) => session
-                .apply(JointEdit::SetRotation { joint: JointId::new(1), rotation: Vec3::X * 0.3 }),
-        };
+            None => session.edit_arm(ArmEdit::SetHand(Vec3::X * 300.0)),
+            Some(_) => {
+                let joint = JointId::new(1);
+                session.apply(JointEdit::SetRotation { joint, rotation: Vec3::X * 0.3 });
+            }
+        }
         assert!(at_2(&session), "{name:?}: the pose at 2 s is kept");
         assert!(
             session.playback().is_auto_key() && !session.playback().is_auto_key_news(),
@@ -541,19 +549,19 @@ fn the_first_key_turns_auto_key_on_for_the_arm_and_for_figures() {
 #[test]
 fn a_key_replaces_an_unkeyed_edit() {
     let mut session = halfway();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(PlaybackAction::SetAutoKey(true));
-    session.apply(ArmEdit::SetHand(Vec3::Z * 60.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 60.0));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 60.0);
-    assert!(!session.history().is_overridden(Channel::Hand));
+    assert!(!session.history().is_overridden(channels::HAND));
 
     let mut session = halfway();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
-    session.apply(KeysEdit::ClearChannels(vec![Channel::Hand]));
-    session.apply(ArmEdit::SetHand(Vec3::Z * 70.0));
-    session.apply(ArmEdit::SetTwist(1.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.apply(KeysEdit::ClearChannels(vec![channels::HAND]));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 70.0));
+    session.edit_arm(ArmEdit::SetTwist(1.0));
     assert_eq!(session.arm().cursor_in_root(), Vec3::Z * 70.0);
-    assert_eq!(session.document().arm.cursor_in_root(), Vec3::Z * 70.0);
+    assert_eq!(session.document().arm().cursor_in_root(), Vec3::Z * 70.0);
 }
 
 #[test]
@@ -585,7 +593,7 @@ fn selected_and_copied_keys_follow_their_joints() {
 fn a_file_that_opens_late_asks_before_it_replaces_unsaved_changes() {
     let mut session = Session::default();
     session.apply(FileAction::Open { path: "slow.glb".into(), options: OpenOptions::default() });
-    session.apply(ArmEdit::SetTwist(1.0));
+    session.edit_arm(ArmEdit::SetTwist(1.0));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     session.apply(opened.clone());
     assert_eq!(session.arm().twist, 1.0);
@@ -599,12 +607,12 @@ fn many_keys_move_at_once() {
     let mut session = Session::default();
     let mut document = Document::default();
     for frame in 0..50_000 {
-        document.keys.insert(Channel::Hand, f64::from(frame) / 30.0, Vec3::X * frame as f32);
+        document.keys.insert(channels::HAND, f64::from(frame) / 30.0, Vec3::X * frame as f32);
     }
     session.apply(FileAction::Opened { document: Box::new(document), file: None, contents: None });
-    let keys: Vec<_> = (0..50_000).map(|frame| (Channel::Hand, f64::from(frame) / 30.0)).collect();
+    let keys: Vec<_> = (0..50_000).map(|frame| (channels::HAND, f64::from(frame) / 30.0)).collect();
     session.apply(KeysEdit::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
-    let track = session.document().keys.track(Channel::Hand).expect("keyed").knots();
+    let track = session.document().keys.track(channels::HAND).expect("keyed").knots();
     assert_eq!((track.len(), track[0].time), (50_000, 1.0));
 }
 
@@ -626,7 +634,7 @@ fn onion_skins_are_shown_while_their_switch_is_keyed_on() {
 #[test]
 fn a_cancelled_drag_restores_the_unkeyed_edit_that_the_time_has_discarded() {
     let mut session = halfway();
-    session.apply(ArmEdit::SetHand(Vec3::Z * 50.0));
+    session.edit_arm(ArmEdit::SetHand(Vec3::Z * 50.0));
     session.apply(TransactionAction::Begin);
     session.apply(PlaybackAction::SetTime(1.0));
     session.apply(TransactionAction::Cancel);
@@ -639,13 +647,13 @@ fn with_auto_key_every_edit_makes_a_key() {
     session.apply(PlaybackAction::SetAutoKey(true));
     for (time, twist) in [(0.0, 6.0), (1.0, 0.5)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(ArmEdit::SetTwist(twist));
+        session.edit_arm(ArmEdit::SetTwist(twist));
     }
     let keys = &session.document().keys;
     let channels: Vec<Channel> = keys.tracks().map(|(channel, _)| channel).collect();
-    assert_eq!(channels, [Channel::Twist]);
+    assert_eq!(channels, [channels::TWIST]);
     // The shorter turn, past 0.
-    let twist = keys.value(Channel::Twist, 1.0).expect("a key").x;
+    let twist = keys.value(channels::TWIST, 1.0).expect("a key").x;
     assert!((twist - 0.5 - std::f32::consts::TAU).abs() < 1e-5, "{twist}");
     // A switch gets no key by being switched.
     session.apply(DisplayEdit::ShowOverlay(Overlay::Cursor, false));
@@ -689,7 +697,7 @@ fn a_paused_solver_uses_the_new_weight_of_a_target() {
     let mut session = Session::default();
     session.apply(open_example("two-targets"));
     let apart = [Vec3::new(-9.0, 2.0, 0.0), Vec3::new(9.0, 2.0, 0.0)];
-    let targets: Vec<_> = session.skeleton_rig().targets.clone();
+    let targets: Vec<_> = session.rig().targets.clone();
     for (target, home) in targets.iter().zip(apart) {
         session.apply(TargetEdit::SetTarget(Target { home, ..*target }));
     }
@@ -709,7 +717,7 @@ fn a_target_with_influence_poses_the_joints_and_their_rings_but_writes_no_angles
     let mut session = Session::default();
     session.apply(open_example("ten-joints"));
     let before = session.document().clone();
-    let target = session.skeleton_rig().targets[0];
+    let target = session.rig().targets[0];
     let tip = session.skeleton_pose().tip(target.joint);
     assert!(tip.distance(target.home) > 0.1, "the joints' own angles do not reach the target");
     session.apply(TargetEdit::SetTarget(Target { influence: 1.0, ..target }));
@@ -742,7 +750,7 @@ fn home_frames_all_that_the_hand_can_reach() {
     for case in 0..2_000 {
         let arm = reaching_arm(&mut random);
         let limits = arm.reach_limits();
-        let document = Document { arm, ..Document::default() };
+        let document = arm.document();
         let session = Session::with_document(Default::default(), document);
         let projection = session.framing_all().projection(1.0);
         for _ in 0..20 {
@@ -779,7 +787,7 @@ fn reaching_arm(random: &mut Random) -> Arm {
 fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay() {
     let mut session = halfway();
     session.apply(PlaybackAction::SetAutoKey(false));
-    session.apply(ArmEdit::SetHand(Vec3::X));
+    session.edit_arm(ArmEdit::SetHand(Vec3::X));
     assert!(session.shell().message().is_some_and(|it| it.starts_with("Unkeyed change")));
     session.apply(PlaybackAction::SetTime(0.25));
     let discarded = "The unkeyed change at 0.50 s is discarded: Ctrl+Z brings it back";
@@ -792,7 +800,7 @@ fn the_remark_on_an_unkeyed_change_goes_with_the_change_and_other_remarks_stay()
 #[test]
 fn unsaved_changes_are_asked_about_only_once_the_other_file_was_read() {
     let mut session = Session::default();
-    session.apply(ArmEdit::SetTwist(1.0));
+    session.edit_arm(ArmEdit::SetTwist(1.0));
     let (path, options) = (PathBuf::from("other.json"), OpenOptions::default());
     let effect = session.apply(FileAction::Open { path: path.clone(), options: options.clone() });
     assert_eq!(effect, Some(Effect::Open { path: path.clone(), options }));
@@ -857,7 +865,7 @@ fn an_imported_file_gives_the_document_its_name() {
 #[test]
 fn of_several_animations_the_user_is_asked_for_one_also_after_the_question_about_changes() {
     let mut session = Session::default();
-    session.apply(ArmEdit::SetTwist(1.0));
+    session.edit_arm(ArmEdit::SetTwist(1.0));
     let contents = Some(contents("/models/Walk.glb", 2));
     let opened = FileAction::Opened { document: Box::default(), file: None, contents };
     session.apply(opened.clone());
@@ -893,14 +901,14 @@ fn an_export_into_a_missing_folder_does_not_leave_the_next_one_there() {
 fn what_a_diagnosis_names_is_outlined() {
     let mut session = Session::default();
     session.apply(open_example("human"));
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let [hand, forearm] =
         ["left_hand", "left_forearm"].map(|it| rig.skeleton.find(it).expect("a joint"));
     let index = rig.target_of_end(hand).expect("a target");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
     session.apply(TargetEdit::SetTarget(target));
     let found = session.why(true).first().expect("it is too far away");
-    let said = words::cause(session.skeleton_rig(), found);
+    let said = words::cause(session.rig(), found);
     assert!(said.starts_with("left_hand cannot reach that far"), "{said}");
     let outlined = session.overlays().concerned;
     assert!(outlined.contains(&hand) && outlined.contains(&forearm), "{outlined:?}");

@@ -1,7 +1,8 @@
 //! Invalid actions leave a session unchanged.
 
+use crate::common::arm::{ArmEdit, ArmSession, LOWER, Step, UPPER, channels};
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Camera, Channel, Document, Ray, RigKind, Theme, TwistReferenceKind};
+use ik_arm::document::{Camera, Channel, Document, Ray, Theme, TwistReferenceKind};
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, SolveError};
 use ik_arm::kinematics::diagnosis::Remedy;
@@ -9,10 +10,9 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm::rig::{SkeletonRig, Target, TargetOutcome};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, ArmEdit, CameraMotion, Constraint, DisplayEdit, Drag, DragInput, FileAction, Grip,
-    GripRing, JointEdit, KeysEdit, PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences,
-    SelectAction, Session, ShellAction, SolverAction, TargetEdit, TransactionAction, TurnDrag,
-    ViewAction,
+    Action, CameraMotion, Constraint, Drag, DragInput, FileAction, Grip, GripRing, JointEdit,
+    KeysEdit, PlaybackAction, PointDrag, PointHandle, PoseMode, Preferences, SelectAction, Session,
+    ShellAction, SolverAction, TargetEdit, TransactionAction, TurnDrag, ViewAction,
 };
 
 use crate::common::documents::open_example;
@@ -84,15 +84,15 @@ fn actions_on_a_fourth_axis_are_refused() {
         let before = session.document().clone();
         let (line, plane) = (PointHandle::Axis(axis), PointHandle::Plane(axis));
         for grip in [
-            Grip::Hand(line),
-            Grip::Pole(plane),
+            Grip::Target(LOWER, line),
+            Grip::LimbPole(LOWER, plane),
             Grip::Target(JointId::new(0), line),
             Grip::Tip(JointId::new(0), plane),
         ] {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             assert!(!session.history().is_editing(), "{grip:?} holds nothing");
         }
-        let grip = Grip::Hand(PointHandle::Free);
+        let grip = Grip::Target(LOWER, PointHandle::Free);
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         for constraint in [Constraint::Axis(axis), Constraint::Plane(axis)] {
             session.apply(TransactionAction::Constrain(Some(constraint)));
@@ -107,9 +107,9 @@ fn actions_on_a_fourth_axis_are_refused() {
 #[test]
 fn a_missing_joint_cannot_be_hovered() {
     let mut session = session();
-    for (joint, is_there) in [(0, true), (1, false), (usize::MAX, false)] {
+    for (joint, is_there) in [(3, true), (4, false), (usize::MAX, false)] {
         let joint = JointId::new(joint);
-        session.apply(SelectAction::Hover(Some(joint.into())));
+        session.apply(SelectAction::Hover(Some(joint)));
         assert_eq!(session.selection().hovered(), is_there.then_some(joint));
     }
 }
@@ -117,35 +117,36 @@ fn a_missing_joint_cannot_be_hovered() {
 #[test]
 fn moving_keys_of_deleted_joints_does_not_bring_them_back() {
     let mut session = session();
+    let new = JointId::new(session.skeleton().joints().len());
     session.apply(JointEdit::AddChild { parent: JointId::new(0), tip: None });
-    session.apply(KeysEdit::Key(vec![Channel::Rotation(JointId::new(1)), Channel::Hand]));
+    session.apply(KeysEdit::Key(vec![Channel::Rotation(new), channels::HAND]));
     session.apply(TransactionAction::Begin);
-    session.apply(JointEdit::DeleteJoints(vec![JointId::new(1)]));
-    let keys = vec![(Channel::Hand, 0.0), (Channel::Rotation(JointId::new(1)), 0.0)];
+    session.apply(JointEdit::DeleteJoints(vec![new]));
+    let keys = vec![(channels::HAND, 0.0), (Channel::Rotation(new), 0.0)];
     session.apply(KeysEdit::MoveKeys { keys, by: 1.0, raise: Vec3::ZERO });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
-    assert_eq!(left, [(Channel::Hand, 1.0)]);
+    assert_eq!(left, [(channels::HAND, 1.0)]);
 }
 
 #[test]
 fn keys_made_while_others_move_stay() {
     let mut session = session();
-    session.apply(KeysEdit::Key(vec![Channel::Hand]));
+    session.apply(KeysEdit::Key(vec![channels::HAND]));
     session.apply(TransactionAction::Begin);
-    let keys = vec![(Channel::Hand, 0.0)];
+    let keys = vec![(channels::HAND, 0.0)];
     session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 1.0, raise: Vec3::ZERO });
     session.apply(KeysEdit::MoveKeys { keys: keys.clone(), by: 2.0, raise: Vec3::ZERO });
-    assert_eq!(session.selection().keys(), [(Channel::Hand, 2.0)]);
-    session.apply(KeysEdit::Key(vec![Channel::Root]));
+    assert_eq!(session.selection().keys(), [(channels::HAND, 2.0)]);
+    session.apply(KeysEdit::Key(vec![channels::ROOT_OFFSET]));
     session.apply(KeysEdit::MoveKeys {
-        keys: vec![(Channel::Hand, 2.0)],
+        keys: vec![(channels::HAND, 2.0)],
         by: 1.0,
         raise: Vec3::ZERO,
     });
     let tracks = session.document().keys.tracks();
     let left: Vec<_> = tracks.map(|(channel, track)| (channel, track.knots()[0].time)).collect();
-    assert_eq!(left, [(Channel::Hand, 3.0), (Channel::Root, 0.0)]);
+    assert_eq!(left, [(channels::ROOT_OFFSET, 0.0), (channels::HAND, 3.0)]);
 }
 
 #[test]
@@ -194,9 +195,13 @@ fn a_comparison_is_made_anew_when_the_joints_change() {
 #[test]
 fn a_ring_dragged_by_an_invalid_ray_does_not_turn() {
     let mut session = session();
-    session.apply(ArmEdit::SwitchPoseMode(PoseMode::Angles));
+    session.edit_arm(ArmEdit::SwitchPoseMode(PoseMode::Angles));
     let before = session.document().clone();
-    for grip in RotationAxis::ALL.into_iter().map(Grip::Shoulder).chain([Grip::Bend]) {
+    for grip in RotationAxis::ALL
+        .into_iter()
+        .map(|axis| Grip::Ring(UPPER, axis))
+        .chain([Grip::Ring(LOWER, RotationAxis::Z)])
+    {
         for invalid in [f32::INFINITY, f32::NAN, f32::MAX] {
             session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
             let (origin, direction) = (Vec3::splat(invalid), Vec3::new(-0.4, 0.4, invalid));
@@ -229,11 +234,11 @@ fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
     let far = f32::MAX;
     for actions in [
         vec![
-            Action::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
+            Step::from(FileAction::NewFigure),
             JointEdit::SetTranslation(Vec3::new(-far, 0.3, 0.2)).into(),
         ],
         vec![
-            Action::from(FileAction::NewSkeleton),
+            Step::from(FileAction::NewEmpty),
             JointEdit::AddChild { parent: JointId::new(0), tip: Some(Vec3::splat(far)) }.into(),
         ],
         vec![ArmEdit::SetRoot(Vec3::splat(far)).into(), ArmEdit::SetHand(Vec3::splat(far)).into()],
@@ -245,7 +250,7 @@ fn rigs_at_the_largest_coordinates_can_be_framed_and_drawn() {
     ] {
         let mut session = session();
         for action in actions {
-            session.apply(action);
+            action.apply(&mut session);
         }
         for camera in [session.framing_all(), session.framing_selection()] {
             assert!(camera.is_valid(), "{camera:?}");
@@ -291,7 +296,7 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
                 rotation: Vec3::new(x, 0.0, 0.0),
             });
         }
-        session.apply(ArmEdit::SetHand(Vec3::X * hand));
+        session.edit_arm(ArmEdit::SetHand(Vec3::X * hand));
         session.apply(TransactionAction::Commit);
         texts.push(text(&session));
     }
@@ -309,9 +314,9 @@ fn undo_and_redo_keep_the_sign_of_a_zero() {
 fn drags_and_snaps_that_overflow_are_clamped() {
     for (pole, typed, snap) in [(-f32::MAX, "", true), (f32::MAX, "3e38", false)] {
         let mut session = session();
-        session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
-        session.apply(ArmEdit::SetPole(Vec3::new(0.0, 0.0, pole)));
-        let grip = Grip::Pole(PointHandle::Axis(2));
+        session.edit_arm(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
+        session.edit_arm(ArmEdit::SetPole(Vec3::new(0.0, 0.0, pole)));
+        let grip = Grip::LimbPole(LOWER, PointHandle::Axis(2));
         session.apply(TransactionAction::Grab { grip, ray: ray(), forward: Vec3::NEG_Z });
         session.apply(TransactionAction::TypeOffset(typed.to_owned()));
         let ray = Ray { origin: Vec3::new(5.0, 5.0, 9.0), direction: Vec3::new(-0.5, -0.4, -0.8) };
@@ -329,7 +334,7 @@ fn the_same_revision_is_saved_as_the_same_text() {
         (session.history().revision(), to_json(session.document()).expect("saved"));
     session.apply(TransactionAction::Begin);
     for x in [1.0, -0.0] {
-        session.apply(ArmEdit::SetRoot(Vec3::new(x, 0.0, 0.0)));
+        session.edit_arm(ArmEdit::SetRoot(Vec3::new(x, 0.0, 0.0)));
     }
     session.apply(TransactionAction::Commit);
     assert_eq!(session.history().revision(), revision);
@@ -402,7 +407,7 @@ fn star(rays: u16, method: Method) -> Document {
     let mut rig = SkeletonRig::new(skeleton);
     (rig.targets, rig.solver.method) = (targets, method);
     rig.solver.iterations = Some(1_000_000_000);
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
+    Document::new(rig)
 }
 
 #[test]

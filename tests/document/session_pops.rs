@@ -1,20 +1,20 @@
 //! Recorded elbow speed, pops and their fixes.
 
+use crate::common::arm::{Arm, ArmEdit, ArmSession, channels};
 use glam::Vec3;
-use ik_arm::document::{Arm, Channel, Document, Timeline, TwistReferenceKind};
+use ik_arm::document::{Channel, Document, Timeline, TwistReferenceKind};
 use ik_arm::kinematics::pop::{InputChange, PopCause, PosedLimb};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
-    ArmEdit, FileAction, KeysEdit, PlaybackAction, PopFix, PopSampleKind, Session, Spike,
-    TransactionAction,
+    FileAction, KeysEdit, PlaybackAction, PopFix, PopSampleKind, Session, Spike, TransactionAction,
 };
 
 fn drag(session: &mut Session, from: Vec3, to: Vec3, steps: u16) {
-    session.apply(ArmEdit::SetHand(from));
+    session.edit_arm(ArmEdit::SetHand(from));
     session.apply(TransactionAction::Begin);
     for step in 1..=steps {
         let part = f32::from(step) / f32::from(steps);
-        session.apply(ArmEdit::SetHand(from.lerp(to, part)));
+        session.edit_arm(ArmEdit::SetHand(from.lerp(to, part)));
     }
     session.apply(TransactionAction::Commit);
 }
@@ -60,7 +60,7 @@ fn fix_pop(session: &mut Session, drag: fn(&mut Session)) -> PopFix {
     let spikes = persisting(session);
     assert_eq!(spikes.len(), 1, "{spikes:?}");
     let pop_fix = PopFix::new(&spikes[0], posed(session)).expect("a fix");
-    let edit = pop_fix.edit(session.skeleton_rig(), session.limb().expect("a limb"));
+    let edit = pop_fix.edit(session.rig(), session.limb().expect("a limb"));
     session.apply(edit.expect("an edit"));
     assert_eq!(session.shell().message(), None);
     assert_eq!(PopFix::new(&spikes[0], posed(session)), None, "it is taken");
@@ -81,8 +81,8 @@ fn each_fix_prevents_the_pop_of_the_same_drag() {
 #[test]
 fn pops_of_a_pole_reference_are_fixed_by_stereographic_too() {
     let mut session = Session::default();
-    session.apply(ArmEdit::SetPole(Vec3::new(0.0, 300.0, 10.0)));
-    session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
+    session.edit_arm(ArmEdit::SetPole(Vec3::new(0.0, 300.0, 10.0)));
+    session.edit_arm(ArmEdit::SetTwistReference(TwistReferenceKind::Pole));
     assert_eq!(
         fix_pop(&mut session, over_the_top),
         PopFix::ChangeReference(TwistReferenceKind::Stereographic)
@@ -92,7 +92,7 @@ fn pops_of_a_pole_reference_are_fixed_by_stereographic_too() {
 #[test]
 fn behind_the_body_stereographic_pops_and_transport_fixes_it() {
     let mut session = Session::default();
-    session.apply(ArmEdit::SetTwistReference(TwistReferenceKind::Stereographic));
+    session.edit_arm(ArmEdit::SetTwistReference(TwistReferenceKind::Stereographic));
     let behind = |session: &mut Session| {
         drag(session, Vec3::new(-300.0, 100.0, 9.0), Vec3::new(-300.0, -100.0, 9.0), 40);
     };
@@ -106,15 +106,16 @@ fn behind_the_body_stereographic_pops_and_transport_fixes_it() {
 fn a_soft_arm_that_still_pops_at_a_limit_can_be_softer_or_kept_open() {
     let mut session = Session::default();
     let almost_hard = SoftReach::new(0.01, 1.2, 0.0).expect("soft");
-    session.apply(ArmEdit::SetSoftReach(almost_hard));
+    session.edit_arm(ArmEdit::SetSoftReach(almost_hard));
     let expected = PopFix::KeepOpen(SoftReach::new(0.01, 1.2, 30_f32.to_radians()).expect("soft"));
     assert_eq!(fix_pop(&mut session, fold_up), expected);
 
     let spike = |pop, soft_reach| {
         let arm = Arm { soft_reach, ..Arm::default() };
-        let (ik, reference) = (arm.ik(), arm.twist_reference);
+        let frames = arm.frames();
+        let (ik, reference) = (frames.posed.ik, arm.twist_reference);
         let spike = Spike { at: 0, ratio: 9.0, pop, ik, reference };
-        PopFix::new(&spike, &arm.frames(&arm.solve(), &arm.pose()).posed)
+        PopFix::new(&spike, &frames.posed)
     };
     let soft = |softness| SoftReach::new(softness, 1.2, 0.3).expect("soft");
     for (from, to) in [(0.1, 0.25), (0.2, 0.4), (0.3, 0.5)] {
@@ -150,7 +151,7 @@ fn each_drag_and_each_playback_is_a_separate_run() {
     };
     assert_eq!(runs(&session), (2, 28 + 30));
     session.apply(TransactionAction::Undo);
-    session.apply(ArmEdit::SetHand(Vec3::new(222.0, 0.0, 0.0)));
+    session.edit_arm(ArmEdit::SetHand(Vec3::new(222.0, 0.0, 0.0)));
     assert_eq!(runs(&session), (2, 28 + 30), "what is not dragged is not measured");
 }
 
@@ -160,8 +161,8 @@ fn keyed(channels: &[Channel]) -> Session {
     session.apply(KeysEdit::SetTimeline(Timeline { end: 1.0, ..Timeline::default() }));
     for (time, x, twist) in [(0.0, 150.0, 0.0), (1.0, -150.0, 2.0)] {
         session.apply(PlaybackAction::SetTime(time));
-        session.apply(ArmEdit::SetHand(Vec3::new(x, 300.0, 20.0)));
-        session.apply(ArmEdit::SetTwist(twist));
+        session.edit_arm(ArmEdit::SetHand(Vec3::new(x, 300.0, 20.0)));
+        session.edit_arm(ArmEdit::SetTwist(twist));
         session.apply(KeysEdit::Key(channels.to_vec()));
     }
     session
@@ -179,7 +180,7 @@ fn play(session: &mut Session, seconds: std::ops::Range<f64>) {
 
 #[test]
 fn playback_is_measured_and_a_loop_starts_a_new_run() {
-    let mut session = keyed(&[Channel::Hand]);
+    let mut session = keyed(&[channels::HAND]);
     let typed = session.evaluated().pops().samples().count();
     play(&mut session, 10.0..11.9);
     let samples: Vec<_> = session.evaluated().pops().samples().skip(typed).collect();
@@ -197,7 +198,7 @@ fn playback_is_measured_and_a_loop_starts_a_new_run() {
 
 #[test]
 fn a_played_twist_is_one_input_change_and_no_pop() {
-    let mut session = keyed(&[Channel::Hand, Channel::Twist]);
+    let mut session = keyed(&[channels::HAND, channels::TWIST]);
     let before = changes(&session).len();
     play(&mut session, 10.0..10.9);
     assert_eq!(changes(&session)[before..], [InputChange::Twist]);
@@ -208,10 +209,10 @@ fn a_played_twist_is_one_input_change_and_no_pop() {
 fn moving_the_root_is_an_input_change_only_with_a_pinned_hand() {
     for (pinned, marked) in [(false, vec![]), (true, vec![InputChange::Root])] {
         let mut session = Session::default();
-        session.apply(ArmEdit::PinHand(pinned));
+        session.edit_arm(ArmEdit::PinHand(pinned));
         session.apply(TransactionAction::Begin);
         for step in 1..9_u8 {
-            session.apply(ArmEdit::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
+            session.edit_arm(ArmEdit::SetRoot(Vec3::Y * 10.0 * f32::from(step)));
         }
         session.apply(TransactionAction::Commit);
         assert_eq!(changes(&session), marked);

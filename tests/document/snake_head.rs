@@ -1,7 +1,7 @@
 //! A snake's head is dragged and keyed, and its body follows the path that the head has travelled.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, FollowPath, PathKind, Ray, RigKind, SkeletonRig};
+use ik_arm::document::{Channel, Document, FollowPath, PathKind, Ray, SkeletonRig};
 use ik_arm::io::{OpenOptions, parse, to_json};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
 use ik_arm::kinematics::spline::Spline;
@@ -28,7 +28,7 @@ fn snake(random: &mut Random) -> Document {
     }
     let mut rig = SkeletonRig::new(skeleton);
     rig.follow_paths = vec![FollowPath { root: HEAD, kind: PathKind::Head }];
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
+    Document::new(rig)
 }
 
 /// The same snake with keys of its head at uneven times.
@@ -252,7 +252,7 @@ fn auto_key_keys_a_dragged_head_alone() {
         session.document().keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(keyed, [Channel::Offset(HEAD)]);
     let document = session.document();
-    assert!(document.skeleton_rig.head_tracks.is_empty(), "the keys are in the document once");
+    assert!(document.rig.head_tracks.is_empty(), "the keys are in the document once");
     for (second, end) in ends.iter().enumerate().skip(1).take(2) {
         let path = travelled(document, second as f64);
         let beside = end.iter().map(|point| distance(&path, *point)).fold(0.0, f32::max);
@@ -363,6 +363,6 @@ fn joints_can_be_posed_by_their_own_angles_up_to_the_first_key_of_the_head() {
     let document = keyed_snake(&mut random);
     let first = document.keys.track(Channel::Offset(HEAD)).expect("keys").knots()[0].time;
     for (time, is_on_path) in [(first - 0.1, false), (first, false), (first + 0.1, true)] {
-        assert_eq!(document.at(time).into_document().skeleton_rig.is_on_path(time), is_on_path);
+        assert_eq!(document.at(time).into_document().rig.is_on_path(time), is_on_path);
     }
 }

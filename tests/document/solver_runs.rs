@@ -3,15 +3,14 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, PathKind, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
-    WavyRing,
+    Channel, Document, PathKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme, WavyRing,
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status, TipTarget};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    Action, Comparison, DisplayEdit, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, Session,
+    Action, Comparison, Edit, JointEdit, KeysEdit, PathEdit, PlaybackAction, Session,
     ShownIteration, SolverAction, SolverEdit, SolverRun, SolverState, TargetEdit,
     TransactionAction,
 };
@@ -34,7 +33,7 @@ fn document(random: &mut Random) -> Document {
     }
     rig.solver = options(random);
     rig.iterations_per_frame = 1 + random.below(4) as u32;
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
+    Document::new(rig)
 }
 
 fn options(random: &mut Random) -> SolverOptions {
@@ -87,7 +86,7 @@ fn bits(skeleton: &Skeleton) -> Vec<[u32; 6]> {
 /// The pose of the motion's step before, or the FK pose, after some iterations of a new solver,
 /// with the error that it reports.
 fn fresh(session: &Session, options: &SolverOptions, iterations: u32) -> (Skeleton, f32) {
-    let (rig, time) = (session.skeleton_rig(), session.playback().time());
+    let (rig, time) = (session.rig(), session.playback().time());
     let mut skeleton = Skeleton::clone(&rig.fk_at(time));
     let mut solver =
         ChainSolver::new(&skeleton, &rig.targets_at(time), options).expect("it can be solved");
@@ -153,7 +152,7 @@ fn iterate_k_is_that_of_a_new_solver_after_k_steps() {
         let mut session = open(document(&mut random));
         step(&mut session, 25);
         let run = session.solvers().run().expect("it steps").clone();
-        let options = session.skeleton_rig().solver;
+        let options = session.rig().solver;
         for iterate in run.iterates().iter() {
             session.apply(SolverAction::Show(iterate.iteration));
             let run = session.solvers().run().expect("it is shown");
@@ -161,7 +160,7 @@ fn iterate_k_is_that_of_a_new_solver_after_k_steps() {
             assert_is_fresh(&session, run, &options);
         }
         let first = run.iterates().at(0).joints();
-        let fk = session.skeleton_rig().fk_at(session.playback().time());
+        let fk = session.rig().fk_at(session.playback().time());
         assert!(first.eq(fk.iter().map(|(_, joint)| (joint.rotation, joint.offset))));
     }
 }
@@ -175,7 +174,7 @@ fn a_run_and_a_comparison_always_solve_what_the_session_shows() {
         for _ in 0..50 {
             let action = change(&mut random, &session, &mut seconds);
             session.apply(action);
-            let options = session.skeleton_rig().solver;
+            let options = session.rig().solver;
             if let Some(run) = session.solvers().run() {
                 assert_is_fresh(&session, run, &options);
             }
@@ -192,7 +191,7 @@ fn a_run_and_a_comparison_always_solve_what_the_session_shows() {
 
 /// Any action that a solver run may notice.
 fn change(random: &mut Random, session: &Session, seconds: &mut f64) -> Action {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let joint = JointId::new(random.below(rig.skeleton.joints().len()));
     let target = (!rig.targets.is_empty()).then(|| rig.targets[random.below(rig.targets.len())]);
     match random.below(16) {
@@ -241,13 +240,13 @@ fn the_iterations_of_a_run_do_not_depend_on_the_times_that_were_shown_before() {
 fn a_run_that_has_ended_solves_a_moved_target_to_its_end() {
     let mut session = example("ten-joints");
     run_to_the_end(&mut session, 0.0);
-    let target = session.skeleton_rig().targets[0];
+    let target = session.rig().targets[0];
     for home in [target.home + Vec3::Y * 0.2, target.home + Vec3::X * 0.1, target.home] {
         session.apply(TargetEdit::SetTarget(Target { home, ..target }));
         let run = session.solvers().run().expect("it is looked at");
         assert!(run.report().converged() && run.report().iterations > 0, "{:?}", run.report());
         let error = run.skeleton().tip(target.joint).distance(home);
-        assert!(error <= session.skeleton_rig().tolerance() * 1.01, "{error}");
+        assert!(error <= session.rig().tolerance() * 1.01, "{error}");
     }
 }
 
@@ -295,9 +294,9 @@ fn apply_pose_is_one_step_that_undo_takes_back_bit_for_bit() {
 #[test]
 fn a_run_of_free_roots_applies_their_offsets() {
     let mut session = example("two-targets");
-    let solver = session.skeleton_rig().solver.with_root(Root::Free);
+    let solver = session.rig().solver.with_root(Root::Free);
     session.apply(SolverEdit::SetSolver(solver));
-    let targets = session.skeleton_rig().targets.clone();
+    let targets = session.rig().targets.clone();
     for target in &targets {
         let home = target.home + Vec3::X * 9.0;
         session.apply(TargetEdit::SetTarget(Target { home, ..*target }));
@@ -332,14 +331,12 @@ fn apply_pose_keys_with_auto_key_and_else_is_an_unkeyed_edit_of_keyed_joints() {
 #[test]
 fn a_run_ends_when_there_is_nothing_to_solve() {
     let path = PathKind::Ring(WavyRing { radius: 1.0, amplitude: 0.2, waves: 3, period: 5.0 });
-    let joint = example("ten-joints").skeleton_rig().targets[0].joint;
+    let joint = example("ten-joints").rig().targets[0].joint;
     let follow = PathEdit::SetFollowPath { root: JointId::new(0), kind: Some(path) };
     for (begin, end) in [
         (SolverAction::Step, Edit::from(TargetEdit::RemoveTarget(joint))),
         (SolverAction::Compare, TargetEdit::RemoveTarget(joint).into()),
         (SolverAction::Run(true), follow.into()),
-        (SolverAction::Compare, DisplayEdit::ShowRig(RigKind::Arm).into()),
-        (SolverAction::Run(true), DisplayEdit::ShowRig(RigKind::Arm).into()),
     ] {
         let mut session = example("ten-joints");
         session.apply(begin.clone());
@@ -359,8 +356,8 @@ fn a_run_ends_when_there_is_nothing_to_solve() {
 fn a_run_ends_with_the_reason_if_its_solver_refuses_the_targets() {
     let mut session = example("human");
     step(&mut session, 1);
-    let root = session.skeleton_rig().targets[0].joint;
-    let two_bone = session.skeleton_rig().solver.with_method(Method::TwoBone);
+    let root = session.rig().targets[0].joint;
+    let two_bone = session.rig().solver.with_method(Method::TwoBone);
     session.apply(JointEdit::SetLocked { joint: root, locked: true });
     session.apply(SolverEdit::SetSolver(two_bone));
     assert!(session.solvers().run().is_none());
@@ -390,7 +387,7 @@ fn the_status_is_that_of_the_shown_iterate_or_of_the_evaluated_pose() {
     assert!(earlier.error > ended.error);
     session.apply(SolverAction::Reset);
     assert_eq!(status(&session).state, SolverState::NotReached, "nothing was applied");
-    let target = session.skeleton_rig().targets[0];
+    let target = session.rig().targets[0];
     session.apply(TargetEdit::SetTarget(Target { influence: 1.0, ..target }));
     assert_eq!(status(&session).state, SolverState::Reached, "the evaluated pose is at the target");
 }
@@ -430,7 +427,7 @@ fn the_labels_in_the_view_tell_the_shown_iteration_and_its_gaps() {
         let gaps: Vec<f32> = run.targets().iter().map(gap).collect();
         let told: Vec<f32> = texts.iter().filter_map(|text| text.parse().ok()).collect();
         // A gap that the target's ball hides is not told.
-        let is_seen = |gap: &&f32| **gap > 0.022 * session.skeleton_rig().reach();
+        let is_seen = |gap: &&f32| **gap > 0.022 * session.rig().reach();
         assert_eq!(gaps.iter().filter(is_seen).count(), told.len(), "{gaps:?} {told:?}");
         for told in told {
             assert!(gaps.iter().any(|gap| (gap - told).abs() < 0.0051), "{told} is in {gaps:?}");

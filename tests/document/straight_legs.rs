@@ -113,7 +113,7 @@ fn a_straight_leg_bends_its_knee_to_bring_the_ankle_to_every_target() {
 /// The example figure with its pelvis down by so much, posed by its targets.
 fn squat(down: f32) -> (SkeletonRig, EvaluatedSkeleton) {
     let opened = Example::find("human").expect("an example").open().expect("opens");
-    let mut rig = opened.document.skeleton_rig;
+    let mut rig = opened.document.rig;
     let pelvis = joint(&rig.skeleton, "pelvis");
     rig.skeleton_mut().change(pelvis, |pelvis| pelvis.offset.y -= down).expect("a joint");
     let evaluated = rig.evaluate(0.0);

@@ -17,14 +17,14 @@ fn tadpoles() -> Session {
 }
 
 fn heads(document: &Document) -> Vec<JointId> {
-    document.skeleton_rig.follow_paths.iter().map(|path| path.root).collect()
+    document.rig.follow_paths.iter().map(|path| path.root).collect()
 }
 
 /// Where a target is at a time in seconds, in the world and in f64, from the document's numbers
 /// alone. The pond, on which the targets are, lies 0.07 above the floor and is turned so that its z
 /// points up.
 fn target_at(document: &Document, head: JointId, time: f64) -> [f64; 3] {
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let Target { home, motion, .. } = rig.targets[rig.target(head).expect("a target")];
     let home = document.keys.value(Channel::Target(head), time).unwrap_or(home);
     let angle = std::f64::consts::TAU * time / f64::from(motion.period);
@@ -57,7 +57,7 @@ fn distance(line: &[DVec3], point: DVec3) -> f64 {
 
 /// Joints of a head's chain with their distances from the path, relative to the chain's length.
 fn beside_path(document: &Document, head: JointId, time: f64) -> Vec<f64> {
-    let rig = document.at(time).into_document().skeleton_rig;
+    let rig = document.at(time).into_document().rig;
     let skeleton = rig.skeleton_at(time);
     let length: f32 = rig.path_joints(head).map(|joint| rig.skeleton[joint].axis.length()).sum();
     let path = path(document, head, time);
@@ -79,7 +79,7 @@ fn tadpoles_play_when_opened_and_every_tail_is_on_the_path_of_its_head() {
             let worst = beside_path(document, *head, time).into_iter().fold(0.0, f64::max);
             assert!(worst < 1e-3, "{worst} at {time} s");
         }
-        let rig = document.at(time).into_document().skeleton_rig;
+        let rig = document.at(time).into_document().rig;
         let evaluated = rig.evaluate(time);
         assert_eq!(evaluated, again.at(time).evaluated_skeleton().clone());
         for (report, target) in evaluated.targets.iter().zip(&rig.targets) {
@@ -95,11 +95,11 @@ fn tadpoles_play_when_opened_and_every_tail_is_on_the_path_of_its_head() {
 #[test]
 fn a_target_that_leads_a_path_is_not_solved_for_and_cannot_be_run() {
     let mut session = tadpoles();
-    assert!(!session.skeleton_rig().targets.is_empty());
-    assert!(session.skeleton_rig().targets_at(0.0).is_empty());
+    assert!(!session.rig().targets.is_empty());
+    assert!(session.rig().targets_at(0.0).is_empty());
     let head = heads(session.document())[0];
     session.apply(PathEdit::SetFollowPath { root: head, kind: None });
-    assert_eq!(session.skeleton_rig().targets_at(0.0).len(), 1, "without a path it is solved for");
+    assert_eq!(session.rig().targets_at(0.0).len(), 1, "without a path it is solved for");
 }
 
 /// Plays `frames` of a sixtieth of a second while the mouse is where `at` says.
@@ -135,7 +135,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     let recorded = session.document().clone();
     let heads = heads(&recorded);
     let middle = |time: f64| {
-        let rig = recorded.at(time).into_document().skeleton_rig;
+        let rig = recorded.at(time).into_document().rig;
         let homes = heads.iter().map(|head| rig.targets[rig.target(*head).expect("one")].home);
         homes.sum::<Vec3>() / heads.len() as f32
     };
@@ -153,7 +153,7 @@ fn heads_follow_the_mouse_and_tails_the_recorded_path_also_after_save_and_open()
     }
     session.apply(TransactionAction::Undo);
     assert_eq!(session.document().keys, before.keys);
-    assert_eq!(session.document().skeleton_rig, before.skeleton_rig);
+    assert_eq!(session.document().rig, before.rig);
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn each_root_has_a_path_of_its_own() {
         let root = random.one_of(&roots);
         let kind = random.one_of(&[None, Some(PathKind::Head), Some(PathKind::Target)]);
         session.apply(PathEdit::SetFollowPath { root, kind });
-        let rig = session.skeleton_rig();
+        let rig = session.rig();
         assert_eq!(rig.path_kind(root), kind);
         let others = heads.iter().filter(|head| **head != root);
         assert!(others.into_iter().all(|head| rig.path_kind(*head).is_some()));
@@ -213,10 +213,10 @@ fn paths_follow_their_roots_when_joints_are_deleted() {
     let heads = heads(session.document());
     let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
     let kept = name(&session, heads[2]);
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let first: Vec<JointId> = rig.path_joints(heads[0]).collect();
     session.apply(JointEdit::DeleteJoints(first));
-    let paths = &session.skeleton_rig().follow_paths;
+    let paths = &session.rig().follow_paths;
     assert_eq!(paths.len(), 4);
     assert!(paths.iter().any(|path| name(&session, path.root) == kept));
     assert!(session.document().keys.track(Channel::Target(heads[0])).is_none());

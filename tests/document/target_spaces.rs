@@ -171,7 +171,7 @@ fn keyed(random: &mut Random) -> (Document, JointId) {
     });
     shake(random, driver.rig.skeleton_mut());
     driver.rig.skeleton_mut().set_transform(transform(random)).expect("finite");
-    let mut document = Document { skeleton_rig: driver.rig, ..Document::default() };
+    let mut document = Document { rig: driver.rig, ..Document::default() };
     for time in [0.0, 0.4, 1.0, 2.5] {
         for joint in [driver.trunk, driver.wheel] {
             document.keys.insert(Channel::Rotation(joint), time, random.angles());
@@ -189,7 +189,7 @@ fn keyed(random: &mut Random) -> (Document, JointId) {
 
 /// Position, orientation and pole of the document's target in the world at a time.
 fn in_world(document: &Document, time: f64) -> (Vec3, Quat, Vec3) {
-    let rig = document.at(time).into_document().skeleton_rig;
+    let rig = document.at(time).into_document().rig;
     let pose = rig.skeleton_at(time);
     let target = &rig.targets[0];
     let limb = target.limb().expect("a limb");
@@ -205,12 +205,12 @@ fn a_target_stays_where_it_is_when_it_moves_to_another_space_and_at_each_of_its_
     let mut random = Random(162);
     for case in 0..50 {
         let (before, wheel) = keyed(&mut random);
-        let joint = before.skeleton_rig.targets[0].joint;
-        let size = before.skeleton_rig.reach().max(1.0);
+        let joint = before.rig.targets[0].joint;
+        let size = before.rig.reach().max(1.0);
         let mut after = before.clone();
         after.set_target_space(joint, TargetSpace::Joint(wheel), 0.0);
         after.set_pole_space(joint, TargetSpace::Joint(wheel), 0.0);
-        assert_eq!(after.skeleton_rig.targets[0].space, TargetSpace::Joint(wheel));
+        assert_eq!(after.rig.targets[0].space, TargetSpace::Joint(wheel));
         let mut back = after.clone();
         back.set_target_space(joint, TargetSpace::World, 0.0);
         back.set_pole_space(joint, TargetSpace::World, 0.0);
@@ -231,16 +231,16 @@ fn deleting_a_joint_leaves_the_targets_that_were_on_it_where_they_are() {
     let mut random = Random(163);
     for _ in 0..20 {
         let (mut before, wheel) = keyed(&mut random);
-        let joint = before.skeleton_rig.targets[0].joint;
+        let joint = before.rig.targets[0].joint;
         before.set_target_space(joint, TargetSpace::Joint(wheel), 0.0);
         before.set_pole_space(joint, TargetSpace::Joint(wheel), 0.0);
         let mut deleted = before.clone();
         deleted.delete(&[wheel]).expect("a joint");
         let mut dissolved = before.clone();
         dissolved.dissolve(&[wheel]).expect("a joint");
-        let size = before.skeleton_rig.reach().max(1.0);
+        let size = before.rig.reach().max(1.0);
         for document in [deleted, dissolved] {
-            assert_eq!(document.skeleton_rig.targets[0].space, TargetSpace::World);
+            assert_eq!(document.rig.targets[0].space, TargetSpace::World);
             for time in [0.0, 0.4, 1.0, 2.5] {
                 let ((place, _, pole), (place_after, _, pole_after)) =
                     (in_world(&before, time), in_world(&document, time));
@@ -257,8 +257,8 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
     for _ in 0..30 {
         let (mut document, _) = keyed(&mut random);
         // Along a track, a pose depends on those before it, too.
-        document.skeleton_rig.is_tracked = false;
-        let joint = document.skeleton_rig.targets[0].joint;
+        document.rig.is_tracked = false;
+        let joint = document.rig.targets[0].joint;
         for time in [0.0, 1.0, 2.0] {
             let influence = Vec3::X * random.within(0.0..1.0);
             document.keys.insert(Channel::TargetInfluence(joint), time, influence);
@@ -267,7 +267,7 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
         }
         for time in [0.0, 0.7, 1.0, 3.0] {
             let value = |channel| document.keys.value(channel, time).expect("keys");
-            let mut rig = document.at(time).into_document().skeleton_rig;
+            let mut rig = document.at(time).into_document().rig;
             let target = &mut rig.targets[0];
             target.home = value(Channel::Target(joint));
             target.influence = value(Channel::TargetInfluence(joint)).x;

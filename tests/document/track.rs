@@ -3,8 +3,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Channel, Document, Posed, RigKind, SkeletonRig, Target, TargetMotion, TargetPath, Timeline,
-    Track,
+    Channel, Document, Posed, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, Track,
 };
 use ik_arm::io;
 use ik_arm::kinematics::chain_ik::{Method, Root};
@@ -66,8 +65,7 @@ fn random_document(random: &mut Random) -> Document {
     let frame_rate: f64 = random.one_of(&[0.01, 23.976, 29.97, 30.0, 60.0, 1000.0]);
     let start = f64::from(random.within(-5.0..5.0));
     let timeline = Timeline { start, end: start + 40.0 / frame_rate.max(20.0), frame_rate };
-    let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+    let mut document = Document { timeline, ..Document::new(rig) };
     let channels: Vec<Channel> = tips
         .iter()
         .map(|tip| Channel::Target(*tip))
@@ -145,11 +143,11 @@ fn a_track_of_an_edited_document_is_that_of_a_new_one() {
         let track = Track::new(&document);
         let before: Vec<_> = times.iter().map(|time| bits(&track, *time)).collect();
         let mut edited = document.clone();
-        let tip = edited.skeleton_rig.targets[0].joint;
+        let tip = edited.rig.targets[0].joint;
         let time = random.one_of(&times);
         match random.below(4) {
             0 => edited.keys.insert_auto(Channel::Target(tip), time, random.vector(2.0)),
-            1 => edited.skeleton_rig.targets[0].home += Vec3::X * 0.1,
+            1 => edited.rig.targets[0].home += Vec3::X * 0.1,
             2 => edited.timeline.end += 0.5,
             _ => edited.keys.clear(Channel::Target(tip)),
         }
@@ -171,7 +169,7 @@ fn a_still_document_has_one_pose_at_all_times() {
     for case in 0..60 {
         let mut document = random_document(&mut random);
         document.keys = ik_arm::document::Keys::default();
-        for target in &mut document.skeleton_rig.targets {
+        for target in &mut document.rig.targets {
             target.motion.path = TargetPath::Still;
         }
         let track = Track::new(&document);
@@ -190,12 +188,12 @@ fn chain_session(random: &mut Random) -> (Session, JointId) {
     let tip = JointId::new(6);
     let home = rig.skeleton.tip(tip);
     rig.targets.push(Target { influence: 1.0, ..Target::new(tip, home, 0.3) });
-    let document = Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+    let document = Document::new(rig);
     (Session::with_document(Default::default(), document), tip)
 }
 
 fn drag_to(session: &mut Session, tip: JointId, point: Vec3) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let target = rig.targets[rig.target(tip).expect("a target")];
     session.apply(TargetEdit::SetTarget(Target { home: point, ..target }));
 }
@@ -211,7 +209,7 @@ fn dragging_continues_from_the_shown_pose_and_saving_keeps_it() {
     let mut ratios = Vec::new();
     for case in 0..20 {
         let (mut session, tip) = chain_session(&mut random);
-        let home = session.skeleton_rig().targets[0].home;
+        let home = session.rig().targets[0].home;
         let side = home.normalize().any_orthonormal_vector();
         let before = (session.document().clone(), pose(&session));
         session.apply(TransactionAction::Begin);
@@ -248,7 +246,7 @@ fn the_first_key_moves_nothing() {
     let mut random = Random(1209);
     for _ in 0..20 {
         let (mut session, tip) = chain_session(&mut random);
-        let home = session.skeleton_rig().targets[0].home;
+        let home = session.rig().targets[0].home;
         drag_to(&mut session, tip, home * 0.7);
         let before = session.skeleton_pose().clone();
         session.apply(KeysEdit::Key(vec![Channel::Target(tip)]));
@@ -273,8 +271,7 @@ fn a_closed_loop_comes_back_to_its_first_pose() {
         rig.targets.push(Target { influence: 1.0, motion, ..Target::new(tip, home, 0.3) });
         let length = rig.length_to(tip);
         let timeline = Timeline { start: 0.0, end: 8.0, frame_rate: 30.0 };
-        let document =
-            Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+        let document = Document { timeline, ..Document::new(rig) };
         let track = Track::new(&document);
         let [first, again] = [0.0, 4.0].map(|time| track.at(time).skeleton().pose());
         let moved = first.points().zip(again.points()).map(|(one, other)| one.distance(other));
@@ -290,7 +287,7 @@ fn an_unkeyed_edit_is_shown_as_if_it_were_keyed() {
     let mut random = Random(1204);
     for case in 0..20 {
         let (mut session, tip) = chain_session(&mut random);
-        let home = session.skeleton_rig().targets[0].home;
+        let home = session.rig().targets[0].home;
         for (time, moved) in [(0.0, Vec3::ZERO), (2.0, Vec3::X), (4.0, Vec3::Z)] {
             session.apply(PlaybackAction::SetTime(time));
             drag_to(&mut session, tip, home + moved * 0.7);
@@ -338,14 +335,14 @@ fn limb(is_hinge: bool, reference: TwistReferenceKind) -> Document {
     let home = Vec3::new(0.3, 1.5, 0.2);
     rig.targets.push(Target { influence: 1.0, kind, ..Target::new(lower, home, 0.3) });
     let timeline = Timeline { start: 0.0, end: 4.0, frame_rate: 60.0 };
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() }
+    Document { timeline, ..Document::new(rig) }
 }
 
 #[test]
 fn a_knee_whose_fk_pose_swings_through_straight_does_not_jump() {
     for is_hinge in [true, false] {
         let mut document = limb(is_hinge, TwistReferenceKind::Fk);
-        let lower = document.skeleton_rig.targets[0].joint;
+        let lower = document.rig.targets[0].joint;
         for (time, degrees) in [(0.0, 3.0_f32), (2.0, -3.0), (4.0, 3.0)] {
             document.keys.insert_auto(
                 Channel::Rotation(lower),
@@ -355,7 +352,7 @@ fn a_knee_whose_fk_pose_swings_through_straight_does_not_jump() {
         }
         let step = largest_step(&document);
         assert!(step < 0.03, "hinge {is_hinge}: a step of {step}");
-        document.skeleton_rig.is_tracked = false;
+        document.rig.is_tracked = false;
         assert!(largest_step(&document) > 0.3, "by itself, each frame has its own side");
     }
 }
@@ -375,10 +372,9 @@ fn influences_that_begin_do_not_jump() {
             rig.targets.push(Target { influence, ..Target::new(tip, home, 0.3) });
         }
         let timeline = Timeline { start: 0.0, end: 4.0, frame_rate: 60.0 };
-        let mut document =
-            Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+        let mut document = Document { timeline, ..Document::new(rig) };
         let tracked = Track::new(&document).at(0.0).skeleton().pose();
-        document.skeleton_rig.targets[1].influence = 1e-4;
+        document.rig.targets[1].influence = 1e-4;
         let begun = Track::new(&document).at(0.0).skeleton().pose();
         let apart = tracked.points().zip(begun.points()).map(|(one, two)| one.distance(two));
         assert!(apart.fold(0.0, f32::max) < 5e-3, "{case}: an influence of 1e-4 moves joints");
@@ -393,7 +389,7 @@ fn influences_that_begin_do_not_jump() {
 #[test]
 fn transport_carries_the_elbow_of_a_limb_through_every_direction() {
     let mut document = limb(true, TwistReferenceKind::Transport);
-    let lower = document.skeleton_rig.targets[0].joint;
+    let lower = document.rig.targets[0].joint;
     // Up over the shoulder and around: through the directions in which the other references flip.
     for (step, point) in
         [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y, Vec3::X].into_iter().enumerate()
@@ -403,7 +399,7 @@ fn transport_carries_the_elbow_of_a_limb_through_every_direction() {
     let carried = largest_step(&document);
     assert!(carried < 0.1, "a step of {carried}");
     let settings = LimbSettings { reference: TwistReferenceKind::Up, ..LimbSettings::default() };
-    document.skeleton_rig.targets[0].kind = TargetKind::Limb(settings);
+    document.rig.targets[0].kind = TargetKind::Limb(settings);
     assert!(largest_step(&document) > 3.0 * carried, "the other references flip there");
 }
 
@@ -411,7 +407,7 @@ fn transport_carries_the_elbow_of_a_limb_through_every_direction() {
 fn a_joint_edit_takes_the_posture_along() {
     let mut random = Random(1206);
     let (mut session, tip) = chain_session(&mut random);
-    let home = session.skeleton_rig().targets[0].home;
+    let home = session.rig().targets[0].home;
     session.apply(TransactionAction::Begin);
     (1..=40).for_each(|step| drag_to(&mut session, tip, home * (1.0 - 0.01 * step as f32)));
     session.apply(TransactionAction::Commit);
@@ -423,7 +419,7 @@ fn a_joint_edit_takes_the_posture_along() {
     let moved = moved.map(|(now, before)| now.distance(before)).fold(0.0, f32::max);
     assert!(moved < 0.2, "moved by {moved}");
     let error = session.posed().targets()[0].error;
-    assert!(error <= session.skeleton_rig().tolerance(), "off by {error}");
+    assert!(error <= session.rig().tolerance(), "off by {error}");
 }
 
 /// A chain of 60 bones whose tip goes around for a minute.
@@ -434,7 +430,7 @@ fn long_motion() -> Document {
     let motion = TargetMotion { path: TargetPath::Circle, radius: 6.0, period: 4.0 };
     rig.targets.push(Target { influence: 1.0, motion, ..Target::new(tip, home, 0.3) });
     let timeline = Timeline { start: 0.0, end: 60.0, frame_rate: 30.0 };
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() }
+    Document { timeline, ..Document::new(rig) }
 }
 
 #[test]
@@ -451,7 +447,7 @@ fn a_motion_that_takes_long_is_shown_provisionally_until_a_thread_has_computed_i
     assert_eq!(bits_of(session.posed()), known);
 
     // An edit shows one step from the motion before it, and then its own.
-    let target = session.skeleton_rig().targets[0];
+    let target = session.rig().targets[0];
     session.apply(TargetEdit::SetTarget(Target { home: target.home + Vec3::X * 0.1, ..target }));
     assert!(session.posed().is_provisional());
     let report = &session.posed().targets()[0];
@@ -467,15 +463,14 @@ fn softness_keeps_a_chain_from_snapping_straight() {
     let (home, length) = (rig.skeleton.tip(tip), rig.length_to(tip));
     rig.targets.push(Target { influence: 1.0, ..Target::new(tip, home, 0.3) });
     let timeline = Timeline { start: 0.0, end: 2.0, frame_rate: 60.0 };
-    let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, timeline, ..Document::default() };
+    let mut document = Document { timeline, ..Document::new(rig) };
     let far = home.normalize() * length * 1.3;
     for (time, point) in [(0.0, home * 0.8), (2.0, far)] {
         let key = Knot { interpolation: Interpolation::Linear, ..Knot::new(time, point) };
         document.keys.insert_key(Channel::Target(tip), key);
     }
     let hard = largest_step(&document);
-    document.skeleton_rig.targets[0].softness = 0.4;
+    document.rig.targets[0].softness = 0.4;
     let soft = largest_step(&document);
     assert!(soft < 0.6 * hard, "{soft} instead of {hard}");
     let pose = Track::new(&document).at(2.0).skeleton().pose();

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, EulerRot, Vec3};
-use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Target};
+use ik_arm::document::{Channel, Document, SkeletonRig, Target};
 use ik_arm::io::{self, OpenOptions, Opened, Upwards};
 use ik_arm::kinematics::skeleton::SkeletonPose;
 use ik_arm::kinematics::twist::TwistReferenceKind;
@@ -202,7 +202,7 @@ fn rotation(angles: Vec3) -> DMat3 {
 /// the same way, since gravity and the elbow's rules know which way is up.
 fn rig(random: &mut Random) -> Document {
     let (skeleton, tips) = skeletons::tree(random, 3, 1.0);
-    let mut skeleton_rig = SkeletonRig::new(skeleton);
+    let mut rig = SkeletonRig::new(skeleton);
     let limb = LimbSettings {
         reference: TwistReferenceKind::Pole,
         pole: Some(random.vector(3.0)),
@@ -210,8 +210,8 @@ fn rig(random: &mut Random) -> Document {
         ..LimbSettings::default()
     };
     let target = Target::new(tips[0], random.vector(3.0), 1.0);
-    skeleton_rig.targets.push(Target { kind: TargetKind::Limb(limb), influence: 0.0, ..target });
-    let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+    rig.targets.push(Target { kind: TargetKind::Limb(limb), influence: 0.0, ..target });
+    let mut document = Document::new(rig);
     for time in 0..4 {
         let time = f64::from(time);
         document.keys.insert(Channel::Translation, time, random.vector(5.0));
@@ -233,8 +233,7 @@ fn everything_in_the_world_turns_with_the_skeleton() {
         // Between the keys, too, except for angles, which are interpolated one by one.
         for step in 0..=30 {
             let time = f64::from(step) * 0.1;
-            let evaluated =
-                [&before, &after].map(|document| document.at(time).into_document().skeleton_rig);
+            let evaluated = [&before, &after].map(|document| document.at(time).into_document().rig);
             let [points, turned] = evaluated.clone().map(|rig| {
                 let target = rig.targets[0];
                 let pole = target.limb().and_then(LimbSettings::pole).expect("a pole").1;

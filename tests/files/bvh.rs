@@ -1,10 +1,12 @@
 //! BVH: exported joints are where the document has them, and imported joints where the file has
 //! them.
 
+use crate::common::arm::{ArmPosed, LOWER, UPPER, channels};
+use ik_arm::rig::LimbPart;
 use std::collections::HashMap;
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
-use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 
@@ -34,8 +36,8 @@ fn refusal(text: &str) -> String {
 }
 
 fn shown(skeleton: Skeleton) -> Document {
-    let skeleton_rig = SkeletonRig::new(skeleton);
-    Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() }
+    let rig = SkeletonRig::new(skeleton);
+    Document::new(rig)
 }
 
 /// Positions of bases at a time, and of the tips of leaves.
@@ -126,9 +128,6 @@ fn the_keyed_offset_of_a_single_root_round_trips() {
 fn every_example_skeleton_round_trips() {
     for example in Example::ALL {
         let document = example.open().expect("it opens").document;
-        if document.rig == RigKind::Arm {
-            continue;
-        }
         let exported = export(&document);
         assert_eq!(exported.notes, Vec::<String>::new(), "{}", example.name);
         assert_same(&document, &exported, 100.0 * document.metres_per_unit());
@@ -141,22 +140,21 @@ fn the_arm_round_trips() {
     let mut document = Document::default();
     document.timeline.end = 1.0;
     for time in [0.0, 0.3, 0.7, 1.0] {
-        document.keys.insert(Channel::Hand, time, random.vector(600.0));
-        document.keys.insert(Channel::Twist, time, random.vector(5.0).with_y(0.0).with_z(0.0));
-        document.keys.insert(Channel::Root, time, random.vector(100.0));
+        document.keys.insert(channels::HAND, time, random.vector(600.0));
+        document.keys.insert(channels::TWIST, time, random.vector(5.0).with_y(0.0).with_z(0.0));
+        document.keys.insert(channels::ROOT_OFFSET, time, random.vector(100.0));
     }
     let exported = export(&document);
     assert_eq!(exported.notes, Vec::<String>::new());
     let read = open(text(&exported)).document;
     for frame in 0..31 {
         let time = f64::from(frame) / 30.0;
-        let arm = document.at(time).into_document().arm;
-        let pose = arm.pose();
+        let arm = document.at(time).arm_frames();
         let found = points(&read, time);
-        for (name, point) in
-            [("upper", Vec3::ZERO), ("lower", pose.elbow), ("lower_tip", pose.hand)]
+        for (name, part) in
+            [("upper", LimbPart::Root), ("lower", LimbPart::Elbow), ("hand", LimbPart::Hand)]
         {
-            let expected = (arm.root + point) * 0.1;
+            let expected = arm.origin(part) * 0.1;
             assert!(found[name].distance(expected) < 1e-3, "{name} {} {expected}", found[name]);
         }
     }
@@ -258,7 +256,6 @@ fn the_frame_rate_can_be_chosen_and_a_still_document_has_one_frame() {
         let said = text(&exported).lines().find_map(|line| line.strip_prefix("Frames: "));
         said.and_then(|said| said.parse::<usize>().ok()).expect("a number")
     };
-    document.keys.insert(Channel::Hand, 0.0, Vec3::X);
     assert_eq!(frames(&document, None), 1);
     document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::X);
     assert_eq!((frames(&document, None), frames(&document, Some(7.0))), (241, 57));
@@ -324,7 +321,7 @@ fn every_joint_whose_offset_moves_has_position_channels_and_walks_on() {
 fn an_offset_that_moves_by_less_than_a_hundred_thousandth_of_the_reach_is_constant() {
     for (part, channels) in [(0.5e-5, 1), (2e-5, 2)] {
         let mut document = shown(skeletons::chain(&mut Random(9), 3, 1.0));
-        let reach = document.skeleton_rig.reach();
+        let reach = document.rig.reach();
         let offset = document.skeleton().joints()[2].offset;
         let moved = offset + Vec3::X * part * reach;
         document.keys.insert(Channel::Offset(JointId::new(2)), 0.0, offset);
@@ -354,21 +351,24 @@ fn roots_that_move_keep_moving_below_the_added_root() {
 }
 
 #[test]
-fn a_changing_upper_limb_is_written_and_a_changing_lower_limb_is_noted() {
-    let exported = |channel| {
-        let mut arm = Document::default();
-        for (time, length) in [(0.0, 200.0), (1.0, 250.0)] {
-            arm.keys.insert(channel, time, Vec3::new(length, 0.0, 0.0));
+fn bones_of_an_arm_that_change_are_written_and_a_last_bone_that_changes_is_noted() {
+    let keyed = |mut document: Document, joint, lengths: [f32; 2]| {
+        for (time, length) in lengths.into_iter().enumerate() {
+            document.keys.insert(Channel::Length(joint), time as f64, Vec3::X * length);
         }
-        export(&arm)
+        export(&document)
     };
-    let upper = exported(Channel::Upper);
-    assert_eq!(upper.notes, Vec::<String>::new());
-    assert_eq!(text(&upper).matches("CHANNELS 6").count(), 2);
-    let lower = exported(Channel::Lower);
-    let [note] = &lower.notes[..] else { panic!("one note: {:?}", lower.notes) };
-    assert!(note.starts_with("the last bone of \"lower\" changes in time"), "{note}");
-    assert!(text(&lower).contains("OFFSET 20 0 0"));
+    for (joint, lengths) in [(UPPER, [200.0, 250.0]), (LOWER, [300.0, 250.0])] {
+        let written = keyed(Document::default(), joint, lengths);
+        assert_eq!(written.notes, Vec::<String>::new());
+        assert_eq!(text(&written).matches("CHANNELS 6").count(), 2, "the root and the bone's end");
+    }
+    let chain = shown(skeletons::chain(&mut Random(6), 2, 1.0));
+    let (last, joint) = chain.skeleton().iter().last().expect("joints");
+    let (name, length) = (joint.name.clone(), joint.axis.length());
+    let noted = keyed(chain, last, [length, 2.0 * length]);
+    let [note] = &noted.notes[..] else { panic!("one note: {:?}", noted.notes) };
+    assert!(note.starts_with(&format!("the last bone of \"{name}\" changes in time")), "{note}");
 }
 
 #[test]
@@ -460,7 +460,7 @@ fn a_small_file_is_read_as_written() {
     let keyed: Vec<_> = document.keys.tracks().map(|(channel, _)| channel).collect();
     assert_eq!(keyed, [Channel::Rotation(JointId::new(0))]);
     assert_eq!(document.timeline, Timeline { start: 0.0, end: 0.04, frame_rate: 25.0 });
-    assert_eq!((document.rig, document.metres_per_unit), (RigKind::Skeleton, Some(0.01)));
+    assert_eq!(document.metres_per_unit, Some(0.01));
     assert_eq!(document.camera, document.framing_camera());
     assert_eq!(
         (warnings, order, skeletons),

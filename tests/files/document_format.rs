@@ -1,9 +1,10 @@
 //! The program's own files: round trips, and errors with their positions.
 
+use crate::common::arm::{Arm, ArmDocument, Cursor};
 use std::fs;
 
 use glam::Vec3;
-use ik_arm::document::{Arm, Camera, Channel, Cursor, Document, Overlay, RigKind, Timeline};
+use ik_arm::document::{Camera, Channel, Document, Overlay, Timeline};
 use ik_arm::io::{self, Example, ExampleGroup, Opened};
 use ik_arm::kinematics::chain_ik::{Root, SolverOptions};
 use ik_arm::kinematics::skeleton::{Joint, JointId};
@@ -19,7 +20,7 @@ fn open(text: &str) -> Opened {
 }
 
 fn with(fields: &str) -> String {
-    format!("{{\"format\":\"ik-arm\",\"version\":3,\"rig\":\"skeleton\",\n{fields}}}")
+    format!("{{\"format\":\"ik-arm\",\"version\":3,\n{fields}}}")
 }
 
 fn refusal(text: &str) -> String {
@@ -45,15 +46,15 @@ fn every_document_is_read_again_bit_for_bit() {
 #[test]
 fn a_minus_zero_keeps_its_sign() {
     let mut document = Document::default();
-    document.arm.cursor = Cursor::unpinned(Vec3::new(-0.0, 1.0, 0.0));
+    document.edit_arm(|arm| arm.cursor = Cursor::unpinned(Vec3::new(-0.0, 1.0, 0.0)));
     document
         .skeleton_mut()
         .change(JointId::new(0), |root| root.rotation.y = -0.0)
         .expect("possible");
     let opened = open(&io::to_json(&document).expect("written")).document;
     assert!(
-        opened.arm.cursor_in_root().x.is_sign_negative()
-            && opened.arm.cursor_in_root().z.is_sign_positive()
+        opened.arm().cursor_in_root().x.is_sign_negative()
+            && opened.arm().cursor_in_root().z.is_sign_positive()
     );
     assert!(opened.skeleton().joints()[0].rotation.y.is_sign_negative());
 }
@@ -72,9 +73,9 @@ fn a_document_with_a_number_that_is_not_finite_is_not_written() {
 fn a_file_is_formatted_for_human_readers() {
     let json = io::to_json(&Document::default()).expect("written");
     assert!(
-        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 3,\n  \"rig\": \"arm\",\n")
+        json.starts_with("{\n  \"format\": \"ik-arm\",\n  \"version\": 3,\n  \"skeleton\": {\n")
     );
-    assert!(json.contains("\n    \"cursor\": [250.0, 120.0, 60.0],\n"), "{json}");
+    assert!(json.contains("\n    \"home\": [250.0, 120.0, 60.0],\n"), "{json}");
     assert!(json.contains("\n    \"joints\": [{\n      \"name\": \"root\",\n"), "{json}");
     assert!(json.ends_with("]\n}\n"));
 }
@@ -93,7 +94,7 @@ fn joints_need_only_a_name_and_sit_on_their_parents_tips() {
         r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]},{"name":"b","parent":0,"axis":[0,2,0]},
            {"name":"c","parent":1},{"name":"d","parent":0,"offset":[0,0,0]}]}"#,
     ));
-    let rig = &opened.document.skeleton_rig;
+    let rig = &opened.document.rig;
     let base = |joint| rig.skeleton.base(joint);
     assert_eq!(
         [
@@ -188,9 +189,12 @@ fn a_file_that_is_no_document_is_refused_with_the_reason() {
             "line 1, column 30: version: invalid type: string \"1\", expected a whole number from 0 to \
              4294967295",
         ),
-        ("{\"format\":\"ik-arm\",\"version\":3}", "line 1, column 1: missing field `rig`"),
         (
-            "{\"format\":\"ik-arm\",\"version\":3,\"rig\":\"leg\"}",
+            "{\"format\":\"ik-arm\",\"version\":2}",
+            "line 1, column 1: must have `rig`, \"arm\" or \"skeleton\"",
+        ),
+        (
+            "{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"leg\"}",
             "line 1, column 38: rig: unknown variant `leg`, expected `arm` or `skeleton`",
         ),
     ] {
@@ -255,13 +259,53 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
             "\"overlays\":[\"cursor\",\"elbow\"]",
             "line 2, column 22: overlays[1]: unknown variant `elbow`, expected one of `cursor`, \
              `pointer`, `inner_limit`, `outer_limit`, `elbow_circle`, `grid_xy`, `grid_xz`, \
-             `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `onion_skins`, `singularity_globe`, \
-             `twist_references`, `hand`, `frames`, `fk_pose`, `by_itself`, `skin`, `bones`, `wireframe`, \
-             `skin_weights`, `compare_skinning`",
+             `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `paths`, `onion_skins`, \
+             `singularity_globe`, `twist_references`, `cylinders`, `hand`, `frames`, `fk_pose`, \
+             `by_itself`, `skin`, `bones`, `wireframe`, `skin_weights`, `compare_skinning`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {
         assert_eq!(refusal(&with(fields)), format!("test.json, {expected}"), "{fields}");
+    }
+}
+
+#[test]
+fn an_invalid_value_of_a_former_arm_is_named_with_the_rule() {
+    for (fields, expected) in [
+        (
+            "\"arm\":{\"lower\":-3}".to_owned(),
+            "line 2, column 16: arm.lower: must be finite and above 0, got -3",
+        ),
+        (
+            "\"arm\":{\"facing\":{\"direction\":[1,0,0],\"heading\":[0,1]}}".to_owned(),
+            "line 2, column 48: arm.facing.heading: must be `direction` as seen from above, got \
+             [0, 1]",
+        ),
+        (
+            "\"arm\":{\"twist_reference\":{\"transported\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
+                .to_owned(),
+            "line 2, column 72: arm.twist_reference.transported.outward: must be perpendicular to \
+             `direction`, got [1, 0, 0]",
+        ),
+        (
+            "\"arm\":{\"soft_reach\":{\"softness\":1}}".to_owned(),
+            "line 2, column 33: arm.soft_reach.softness: must be from 0 to less than 1, got 1",
+        ),
+        (
+            "\"arm\":{\"influence\":1.5}".to_owned(),
+            "line 2, column 20: arm.influence: must be from 0 to 1, got 1.5",
+        ),
+        (
+            "\"arm\":{\"fk\":{\"stretch\":0}}".to_owned(),
+            "line 2, column 24: arm.fk.stretch: must be above 0, got 0",
+        ),
+        (
+            "\"arm\":{\"facing\":{\"direction\":[2,0,0],\"heading\":[1,0]}}".to_owned(),
+            "line 2, column 30: arm.facing.direction: must have length 1, got 2",
+        ),
+    ] {
+        let text = with(&fields).replace("\"version\":3", "\"version\":2,\"rig\":\"arm\"");
+        assert_eq!(refusal(&text), format!("test.json, {expected}"), "{fields}");
     }
 }
 
@@ -315,37 +359,6 @@ fn an_invalid_value_is_named_with_the_rule() {
         (
             aimed("{\"joint\":0,\"home\":[0,0,0],\"motion\":{\"path\":\"circle\",\"period\":-1}}"),
             "line 4, column 73: targets[0].motion.period: must be above 0, got -1",
-        ),
-        (
-            "\"arm\":{\"lower\":-3}".to_owned(),
-            "line 2, column 16: arm.lower: must be finite and above 0, got -3",
-        ),
-        (
-            "\"arm\":{\"facing\":{\"direction\":[1,0,0],\"heading\":[0,1]}}".to_owned(),
-            "line 2, column 48: arm.facing.heading: must be `direction` as seen from above, got \
-             [0, 1]",
-        ),
-        (
-            "\"arm\":{\"twist_reference\":{\"transported\":{\"direction\":[1,0,0],\"outward\":[1,0,0]}}}"
-                .to_owned(),
-            "line 2, column 72: arm.twist_reference.transported.outward: must be perpendicular to \
-             `direction`, got [1, 0, 0]",
-        ),
-        (
-            "\"arm\":{\"soft_reach\":{\"softness\":1}}".to_owned(),
-            "line 2, column 33: arm.soft_reach.softness: must be from 0 to less than 1, got 1",
-        ),
-        (
-            "\"arm\":{\"influence\":1.5}".to_owned(),
-            "line 2, column 20: arm.influence: must be from 0 to 1, got 1.5",
-        ),
-        (
-            "\"arm\":{\"fk\":{\"stretch\":0}}".to_owned(),
-            "line 2, column 24: arm.fk.stretch: must be above 0, got 0",
-        ),
-        (
-            "\"arm\":{\"facing\":{\"direction\":[2,0,0],\"heading\":[1,0]}}".to_owned(),
-            "line 2, column 30: arm.facing.direction: must have length 1, got 2",
         ),
         (
             "\"solver\":{\"method\":\"newton\"}".to_owned(),
@@ -537,10 +550,10 @@ fn every_example_opens_without_a_warning_and_is_saved_unchanged() {
 
 #[test]
 fn the_examples_hold_what_their_names_say() {
-    let rig = |name| example(name).skeleton_rig;
+    let rig = |name| example(name).rig;
     let count = |name| (rig(name).skeleton.joints().len(), rig(name).targets.len());
     let arm = example("arm");
-    assert_eq!((arm.rig, arm), (RigKind::Arm, Document::default()));
+    assert_eq!(arm, Document::default());
     assert_eq!(count("two-targets"), (9, 2));
     assert_eq!(count("human"), (19, 4));
     assert_eq!(count("snake"), (24, 0));
@@ -555,7 +568,7 @@ fn the_examples_hold_what_their_names_say() {
 
 #[test]
 fn the_human_stands_on_the_ground_within_its_limits() {
-    let human = example("human").skeleton_rig;
+    let human = example("human").rig;
     let joints = human.skeleton.joints();
     assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
     assert!(joints.iter().filter(|joint| joint.limits.is_limited()).count() >= 12);
@@ -567,7 +580,7 @@ fn the_human_stands_on_the_ground_within_its_limits() {
 
 #[test]
 fn the_snake_lies_in_an_s() {
-    let snake = example("snake").skeleton_rig;
+    let snake = example("snake").rig;
     let posed = snake.skeleton_at(0.0).pose();
     let turn = |index: usize| {
         let (joint, next) = (JointId::new(index), JointId::new(index + 1));
@@ -584,44 +597,58 @@ fn the_snake_lies_in_an_s() {
 // The arm
 
 #[test]
-fn a_pin_is_in_use_unless_the_file_says_that_the_hand_is_not_pinned() {
-    let (cursor, pin) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
-    let default = Arm::default().cursor.in_root;
+fn a_target_is_at_its_pin_if_the_file_says_so() {
+    let (home, pin) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
     for (fields, expected) in [
-        ("", (default, default, false)),
-        (r#""cursor":[1,2,3]"#, (cursor, default, false)),
-        (r#""pin":[4,5,6]"#, (default, pin, true)),
-        (r#""cursor":[1,2,3],"pin":[4,5,6]"#, (cursor, pin, true)),
-        (r#""cursor":[1,2,3],"pin":[4,5,6],"pinned":false"#, (cursor, pin, false)),
-        (r#""cursor":[1,2,3],"pinned":true"#, (cursor, default, true)),
+        ("", (home, false)),
+        (r#","pin":[4,5,6]"#, (pin, false)),
+        (r#","pin":[4,5,6],"pinned":true"#, (pin, true)),
+        (r#","pin":[4,5,6],"pinned":false"#, (pin, false)),
+        (r#","pinned":true"#, (home, true)),
     ] {
-        let arm = open(&with(&format!(r#""arm":{{"root":[7,8,9],{fields}}}"#).replace(",}", "}")));
-        let (in_root, in_world, is_pinned) = expected;
-        assert_eq!(arm.document.arm.cursor, Cursor { in_root, in_world, is_pinned }, "{fields}");
-        assert_eq!(arm.warnings, []);
+        let opened = open(&with(&format!(
+            r#""skeleton":{{"joints":[{{"name":"a","axis":[0,1,0]}}]}},
+               "targets":[{{"joint":0,"home":[1,2,3]{fields}}}]"#
+        )));
+        let target = &opened.document.rig.targets[0];
+        let (at, is_pinned) = expected;
+        assert_eq!((target.home, target.pin, target.is_pinned), (home, at, is_pinned), "{fields}");
+        assert_eq!(opened.warnings, []);
     }
 }
 
 #[test]
-fn a_file_has_the_points_and_the_switch_of_the_pin_only_where_they_are_needed() {
+fn a_file_has_the_pin_of_a_target_only_where_it_is_needed() {
     let point = Vec3::new(4.0, 5.0, 6.0);
     let default = Arm::default().cursor;
     for (cursor, expected) in [
-        (Cursor::unpinned(default.in_root), ["cursor"].as_slice()),
-        (Cursor { is_pinned: true, in_world: point, ..default }, &["pin"]),
-        (Cursor { is_pinned: true, ..Cursor::unpinned(point) }, &["cursor", "pin"]),
-        (Cursor::unpinned(point), &["cursor", "pin", "pinned"]),
+        (Cursor::unpinned(default.in_root), [].as_slice()),
+        (Cursor { is_pinned: true, in_world: point, ..default }, &["pin", "pinned"]),
+        (Cursor { in_world: point, ..default }, &["pin"]),
     ] {
         let arm = Arm { cursor, ..Arm::default() };
-        let json = io::to_json(&Document { arm, ..Document::default() }).expect("written");
+        let json = io::to_json(&arm.document()).expect("written");
         let file: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-        let fields = ["cursor", "pin", "pinned"].into_iter();
-        let found: Vec<_> = fields.filter(|field| file["arm"].get(field).is_some()).collect();
+        let fields = ["pin", "pinned"].into_iter();
+        let found: Vec<_> =
+            fields.filter(|field| file["targets"][0].get(field).is_some()).collect();
         assert_eq!(found, expected);
     }
 }
 
 // Keys
+
+/// Target and twist of the joint of [`of_one_bone`].
+const HAND: Channel = Channel::Target(JointId::new(0));
+const TWIST: Channel = Channel::TargetTwist(JointId::new(0));
+
+/// A document of a joint with a limb target.
+fn of_one_bone(fields: &str) -> String {
+    with(&format!(
+        r#""skeleton":{{"joints":[{{"name":"a","axis":[0,1,0]}}]}},
+           "targets":[{{"joint":0,"home":[0,1,0],"limb":{{}}}}],{fields}"#
+    ))
+}
 
 #[test]
 fn frame_rates_need_not_be_whole_and_are_kept_exactly() {
@@ -631,7 +658,7 @@ fn frame_rates_need_not_be_whole_and_are_kept_exactly() {
         let mut document = Document::default();
         document.timeline = Timeline { frame_rate: rate, end: 9.0, ..document.timeline };
         let text = io::to_json(&document).expect("written");
-        assert!(text.contains(said) && !text.contains("30.0"), "{text}");
+        assert!(text.contains(said) && !text.contains("rate\": 30.0"), "{text}");
         assert_eq!(open(&text).document.timeline.frame_rate, rate);
     }
 }
@@ -639,47 +666,48 @@ fn frame_rates_need_not_be_whole_and_are_kept_exactly() {
 #[test]
 fn a_key_has_one_number_or_three_and_an_absent_channel_has_no_keys() {
     let opened = open(&with(
-        r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"targets":[{"joint":0,"home":[0,1,0]}],
-           "channels":[{"channel":"hand","keys":[[0,1,2,3],[1.5,4,5,6]]},
-                   {"channel":"twist","keys":[[0.1,7]]},
+        r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},
+           "targets":[{"joint":0,"home":[0,1,0],"limb":{}}],
+           "channels":[{"channel":"target","joint":0,"keys":[[0,1,2,3],[1.5,4,5,6]]},
+                   {"channel":"target_twist","joint":0,"keys":[[0.1,7]]},
                    {"channel":"rotation","joint":0,"keys":[[2,0,0,1],[1,0,0,3]]},
                    {"channel":"enabled","joint":0,"keys":[[1,0]]},
                    {"channel":"overlay","overlay":"cursor","keys":[[1,1]]},
-                   {"channel":"root","keys":[]}],
+                   {"channel":"offset","joint":0,"keys":[]}],
            "timeline":{"start":1,"frame_rate":24},"metres_per_unit":0.01"#,
     ));
     assert_eq!(opened.warnings, []);
     let document = opened.document;
     let keys = &document.keys;
     let value = |channel, time| keys.value(channel, time).expect("keyed").to_array();
-    assert_eq!(value(Channel::Hand, 1.5), [4.0, 5.0, 6.0]);
-    assert_eq!(value(Channel::Twist, 9.0), [7.0, 0.0, 0.0]);
+    assert_eq!(value(HAND, 1.5), [4.0, 5.0, 6.0]);
+    assert_eq!(value(TWIST, 9.0), [7.0, 0.0, 0.0]);
     assert_eq!(value(Channel::Rotation(JointId::new(0)), 1.5), [0.0, 0.0, 2.0]);
     assert_eq!(value(Channel::Enabled(JointId::new(0)), 1.5), [0.0; 3]);
     assert_eq!(value(Channel::Overlay(Overlay::Cursor), 0.0), [1.0, 0.0, 0.0]);
-    assert!(!keys.has(Channel::Root));
+    assert!(!keys.has(Channel::Offset(JointId::new(0))));
     assert_eq!(document.timeline, Timeline { start: 1.0, end: 9.0, frame_rate: 24.0 });
     assert_eq!((document.metres_per_unit, document.metres_per_unit()), (Some(0.01), 0.01));
 }
 
 #[test]
 fn a_key_with_a_curve_of_its_own_is_an_object_and_is_saved_as_one() {
-    let opened = open(&with(
-        r#""channels":[{"channel":"hand","keys":[
+    let opened = open(&of_one_bone(
+        r#""channels":[{"channel":"target","joint":0,"keys":[
                {"key":[0,1,2,3],"interpolation":"linear"},
                {"key":[1,4,5,6],"arriving":[1,0,0],"leaving":[0,2,0]},
                [2,7,8,9]]},
-             {"channel":"twist","keys":[{"key":[0,1],"interpolation":"step","leaving":[3]}]}]"#,
+             {"channel":"target_twist","joint":0,"keys":[{"key":[0,1],"interpolation":"step","leaving":[3]}]}]"#,
     ));
     assert_eq!(opened.warnings, []);
     let keys = &opened.document.keys;
     let key = |channel, time| keys.key(channel, time).expect("a key");
     let slopes = |arriving, leaving| Some(Slopes { arriving, leaving });
-    assert_eq!(key(Channel::Hand, 0.0).interpolation, Interpolation::Linear);
-    assert_eq!(key(Channel::Hand, 1.0).slopes, slopes(Vec3::X, Vec3::Y * 2.0));
-    assert_eq!(key(Channel::Hand, 2.0), Knot::new(2.0, Vec3::new(7.0, 8.0, 9.0)));
-    assert_eq!(key(Channel::Twist, 0.0).interpolation, Interpolation::Step);
-    assert_eq!(key(Channel::Twist, 0.0).slopes, slopes(Vec3::X * 3.0, Vec3::X * 3.0));
+    assert_eq!(key(HAND, 0.0).interpolation, Interpolation::Linear);
+    assert_eq!(key(HAND, 1.0).slopes, slopes(Vec3::X, Vec3::Y * 2.0));
+    assert_eq!(key(HAND, 2.0), Knot::new(2.0, Vec3::new(7.0, 8.0, 9.0)));
+    assert_eq!(key(TWIST, 0.0).interpolation, Interpolation::Step);
+    assert_eq!(key(TWIST, 0.0).slopes, slopes(Vec3::X * 3.0, Vec3::X * 3.0));
     let text = io::to_json(&opened.document).expect("it can be saved");
     let again =
         io::parse("again.json", &text, &io::OpenOptions::default()).expect("it opens").document;
@@ -689,13 +717,13 @@ fn a_key_with_a_curve_of_its_own_is_an_object_and_is_saved_as_one() {
 
 #[test]
 fn automatic_keys_keep_their_word_and_keys_without_one_are_catmull_rom() {
-    let opened = open(&with(
-        r#""channels":[{"channel":"twist","keys":[
+    let opened = open(&of_one_bone(
+        r#""channels":[{"channel":"target_twist","joint":0,"keys":[
                {"key":[0,1],"interpolation":"auto"},[1,2],{"key":[2,2],"interpolation":"smooth"}]}]"#,
     ));
     assert_eq!(opened.warnings, []);
     let kinds = |document: &Document| -> Vec<Interpolation> {
-        let track = document.keys.track(Channel::Twist).expect("keys");
+        let track = document.keys.track(TWIST).expect("keys");
         track.knots().iter().map(|knot| knot.interpolation).collect()
     };
     let (auto, smooth) = (Interpolation::Auto, Interpolation::Smooth);
@@ -708,18 +736,18 @@ fn automatic_keys_keep_their_word_and_keys_without_one_are_catmull_rom() {
 
 #[test]
 fn invalid_keys_are_named() {
-    let skeleton = r#""skeleton":{"joints":[{"name":"a"}]},"channels":"#;
+    let skeleton = r#""skeleton":{"joints":[{"name":"a","axis":[0,1,0]}]},"channels":"#;
     for (keys, reason) in [
         (
             r#"[{"channel":"foot","keys":[]}]"#,
-            "line 2, column 61: channels[0].channel: must be the name of a channel, got \"foot\"",
+            "line 2, column 76: channels[0].channel: must be the name of a channel, got \"foot\"",
         ),
         (
-            r#"[{"channel":"hand","keys":[[0,1,2]]}]"#,
+            r#"[{"channel":"offset","joint":0,"keys":[[0,1,2]]}]"#,
             "channels[0].keys[0]: must have three numbers after the time, got 2",
         ),
         (
-            r#"[{"channel":"upper","keys":[[0,1],[1,0]]}]"#,
+            r#"[{"channel":"length","joint":0,"keys":[[0,1],[1,0]]}]"#,
             "channels[0].keys[1]: length must be above 0, got 0",
         ),
         (
@@ -737,28 +765,31 @@ fn invalid_keys_are_named() {
             "channels[0].joint: must be a joint with a target, got 0",
         ),
         (
-            r#"[{"channel":"hand","keys":[[0,1,2,3]]},{"channel":"hand","keys":[[0,1,2,3]]}]"#,
+            r#"[{"channel":"offset","joint":0,"keys":[[0,1,2,3]]},{"channel":"offset","joint":0,"keys":[[0,1,2,3]]}]"#,
             "channels[1]: channel must have one entry, got a second",
         ),
         (
-            r#"[{"channel":"twist","keys":[{"key":[0,1],"interpolation":"curly"}]}]"#,
+            r#"[{"channel":"length","joint":0,"keys":[{"key":[0,1],"interpolation":"curly"}]}]"#,
             "channels[0].keys[0].interpolation: unknown variant `curly`, expected one of",
         ),
         (
-            r#"[{"channel":"twist","keys":[{"key":[0,1],"leaving":[1,2,3]}]}]"#,
+            r#"[{"channel":"length","joint":0,"keys":[{"key":[0,1],"leaving":[1,2,3]}]}]"#,
             "channels[0].keys[0].leaving: must have one number, got 3",
         ),
         (
-            r#"[{"channel":"twist","keys":[{"interpolation":"step"}]}]"#,
+            r#"[{"channel":"length","joint":0,"keys":[{"interpolation":"step"}]}]"#,
             "channels[0].keys[0]: missing field `key`",
         ),
         (
-            r#"[{"channel":"twist","keys":["soon"]}]"#,
+            r#"[{"channel":"length","joint":0,"keys":["soon"]}]"#,
             "expected a time and the value at it: [seconds, x, …], or an object with `key`",
         ),
-        (r#"[{"channel":"hand","keys":[[]]}]"#, "channels[0].keys[0]: invalid length 0"),
         (
-            r#"[{"channel":"hand","keys":[[1e999,0,0,0]]}]"#,
+            r#"[{"channel":"offset","joint":0,"keys":[[]]}]"#,
+            "channels[0].keys[0]: invalid length 0",
+        ),
+        (
+            r#"[{"channel":"offset","joint":0,"keys":[[1e999,0,0,0]]}]"#,
             "channels[0].keys[0][0]: must be within",
         ),
     ] {

@@ -1,5 +1,6 @@
 //! Files of earlier releases open, and are saved as they were. Files of version 1 are refused.
 
+use crate::common::arm::ArmDocument;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -41,25 +42,50 @@ fn a_file_of_version_1_is_refused_with_the_version_that_is_read() {
 }
 
 #[test]
-fn a_document_of_version_2_is_saved_as_the_same_text_of_version_3() {
-    for path in documents_in(&["tests/data/version-2"]) {
-        let text = fs::read_to_string(&path).expect("text");
-        let json = io::to_json(&open(&path).document).expect("finite numbers");
-        let text = text.replacen("\"version\": 2", "\"version\": 3", 1);
-        assert_eq!(without_paths(&json), without_paths(&text), "{}", path.display());
+fn a_document_of_version_2_is_saved_as_version_3_and_opens_as_the_same() {
+    for path in former_documents() {
+        let document = open(&path).document;
+        let json = io::to_json(&document).expect("finite numbers");
+        assert!(json.contains("\"version\": 3"));
+        let again = io::parse("again.json", &json, &io::OpenOptions::default()).expect("opens");
+        assert_eq!((&again.document, again.warnings), (&document, vec![]), "{}", path.display());
     }
 }
 
-/// The lines of a document but those of `follow_path`, which became a list.
-fn without_paths(text: &str) -> Vec<&str> {
-    let mut is_path = false;
-    let is_other = |line: &&str| {
-        if line.starts_with("  \"") {
-            is_path = line.starts_with("  \"follow_path\"");
+/// What a former document says, as JSON.
+fn said(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(path).expect("text")).expect("JSON")
+}
+
+#[test]
+fn the_arm_of_a_former_document_has_its_hand_twist_and_lengths() {
+    let mut arms = 0;
+    for path in former_documents() {
+        let said = said(&path);
+        if said["rig"] != "arm" {
+            continue;
         }
-        !is_path
-    };
-    text.lines().filter(is_other).collect()
+        arms += 1;
+        let arm = open(&path).document.arm();
+        let said = said["arm"].as_object().expect("an arm");
+        for (field, found) in [
+            ("cursor", arm.cursor.in_root.to_array().to_vec()),
+            ("root", arm.root.to_array().to_vec()),
+            ("upper", vec![arm.bones.upper()]),
+            ("lower", vec![arm.bones.lower()]),
+            ("twist", vec![arm.twist]),
+        ] {
+            let Some(said) = said.get(field) else { continue };
+            let one = std::slice::from_ref(said);
+            let numbers = said.as_array().map_or(one, Vec::as_slice).iter();
+            let expected: Vec<_> =
+                numbers.map(|it| it.as_f64().expect("a number") as f32).collect();
+            // A twist of a million turns has no angle in f32.
+            let is_extreme = field == "twist" && expected[0].abs() > 1e7;
+            assert!(found == expected || is_extreme, "{field} of {}", path.display());
+        }
+    }
+    assert!(arms >= 3, "{arms}");
 }
 
 /// The targets of older files posed nothing by themselves: their influence is 0 unless a file says
@@ -67,10 +93,10 @@ fn without_paths(text: &str) -> Vec<&str> {
 #[test]
 fn skeletons_of_older_files_have_the_pose_of_their_joint_angles() {
     let mut skeletons = 0;
-    for path in former_documents() {
+    for path in former_documents().into_iter().filter(|path| said(path)["rig"] == "skeleton") {
         let document = open(&path).document;
         for time in [0.0, 0.7, 2.0] {
-            let rig = document.at(time).into_document().skeleton_rig;
+            let rig = document.at(time).into_document().rig;
             let evaluated = rig.evaluate(time);
             assert_eq!(evaluated.solved, evaluated.fk, "{}", path.display());
             if rig.follow_paths.is_empty() {
@@ -79,7 +105,7 @@ fn skeletons_of_older_files_have_the_pose_of_their_joint_angles() {
             skeletons += rig.targets.len();
         }
     }
-    assert!(skeletons > 20, "{skeletons}");
+    assert!(skeletons > 0, "{skeletons}");
 }
 
 #[test]
@@ -90,34 +116,30 @@ fn a_root_that_older_files_call_fixed_turns() {
                 \"solver\":{\"root\":\"fixed\"}}";
     fs::write(&path, text).expect("written");
     let Opened { document, warnings, .. } = open(&path);
-    assert_eq!((document.skeleton_rig.solver.root, warnings), (Root::Turns, vec![]));
+    assert_eq!((document.rig.solver.root, warnings), (Root::Turns, vec![]));
     assert!(io::to_json(&document).expect("finite numbers").contains("\"root\": \"turns\""));
 }
 
 #[test]
 fn the_reference_up_is_read_by_its_former_name_too() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let documents = ["limb", "up"].map(|name| {
-        let path = folder.path().join("reference.json");
-        let text = format!(
-            "{{\"format\":\"ik-arm\",\"version\":2,\"rig\":\"skeleton\",\
-             \"arm\":{{\"twist_reference\":{{\"kind\":\"{name}\"}}}},\
-             \"skeleton\":{{\"joints\":[{{\"name\":\"a\",\"axis\":[1,0,0]}},\
-             {{\"name\":\"b\",\"parent\":0,\"axis\":[1,0,0]}}]}},\
-             \"targets\":[{{\"joint\":1,\"home\":[1,1,0],\"limb\":{{\"reference\":\"{name}\"}}}}]}}"
-        );
-        fs::write(&path, text).expect("written");
-        let Opened { document, warnings, .. } = open(&path);
+    let named = |name: &str, rig: &str| {
+        let text = format!("{{\"format\":\"ik-arm\",\"version\":2,{rig}}}").replace("NAME", name);
+        let Opened { document, warnings, .. } =
+            io::parse("former.json", &text, &io::OpenOptions::default()).expect("it opens");
         assert_eq!(warnings, []);
         document
-    });
-    let [former, document] = &documents;
-    assert_eq!(former, document);
-    assert_eq!(document.arm.twist_reference, TwistReferenceKind::Up);
-    let limb = document.skeleton_rig.targets[0].limb().expect("a limb");
-    assert_eq!(limb.reference, TwistReferenceKind::Up);
-    let saved = io::to_json(document).expect("finite numbers");
-    assert!(saved.contains("\"kind\": \"up\"") && saved.contains("\"reference\": \"up\""));
+    };
+    let arm = r#""rig":"arm","arm":{"twist_reference":{"kind":"NAME"}}"#;
+    let skeleton = r#""rig":"skeleton","skeleton":{"joints":[{"name":"a","axis":[1,0,0]},
+        {"name":"b","parent":0,"axis":[1,0,0]}]},
+        "targets":[{"joint":1,"home":[1,1,0],"limb":{"reference":"NAME"}}]"#;
+    for rig in [arm, skeleton] {
+        let document = named("up", rig);
+        assert_eq!(named("limb", rig), document);
+        let limb = document.rig.targets[0].limb().expect("a limb");
+        assert_eq!(limb.reference, TwistReferenceKind::Up);
+        assert!(io::to_json(&document).expect("finite numbers").contains("\"reference\": \"up\""));
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Motions go from format to format and back without loss, at every frame.
 
 use glam::{Affine3A, Mat3, Vec3};
-use ik_arm::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, ExportFrames, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::JointId;
 
@@ -15,8 +15,8 @@ fn motion(random: &mut Random) -> Document {
     let transform = Affine3A::from_mat3_translation(turned, random.vector(3.0));
     skeleton.set_transform(transform).expect("finite");
     let joints = skeleton.joints().len();
-    let skeleton_rig = SkeletonRig::new(skeleton);
-    let mut document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+    let rig = SkeletonRig::new(skeleton);
+    let mut document = Document::new(rig);
     let start = f64::from(random.within(0.0..3.0));
     let frame_rate = random.one_of(&[24.0, 29.97, 30.0, 33.33, 60.0, 119.88]);
     document.timeline = Timeline { start, end: start + 20.0 / frame_rate, frame_rate };

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
-use ik_arm::document::{RigKind, Timeline};
+use ik_arm::document::Timeline;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::JointId;
 
@@ -36,7 +36,6 @@ fn the_smallest_scene_opens() {
     let Opened { document, warnings, order, skeletons, .. } = open(text);
     let skeleton = document.skeleton();
     let joint = &skeleton.joints()[0];
-    assert_eq!(document.rig, RigKind::Skeleton);
     assert_eq!((joint.name.as_str(), joint.parent, joint.locked), ("bone_0", None, false));
     assert_eq!((joint.offset, joint.axis, joint.rotation), (Vec3::ZERO, Vec3::Y, Vec3::ZERO));
     assert!(joint.radius > 0.0);
@@ -142,7 +141,7 @@ fn the_splines_of_a_skeleton_become_keys_with_the_same_curves() {
             let angles = catmull_rom(&pose, frame) * std::f64::consts::PI / 180.0;
             near(joints[1].rotation, angles, 5.0);
             near(joints[0].offset, DVec3::new(1.0, 2.0, 3.0) + catmull_rom(&base, frame), 5.0);
-            let target_now = evaluated.skeleton_rig.targets[0];
+            let target_now = evaluated.rig.targets[0];
             near(target_now.home, catmull_rom(&target, frame), 5.0);
             assert_eq!(target_now.enabled, frame >= 9.5);
         }
@@ -229,7 +228,7 @@ fn a_handle_becomes_a_target_in_world_space() {
             "handles":[{"bone":1,"target":[1,2,3],"enabled":false},{"bone":0,"target":[0,0,0]}]}}},
         "transforms":{"T":{"translation":[10,20,30],"scale":[-2,1,1]}},
         "instances":{"skinned_meshes":{"I":{"mesh":"X","transform":"T"}}}}}"#;
-    let targets = open(text).document.skeleton_rig.targets;
+    let targets = open(text).document.rig.targets;
     let at = |target: usize| {
         (targets[target].joint.index(), targets[target].home, targets[target].enabled)
     };
@@ -253,7 +252,7 @@ fn of_several_handles_on_a_bone_the_first_enabled_one_counts() {
         let fields =
             format!("\"bones\":[{{\"extent\":[0,1,0]}}],\n\"handles\":[{}]", handles.join(","));
         let opened = open(&skeleton(&fields));
-        let targets = &opened.document.skeleton_rig.targets;
+        let targets = &opened.document.rig.targets;
         assert_eq!((targets.len(), targets[0].home.x), (1, counts as f32), "{enabled:?}");
         assert_eq!(opened.warnings.len(), 2);
         for warning in opened.warnings {
@@ -721,8 +720,7 @@ fn a_half_edge_mesh_becomes_a_skin_with_the_weights_of_the_file() {
     mesh["bone_weight_weights"] = floats("float", &weights).into();
     let opened = HalfEdgeBox::scene(&mesh);
     assert_eq!(opened.warnings, []);
-    let attached =
-        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    let attached = opened.document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
     let (mesh, weights) = (attached.mesh.mesh(), attached.mesh.weights());
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (24, 12));
     let mut volume = 0.0;
@@ -745,8 +743,7 @@ fn a_half_edge_mesh_becomes_a_skin_with_the_weights_of_the_file() {
 fn without_weights_in_the_file_bones_weigh_by_the_rest_of_their_radii() {
     let opened = HalfEdgeBox::scene(&HalfEdgeBox::new().json());
     assert_eq!(opened.warnings, []);
-    let attached =
-        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    let attached = opened.document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
     for (position, weights) in attached.mesh.mesh().positions.iter().zip(attached.mesh.weights()) {
         // The root goes from y = 0 to 1 with the radius 2, the other bone to y = 2 with 0.9.
         let beside = 0.5_f32.hypot(0.5);
@@ -766,8 +763,7 @@ fn vertices_out_of_all_radii_follow_the_nearest_bone_with_a_remark() {
     let opened = HalfEdgeBox::scene(&cube.json());
     let said = &opened.warnings[0].reason;
     assert_eq!(said, "8 of 8 vertices have no weights; they follow the nearest bone");
-    let attached =
-        opened.document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    let attached = opened.document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
     for (position, weights) in attached.mesh.mesh().positions.iter().zip(attached.mesh.weights()) {
         assert_eq!(weights.first().index(), usize::from(position.y > 0.0), "{position}");
     }
@@ -793,7 +789,7 @@ fn damaged_half_edges_leave_the_skin_out_with_the_reason() {
         let opened = HalfEdgeBox::scene(&mesh);
         let said = opened.warnings[0].to_string();
         assert!(said.contains(expected) && said.ends_with("; the skin is left out"), "{said}");
-        assert!(opened.document.skeleton_rig.skin.is_none());
+        assert!(opened.document.rig.skin.is_none());
     }
     // Half-edges that lead nowhere, faces that share them: some triangles are missing, no more.
     let mut random = Random(7);
@@ -811,7 +807,7 @@ fn faces_that_bound_a_hole_are_left_out() {
     // The second of six faces, then the mark of the end.
     mesh["face_boundaries"] = format!("bool:{}", base64(&[0b0100_0010])).into();
     let opened = HalfEdgeBox::scene(&mesh);
-    let skin = opened.document.skeleton_rig.skin.as_ref().expect("a skin");
+    let skin = opened.document.rig.skin.as_ref().expect("a skin");
     let mesh = skin.mesh().expect("a mesh").mesh.mesh();
     assert_eq!(mesh.triangles.len(), 10);
     // The second face is that of z = 0.5.

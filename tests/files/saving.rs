@@ -1,5 +1,6 @@
 //! A saved document is whole, whatever happens while it is saved.
 
+use crate::common::arm::{ArmEdit, ArmSession};
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
@@ -8,10 +9,10 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use ik_arm::document::{Document, RigKind};
+use ik_arm::document::{Document, SkeletonRig};
 use ik_arm::io;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::session::{ArmEdit, FileAction, Session};
+use ik_arm::session::{FileAction, Session};
 
 use crate::common::{Random, cases};
 
@@ -25,7 +26,7 @@ fn document(joints: usize) -> Document {
         ..Joint::new(&format!("joint_{index}"), index.checked_sub(1).map(JointId::new), Vec3::Y)
     };
     let skeleton = Skeleton::from_joints((0..joints).map(joint).collect()).expect("a skeleton");
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     *document.skeleton_mut() = skeleton;
     document
 }
@@ -105,7 +106,7 @@ fn a_file_is_the_old_or_the_new_document_whenever_the_program_is_killed_while_it
 /// A session with changes, and what it says when it is told to save to `path`.
 fn not_saved(path: &Path) -> (Session, String) {
     let mut session = Session::default();
-    session.apply(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0)));
+    session.edit_arm(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0)));
     let document = session.document().clone();
     let error = io::save(session.document(), path).expect_err("it cannot be saved");
     let why = error.to_string();

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, Vec2, Vec3};
-use ik_arm::document::{Document, RigKind, Skin};
+use ik_arm::document::{Document, Skin};
 use ik_arm::io::{self, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::skin::{SkinnedMesh, Skinning, TriangleMesh, VertexWeights};
@@ -49,7 +49,7 @@ fn figure(joints: usize, seed: u64) -> Document {
     let skin = MeshSkin::new(mesh.into(), None, ids, &skeleton);
     let mut rig = SkeletonRig::new(skeleton);
     rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() }
+    Document::new(rig)
 }
 
 fn texture() -> SkinTexture {
@@ -66,7 +66,7 @@ fn write_glb(document: &Document, path: &Path) {
 }
 
 fn mesh_skin(document: &Document) -> &MeshSkin {
-    match &document.skeleton_rig.skin.as_ref().expect("a skin").source {
+    match &document.rig.skin.as_ref().expect("a skin").source {
         SkinSource::Mesh(mesh) => mesh,
         SkinSource::Bones(_) => panic!("the mesh is from a file"),
     }
@@ -197,7 +197,7 @@ fn a_file_with_another_number_of_joints_or_without_a_mesh_cannot_be_located() {
 fn a_packed_skin_is_read_back_bit_for_bit_without_its_file() {
     for document in [figure(5, 3), Project::new().open().document] {
         let mut document = document;
-        let skin = document.skeleton_rig.skin.as_mut().expect("a skin");
+        let skin = document.rig.skin.as_mut().expect("a skin");
         let SkinSource::Mesh(mesh) = &skin.source else { panic!("the mesh is from a file") };
         skin.source = SkinSource::Mesh(mesh.packed().expect("a mesh"));
         let text = io::to_json(&document).expect("a text");
@@ -296,14 +296,13 @@ fn the_path_to_the_file_leads_through_parent_folders_and_links() {
 #[test]
 fn parts_share_a_texture_also_in_files() {
     let mut document = figure(2, 9);
-    let SkinSource::Mesh(skin) = &document.skeleton_rig.skin.as_ref().expect("a skin").source
-    else {
+    let SkinSource::Mesh(skin) = &document.rig.skin.as_ref().expect("a skin").source else {
         panic!("the mesh is from a file")
     };
     let mut mesh = FileMesh::clone(skin.in_file().expect("a mesh"));
     mesh.parts[1].texture = mesh.parts[0].texture.clone();
     let skin = MeshSkin::new(mesh.into(), None, skin.joints().to_vec(), document.skeleton());
-    document.skeleton_rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
+    document.rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
     let text = io::to_json(&document).expect("a text");
     let read = io::parse("x.json", &text, &io::OpenOptions::default()).expect("it opens").document;
     assert_eq!(read, document);

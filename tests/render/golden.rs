@@ -2,11 +2,9 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test render` writes new ones; look at them before committing.
 
+use crate::common::arm::{Arm, ArmDocument, Cursor, HandOrientation, HandSpace};
 use glam::Vec3;
-use ik_arm::document::{
-    Arm, AxisView, Camera, Cursor, Document, HandOrientation, HandSpace, Overlay, Theme, Track,
-    TwistReferenceKind,
-};
+use ik_arm::document::{AxisView, Camera, Document, Overlay, Theme, Track, TwistReferenceKind};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::fk::Fk;
@@ -29,10 +27,7 @@ fn check(name: &str, document: &Document, theme: Theme) {
 }
 
 fn posed(cursor: Vec3) -> Document {
-    Document {
-        arm: Arm { cursor: Cursor::unpinned(cursor), ..Arm::default() },
-        ..Document::default()
-    }
+    Arm { cursor: Cursor::unpinned(cursor), ..Arm::default() }.document()
 }
 
 fn showing(mut document: Document, layers: &[Overlay]) -> Document {
@@ -68,8 +63,8 @@ fn inside_the_outer_limit() -> Document {
 }
 
 fn soft(mut document: Document, stretch: f32, elbow_degrees: f32) -> Document {
-    document.arm.soft_reach =
-        SoftReach::new(0.0, stretch, elbow_degrees.to_radians()).expect("soft limits");
+    let soft_reach = SoftReach::new(0.0, stretch, elbow_degrees.to_radians());
+    document.edit_arm(|arm| arm.soft_reach = soft_reach.expect("soft limits"));
     document
 }
 
@@ -110,7 +105,7 @@ fn the_arm_with_all_its_guides() {
 fn the_arm_seen_from_inside_its_outer_limit() {
     let document = inside_the_outer_limit();
     let eye = document.camera.projection(1.0).eye;
-    assert!(eye.distance(document.arm.root) < document.arm.bones.outer_limit());
+    assert!(eye.distance(document.arm().root) < document.arm().bones.outer_limit());
     check("inside", &document, Theme::Light);
 }
 
@@ -126,7 +121,7 @@ fn a_folded_arm_with_its_inner_limit() {
 
 #[test]
 fn a_stretched_hand_on_its_outer_limit() {
-    let arm = stretched().arm;
+    let arm = stretched().arm();
     assert_eq!(arm.reach_limits().outer, 750.0);
     assert!((arm.pose().distance - 750.0).abs() < 1e-3);
     check("stretched", &stretched(), Theme::Dark);
@@ -134,7 +129,7 @@ fn a_stretched_hand_on_its_outer_limit() {
 
 #[test]
 fn a_hand_at_the_minimum_elbow_angle_on_its_inner_limit() {
-    let arm = held_open().arm;
+    let arm = held_open().arm();
     assert_eq!(arm.pose().distance, arm.reach_limits().inner);
     check("min_elbow_angle", &held_open(), Theme::Light);
 }
@@ -233,7 +228,7 @@ fn a_selected_joint_a_missing_target_and_ghosts_are_noticed() {
     ));
     assert!(compare(&drawn, &kept("human")).is_err(), "a ghost");
     let mut unsolved = document;
-    for target in &mut unsolved.skeleton_rig.targets {
+    for target in &mut unsolved.rig.targets {
         (target.influence, target.home) = (0.0, target.home + Vec3::splat(0.15));
     }
     let drawn = draw(&scene(&unsolved, Theme::Dark));
@@ -273,16 +268,17 @@ fn a_large_picture_is_the_same_picture() {
 }
 
 fn with(arm: Arm, layers: &[Overlay]) -> Document {
-    showing(Document { arm: arm.with_solve_state(), ..Document::default() }, layers)
+    showing(arm.document(), layers)
 }
 
 #[test]
 fn the_arm_with_all_overlays_of_an_animator() {
     let pole = Arm { twist_reference: TwistReferenceKind::Pole, ..Arm::default() };
-    let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), ..Arm::default().with_pinned(true) };
+    let cursor = Cursor::pinned(Arm::default().cursor_in_world());
+    let pinned = Arm { root: Vec3::new(-60.0, 40.0, 30.0), cursor, ..Arm::default() };
     let twisted = Arm { twist: 1.0, ..pole };
     let hand_orientation =
-        HandOrientation { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1), roll: 0.0 };
+        HandOrientation { space: HandSpace::World, angles: Vec3::new(2.5, 0.3, 0.1) };
     let turned = Arm { hand_orientation, ..Arm::default() };
     let angles = Fk { shoulder: Vec3::new(0.3, 0.6, 0.9), bend: 1.3, stretch: 1.0 };
     let led = Arm { fk: angles, influence: 0.0, ..Arm::default() };
@@ -310,9 +306,9 @@ fn with_selection(document: &Document, joint: usize) -> Overlays {
 fn bind_pose() -> Document {
     let mut human = example("human");
     let joints = human.skeleton().ids();
-    human.skeleton_rig.targets.clear();
+    human.rig.targets.clear();
     for joint in joints {
-        let _ = human.skeleton_rig.skeleton_mut().set_rotation(joint, Vec3::ZERO);
+        let _ = human.rig.skeleton_mut().set_rotation(joint, Vec3::ZERO);
     }
     human
 }
@@ -360,7 +356,7 @@ fn the_candy_wrapper_half_way_and_at_its_end() {
 fn the_human_reaches_up_in_its_skin() {
     let mut human = bind_pose();
     for (joint, angles) in [(6, Vec3::Z * 1.7), (10, Vec3::Z * -1.2), (11, Vec3::X * -1.0)] {
-        let _ = human.skeleton_rig.skeleton_mut().set_rotation(JointId::new(joint), angles);
+        let _ = human.rig.skeleton_mut().set_rotation(JointId::new(joint), angles);
     }
     check("skin_reach", &human, Theme::Dark);
     check("skin_reach-light", &human, Theme::Light);

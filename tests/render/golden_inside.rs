@@ -1,13 +1,14 @@
 //! Pictures of what a solver computes in a part of an iteration, of a wiggle, of why a target is
 //! not reached, and of the arm's figures, compared with those in `tests/golden`.
 
+use crate::common::arm::{ArmEdit, ArmSession};
 use glam::Vec3;
 use ik_arm::document::{Camera, Overlay, Target, Theme};
 use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
-    ArmEdit, DisplayEdit, LimbFigure, PlaybackAction, Preferences, SelectAction, Session, SkinEdit,
+    DisplayEdit, LimbFigure, PlaybackAction, Preferences, SelectAction, Session, SkinEdit,
     SolverAction, SolverEdit, TargetEdit, ViewAction,
 };
 
@@ -58,10 +59,10 @@ fn both_passes_of_fabrik() {
 fn the_triangle_and_the_circle_of_two_bones() {
     let mut session = example("inside-ccd");
     session.apply(SolverAction::Reset);
-    let target = session.skeleton_rig().targets[0];
+    let target = session.rig().targets[0];
     let home = session.skeleton().base(JointId::new(2)) + Vec3::new(0.45, 0.2, 0.25);
     session.apply(TargetEdit::SetTarget(Target { home, ..target }));
-    let options = session.skeleton_rig().solver.with_method(Method::TwoBone);
+    let options = session.rig().solver.with_method(Method::TwoBone);
     session.apply(SolverEdit::SetSolver(options));
     session.apply(SolverAction::Step);
     let parts = session.solvers().run().expect("a run").parts().len();
@@ -101,8 +102,8 @@ fn the_circles_of_the_elbows_and_knees_of_a_figure() {
 /// The arm with a line of its figures lit up.
 fn lit(figure: LimbFigure) -> Session {
     let mut session = Session::new(Preferences::default());
-    session.apply(ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0)));
-    session.apply(ArmEdit::SetTwist(0.5));
+    session.edit_arm(ArmEdit::SetHand(Vec3::new(250.0, 150.0, 200.0)));
+    session.edit_arm(ArmEdit::SetTwist(0.5));
     session.apply(SelectAction::Figure(Some(figure)));
     let camera = Camera { distance: 640.0, ..*session.camera() };
     session.apply(ViewAction::SetCamera(camera));

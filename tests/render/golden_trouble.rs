@@ -4,8 +4,9 @@
 //! `UPDATE_GOLDEN=1 cargo test --test render` keeps the new ones; look at them before
 //! committing.
 
+use crate::common::arm::Arm;
 use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
-use ik_arm::document::{Arm, AxisView, Camera, Display, Document, Overlay, Theme};
+use ik_arm::document::{AxisView, Camera, Display, Document, Overlay, Theme};
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;

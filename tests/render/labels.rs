@@ -1,7 +1,8 @@
 //! Pictures of joint names, with letters that fonts have and letters that no font has.
 
+use crate::common::arm::ArmDocument;
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Display, Document, Overlay, RigKind, Theme};
+use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Theme};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, PictureRenderer, Renderer};
 use ik_arm::scene::Scene;
@@ -22,7 +23,7 @@ fn named(names: &[&str]) -> Scene {
         let joint = Joint { offset: at, ..Joint::new(name, None, Vec3::X * 1e-3) };
         skeleton.add(joint).expect("a joint");
     }
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     *document.skeleton_mut() = skeleton;
     document.display = Display::from_iter([Overlay::Labels]);
     let selection = (0..names.len()).map(JointId::new).collect();
@@ -131,13 +132,15 @@ fn names_of_the_arm_are_on_a_side_without_limbs() {
     let mut number =
         |low: f32, high: f32| low + (high - low) * (random.below(1_000_000) as f32 * 1e-6);
     for _ in 0..500 {
-        let mut document =
-            Document { display: Display::from_iter([Overlay::Labels]), ..Document::default() };
-        document.arm.set_cursor(Vec3::from([0; 3].map(|_| number(-350.0, 350.0))));
-        document.arm.twist = number(-3.0, 3.0);
+        let mut document = Document {
+            display: Display::from_iter([Overlay::Labels, Overlay::Cylinders]),
+            ..Document::default()
+        };
+        document.edit_arm(|arm| arm.set_cursor(Vec3::from([0; 3].map(|_| number(-350.0, 350.0)))));
+        document.edit_arm(|arm| arm.twist = number(-3.0, 3.0));
         (document.camera.yaw, document.camera.pitch) = (number(-3.0, 3.0), number(-1.4, 1.4));
         let scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
-        let pose = document.arm.pose();
+        let pose = document.arm().pose();
         let projection = document.camera.projection(1.0);
         let [right, up] = [projection.right, projection.up].map(Vec3::normalize);
         let seen = |from: Vec3, to: Vec3| {

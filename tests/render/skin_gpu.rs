@@ -1,7 +1,7 @@
 //! Skins moved by the device against those moved by the CPU.
 
 use glam::{Affine3A, Vec2, Vec3};
-use ik_arm::document::{Camera, Document, Overlay, RigKind, Skin, Theme};
+use ik_arm::document::{Camera, Document, Overlay, Skin, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
@@ -38,7 +38,7 @@ fn the_device_moves_the_skins_of_all_examples_as_the_cpu_does() {
     let mut skins = 0;
     for example in Example::ALL {
         let document = example.open().expect("opens").document;
-        let Some(skin) = &document.skeleton_rig.skin else { continue };
+        let Some(skin) = &document.rig.skin else { continue };
         let mesh = &skin.mesh().expect("a mesh").mesh;
         for time in [0.0, 0.7] {
             assert_agrees(
@@ -91,7 +91,7 @@ fn square(parts: Vec<SkinPart>) -> Document {
     let camera =
         Camera { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: 4.0, ..Camera::default() };
     let display = [Overlay::Skin].into_iter().collect();
-    Document { rig: RigKind::Skeleton, skeleton_rig: rig, camera, display, ..Document::default() }
+    Document { camera, display, ..Document::new(rig) }
 }
 
 /// The greatest channel at a point of the square, which is nearly white otherwise.

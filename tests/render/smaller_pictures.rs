@@ -36,7 +36,10 @@ impl Bench {
 }
 
 fn scene(theme: Theme, overlays: impl IntoIterator<Item = Overlay>) -> Scene {
-    let document = Document { display: Display::from_iter(overlays), ..Document::default() };
+    let document = Document {
+        display: Display::from_iter(overlays.into_iter().chain([Overlay::Cylinders])),
+        ..Document::default()
+    };
     Scene::new(&document.at(0.0), &Overlays::default(), theme)
 }
 

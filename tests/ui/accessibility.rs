@@ -1,11 +1,10 @@
 //! Keyboard and screen reader: Tab, names, and accessibility actions.
 
+use crate::common::arm::{Arm, ArmEdit, ArmSession};
 use egui::accesskit::{Action as Ask, Role};
 use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::Arm;
-use ik_arm::session::ArmEdit;
 
 use crate::bench::{Bench, SMALL, bits};
 use crate::panel::{CHECKBOXES, SLIDERS};
@@ -63,12 +62,12 @@ fn values_set_by_a_screen_reader_are_validated() {
     for value in [-3.0, 0.0, f64::NAN, f64::INFINITY, 1e300] {
         bench.node(Role::Slider, "Upper length").set_value_accesskit(value);
         bench.frame([]);
-        assert_eq!(bench.session().arm(), &Arm::default(), "{value}");
+        assert_eq!(&bench.session().arm(), &Arm::default(), "{value}");
         assert!(bench.says("must be finite and above 0"));
     }
     bench.node(Role::Slider, "Hand x").set_value_accesskit(f64::NAN);
     bench.frame([]);
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
     bench.node(Role::Slider, "Hand y").set_value_accesskit(12_345.5);
     bench.frame([]);
     assert_eq!(bits(bench.hand()), bits(Vec3::new(250.0, 12_345.5, 60.0)));
@@ -133,7 +132,7 @@ fn tab_goes_through_the_controls_in_reading_order_and_back() {
     bench.focus(Role::Slider, "Hand z");
     bench.key_with(Modifiers::SHIFT, Key::Tab);
     assert_eq!(bench.focused(), Some((Role::SpinButton, "Hand y value".to_owned())));
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
 }
 
 #[test]
@@ -156,7 +155,7 @@ fn the_arm_can_be_posed_by_keyboard_alone() {
 #[test]
 fn the_viewport_is_an_image_that_says_how_far_the_arm_reaches() {
     let bench = Bench::after([ArmEdit::SetHand(Vec3::new(0.0, 600.0, 0.0))]);
-    let name = "Viewport. The hand cannot reach that far: the target is 600 from the shoulder, the bones are 500 long.";
+    let name = "Viewport. hand cannot reach that far: the target is 600 from upper, the bones are 500 long.";
     let rect = bench.rect(Role::Image, name);
     // The mouse grabs the panels beside the view at its edges.
     assert_eq!(rect, bench.viewport().shrink(4.0));

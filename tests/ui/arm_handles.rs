@@ -1,12 +1,12 @@
 //! The handles of the arm that are hidden until they are needed: those of the Root and the ring of
 //! the Socket twist.
 
+use crate::common::arm::{ArmEdit, ArmPosed, ArmSession, HandSpace, LOWER, ROOT, WRIST};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
-use ik_arm::document::HandSpace;
 use ik_arm::kinematics::skeleton::RotationAxis;
-use ik_arm::session::{ArmEdit, ArmJoint, Drag, Grip, GripRing, PoseMode, TransactionAction};
+use ik_arm::session::{Drag, Grip, GripRing, PoseMode, SelectAction, TransactionAction};
 
 use crate::bench::{Bench, bits};
 
@@ -30,7 +30,7 @@ fn elbow_in_world(bench: &Bench) -> Vec3 {
 
 /// The point of the elbow's circle around the Pointer after a turn of the twist.
 fn elbow_turned_by(bench: &Bench, radians: f32) -> Pos2 {
-    let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
+    let ring = GripRing::of_twist(&bench.session().posed().arm_frames()).expect("a ring");
     let turn = glam::Quat::from_axis_angle(ring.axis, radians);
     bench.on_screen(ring.centre + turn * (elbow_in_world(bench) - ring.centre))
 }
@@ -51,18 +51,18 @@ fn the_root_can_be_dragged_before_it_is_selected() {
     let to = at + vec2(35.0, -20.0);
     bench.drag(LEFT, at, to);
     assert_eq!(bench.session().history().drag().map(Drag::grip).map(is_root), Some(true));
-    assert!(bench.says("Root freely"));
+    assert!(bench.says("Move root freely"));
     bench.release(LEFT);
     assert!(bench.on_screen(root(&bench)).distance(to) < 0.5);
     assert_eq!(bits(bench.hand()), bits(hand), "the hand comes along");
-    assert_eq!(bench.session().history().undo_label(), Some("Move shoulder"));
+    assert_eq!(bench.session().history().undo_label(), Some("Pose joints"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bits(root(&bench)), bits(before));
     assert_eq!(bench.session().history().undo_label(), None, "it is one step");
 }
 
 fn is_root(grip: Grip) -> bool {
-    matches!(grip, Grip::Root(_))
+    matches!(grip, Grip::Tip(ROOT, _))
 }
 
 #[test]
@@ -75,13 +75,13 @@ fn the_arrows_of_the_root_are_there_while_it_is_selected() {
     bench.release(LEFT);
     let at = bench.on_screen(root(&bench));
     bench.click_at(at);
-    assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Root));
+    assert_eq!(bench.session().selection().active(), Some(ROOT));
     assert_eq!(bench.session().history().undo_label(), None, "a click changes nothing");
     bench.drag_and_drop(LEFT, arrow, arrow + vec2(40.0, 10.0));
     let moved = root(&bench);
     assert!(moved.x > 5.0 && (moved.y, moved.z) == (0.0, 0.0), "{moved}");
     bench.click_at(bench.empty_point());
-    assert_eq!(bench.session().selection().arm_joint(), None);
+    assert_eq!(bench.session().selection().active(), None);
     bench.move_to(x_arrow(&bench));
     bench.press(LEFT);
     assert!(bench.session().history().drag().is_none());
@@ -133,7 +133,7 @@ fn the_ring_of_the_selected_elbow_can_be_dragged_anywhere_on_its_near_half() {
     assert_eq!(twist(&bench), 0.0, "the ring is hidden");
     bench.apply([ik_arm::session::ViewAction::SetCamera(Default::default())]);
     bench.click_at(elbow);
-    assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Elbow));
+    assert_eq!(bench.session().selection().active(), Some(LOWER));
     bench.drag_and_drop(LEFT, from, to);
     let turned = twist(&bench).to_degrees();
     let turned = turned.min(360.0 - turned);
@@ -141,7 +141,7 @@ fn the_ring_of_the_selected_elbow_can_be_dragged_anywhere_on_its_near_half() {
 }
 
 fn is_near(bench: &Bench, radians: f32) -> bool {
-    let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
+    let ring = GripRing::of_twist(&bench.session().posed().arm_frames()).expect("a ring");
     let forward = bench.session().camera().projection(1.0).forward;
     let turn = glam::Quat::from_axis_angle(ring.axis, radians);
     (turn * (elbow_in_world(bench) - ring.centre)).dot(forward) < 0.0
@@ -152,13 +152,17 @@ fn ctrl_snaps_the_twist_shift_is_precise_and_escape_cancels() {
     let mut bench = Bench::new();
     let elbow = bench.on_screen(elbow_in_world(&bench));
     let to = elbow_turned_by(&bench, 0.41);
+    bench.drag(LEFT, elbow, elbow);
     bench.hold(Modifiers::COMMAND | Modifiers::CTRL);
-    bench.drag_and_drop(LEFT, elbow, to);
+    bench.move_to(to);
+    bench.release(LEFT);
     assert!((twist(&bench).to_degrees() - 25.0).abs() < 1e-3, "{}", twist(&bench).to_degrees());
     bench.hold(Modifiers::NONE);
     bench.apply([TransactionAction::Undo]);
+    bench.drag(LEFT, elbow, elbow);
     bench.hold(Modifiers::SHIFT);
-    bench.drag_and_drop(LEFT, elbow, to);
+    bench.move_to(to);
+    bench.release(LEFT);
     assert!((twist(&bench) - 0.041).abs() < 5e-3, "{}", twist(&bench));
     bench.hold(Modifiers::NONE);
     bench.apply([TransactionAction::Undo]);
@@ -176,11 +180,11 @@ fn there_is_no_ring_in_fk_nor_around_a_straight_arm() {
         vec![ArmEdit::SetHand(Vec3::new(499.9, 0.0, 0.0))],
     ] {
         let mut bench = Bench::after(actions);
-        let before = *bench.session().arm();
+        let before = bench.session().arm();
         let elbow = bench.on_screen(elbow_in_world(&bench));
         bench.move_to(elbow);
         bench.press(LEFT);
-        assert_ne!(bench.session().history().drag().map(Drag::grip), Some(Grip::Twist));
+        assert_ne!(bench.session().history().drag().map(Drag::grip), Some(Grip::LimbTwist(LOWER)));
         bench.release(LEFT);
         assert_eq!(bench.session().arm().twist, before.twist);
     }
@@ -213,8 +217,23 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
                 ArmEdit::SetHandOrientation(Vec3::new(0.3, 0.2, -0.25)),
                 ArmEdit::SetHandSpace(space),
             ]);
-            let (grip, before) = (Grip::HandRing(axis), *bench.session().arm());
-            let ring = GripRing::of_arm(bench.session().posed(), grip).expect("a ring");
+            let (grip, ring) = match space {
+                HandSpace::LowerLimb => (
+                    Grip::Ring(WRIST, axis),
+                    GripRing::of_joint(bench.session().posed(), WRIST, axis),
+                ),
+                HandSpace::World => (
+                    Grip::Orientation(LOWER, axis),
+                    GripRing::of_orientation(bench.session().posed(), LOWER, axis),
+                ),
+            };
+            let ring = ring.expect("a ring");
+            let angles = |bench: &Bench| {
+                let rig = bench.session().rig();
+                let kept = rig.targets[0].limb().expect("a limb").orientation;
+                kept.unwrap_or(rig.skeleton[WRIST].rotation)
+            };
+            let old = angles(&bench);
             let on_ring = bench.around(ring, RING);
             for at in on_ring.into_iter().step_by(7) {
                 bench.move_to(at);
@@ -226,19 +245,16 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
                 );
                 bench.key(Key::Escape);
                 bench.release(LEFT);
+                bench.apply([SelectAction::Joints(Vec::new())]);
             }
             bench.apply([ik_arm::session::ViewAction::SetCamera(Default::default())]);
             bench.click_at(bench.cursor_on_screen());
-            assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Hand));
-            let turned = |bench: &Bench| {
-                let (arm, pose) = (bench.session().arm(), bench.session().pose());
-                arm.hand_rotation(pose)
-            };
+            assert_eq!(bench.session().selection().active(), Some(WRIST));
+            let turned = |bench: &Bench| bench.session().posed().hand_rotation();
             let was = turned(&bench);
             let to = bench.take_ring(grip, ring, RING, 0.3);
             bench.move_to(to);
-            let now = bench.session().arm().hand_orientation.angles;
-            let old = before.hand_orientation.angles;
+            let now = angles(&bench);
             assert!((now[axis.index()] - old[axis.index()] - 0.3).abs() < 5e-3, "{now} was {old}");
             for other in (0..3).filter(|other| *other != axis.index()) {
                 assert_eq!(now[other].to_bits(), old[other].to_bits());
@@ -247,12 +263,11 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
             let apart = (turn * was - turned(&bench)).to_cols_array();
             assert!(apart.iter().all(|apart| apart.abs() < 5e-3), "{space:?} {axis}");
             bench.release(LEFT);
-            assert_eq!(bench.session().history().undo_label(), Some("Turn hand"));
             bench.apply([TransactionAction::Undo]);
-            assert_eq!(bench.session().arm().hand_orientation.angles, old);
-            assert_eq!(bench.session().selection().arm_joint(), Some(ArmJoint::Hand));
+            assert_eq!(angles(&bench), old);
+            assert_eq!(bench.session().selection().active(), Some(WRIST));
             bench.click_at(bench.empty_point());
-            assert_eq!(bench.session().selection().arm_joint(), None);
+            assert_eq!(bench.session().selection().active(), None);
         }
     }
 }

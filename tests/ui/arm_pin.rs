@@ -1,10 +1,10 @@
 //! The pin of the hand and its keys.
 
+use crate::common::arm::{ArmSession, channels};
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::Channel;
 use ik_arm::session::{KeysEdit, PlaybackAction, TransactionAction};
 
 use crate::bench::{Bench, LARGE};
@@ -34,40 +34,43 @@ fn the_diamond_adds_and_deletes_a_key_of_the_pin_at_the_playhead() {
     assert!(has_tooltip(&mut bench, Role::Button, DIAMOND));
     go_to(&mut bench, 1.0);
     bench.click(Role::Button, DIAMOND);
-    assert!(is_at_key(&bench) && bench.shows(Role::Button, "Channel Pinned to world"));
-    assert!(bench.shows(Role::Button, "Key of Pinned to world at 1.00 s"));
-    assert_eq!(times(&bench, Channel::Hand), [1.0], "with the point that the Cursor has");
-    assert!(times(&bench, Channel::Pin).is_empty());
+    assert!(is_at_key(&bench) && bench.shows(Role::Button, "Channel hand · pinned to world"));
+    assert!(bench.shows(Role::Button, "Key of hand · pinned to world at 1.00 s"));
+    assert_eq!(times(&bench, channels::HAND), [1.0], "with the point that the Cursor has");
+    assert!(times(&bench, channels::PIN).is_empty());
     bench.click(Role::Button, "Turn off");
     go_to(&mut bench, 2.0);
     assert!(!is_at_key(&bench));
     bench.click(Role::CheckBox, PIN);
-    assert!(bench.session().history().is_overridden(Channel::Pinned), "until the time changes");
+    assert!(bench.session().history().is_overridden(channels::PINNED), "until the time changes");
     bench.click(Role::Button, DIAMOND);
-    assert_eq!(times(&bench, Channel::Pinned), [1.0, 2.0]);
-    assert_eq!((times(&bench, Channel::Hand), times(&bench, Channel::Pin)), (vec![1.0], vec![2.0]));
+    assert_eq!(times(&bench, channels::PINNED), [1.0, 2.0]);
+    assert_eq!(
+        (times(&bench, channels::HAND), times(&bench, channels::PIN)),
+        (vec![1.0], vec![2.0])
+    );
     bench.click(Role::Button, DIAMOND);
-    assert_eq!(times(&bench, Channel::Pinned), [1.0]);
+    assert_eq!(times(&bench, channels::PINNED), [1.0]);
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(times(&bench, Channel::Pinned), [1.0, 2.0]);
+    assert_eq!(times(&bench, channels::PINNED), [1.0, 2.0]);
 }
 
 #[test]
 fn a_hand_planted_by_the_check_box_and_k_stays_until_it_is_lifted() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.click(Role::Button, DIAMOND);
-    bench.apply([KeysEdit::Key(vec![Channel::Root])]);
+    bench.apply([KeysEdit::Key(vec![channels::ROOT_OFFSET])]);
     go_to(&mut bench, 1.0);
     let place = hand(&bench);
     bench.click(Role::CheckBox, PIN);
     bench.key(Key::K);
-    bench.apply([KeysEdit::Key(vec![Channel::Root])]);
+    bench.apply([KeysEdit::Key(vec![channels::ROOT_OFFSET])]);
     go_to(&mut bench, 3.0);
     bench.enter("Root x", "120");
     bench.key(Key::K);
     bench.click(Role::CheckBox, PIN);
     bench.key(Key::K);
-    assert_eq!(times(&bench, Channel::Pinned), [0.0, 1.0, 3.0]);
+    assert_eq!(times(&bench, channels::PINNED), [0.0, 1.0, 3.0]);
     go_to(&mut bench, 4.0);
     bench.enter("Hand y", "-100");
     bench.key(Key::K);
@@ -87,8 +90,8 @@ fn auto_key_keys_the_pin_from_the_check_box() {
     bench.apply([PlaybackAction::SetAutoKey(true), PlaybackAction::SetTime(1.0)]);
     bench.click(Role::CheckBox, PIN);
     assert!(is_at_key(&bench));
-    assert_eq!(times(&bench, Channel::Pinned), [0.0, 1.0], "not pinned until then");
-    assert!(times(&bench, Channel::Hand).is_empty());
+    assert_eq!(times(&bench, channels::PINNED), [0.0, 1.0], "not pinned until then");
+    assert!(times(&bench, channels::HAND).is_empty());
     bench.apply([TransactionAction::Undo]);
-    assert!(times(&bench, Channel::Pinned).is_empty() && !bench.session().arm().is_pinned());
+    assert!(times(&bench, channels::PINNED).is_empty() && !bench.session().arm().is_pinned());
 }

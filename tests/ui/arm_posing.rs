@@ -1,14 +1,15 @@
 //! Posing the arm: FK, pinned hand, twist references.
 
+use crate::common::arm::{ArmEdit, ArmSession, HandSpace, LOWER, Step, UPPER, channels};
 use egui::accesskit::Role;
 use egui::{PointerButton, Pos2, vec2};
 use egui_kittest::SnapshotResults;
 use glam::Vec3;
-use ik_arm::document::{Channel, HandSpace, Overlay, Theme, TwistReferenceKind};
+use ik_arm::document::{Channel, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::skeleton::RotationAxis;
 use ik_arm::kinematics::two_bone::TwoBonePose;
 use ik_arm::session::{
-    Action, ArmEdit, Grip, GripRing, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
+    Grip, GripRing, PanelTab, PoseMode, ShellAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, bits, snapshot_options};
@@ -27,7 +28,7 @@ fn pick(bench: &mut Bench, list: &str, item: &str) {
 }
 
 /// With the sections of the angles unfolded.
-fn posing(actions: impl IntoIterator<Item = impl Into<Action>>) -> Bench {
+fn posing(actions: impl IntoIterator<Item = impl Into<Step>>) -> Bench {
     let mut bench = Bench::after(actions);
     bench.toggle(&["FK and IK", "Lengths", "Root"]);
     bench
@@ -41,13 +42,13 @@ fn pole_place(bench: &Bench) -> Pos2 {
 #[test]
 fn switching_between_fk_and_ik_keeps_the_pose() {
     let mut bench = posing([ArmEdit::SetHand(Vec3::new(200.0, 180.0, -90.0))]);
-    let pose = *bench.session().pose();
+    let pose = bench.session().pose();
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
     bench.click(Role::Button, "FK");
     assert_eq!(bench.session().arm().influence, 0.0);
-    assert!(apart(&pose, bench.session().pose()) < 5e-3);
+    assert!(apart(&pose, &bench.session().pose()) < 5e-3);
     assert!(
-        bench.says("Arm · FK (joint angles → hand)")
+        bench.says("Limb · FK (joint angles → hand)")
             && bench.says("FK (joint angles → hand): the angles place the hand.")
     );
     bench.enter("Elbow bend", "60");
@@ -57,9 +58,9 @@ fn switching_between_fk_and_ik_keeps_the_pose() {
     bench.enter("Shoulder roll", "0");
     let elbow = bench.session().pose().elbow;
     assert!(elbow.distance(Vec3::X * 200.0) < 1e-3, "{elbow}");
-    let pose = *bench.session().pose();
+    let pose = bench.session().pose();
     bench.click(Role::Button, "IK");
-    assert!(apart(&pose, bench.session().pose()) < 5e-3);
+    assert!(apart(&pose, &bench.session().pose()) < 5e-3);
     assert_eq!(bench.session().history().undo_label(), Some("Switch to IK"));
     assert!(!bench.shows(Role::Slider, "Elbow bend"));
 }
@@ -85,9 +86,9 @@ fn between_fk_and_ik_the_arm_is_between_its_poses() {
     bench.enter("IK influence", "0.5");
     let between = bench.session().pose().elbow_angle();
     assert!((between - 0.5 * (angles + hand)).abs() < 1e-4);
-    assert!(bench.says("Arm · 50 % IK") && bench.says("Between FK and IK"));
+    assert!(bench.says("Limb · 50 % IK") && bench.says("Between FK and IK"));
     bench.enter("IK influence", "3");
-    assert!(bench.says("The IK influence must be from 0 to 1, got 3"));
+    assert!(bench.says("The influence of a target must be from 0 to 1, got 3"));
     assert_eq!(bench.session().arm().influence, 0.5);
 }
 
@@ -96,10 +97,13 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
     let mut bench =
         Bench::after([ArmEdit::SwitchPoseMode(PoseMode::Angles), ArmEdit::SetShoulder(Vec3::ZERO)]);
     bench.apply([ArmEdit::SetBend(0.8)]);
-    for grip in [Grip::Shoulder(RotationAxis::Y), Grip::Shoulder(RotationAxis::Z), Grip::Bend] {
-        let ring = GripRing::of_arm(bench.session().posed(), grip).expect("a ring");
+    for (joint, axis) in
+        [(UPPER, RotationAxis::Y), (UPPER, RotationAxis::Z), (LOWER, RotationAxis::Z)]
+    {
+        let grip = Grip::Ring(joint, axis);
+        let ring = GripRing::of_joint(bench.session().posed(), joint, axis).expect("a ring");
         let centre = bench.on_screen(ring.centre);
-        let before = *bench.session().arm();
+        let before = bench.session().arm();
         // The ring has a constant size on screen, so this distance from its centre is on it.
         let around = (0..360).map(|step| {
             let angle = (step as f32).to_radians();
@@ -131,9 +135,9 @@ fn rings_turn_the_shoulder_and_bend_the_elbow() {
         ];
         let expected = [
             false,
-            grip == Grip::Shoulder(RotationAxis::Y),
-            grip == Grip::Shoulder(RotationAxis::Z),
-            grip == Grip::Bend,
+            grip == Grip::Ring(UPPER, RotationAxis::Z),
+            grip == Grip::Ring(UPPER, RotationAxis::Y),
+            grip == Grip::Ring(LOWER, RotationAxis::Z),
         ];
         assert_eq!(changed, expected, "{grip:?}");
         bench.apply([TransactionAction::Undo]);
@@ -153,9 +157,9 @@ fn a_pinned_hand_stays_when_the_root_moves() {
     assert!((arm.root + pose.hand).distance(before) < 2e-4);
     bench.enter("Hand z", "10");
     assert_eq!(bench.session().arm().cursor_in_world().z, 10.0, "it is set in the world");
-    let pose = *bench.session().pose();
+    let pose = bench.session().pose();
     bench.click(Role::CheckBox, "Pinned to world");
-    assert!(apart(&pose, bench.session().pose()) < 1e-3);
+    assert!(apart(&pose, &bench.session().pose()) < 1e-3);
     let cursor = bench.cursor_on_screen();
     bench.apply([ArmEdit::PinHand(true)]);
     bench.drag_and_drop(LEFT, cursor, cursor + vec2(-30.0, 20.0));
@@ -168,7 +172,7 @@ fn a_pinned_hand_stays_when_the_root_moves() {
 #[test]
 fn changing_the_twist_reference_keeps_the_elbow() {
     let mut bench = Bench::after([ArmEdit::SetTwist(0.4)]);
-    let pose = *bench.session().pose();
+    let pose = bench.session().pose();
     for (name, twist_reference) in [
         ("Pole", TwistReferenceKind::Pole),
         ("Stereographic", TwistReferenceKind::Stereographic),
@@ -177,7 +181,7 @@ fn changing_the_twist_reference_keeps_the_elbow() {
     ] {
         pick(&mut bench, "Twist reference", name);
         assert_eq!(bench.session().arm().twist_reference, twist_reference);
-        assert!(apart(&pose, bench.session().pose()) < 5e-3, "{name}");
+        assert!(apart(&pose, &bench.session().pose()) < 5e-3, "{name}");
         assert_eq!(
             bench.shows(Role::Slider, "Pole x"),
             twist_reference == TwistReferenceKind::Pole
@@ -221,10 +225,7 @@ fn the_four_twist_references_are_compared() {
         bench.click(Role::CheckBox, name);
         assert!(bench.session().shown().display.shows(layer));
     }
-    bench.apply([
-        Action::from(ArmEdit::SetHand(Vec3::X * 300.0)),
-        ViewAction::ResetTransport.into(),
-    ]);
+    bench.apply([Step::from(ArmEdit::SetHand(Vec3::X * 300.0)), ViewAction::ResetTransport.into()]);
     for hand in [Vec3::Y, Vec3::Z, Vec3::X] {
         bench.apply([ArmEdit::SetHand(hand * 300.0)]);
     }
@@ -280,13 +281,13 @@ fn k_keys_the_channels_of_the_pose_mode() {
     let keyed = |bench: &Bench| -> Vec<Channel> {
         bench.session().document().keys.tracks().map(|(channel, _)| channel).collect()
     };
-    assert_eq!(keyed(&bench), [Channel::Twist, Channel::Pin, Channel::Pinned]);
+    assert_eq!(keyed(&bench), [channels::PIN, channels::PINNED, channels::TWIST]);
     bench.apply([
-        Action::from(TransactionAction::Undo),
+        Step::from(TransactionAction::Undo),
         ArmEdit::SwitchPoseMode(PoseMode::Angles).into(),
     ]);
     bench.key(egui::Key::K);
-    assert_eq!(keyed(&bench), [Channel::Influence, Channel::Shoulder, Channel::Bend]);
+    assert_eq!(keyed(&bench), [channels::SHOULDER, channels::BEND, channels::INFLUENCE]);
 }
 
 #[test]
@@ -294,7 +295,7 @@ fn the_panels_in_pole_and_fk_mode_look_as_they_did() {
     let mut results = SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut bench = posing([
-            Action::from(ShellAction::SetTheme(theme)),
+            Step::from(ShellAction::SetTheme(theme)),
             ArmEdit::SetTwistReference(TwistReferenceKind::Pole).into(),
         ]);
         let options = snapshot_options(600);

@@ -11,10 +11,6 @@ use ik_arm::session::{BakeAction, BakeJob, Dialog, Effect, FileAction};
 
 use crate::bench::Bench;
 
-fn opened(example: &str) -> Bench {
-    Bench::example(example)
-}
-
 /// The snake, which follows a path, with the bake dialog open.
 fn asked() -> Bench {
     let document = Box::new(crate::common::documents::keyed_snake());
@@ -40,18 +36,6 @@ fn started(bench: &mut Bench) -> (Bake, BakeJob) {
     let job = BakeJob { progress: Arc::new(Progress::default()) };
     bench.apply_moving([BakeAction::Started(job.clone())]);
     (settings, job)
-}
-
-#[test]
-fn the_arm_cannot_be_baked_and_the_menu_says_why() {
-    let mut bench = opened("arm");
-    bench.click(Role::Button, "Edit");
-    bench.settle();
-    let item = bench.rect(Role::Button, "Bake to keys…").center();
-    assert!(bench.node(Role::Button, "Bake to keys…").accesskit_node().is_disabled());
-    bench.move_to(item);
-    bench.wait(1.0);
-    assert!(bench.says("Show a skeleton: the arm is not baked"));
 }
 
 #[test]
@@ -102,7 +86,7 @@ fn a_running_bake_shows_its_progress_and_its_keys_are_one_undo_step() {
     assert_eq!(bench.session().shell().dialog(), None);
     assert!(bench.says(&message), "{message}");
     let after = bench.session().document();
-    assert_eq!(after.skeleton_rig.follow_paths, []);
+    assert_eq!(after.rig.follow_paths, []);
     assert!(after.skeleton().ids().all(|joint| after.keys.has(Channel::Rotation(joint))));
     assert_eq!(bench.session().history().undo_label(), Some("Bake to keys"));
     bench.choose(&["Edit", "Undo Bake to keys"]);

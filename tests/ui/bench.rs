@@ -1,5 +1,6 @@
 //! A test bench: runs the panels as `src/app/window.rs` does, with simulated time and no window.
 
+use crate::common::arm::{ArmSession, Step};
 use std::f32::consts::TAU;
 use std::time::Duration;
 
@@ -11,7 +12,7 @@ use egui::{
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node, SnapshotOptions, SnapshotResults};
 use glam::{Quat, Vec3};
-use ik_arm::document::{Ray, RigKind, Theme};
+use ik_arm::document::{Ray, Theme};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
     Action, Actions, Effect, Grip, GripRing, PanelTab, Preferences, SelectAction, Session,
@@ -102,7 +103,7 @@ impl Bench {
     }
 
     /// With a session that some actions have changed.
-    pub fn after(actions: impl IntoIterator<Item = impl Into<Action>>) -> Self {
+    pub fn after(actions: impl IntoIterator<Item = impl Into<Step>>) -> Self {
         let mut bench = Self::new();
         bench.apply(actions);
         bench
@@ -113,9 +114,9 @@ impl Bench {
         Self::after([open_example(name)])
     }
 
-    pub fn apply(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
+    pub fn apply(&mut self, actions: impl IntoIterator<Item = impl Into<Step>>) {
         for action in actions {
-            self.harness.state_mut().session.apply(action);
+            action.into().apply(&mut self.harness.state_mut().session);
         }
         self.settle();
     }
@@ -126,9 +127,9 @@ impl Bench {
     }
 
     /// Like [`Self::apply`], for actions that start movement: does not wait for its end.
-    pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = impl Into<Action>>) {
+    pub fn apply_moving(&mut self, actions: impl IntoIterator<Item = impl Into<Step>>) {
         for action in actions {
-            self.harness.state_mut().session.apply(action);
+            action.into().apply(&mut self.harness.state_mut().session);
         }
         self.frame([]);
     }
@@ -288,8 +289,7 @@ impl Bench {
     /// Presses at a place of a ring of the selection where that takes `grip`, and returns the place
     /// at which the mouse has turned the ring by an angle in radians. The button stays down.
     pub fn take_ring(&mut self, grip: Grip, ring: GripRing, radius: f32, by: f32) -> Pos2 {
-        let joints = SelectAction::Joints(self.session().selection().joints().to_vec());
-        let selection = [joints, SelectAction::ArmJoint(self.session().selection().arm_joint())];
+        let selection = [SelectAction::Joints(self.session().selection().joints().to_vec())];
         for at in self.around(ring, radius) {
             let facing = self.ray(at).direction.normalize().dot(ring.axis).abs();
             self.move_to(at);
@@ -404,9 +404,10 @@ impl Bench {
 
     fn has_note(&self) -> bool {
         let session = self.session();
-        let rig = session.skeleton_rig();
-        let selected = session.selection().active().filter(|_| session.rig() == RigKind::Skeleton);
-        selected.is_some_and(|joint| rig.target_of_end(joint).is_some())
+        let rig = session.rig();
+        let selected = session.selection().active();
+        rig.sole_limb().is_none()
+            && selected.is_some_and(|joint| rig.target_of_end(joint).is_some())
     }
 
     pub fn click_at(&mut self, at: Pos2) {

@@ -1,16 +1,14 @@
 //! All controls of the window in one go: each has a tooltip that starts with a verb, and Tab
 //! reaches each in reading order.
 
+use crate::common::arm::{ArmEdit, Step, channels};
 use std::collections::BTreeSet;
 
 use egui::accesskit::{Action as Ask, Role};
 use egui::{Key, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::NodeT as _;
-use ik_arm::document::{Channel, RigKind};
-use ik_arm::session::{
-    Action, ArmEdit, KeysEdit, PanelTab, PlaybackAction, SelectAction, ViewAction,
-};
+use ik_arm::session::{Action, KeysEdit, PanelTab, PlaybackAction, SelectAction, ViewAction};
 
 use crate::bench::Bench;
 use crate::common::documents::open_example;
@@ -21,12 +19,12 @@ const MENUS: [&str; 5] = ["File", "Edit", "View", "Examples", "Help"];
 const TALL: Vec2 = vec2(1280.0, 2400.0);
 
 /// First words of tooltips.
-const VERBS: [&str; 47] = [
-    "Add", "Apply", "Bend", "Blend", "Change", "Choose", "Clear", "Click", "Colour", "Compare",
-    "Delete", "Drag", "Enable", "End", "Fix", "Give", "Go", "Hide", "Iterate", "Keep", "Key",
-    "Let", "Limit", "Make", "Measure", "Move", "Play", "Pose", "Raise", "Remove", "Rename",
-    "Repeat", "Reset", "Restart", "Rotate", "Run", "Select", "Set", "Show", "Slow", "Solve",
-    "Stop", "Turn", "Use", "View", "Weigh", "Write",
+const VERBS: [&str; 50] = [
+    "Add", "Apply", "Begin", "Bend", "Blend", "Change", "Choose", "Clear", "Click", "Colour",
+    "Compare", "Delete", "Drag", "Draw", "Enable", "End", "Fix", "Give", "Go", "Hide", "Iterate",
+    "Keep", "Key", "Let", "Limit", "Make", "Measure", "Move", "Play", "Pose", "Raise", "Remove",
+    "Rename", "Repeat", "Reset", "Restart", "Rotate", "Run", "Select", "Set", "Show", "Slow",
+    "Solve", "Stop", "Turn", "Use", "View", "Watch", "Weigh", "Write",
 ];
 
 #[derive(Clone, Debug, PartialEq)]
@@ -87,12 +85,12 @@ fn example(name: &str) -> Bench {
 
 /// The arm with every section unfolded, one bench for each page of the right panel.
 fn arms() -> Vec<Bench> {
-    let pages = PanelTab::of(RigKind::Arm).iter().map(|page| {
+    let pages = PanelTab::ALL[..6].iter().map(|page| {
         let mut bench = tall();
         bench.toggle(&["FK and IK", "Soft limits", "Hand orientation", "Display"]);
         bench.apply([
-            Action::from(ArmEdit::SetInfluence(0.5)),
-            KeysEdit::Key(vec![Channel::Hand]).into(),
+            Step::from(ArmEdit::SetInfluence(0.5)),
+            KeysEdit::Key(vec![channels::HAND]).into(),
             // Hides the note about auto-key, which is over the view.
             PlaybackAction::SetAutoKey(true).into(),
         ]);
@@ -105,11 +103,11 @@ fn arms() -> Vec<Bench> {
 /// Skeletons with limb targets, whole-body targets, a path and a skin, and the graph editor.
 fn skeletons() -> Vec<Bench> {
     let mut benches = Vec::new();
-    let pages = PanelTab::of(RigKind::Skeleton);
-    for (name, pages) in [("human", pages), ("ten-joints", &pages[..1]), ("snake", &pages[..1])] {
+    let (all, own) = (&PanelTab::ALL[..], &PanelTab::ALL[3..4]);
+    for (name, pages) in [("human", all), ("ten-joints", own), ("snake", own)] {
         for page in pages {
             let mut bench = example(name);
-            let rig = bench.session().skeleton_rig();
+            let rig = bench.session().rig();
             let target = rig.targets.last().map(|target| target.joint);
             let id = target.or(rig.skeleton.iter().last().map(|(id, _)| id)).expect("a joint");
             bench.apply([

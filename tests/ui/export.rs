@@ -1,16 +1,14 @@
 //! The export dialog.
 
+use crate::common::arm::{ArmEdit, Step, channels};
 use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::Channel;
 use ik_arm::io::{self, Cancelled, Progress};
-use ik_arm::session::{
-    Action, ArmEdit, Effect, Export, ExportJob, FileAction, KeysEdit, PlaybackAction,
-};
+use ik_arm::session::{Effect, Export, ExportJob, FileAction, KeysEdit, PlaybackAction};
 
 use crate::bench::Bench;
 
@@ -92,11 +90,11 @@ fn a_document_with_keys_survives_saving_and_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("saved.json");
     let mut bench = Bench::after([
-        Action::from(ArmEdit::SetHand(Vec3::new(100.0, 200.0, 50.0))),
-        KeysEdit::Key(vec![Channel::Hand, Channel::Twist]).into(),
+        Step::from(ArmEdit::SetHand(Vec3::new(100.0, 200.0, 50.0))),
+        KeysEdit::Key(vec![channels::HAND, channels::TWIST]).into(),
         PlaybackAction::SetTime(1.5).into(),
         ArmEdit::SetHand(Vec3::new(-100.0, 200.0, 50.0)).into(),
-        KeysEdit::Key(vec![Channel::Hand]).into(),
+        KeysEdit::Key(vec![channels::HAND]).into(),
     ]);
     bench.key_with(Modifiers::COMMAND, Key::S);
     bench.settle();

@@ -44,7 +44,7 @@ fn continuing_from_frame_to_frame_removes_the_pops() {
     let mut bench = jumping();
     inspect(&mut bench);
     bench.click(Role::Button, "Continue from frame to frame");
-    assert!(bench.session().document().skeleton_rig.is_tracked);
+    assert!(bench.session().document().rig.is_tracked);
     inspect(&mut bench);
     assert!(bench.says("No pops: joints move as smoothly as their targets."));
 }
@@ -65,7 +65,7 @@ fn nothing_is_inspected_during_a_drag_and_an_old_result_is_not_shown() {
     let mut bench = jumping();
     inspect(&mut bench);
     bench.apply([TransactionAction::Begin]);
-    let target = bench.session().skeleton_rig().targets[0];
+    let target = bench.session().rig().targets[0];
     let moved = Target { home: target.home + Vec3::X * 0.1, ..target };
     bench.apply([TargetEdit::SetTarget(moved)]);
     assert!(bench.session().next_inspection().is_none(), "a drag goes on");
@@ -107,7 +107,7 @@ fn ticks_of_the_ruler_say_why() {
 #[test]
 fn the_solver_page_switches_tracking_and_resets_the_posture() {
     let mut bench = Bench::example("ten-joints");
-    let target = bench.session().skeleton_rig().targets[0];
+    let target = bench.session().rig().targets[0];
     let posing = Target { influence: 1.0, ..target };
     bench.apply([TargetEdit::SetTarget(posing)]);
     let fresh = bench.session().skeleton_pose().clone();
@@ -120,12 +120,12 @@ fn the_solver_page_switches_tracking_and_resets_the_posture() {
     bench.apply([TargetEdit::SetTarget(posing)]);
     bench.apply([TransactionAction::Commit]);
     bench.click(Role::Button, "Reset posture");
-    assert!(bench.session().document().skeleton_rig.posture.is_none());
+    assert!(bench.session().document().rig.posture.is_none());
     assert_eq!(*bench.session().skeleton_pose(), fresh, "the pose that is solved from FK");
     bench.click(Role::CheckBox, "Each frame by itself");
-    assert!(!bench.session().document().skeleton_rig.is_tracked);
+    assert!(!bench.session().document().rig.is_tracked);
     bench.apply([TransactionAction::Undo]);
-    assert!(bench.session().document().skeleton_rig.is_tracked);
+    assert!(bench.session().document().rig.is_tracked);
 }
 
 #[test]

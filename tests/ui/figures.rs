@@ -1,11 +1,12 @@
 //! The arm's figures and formulas: their numbers, and the lines that light up in the view.
 
+use crate::common::arm::{ArmEdit, ArmSession};
 use egui::accesskit::Role;
 use egui::{Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::Overlay;
-use ik_arm::session::{ArmEdit, LimbFigure, PanelTab};
+use ik_arm::session::{LimbFigure, PanelTab};
 
 use crate::bench::{Bench, SMALL};
 use crate::common::all_cases;
@@ -192,7 +193,7 @@ fn the_law_of_cosines_is_filled_in_with_the_lengths_of_the_pose() {
 fn the_error_of_the_cosine_grows_near_the_straight_arm_and_the_solvers_does_not() {
     for distance in [499.99_f32, 499.999, 100.001] {
         let bench = Bench::after([ArmEdit::SetHand(Vec3::new(distance, 0.0, 0.0))]);
-        let pose = *bench.session().pose();
+        let pose = bench.session().pose();
         let exact = {
             // Heron's formula in f64.
             let (a, b, c) = (200.0, f64::from(pose.distance), 300.0);

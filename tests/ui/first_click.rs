@@ -25,52 +25,19 @@ fn ends(bench: &Bench) -> Vec<egui::Pos2> {
 
 fn new_skeleton() -> Bench {
     let mut bench = Bench::new();
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     bench
 }
 
 #[test]
-fn the_skeleton_switch_of_a_new_window_shows_the_human_framed() {
+fn a_new_figure_is_shown_framed_and_large() {
     let mut bench = Bench::new();
-    let arm_view = *bench.session().camera();
-    bench.click(Role::Button, "Skeleton");
+    bench.choose(&["File", "New", "Figure"]);
     assert!(names(&bench).contains(&"head".to_owned()));
     let ends = ends(&bench);
     let box_of_human = egui::Rect::from_points(&ends);
     assert!(bench.viewport().contains_rect(box_of_human), "all of it is seen");
     assert!(box_of_human.height() > 0.4 * bench.viewport().height(), "and it is large");
-
-    let view = bench.session().camera().orbited(0.5, 0.1);
-    bench.apply([ViewAction::SetCamera(view)]);
-    bench.click(Role::Button, "Arm");
-    assert_eq!(*bench.session().camera(), arm_view, "the arm keeps its camera");
-    bench.click(Role::Button, "Skeleton");
-    assert_eq!(*bench.session().camera(), view, "and so is the Human");
-}
-
-#[test]
-fn undoing_a_switch_brings_back_its_view_too() {
-    let mut bench = Bench::new();
-    let arm_view = *bench.session().camera();
-    bench.click(Role::Button, "Skeleton");
-    let view = *bench.session().camera();
-    bench.apply([TransactionAction::Undo]);
-    assert_eq!(*bench.session().camera(), arm_view);
-    bench.apply([TransactionAction::Redo]);
-    assert_eq!(*bench.session().camera(), view);
-}
-
-#[test]
-fn each_rig_keeps_its_view_in_a_file() {
-    let mut bench = Bench::new();
-    bench.click(Role::Button, "Skeleton");
-    let document = bench.session().document();
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("views.json");
-    ik_arm::io::save(document, &path).expect("saved");
-    let opened = ik_arm::io::open(&path, &ik_arm::io::OpenOptions::default()).expect("opened");
-    assert_eq!(&opened.document, document);
-    assert!(opened.document.other_rig_camera.is_some());
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use ik_arm::document::{RigKind, Theme};
+use ik_arm::document::Theme;
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::session::{DisplayEdit, PanelTab, Preferences, SelectAction, SolverEdit};
+use ik_arm::session::{FileAction, PanelTab, Preferences, SelectAction, SolverEdit};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::common::documents::open_example;
@@ -53,7 +53,7 @@ fn a_term_of_the_solver_explains_itself_and_shows_its_step() {
         show_me(&mut bench, label, meaning, 11);
     }
     let mut bench = Bench::first(LARGE, Preferences::default());
-    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
+    bench.apply([FileAction::NewFigure]);
     let hand = bench.joint("left_hand");
     bench.apply([SelectAction::Joints(vec![hand])]);
     bench.reveal(Role::Slider, "Target influence");

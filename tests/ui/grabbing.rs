@@ -1,11 +1,12 @@
 //! Bodies in the viewport: what lights up under the mouse can be dragged, and nothing else.
 
+use crate::common::arm::{ArmEdit, ArmPosed, ArmSession};
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use glam::Vec3;
-use ik_arm::document::{Overlay, RigKind, Target};
+use ik_arm::document::{Overlay, Target};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    ArmEdit, DisplayEdit, Drag, Grip, GripRing, PoseMode, SelectAction, SkinEdit, TargetEdit,
+    DisplayEdit, Drag, Grip, GripRing, PoseMode, SelectAction, SkinEdit, TargetEdit,
     TransactionAction,
 };
 
@@ -34,7 +35,7 @@ fn middle(bench: &Bench, name: &str) -> Pos2 {
 }
 
 fn home(bench: &Bench, joint_with_target: &str) -> Vec3 {
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     rig.targets[rig.target(bench.joint(joint_with_target)).expect("a target")].home
 }
 
@@ -196,9 +197,9 @@ fn a_segment_without_a_target_poses_the_joints_above_it() {
 #[test]
 fn bones_that_a_target_poses_alone_drag_the_target() {
     let mut bench = Bench::example("two-targets");
-    let target = bench.session().skeleton_rig().targets[0];
+    let target = bench.session().rig().targets[0];
     bench.apply([TargetEdit::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     let bone = rig.skeleton[target.joint].parent.expect("a bone above it");
     let (target, bone) = (target.joint, name(&bench, bone));
     let at = middle(&bench, &bone);
@@ -213,7 +214,7 @@ fn bones_that_a_target_poses_alone_drag_the_target() {
 fn hidden_points_of_joints_take_no_press_from_the_skin() {
     let mut bench = human();
     let pose = bench.session().skeleton_pose().clone();
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     let targets: Vec<Pos2> = rig.targets.iter().map(|it| bench.on_screen(it.home)).collect();
     let mut on_skin = 0;
     for joint in pose.ids() {
@@ -245,13 +246,10 @@ fn hidden_points_of_joints_take_no_press_from_the_skin() {
 
 #[test]
 fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
-    for rig in [RigKind::Arm, RigKind::Skeleton] {
-        let mut bench = human();
-        bench.apply([DisplayEdit::ShowRig(rig)]);
-        let at = match rig {
-            RigKind::Arm => limb_place(&bench, Limb::Lower, 0.5),
-            RigKind::Skeleton => middle(&bench, "chest"),
-        };
+    for is_arm in [true, false] {
+        let mut bench = if is_arm { Bench::new() } else { human() };
+        let at =
+            if is_arm { limb_place(&bench, Limb::Lower, 0.5) } else { middle(&bench, "chest") };
         let before = bench.session().document().clone();
         for (button, modifiers) in [
             (LEFT, Modifiers::ALT),
@@ -261,13 +259,12 @@ fn alt_and_the_other_buttons_move_the_view_over_bodies_too() {
             bench.move_to(at);
             bench.hold(modifiers);
             bench.press(button);
-            assert!(bench.session().view().drag().is_some(), "{rig:?} {button:?}");
+            assert!(bench.session().view().drag().is_some(), "{is_arm} {button:?}");
             assert!(bench.session().history().drag().is_none());
             bench.release(button);
             bench.hold(Modifiers::NONE);
         }
-        assert_eq!(bench.session().document().skeleton_rig, before.skeleton_rig);
-        assert_eq!(bench.session().document().arm, before.arm);
+        assert_eq!(bench.session().document().rig, before.rig);
     }
 }
 
@@ -294,7 +291,7 @@ fn limb_place(bench: &Bench, limb: Limb, part: f32) -> Pos2 {
 /// A point of the fingers, on screen.
 fn fingers(bench: &Bench) -> Pos2 {
     let (arm, pose) = (bench.session().arm(), bench.session().pose());
-    let forwards = arm.hand_rotation(pose).x_axis.as_vec3();
+    let forwards = bench.session().posed().hand_rotation().x_axis.as_vec3();
     bench.on_screen(arm.root + pose.hand + 60.0 * forwards)
 }
 
@@ -314,19 +311,21 @@ fn a_limb_of_the_arm_turns_the_elbow_about_the_pointer_under_the_mouse() {
             let mut bench = Bench::new();
             let from = limb_point(&bench, limb, part);
             let hand = bench.session().pose().hand;
-            let ring = GripRing::of_arm(bench.session().posed(), Grip::Twist).expect("a ring");
+            let ring = GripRing::of_twist(&bench.session().posed().arm_frames()).expect("a ring");
             let turn = glam::Quat::from_axis_angle(ring.axis, radians);
             let to = bench.on_screen(turn * from);
             let from = bench.on_screen(from);
             bench.move_to(from);
-            assert!(bench.says("left drag: turn the elbow"));
+            assert!(bench.says("left drag: drag the limb of hand"));
             bench.drag(LEFT, from, to);
-            assert!(bench.says("Socket twist:"));
+            assert!(bench.says("Pose the limb of hand"));
             bench.release(LEFT);
-            let seen = limb_place(&bench, limb, part);
-            assert!(seen.distance(to) < 0.5, "{limb:?} {part}: {seen} is not at {to}");
+            // A press anywhere on a limb drags the elbow by the way of the mouse.
+            let turned = (bench.session().arm().twist / radians)
+                .rem_euclid(core::f32::consts::TAU / radians.abs());
+            assert!((0.2..1.8).contains(&turned), "{limb:?} {part}: {turned} of {radians}");
             assert!(bench.session().pose().hand.distance(hand) < 1e-3);
-            assert_eq!(bench.session().history().undo_label(), Some("Set Socket twist"));
+            assert_eq!(bench.session().history().undo_label(), Some("Pose joints"));
             bench.apply([TransactionAction::Undo]);
             assert_eq!(
                 (bench.session().arm().twist, bench.session().history().undo_label()),
@@ -341,11 +340,11 @@ fn the_fingers_drag_the_cursor() {
     let mut bench = Bench::new();
     let (at, cursor) = (fingers(&bench), bench.cursor_on_screen());
     bench.move_to(at);
-    assert!(bench.says("left drag: drag the hand"));
+    assert!(bench.says("left drag: drag the target of hand"));
     let by = vec2(22.0, -31.0);
     bench.drag_and_drop(LEFT, at, at + by);
     assert!(bench.cursor_on_screen().distance(cursor + by) < 0.5);
-    assert_eq!(bench.session().history().undo_label(), Some("Move hand"));
+    assert_eq!(bench.session().history().undo_label(), Some("Move target"));
 }
 
 #[test]
@@ -359,10 +358,10 @@ fn a_straight_arm_is_dragged_by_its_cursor() {
 }
 
 #[test]
-fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() {
+fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_takes_the_hand_along() {
     let mut bench = Bench::after([ArmEdit::SwitchPoseMode(PoseMode::Angles)]);
-    let before = *bench.session().arm();
-    let at = limb_place(&bench, Limb::Upper, 0.7);
+    let before = bench.session().arm();
+    let (at, elbow) = (limb_place(&bench, Limb::Upper, 0.7), limb_place(&bench, Limb::Upper, 1.0));
     let to = at + vec2(40.0, 15.0);
     bench.drag(LEFT, at, to);
     assert!(bench.says("Upper limb"));
@@ -370,20 +369,19 @@ fn in_fk_the_upper_limb_turns_the_shoulder_and_the_lower_limb_bends_the_elbow() 
     let (fk, was) = (bench.session().arm().fk, before.fk);
     assert!(fk.shoulder.distance(was.shoulder) > 0.05, "{}", fk.shoulder);
     assert_eq!((fk.bend, fk.stretch), (was.bend, was.stretch));
-    let seen = (bench.on_screen(bench.session().arm().root) - limb_place(&bench, Limb::Upper, 0.7))
-        .normalized();
-    let asked = (bench.on_screen(bench.session().arm().root) - to).normalized();
-    assert!(seen.dot(asked) > 0.999, "the limb points at the mouse: {seen} and {asked}");
-    assert_eq!(bench.session().history().undo_label(), Some("Turn shoulder"));
+    let seen = (limb_place(&bench, Limb::Upper, 1.0) - elbow).normalized();
+    let asked = (to - at).normalized();
+    assert!(seen.dot(asked) > 0.9, "the elbow goes as the mouse does: {seen} and {asked}");
+    assert_eq!(bench.session().history().undo_label(), Some("Pose joints"));
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(bench.session().arm(), &before);
+    assert_eq!(&bench.session().arm(), &before);
 
     let at = limb_place(&bench, Limb::Lower, 0.6);
+    let hand = limb_place(&bench, Limb::Lower, 1.0);
     bench.drag_and_drop(LEFT, at, at + vec2(10.0, -40.0));
-    let (fk, was) = (bench.session().arm().fk, before.fk);
-    assert!((fk.bend - was.bend).abs() > 0.05);
-    assert_eq!(fk.shoulder, was.shoulder);
-    assert_eq!(bench.session().history().undo_label(), Some("Bend elbow"));
+    let moved = limb_place(&bench, Limb::Lower, 1.0) - hand;
+    assert!(moved.normalized().dot(vec2(10.0, -40.0).normalized()) > 0.9, "{moved}");
+    assert_eq!(bench.session().history().undo_label(), Some("Pose joints"));
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! The graph editor: keys and tangents dragged, interpolation chosen.
 
+use crate::common::arm::{ArmEdit, ArmSession, Step, channels};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::NodeT as _;
-use ik_arm::document::{Channel, RigKind};
+use ik_arm::document::Channel;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::spline::{Interpolation, Knot};
 use ik_arm::session::{
-    Action, ArmEdit, DisplayEdit, KeysEdit, PlaybackAction, SelectAction, TransactionAction,
-    ViewAction,
+    Action, FileAction, KeysEdit, PlaybackAction, SelectAction, TransactionAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE};
@@ -24,9 +24,9 @@ fn graph() -> Bench {
     let mut bench = Bench::with_timeline(LARGE);
     for (time, degrees) in KEYS {
         bench.apply([
-            Action::from(PlaybackAction::SetTime(time)),
+            Step::from(PlaybackAction::SetTime(time)),
             ArmEdit::SetTwist(degrees.to_radians()).into(),
-            KeysEdit::Key(vec![Channel::Twist]).into(),
+            KeysEdit::Key(vec![channels::TWIST]).into(),
         ]);
     }
     bench.apply([ViewAction::ShowGraphEditor(true)]);
@@ -37,7 +37,7 @@ fn graph() -> Bench {
 /// Screen position of a time and a value in degrees, with the room that the plot leaves above and
 /// below its curves.
 fn place(bench: &Bench, time: f64, degrees: f32) -> Pos2 {
-    let area = bench.rect(Role::Image, "Curves of Socket twist");
+    let area = bench.rect(Role::Image, "Curves of hand · Socket twist");
     let seconds = bench.session().document().timeline.duration();
     let (low, high) = (-0.12 * 60.0, 1.12 * 60.0);
     // The dope sheet's scale: the timeline with a margin at both sides.
@@ -49,17 +49,19 @@ fn place(bench: &Bench, time: f64, degrees: f32) -> Pos2 {
 fn scale(bench: &Bench, time: f64) -> Option<f32> {
     let mut sheet = Bench::with_timeline(LARGE);
     for (time, _) in KEYS {
-        let key = KeysEdit::Key(vec![Channel::Hand]);
+        let key = KeysEdit::Key(vec![channels::HAND]);
         sheet.apply([Action::from(PlaybackAction::SetTime(time)), key.into()]);
     }
-    let x = |time: f64| sheet.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center().x;
+    let x = |time: f64| {
+        sheet.rect(Role::Button, &format!("Key of hand · target at {time:.2} s")).center().x
+    };
     let (a, b) = (x(1.0), x(5.0));
     assert_eq!(sheet.session().document().timeline, bench.session().document().timeline);
     Some(a + (b - a) * ((time - 1.0) / 4.0) as f32)
 }
 
 fn keys(bench: &Bench) -> Vec<Knot<Vec3>> {
-    let track = bench.session().document().keys.track(Channel::Twist).expect("keys");
+    let track = bench.session().document().keys.track(channels::TWIST).expect("keys");
     track.knots().to_vec()
 }
 
@@ -100,12 +102,15 @@ fn shift_keeps_a_drag_to_one_direction_and_esc_cancels_it() {
 fn a_click_selects_and_shift_adds_and_removes() {
     let mut bench = graph();
     bench.click_at(place(&bench, 3.0, 60.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::TWIST, 3.0)]);
     bench.hold(Modifiers::SHIFT);
     bench.click_at(place(&bench, 5.0, 0.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0), (Channel::Twist, 5.0)]);
+    assert_eq!(
+        bench.session().selection().keys(),
+        [(channels::TWIST, 3.0), (channels::TWIST, 5.0)]
+    );
     bench.click_at(place(&bench, 5.0, 0.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::TWIST, 3.0)]);
 }
 
 #[test]
@@ -148,7 +153,7 @@ fn the_context_menu_chooses_the_interpolation_of_the_selected_keys() {
         bench.press(RIGHT);
         bench.release(RIGHT);
         bench.settle();
-        assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 3.0)], "selects it");
+        assert_eq!(bench.session().selection().keys(), [(channels::TWIST, 3.0)], "selects it");
         bench.click(Role::Button, interpolation.title());
         assert_eq!(keys(&bench)[1].interpolation, interpolation);
         bench.apply([PlaybackAction::SetTime(4.0)]);
@@ -174,7 +179,7 @@ fn slerp_is_offered_for_joints_alone() {
     let key = (Channel::Rotation(JointId::new(0)), 1.0);
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([
-        Action::from(DisplayEdit::ShowRig(RigKind::Skeleton)),
+        Step::from(FileAction::NewFigure),
         PlaybackAction::SetTime(1.0).into(),
         KeysEdit::Key(vec![key.0]).into(),
         SelectAction::Keys(vec![key]).into(),
@@ -188,7 +193,7 @@ fn slerp_is_offered_for_joints_alone() {
 #[test]
 fn copied_and_moved_keys_keep_their_shape() {
     let mut bench = graph();
-    let key = (Channel::Twist, 3.0);
+    let key = (channels::TWIST, 3.0);
     bench.apply([KeysEdit::SetInterpolation(vec![key], Interpolation::Step)]);
     bench.apply([Action::from(SelectAction::Keys(vec![key])), SelectAction::CopyKeys.into()]);
     bench.apply([Action::from(PlaybackAction::SetTime(7.0)), KeysEdit::PasteKeys.into()]);
@@ -203,9 +208,9 @@ fn a_hold_between_two_equal_keys_holds_and_catmull_rom_is_one_choice_away() {
     let mut bench = graph();
     for (time, degrees) in [(1.0, 90.0_f32), (3.0, 177.0), (5.0, 177.0), (7.0, 90.0)] {
         bench.apply([
-            Action::from(PlaybackAction::SetTime(time)),
+            Step::from(PlaybackAction::SetTime(time)),
             ArmEdit::SetTwist(degrees.to_radians()).into(),
-            KeysEdit::Key(vec![Channel::Twist]).into(),
+            KeysEdit::Key(vec![channels::TWIST]).into(),
         ]);
     }
     let between = |bench: &mut Bench| {
@@ -214,9 +219,9 @@ fn a_hold_between_two_equal_keys_holds_and_catmull_rom_is_one_choice_away() {
     };
     assert!((between(&mut bench) - 177.0).abs() < 1e-3);
     bench.apply([SelectAction::Keys(
-        keys(&bench).iter().map(|it| (Channel::Twist, it.time)).collect(),
+        keys(&bench).iter().map(|it| (channels::TWIST, it.time)).collect(),
     )]);
-    let area = bench.rect(Role::Image, "Curves of Socket twist");
+    let area = bench.rect(Role::Image, "Curves of hand · Socket twist");
     bench.move_to(area.center());
     bench.press(RIGHT);
     bench.release(RIGHT);
@@ -229,7 +234,7 @@ fn a_hold_between_two_equal_keys_holds_and_catmull_rom_is_one_choice_away() {
 #[test]
 fn switches_have_no_curve_to_choose() {
     let mut bench = graph();
-    let key = (Channel::Pinned, 1.0);
+    let key = (channels::PINNED, 1.0);
     bench.apply([
         Action::from(PlaybackAction::SetTime(1.0)),
         KeysEdit::Key(vec![key.0]).into(),
@@ -237,7 +242,7 @@ fn switches_have_no_curve_to_choose() {
     ]);
     let set = bench.session().document().keys.key(key.0, key.1).expect("a key");
     assert_eq!(set.interpolation, Interpolation::default());
-    let area = bench.rect(Role::Image, "Curves of Socket twist, Pinned to world");
+    let area = bench.rect(Role::Image, "Curves of hand · pinned to world, hand · Socket twist");
     bench.move_to(area.center());
     bench.press(RIGHT);
     bench.release(RIGHT);
@@ -249,7 +254,7 @@ fn switches_have_no_curve_to_choose() {
 /// names of the two joints.
 fn figure() -> (Bench, [String; 2]) {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.apply([Action::from(DisplayEdit::ShowRig(RigKind::Skeleton))]);
+    bench.apply([Step::from(FileAction::NewFigure)]);
     let [one, other] = [0, 1].map(JointId::new);
     for time in [1.0, 3.0] {
         bench.apply([
@@ -267,7 +272,7 @@ fn figure() -> (Bench, [String; 2]) {
         SelectAction::Joints(Vec::new()).into(),
         SelectAction::Channels(Vec::new()).into(),
     ]);
-    let skeleton = &bench.session().skeleton_rig().skeleton;
+    let skeleton = &bench.session().rig().skeleton;
     let names = [one, other].map(|joint| skeleton[joint].name.clone());
     (bench, names)
 }
@@ -326,7 +331,7 @@ fn degrees_are_at_the_left_and_lengths_at_the_right_each_with_its_unit() {
     assert!(bench.shows(Role::Label, "Axis in degrees (°)"));
     assert!(!bench.shows(Role::Label, "Axis in metres (m)"));
     let mut arm = graph();
-    arm.apply([Action::from(KeysEdit::Key(vec![Channel::Hand]))]);
+    arm.apply([Action::from(KeysEdit::Key(vec![channels::HAND]))]);
     assert!(
         arm.shows(Role::Label, "Axis in millimetres (mm)"),
         "a unit of the arm is a millimetre"
@@ -373,9 +378,9 @@ fn the_wheel_alone_zooms_the_time_and_keeps_the_values() {
     // The key at 5 s is farther away from the one under the mouse.
     let far =
         place(&bench, 3.0, 60.0) + 1.44 * (place(&bench, 5.0, 60.0) - place(&bench, 3.0, 60.0));
-    let plot = bench.rect(Role::Image, "Curves of Socket twist");
+    let plot = bench.rect(Role::Image, "Curves of hand · Socket twist");
     let low = place(&bench, 5.0, 0.0).y;
     assert!(plot.contains(pos2(far.x, low)), "on screen");
     bench.click_at(pos2(far.x, low));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Twist, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::TWIST, 5.0)]);
 }

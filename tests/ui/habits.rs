@@ -1,16 +1,16 @@
 //! First attempts of users of other 3D programs.
 
+use crate::common::arm::{Arm, ArmEdit, ArmSession};
 use std::path::PathBuf;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Vec2, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Arm, RigKind};
+
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    ArmEdit, Dialog, DisplayEdit, FileAction, JointEdit, Preferences, SelectAction, ShellAction,
-    TransactionAction,
+    Dialog, FileAction, JointEdit, Preferences, SelectAction, ShellAction, TransactionAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -24,7 +24,7 @@ fn first(size: Vec2) -> Bench {
 
 fn human(size: Vec2) -> Bench {
     let mut bench = first(size);
-    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
+    bench.apply([FileAction::NewFigure]);
     bench
 }
 
@@ -103,7 +103,7 @@ fn a_value_that_is_not_understood_is_refused_with_a_reason() {
     for typed in ["2*", "1/0", "abc", "3 4", "(1", "nan", "1e99"] {
         let mut bench = first(LARGE);
         bench.enter("Hand x", typed);
-        assert_eq!(bench.session().arm(), &Arm::default(), "{typed}");
+        assert_eq!(&bench.session().arm(), &Arm::default(), "{typed}");
         assert!(bench.session().shell().has_failed(), "{typed}");
         assert!(bench.says("The value must be a number or an expression such as 2*50"), "{typed}");
     }
@@ -159,16 +159,17 @@ fn new_opens_the_arm_and_asks_before_changes_are_lost() {
     bench.settle();
     assert!(matches!(bench.session().shell().dialog(), Some(Dialog::Unsaved { .. })));
     bench.click(Role::Button, "Don't save");
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
     assert!(!bench.session().history().is_unsaved());
 
     bench.apply([open_example("snake")]);
-    bench.choose(&["File", "New"]);
-    assert_eq!(bench.session().rig(), RigKind::Arm);
+    bench.choose(&["File", "New", "Arm"]);
+    assert!(bench.session().rig().sole_limb().is_some());
     bench.key_with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::N);
     bench.settle();
-    assert_eq!(bench.session().rig(), RigKind::Skeleton);
     assert_eq!(bench.session().skeleton().joints().len(), 1);
+    bench.choose(&["File", "New", "Figure"]);
+    assert_eq!(bench.session().skeleton().joints().len(), 19);
 }
 
 #[test]
@@ -195,7 +196,7 @@ fn ten_points_on_a_rail_move_a_figure_by_less_than_an_eighth_of_its_size() {
     let rail = bench.rect(Role::Slider, "Skeleton y").center();
     bench.drag_and_drop(LEFT, rail, rail + vec2(10.0, 0.0));
     let moved = Vec3::from(bench.session().skeleton().transform().translation).y;
-    let size = bench.session().skeleton_rig().reach();
+    let size = bench.session().rig().reach();
     assert!(moved > 0.0 && moved < size / 8.0, "{moved} of {size}");
 }
 

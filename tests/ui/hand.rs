@@ -1,10 +1,11 @@
 //! The hand, dragged in the viewport.
 
+use crate::common::arm::{ArmEdit, ArmSession, Step};
 use egui::{CursorIcon, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Camera};
 use ik_arm::kinematics::two_bone::Reach;
-use ik_arm::session::{Action, ArmEdit, PointDrag, PointHandle, ViewAction};
+use ik_arm::session::{PointDrag, PointHandle, ViewAction};
 
 use crate::bench::{Bench, SMALL, bits};
 
@@ -58,7 +59,7 @@ fn the_hand_is_under_the_mouse_from_the_first_pixel_to_the_last_also_past_the_li
             bench.move_to(pointer);
             let seen = bench.cursor_on_screen();
             assert!(seen.distance(pointer) < 0.05, "{seen} is not under {pointer}");
-            let pose = *bench.session().pose();
+            let pose = bench.session().pose();
             if pose.reach == Some(Reach::Reached) {
                 let hand = bench.on_screen(bench.session().arm().root + pose.hand);
                 assert!(hand.distance(pointer) < 0.05, "{hand} is not under {pointer}");
@@ -93,7 +94,7 @@ fn a_hand_grabbed_off_its_centre_keeps_its_distance_from_the_mouse() {
 #[test]
 fn a_click_on_the_hand_changes_no_bit() {
     let mut bench = awkward();
-    let before = *bench.session().arm();
+    let before = bench.session().arm();
     let cursor = bench.cursor_on_screen();
     bench.click_at(cursor);
     assert_eq!(bits(bench.hand()), bits(before.cursor_in_root()));
@@ -134,7 +135,7 @@ fn out_of_reach_both_the_hand_and_the_cursor_can_be_dragged() {
     let far = Vec3::new(500.0, 220.0, 300.0);
     for take_cursor in [true, false] {
         let mut bench = Bench::after([
-            Action::from(ArmEdit::SetHand(far)),
+            Step::from(ArmEdit::SetHand(far)),
             ViewAction::GlideTo(Camera { distance: 1800.0, ..Camera::default() }).into(),
         ]);
         let hand = bench.on_screen(bench.session().pose().hand);
@@ -152,16 +153,16 @@ fn out_of_reach_both_the_hand_and_the_cursor_can_be_dragged() {
 fn esc_and_the_right_button_cancel_a_drag() {
     for by_key in [true, false] {
         let mut bench = awkward();
-        let before = *bench.session().arm();
+        let before = bench.session().arm();
         let start = bench.cursor_on_screen();
         bench.drag(LEFT, start, start + vec2(120.0, 90.0));
-        assert_ne!(bench.session().arm(), &before);
+        assert_ne!(&bench.session().arm(), &before);
         if by_key {
             bench.key(Key::Escape);
         } else {
             bench.press(PointerButton::Secondary);
         }
-        assert_eq!(bench.session().arm(), &before, "by key: {by_key}");
+        assert_eq!(&bench.session().arm(), &before, "by key: {by_key}");
         assert!(!bench.session().history().is_editing());
         assert!(bench.says("Cancelled"));
         bench.move_to(start - vec2(50.0, 0.0));
@@ -170,7 +171,7 @@ fn esc_and_the_right_button_cancel_a_drag() {
         }
         bench.release(LEFT);
         bench.move_to(start);
-        assert_eq!(bench.session().arm(), &before);
+        assert_eq!(&bench.session().arm(), &before);
         assert_eq!(bench.session().camera(), &Camera::default());
     }
 }
@@ -178,13 +179,13 @@ fn esc_and_the_right_button_cancel_a_drag() {
 #[test]
 fn a_drag_over_a_panel_goes_on_and_can_be_cancelled_there() {
     let mut bench = awkward();
-    let before = *bench.session().arm();
+    let before = bench.session().arm();
     let start = bench.cursor_on_screen();
     let to = pos2(100.0, 300.0);
     bench.drag(LEFT, start, to);
     assert!(bench.cursor_on_screen().distance(to) < 0.05);
     bench.press(PointerButton::Secondary);
-    assert_eq!(bench.session().arm(), &before);
+    assert_eq!(&bench.session().arm(), &before);
 }
 
 #[test]

@@ -31,7 +31,10 @@ fn keys_lock_an_axis_or_a_plane_and_the_same_key_frees_it() {
                 assert_eq!(kept, (other == axis) == plane, "{expected:?}: {}", bench.hand());
             }
             let name = ["x", "y", "z"][axis];
-            assert!(plane || bench.says(&format!("Move along {name}")), "the status line says so");
+            assert!(
+                plane || bench.says(&format!("Target along {name}")),
+                "the status line says so"
+            );
             bench.key_with(modifiers, key);
             assert_eq!(
                 bench.session().history().point_drag().and_then(PointDrag::constraint),
@@ -122,7 +125,7 @@ fn the_status_line_shows_the_keys_and_the_change_while_the_hand_is_dragged() {
     let start = bench.cursor_on_screen();
     bench.drag(LEFT, start, start + vec2(30.0, 0.0));
     let moved = bench.session().history().point_drag().expect("held").moved();
-    let change = format!("Move freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);
+    let change = format!("Target freely: {:+.1}, {:+.1}, {:+.1}", moved.x, moved.y, moved.z);
     assert!(bench.says(&change), "{change}");
     for keys in ["Shift", "Ctrl", "X Y Z", "Enter", "Esc"] {
         assert!(bench.says(&format!("{change}     Shift precise")) && bench.says(keys), "{keys}");

@@ -1,15 +1,16 @@
 //! Undo, redo, and questions before unsaved changes are lost.
 
+use crate::common::arm::{ArmDocument, ArmEdit, ArmSession, Cursor};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Cursor, Document};
+use ik_arm::document::Document;
 use ik_arm::io::{Example, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::session::{
-    Action, ArmEdit, Dialog, Edit, Effect, FileAction, JointEdit, PathDialog, PlaybackAction,
-    SelectAction, ShellAction, SolverAction, SolverEdit, TransactionAction, ViewAction,
+    Action, Dialog, Edit, Effect, FileAction, JointEdit, PathDialog, PlaybackAction, SelectAction,
+    ShellAction, SolverAction, SolverEdit, TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -35,8 +36,8 @@ fn ctrl_z_undoes_one_step_after_the_other_and_redo_repeats_them() {
         bench.key_with(CTRL, Key::Z);
         assert_eq!((bench.hand(), bench.session().arm().twist), (Vec3::X * 300.0, 0.0));
         bench.key_with(CTRL, Key::Z);
-        assert_eq!(bench.session().document(), &ik_arm::io::new_document());
-        assert!(bench.says("Undid Move hand"));
+        assert_eq!(bench.session().document(), &Document::default());
+        assert!(bench.says("Undid Move target"));
         bench.key_with(CTRL, Key::Z);
         assert!(bench.says("There is nothing to undo"));
         bench.key_with(redo.0, redo.1);
@@ -52,7 +53,7 @@ fn the_edit_menu_names_what_it_would_undo_and_redo() {
     bench.click(Role::Button, "Undo Set Socket twist Ctrl+Z");
     bench.settle();
     menu(&mut bench, "Edit");
-    assert!(bench.shows(Role::Button, "Undo Move hand Ctrl+Z"));
+    assert!(bench.shows(Role::Button, "Undo Move target Ctrl+Z"));
     bench.click(Role::Button, "Redo Set Socket twist Ctrl+Shift+Z");
     bench.settle();
     assert_eq!(bench.session().arm().twist, 1.0);
@@ -72,9 +73,9 @@ fn a_drag_of_the_hand_is_one_step() {
     let mut bench = Bench::new();
     let hand = bench.cursor_on_screen();
     bench.drag_and_drop(PointerButton::Primary, hand, hand + egui::vec2(50.0, 20.0));
-    assert_ne!(bench.session().document(), &ik_arm::io::new_document());
+    assert_ne!(bench.session().document(), &Document::default());
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
 }
 
 #[test]
@@ -82,9 +83,9 @@ fn undo_during_a_drag_cancels_the_drag() {
     let mut bench = Bench::new();
     let hand = bench.cursor_on_screen();
     bench.drag(PointerButton::Primary, hand, hand + egui::vec2(50.0, 0.0));
-    assert_ne!(bench.session().arm(), &Document::default().arm);
+    assert_ne!(bench.session().document().rig, Document::default().rig);
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
     assert!(!bench.session().history().is_editing());
 }
 
@@ -98,10 +99,10 @@ fn a_solver_run_is_no_step_and_applying_its_pose_is_one() {
     assert_eq!(bench.session().document(), &first);
     assert_eq!(bench.session().history().undo_label(), None);
     bench.apply([SolverEdit::ApplyPose]);
-    assert_ne!(bench.session().document().skeleton_rig, first.skeleton_rig);
+    assert_ne!(bench.session().document().rig, first.rig);
     assert_eq!(bench.session().history().undo_label(), Some("Apply pose"));
     bench.key_with(CTRL, Key::Z);
-    assert_eq!(bench.session().document().skeleton_rig, first.skeleton_rig);
+    assert_eq!(bench.session().document().rig, first.rig);
     assert_eq!(bench.session().history().undo_label(), None);
 }
 
@@ -149,7 +150,7 @@ fn hundreds_of_steps_can_be_undone() {
     let steps = (0..900).map(|step| ArmEdit::SetHand(Vec3::new(step as f32, 0.0, 100.0)));
     bench.apply(steps);
     bench.apply((0..900).map(|_| TransactionAction::Undo));
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
 }
 
 #[test]
@@ -157,7 +158,7 @@ fn losing_unsaved_changes_needs_confirmation() {
     let example = Example::find("human").expect("there");
     let opened = FileAction::Opened { document: Box::default(), file: None, contents: None };
     for leaving in
-        [FileAction::Quit, FileAction::NewSkeleton, FileAction::OpenExample(example), opened]
+        [FileAction::Quit, FileAction::NewEmpty, FileAction::OpenExample(example), opened]
     {
         let mut bench = moved();
         let document = bench.session().document().clone();
@@ -258,7 +259,7 @@ fn recent_files_are_offered_again() {
 #[test]
 fn changes_kept_by_an_earlier_run_are_offered_as_unsaved() {
     let mut document = Document::default();
-    document.arm.cursor = Cursor::unpinned(Vec3::Y * 123.0);
+    document.edit_arm(|arm| arm.cursor = Cursor::unpinned(Vec3::Y * 123.0));
     let dialog =
         Dialog::Recover { document: Box::new(document.clone()), file: Some("/a/lost.json".into()) };
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog.clone())]);
@@ -274,6 +275,6 @@ fn changes_kept_by_an_earlier_run_are_offered_as_unsaved() {
 
     let mut bench = Bench::after([ShellAction::OpenDialog(dialog)]);
     bench.click(Role::Button, "Discard");
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
     assert!(bench.session().files().has_settled_recovery());
 }

@@ -10,7 +10,7 @@ use crate::bench::Bench;
 /// The ten-joint chain, solved by a method, after one iteration.
 fn after_a_step(method: Method) -> Bench {
     let mut bench = example("ten-joints");
-    let options = bench.session().skeleton_rig().solver;
+    let options = bench.session().rig().solver;
     bench.apply([SolverEdit::SetSolver(options.with_method(method))]);
     bench.apply([SolverAction::Step]);
     bench.settle();
@@ -191,7 +191,7 @@ fn damping_changes_the_shown_iteration_at_once() {
         gradient.ellipsoids[0].gains(gradient.damping.expect("damping"))[2]
     };
     let before = kept(&bench);
-    let options = bench.session().skeleton_rig().solver;
+    let options = bench.session().rig().solver;
     bench.apply([SolverEdit::SetSolver(options.with_damping(2.0 * options.damping))]);
     bench.settle();
     assert_eq!(shown(&bench), (1, Some(0)));

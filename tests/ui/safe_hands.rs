@@ -1,16 +1,17 @@
 //! Input goes where it is meant: dialogs take the keyboard, keys have the state of the moment when
 //! they were pressed, and view changes are not unsaved changes.
 
+use crate::common::arm::{ArmEdit, Step};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Camera, Overlay, RigKind, Target, Theme};
+use ik_arm::document::{Camera, Document, Overlay, Target, Theme};
 use ik_arm::io::Example;
 use ik_arm::session::{
-    Action, ArmEdit, Dialog, DisplayEdit, DragInput, Edit, Effect, ExportJob, FileAction, Grip,
-    GripRing, JointEdit, PathDialog, SelectAction, ShellAction, SolverAction, SolverState,
-    TargetEdit, TransactionAction, ViewAction,
+    Action, Dialog, DisplayEdit, DragInput, Effect, ExportJob, FileAction, Grip, GripRing,
+    JointEdit, PathDialog, SelectAction, ShellAction, SolverAction, SolverState, TargetEdit,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -186,7 +187,6 @@ fn view_changes_are_not_unsaved_changes() {
         DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true).into(),
         DisplayEdit::ShowOverlay(Overlay::Labels, false).into(),
         ViewAction::ShowCrowd(true).into(),
-        DisplayEdit::ShowRig(RigKind::Skeleton).into(),
         ViewAction::ShowExplain(false).into(),
         ViewAction::SetCamera(Camera::default().orbited(1.0, 0.2)).into(),
     ] {
@@ -202,7 +202,7 @@ fn view_changes_are_not_unsaved_changes() {
 fn an_edit_is_unsaved_whatever_view_changes_come_before_and_after() {
     let mut bench = Bench::after([DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, true)]);
     bench.apply([
-        Edit::from(ArmEdit::SetTwist(0.5)),
+        Step::from(ArmEdit::SetTwist(0.5)),
         DisplayEdit::ShowOverlay(Overlay::SingularityGlobe, false).into(),
     ]);
     assert!(bench.session().history().is_unsaved());
@@ -264,7 +264,7 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
     };
     let tip_to_target = |bench: &Bench| {
         let session = bench.session();
-        let target = session.skeleton_rig().targets[0];
+        let target = session.rig().targets[0];
         session.skeleton_pose().tip(target.joint).distance(target.at(session.playback().time()))
     };
     assert_eq!(status(&bench).state, SolverState::NotReached);
@@ -290,7 +290,7 @@ fn the_solver_panel_and_the_status_line_describe_the_iterate_or_the_evaluated_po
     bench.apply([SolverAction::Reset]);
     assert_eq!(status(&bench).state, SolverState::NotReached, "nothing was applied");
     assert!((status(&bench).error - tip_to_target(&bench)).abs() < 1e-5);
-    let target = bench.session().skeleton_rig().targets[0];
+    let target = bench.session().rig().targets[0];
     bench.apply([TargetEdit::SetTarget(Target { influence: 1.0, ..target })]);
     assert_eq!(status(&bench).state, SolverState::Reached, "the evaluated pose is at the target");
     assert!(bench.shows(Role::Label, "reached"));
@@ -401,7 +401,7 @@ fn saving_as_over_another_file_asks_too() {
 
 /// The bench with a document that was opened from `there`, and changed.
 fn opened_and_changed(there: &std::path::Path) -> Bench {
-    let document = ik_arm::io::new_document();
+    let document = Document::default();
     ik_arm::io::save(&document, there).expect("saved");
     let mut bench = Bench::after([FileAction::Opened {
         document: Box::new(document),

@@ -52,7 +52,7 @@ fn escape_in_a_number_leaves_it_and_the_selection_alone() {
 #[test]
 fn escape_in_a_number_lets_a_running_solver_run() {
     let mut bench = tree();
-    let solver = bench.session().skeleton_rig().solver;
+    let solver = bench.session().rig().solver;
     bench.apply([SolverEdit::SetSolver(solver.with_method(Method::TransposeFixed))]);
     bench.apply_moving([SolverAction::Run(true)]);
     bench.click_at(bench.rect(Role::SpinButton, "Iterations per frame").center());
@@ -89,7 +89,7 @@ fn escape_closes_a_menu_and_leaves_the_selection() {
     bench.choose(&["File"]);
     bench.key(Key::Escape);
     bench.settle();
-    assert!(!bench.says("New skeleton"));
+    assert!(!bench.says("Empty"));
     assert!(!bench.session().selection().joints().is_empty());
 }
 
@@ -97,8 +97,8 @@ fn escape_closes_a_menu_and_leaves_the_selection() {
 fn focusing_a_number_field_changes_no_bit_of_its_value() {
     let mut bench = tree();
     let joint = bench.session().selection().active().expect("one");
-    let target = bench.session().skeleton_rig().targets[0];
-    let solver = bench.session().skeleton_rig().solver;
+    let target = bench.session().rig().targets[0];
+    let solver = bench.session().rig().solver;
     bench.apply([
         Edit::from(JointEdit::SetAxis {
             joint,
@@ -185,13 +185,13 @@ fn a_click_in_the_tree_gives_it_the_arrow_keys_and_leaves_the_letters() {
     assert_eq!(bench.session().skeleton_pose().len(), joints);
     bench.key(Key::T);
     bench.settle();
-    assert_eq!(bench.session().skeleton_rig().targets.len(), 3);
+    assert_eq!(bench.session().rig().targets.len(), 3);
 }
 
 #[test]
 fn keys_do_nothing_without_joints() {
     let mut bench = Bench::new();
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     bench.apply([JointEdit::DeleteJoints(vec![JointId::new(0)])]);
     for key in [Key::T, Key::F2, Key::Delete, Key::R, Key::S, Key::Space, Key::Home, Key::F] {
         bench.key(key);
@@ -199,7 +199,7 @@ fn keys_do_nothing_without_joints() {
     }
     bench.key_with(CTRL, Key::A);
     bench.key(Key::Escape);
-    bench.click(Role::Button, "Reset to bind pose");
+    bench.click(Role::Button, "Reset pose");
     bench.apply([SolverAction::Compare]);
     assert!(bench.session().skeleton().joints().is_empty());
     assert_eq!(bench.session().shell().dialog(), None);
@@ -238,7 +238,7 @@ fn everything_beside_a_skeleton_that_can_be_acted_on_has_a_name() {
             SelectAction::Joints(vec![JointId::new(0)]).into(),
         ]);
         bench.harness.check_accessibility();
-        let joint = bench.session().skeleton_rig().targets.first().map(|target| target.joint);
+        let joint = bench.session().rig().targets.first().map(|target| target.joint);
         bench.apply([
             Action::from(SelectAction::Joints(joint.into_iter().collect())),
             SolverAction::Step.into(),
@@ -275,7 +275,7 @@ fn follow_path_can_be_switched_off_as_its_tooltip_says() {
     bench.settle();
     bench.click(Role::ComboBox, "Follow path");
     bench.click(Role::Button, "None");
-    assert_eq!(bench.session().skeleton_rig().follow_paths, []);
+    assert_eq!(bench.session().rig().follow_paths, []);
     bench.apply([SelectAction::Joints(vec![JointId::new(1)])]);
     bench.node(Role::SpinButton, "Rotation x value").scroll_to_me();
     bench.settle();
@@ -287,7 +287,7 @@ fn follow_path_can_be_switched_off_as_its_tooltip_says() {
 #[test]
 fn a_long_name_does_not_widen_the_panel() {
     let mut bench = Bench::of_size(SMALL);
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     bench.click(Role::Button, "Add child");
     bench.click(Role::Button, "Add target");
     let before = bench.viewport();

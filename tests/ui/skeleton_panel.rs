@@ -7,7 +7,7 @@ use egui::epaint::text::MissingGlyphPolicy;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{RigKind, Target, TargetPath};
+use ik_arm::document::{Target, TargetPath};
 use ik_arm::io::{Example, ExampleGroup, FileAnimation, OpenOptions, Upwards};
 use ik_arm::kinematics::chain_ik::{Method, Root};
 use ik_arm::session::{
@@ -25,7 +25,7 @@ fn built() -> Bench {
 }
 
 fn built_in(mut bench: Bench) -> Bench {
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     for _ in 0..3 {
         bench.click(Role::Button, "Add child");
     }
@@ -50,21 +50,6 @@ fn choose_item(bench: &mut Bench, combo: &str, item: &str) {
 fn is_enabled(bench: &Bench, role: Role, name: &str) -> bool {
     use egui_kittest::kittest::NodeT as _;
     !bench.node(role, name).accesskit_node().is_disabled()
-}
-
-#[test]
-fn the_rig_is_chosen_at_the_top_and_the_other_is_kept() {
-    let mut bench = Bench::new();
-    bench.click(Role::Button, "Skeleton");
-    assert_eq!(bench.session().rig(), RigKind::Skeleton);
-    assert!(bench.shows(Role::Button, "Joint pelvis"));
-    assert!(!bench.shows(Role::Slider, "Hand x"));
-    let human = names(&bench).len();
-    bench.click(Role::Button, "Add root");
-    bench.click(Role::Button, "Arm");
-    assert!(bench.shows(Role::Slider, "Hand x"));
-    bench.click(Role::Button, "Skeleton");
-    assert_eq!(names(&bench)[human..], ["root"]);
 }
 
 #[test]
@@ -155,7 +140,7 @@ fn a_reparented_joint_stays_where_it_is() {
         (pose.base(JointId::new(3)), pose.tip(JointId::new(3)))
     };
     choose_item(&mut bench, "Parent", "root");
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     let moved = rig.skeleton.find("joint_2").expect("there");
     assert_eq!(rig.skeleton.joints()[moved.index()].parent, Some(JointId::new(0)));
     let pose = bench.session().skeleton_pose();
@@ -215,10 +200,11 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         bench.click(Role::Button, "Add target");
         bench.enter("Target x", "-0.8");
         bench.enter("Target y", "1.9");
-        assert_eq!(bench.session().skeleton_rig().targets.len(), 2);
+        assert_eq!(bench.session().rig().targets.len(), 2);
+        bench.show_tab(PanelTab::Solver);
 
         choose_item(&mut bench, "Method", name);
-        assert_eq!(bench.session().skeleton_rig().solver.method, method);
+        assert_eq!(bench.session().rig().solver.method, method);
         bench.click_at(bench.rect(Role::Button, "Run").center());
         assert!(bench.session().solvers().is_running());
         bench.wait(4.0);
@@ -230,7 +216,7 @@ fn two_targets_are_added_and_the_chosen_solver_runs_to_convergence() {
         assert_eq!(solver_run.iterates().iter().len(), report.iterations as usize + 1);
         assert_eq!(solver_run.shown().error, report.error);
         bench.click(Role::Button, "Apply pose");
-        let (rig, pose) = (bench.session().skeleton_rig(), bench.session().skeleton_pose());
+        let (rig, pose) = (bench.session().rig(), bench.session().skeleton_pose());
         for target in &rig.targets {
             assert!(pose.tip(target.joint).distance(target.home) < 1e-3);
         }
@@ -336,7 +322,7 @@ fn apply_pose_writes_the_shown_iterate_as_one_step() {
 fn escape_ends_a_solver_run_and_a_race() {
     let mut bench = Bench::example("ten-joints");
     bench.apply([SolverEdit::SetSolver({
-        let solver = bench.session().skeleton_rig().solver;
+        let solver = bench.session().rig().solver;
         solver.with_method(Method::TransposeFixed)
     })]);
     bench.click_at(bench.rect(Role::Button, "Run").center());
@@ -355,8 +341,8 @@ fn escape_ends_a_solver_run_and_a_race() {
 fn a_disabled_target_is_ignored() {
     let mut bench = Bench::example("two-targets");
     bench.click(Role::CheckBox, "Target of left_3");
-    assert!(!bench.session().skeleton_rig().targets[0].enabled);
-    assert_eq!(bench.session().skeleton_rig().targets_at(0.0).len(), 1);
+    assert!(!bench.session().rig().targets[0].enabled);
+    assert_eq!(bench.session().rig().targets_at(0.0).len(), 1);
     bench.click(Role::CheckBox, "Target of right_3");
     assert!(!is_enabled(&bench, Role::Button, "Run"));
 }
@@ -364,7 +350,7 @@ fn a_disabled_target_is_ignored() {
 #[test]
 fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
     let mut bench = Bench::example("two-targets");
-    let before = bench.session().skeleton_rig().clone();
+    let before = bench.session().rig().clone();
     bench.show_tab(PanelTab::Race);
     bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
     bench.wait(4.0);
@@ -379,7 +365,7 @@ fn a_race_runs_every_solver_from_the_same_start_and_leaves_the_skeleton() {
         assert!(report.converged() || !converges, "{:?}: {report:?}", solver.method);
     }
     assert_eq!(bench.session().overlays().ghosts.len(), Method::ALL.len());
-    assert_eq!(bench.session().skeleton_rig(), &before);
+    assert_eq!(bench.session().rig(), &before);
     assert!(bench.says("CCD") && bench.says("FABRIK"));
     bench.click(Role::Button, "End race");
     assert!(bench.session().solvers().comparison().is_none());
@@ -409,13 +395,13 @@ fn a_moving_target_moves_during_playback_and_the_skeleton_follows() {
     let at = bench.rect(Role::Button, "Circle").center();
     bench.click_at(at);
     bench.wait(0.1);
-    let target = bench.session().skeleton_rig().targets[0];
+    let target = bench.session().rig().targets[0];
     assert_eq!(target.motion.path, TargetPath::Circle);
     assert!(bench.session().playback().is_playing(), "it goes at once");
     bench.wait(1.0);
     let time = bench.session().playback().time();
     assert!(time > 0.8, "{time} s");
-    let at = bench.session().skeleton_rig().targets[0].at(time);
+    let at = bench.session().rig().targets[0].at(time);
     assert!(at.distance(target.home) > 0.1 * target.motion.radius);
     let tip = bench.session().skeleton_pose().tip(JointId::new(3));
     assert!(tip.distance(at) < 1e-3, "{tip} follows {at}");
@@ -477,7 +463,7 @@ fn the_tree_selects_one_more_or_none_and_follows_the_arrow_keys() {
 #[test]
 fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     let mut bench = Bench::new();
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     let empty = bench.empty_point();
     bench.move_to(empty);
     bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
@@ -485,11 +471,11 @@ fn single_keys_build_and_solve_while_no_widget_has_the_keyboard() {
     bench.key(Key::A);
     assert_eq!(names(&bench).len(), 3);
     bench.key(Key::T);
-    assert_eq!(bench.session().skeleton_rig().targets.len(), 1);
+    assert_eq!(bench.session().rig().targets.len(), 1);
     bench.key(Key::S);
     assert!(bench.session().solvers().run().is_some());
     bench.key(Key::T);
-    assert!(bench.session().skeleton_rig().targets.is_empty());
+    assert!(bench.session().rig().targets.is_empty());
     bench.key(Key::F2);
     assert!(
         matches!(bench.session().shell().dialog(), Some(Dialog::Rename { joint, .. }) if joint.index() == 2)
@@ -532,7 +518,7 @@ fn the_mobility_of_roots_is_one_choice_of_three() {
     bench.click(Role::Button, "Add target");
     for (name, root) in [("Locked", Root::Locked), ("Free", Root::Free), ("Turns", Root::Turns)] {
         bench.click(Role::Button, name);
-        assert_eq!(bench.session().skeleton_rig().solver.root, root);
+        assert_eq!(bench.session().rig().solver.root, root);
     }
 }
 
@@ -541,7 +527,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");
     bench.click(Role::Button, "Free");
-    assert_eq!(bench.session().skeleton_rig().solver.root, Root::Free);
+    assert_eq!(bench.session().rig().solver.root, Root::Free);
     bench.reveal(Role::Slider, "Target x");
     bench.enter("Target x", "25");
     bench.click_at(bench.rect(Role::Button, "Run").center());
@@ -668,7 +654,7 @@ fn every_example_of_the_tour_opens_from_its_menu() {
 #[test]
 fn hundreds_of_joints_long_names_and_small_windows_are_shown_too() {
     let mut bench = Bench::of_size(SMALL);
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     let name = "a name of many letters ".repeat(4);
     bench.apply([JointEdit::RenameJoint { joint: JointId::new(0), name }]);
     bench.apply(
@@ -699,7 +685,7 @@ fn a_race_of_many_iterations_stays_inside_the_window() {
         let mut bench = Bench::of_size(size);
         bench.apply([open_example("ten-joints")]);
         let far = |target: &Target| Target { home: Vec3::new(3.0, 3.0, 3.0), ..*target };
-        let targets: Vec<_> = bench.session().skeleton_rig().targets.iter().map(far).collect();
+        let targets: Vec<_> = bench.session().rig().targets.iter().map(far).collect();
         bench.apply(targets.into_iter().map(TargetEdit::SetTarget));
         bench.apply([SolverEdit::SetIterationsPerFrame(1000)]);
         bench.show_tab(PanelTab::Race);

@@ -4,7 +4,7 @@ use core::f32::consts::PI;
 
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::Vec3;
-use ik_arm::document::{Document, RigKind, SkeletonRig, TargetMotion, TargetPath};
+use ik_arm::document::{Document, SkeletonRig, TargetMotion, TargetPath};
 use ik_arm::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use ik_arm::session::{
     Action, Drag, FileAction, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit,
@@ -31,8 +31,8 @@ fn skeleton() -> Skeleton {
 }
 
 fn bench() -> Bench {
-    let skeleton_rig = SkeletonRig::new(skeleton());
-    let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+    let rig = SkeletonRig::new(skeleton());
+    let document = Document::new(rig);
     let mut bench = Bench::after([FileAction::Opened {
         document: Box::new(document),
         file: None,
@@ -137,25 +137,25 @@ fn a_tip_that_is_dragged_stays_under_the_mouse_and_bones_keep_their_lengths() {
         assert!((length - joint.axis.length()).abs() < 1e-4);
     }
     assert!(bench.session().selection().joints().is_empty(), "a drag selects nothing");
-    assert_eq!(bench.session().skeleton_rig().targets, [], "the target was only for the drag");
+    assert_eq!(bench.session().rig().targets, [], "the target was only for the drag");
 }
 
 #[test]
 fn escape_restores_the_pose_bit_for_bit() {
     let mut bench = bench();
-    let before = bench.session().skeleton_rig().clone();
+    let before = bench.session().rig().clone();
     let start = tip_place(&bench, "c");
     bench.drag(LEFT, start, start + vec2(-70.0, 90.0));
-    assert_ne!(bench.session().skeleton_rig(), &before);
+    assert_ne!(bench.session().rig(), &before);
     bench.key(Key::Escape);
     bench.release(LEFT);
-    assert_eq!(bench.session().skeleton_rig(), &before);
+    assert_eq!(bench.session().rig(), &before);
 }
 
 #[test]
 fn a_tip_comes_back_to_where_it_was_when_the_mouse_does() {
     let mut bench = bench();
-    let before = bench.session().skeleton_rig().clone();
+    let before = bench.session().rig().clone();
     let start = tip_place(&bench, "c");
     bench.drag(LEFT, start, start + vec2(-70.0, 90.0));
     bench.move_to(start + vec2(1.0, 0.0));
@@ -316,7 +316,7 @@ fn a_target_is_dragged_and_the_skeleton_follows() {
             ));
         }
         bench.move_to(pointer);
-        let target = bench.session().skeleton_rig().targets[0].home;
+        let target = bench.session().rig().targets[0].home;
         assert!(bench.on_screen(target).distance(pointer) < 0.1);
         assert!(bench.tip("c").distance(target) < 0.01, "the tip follows");
     }
@@ -328,13 +328,13 @@ fn the_selected_joints_target_has_arrows_that_move_one_coordinate() {
     let mut bench = bench();
     let c = bench.joint("c");
     bench.apply([Action::from(TargetEdit::AddTarget(c)), SelectAction::Joints(vec![c]).into()]);
-    let home = bench.session().skeleton_rig().targets[0].home;
+    let home = bench.session().rig().targets[0].home;
     let start = bench.on_screen(home);
     let camera = bench.session().camera();
     let projection = camera.projection(bench.viewport().aspect_ratio());
     let up = vec2(0.0, -Vec3::Y.dot(projection.up.normalize()));
     bench.drag_and_drop(LEFT, start + up * 70.0, start + up * 30.0);
-    let moved = bench.session().skeleton_rig().targets[0].home;
+    let moved = bench.session().rig().targets[0].home;
     assert_eq!([moved.x.to_bits(), moved.z.to_bits()], [home.x.to_bits(), home.z.to_bits()]);
     assert!(moved.y < home.y);
 }
@@ -344,12 +344,12 @@ fn dragging_a_moving_target_moves_its_path() {
     let mut bench = bench();
     let c = bench.joint("c");
     bench.apply([TargetEdit::AddTarget(c)]);
-    let mut target = bench.session().skeleton_rig().targets[0];
+    let mut target = bench.session().rig().targets[0];
     target.motion = TargetMotion { path: TargetPath::Circle, ..target.motion };
     bench.apply([Action::from(TargetEdit::SetTarget(target)), PlaybackAction::SetTime(1.0).into()]);
     let start = bench.on_screen(target.at(1.0));
     bench.drag_and_drop(LEFT, start, start + vec2(30.0, 0.0));
-    let dragged = bench.session().skeleton_rig().targets[0];
+    let dragged = bench.session().rig().targets[0];
     assert!(bench.on_screen(dragged.at(1.0)).distance(start + vec2(30.0, 0.0)) < 0.1);
     assert_eq!(dragged.motion, target.motion);
 }
@@ -363,7 +363,7 @@ fn ctrl_click_adds_a_bone_from_the_selected_tip_to_the_mouse() {
     bench.hold(Modifiers::COMMAND);
     bench.click_at(at);
     let added = bench.session().selection().active().expect("the new joint");
-    let (pose, rig) = (bench.session().skeleton_pose(), bench.session().skeleton_rig());
+    let (pose, rig) = (bench.session().skeleton_pose(), bench.session().rig());
     assert_eq!(rig.skeleton.joints()[added.index()].parent, Some(c));
     assert!(pose.base(added).distance(from) < 1e-5);
     assert!(bench.on_screen(pose.tip(added)).distance(at) < 0.1);

@@ -28,7 +28,7 @@ fn with_skin() -> Bench {
 }
 
 fn skin(bench: &Bench) -> Option<&Skin> {
-    bench.session().skeleton_rig().skin.as_ref()
+    bench.session().rig().skin.as_ref()
 }
 
 fn shows(bench: &Bench, overlay: Overlay) -> bool {
@@ -180,7 +180,7 @@ fn a_mesh_of_a_file_is_named_and_packed_into_the_document_in_one_step() {
     drop(folder);
     let text = io::to_json(bench.session().document()).expect("a text");
     let read = io::parse("x.json", &text, &io::OpenOptions::default()).expect("it opens").document;
-    assert!(read.skeleton_rig.skin.expect("a skin").mesh().is_ok());
+    assert!(read.rig.skin.expect("a skin").mesh().is_ok());
     bench.choose(&["Edit", "Undo Pack skin into file"]);
     assert!(bench.shows(Role::Button, "Pack skin into file"));
 }
@@ -211,7 +211,7 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
     let locate = |bench: &mut Bench, path: &std::path::Path| {
         let effect = bench.tell(FileAction::LocateSkin(path.to_owned()));
         assert_eq!(effect, Some(Effect::LocateSkin(path.to_owned())));
-        let rig = bench.session().skeleton_rig();
+        let rig = bench.session().rig();
         let SkinSource::Mesh(skin) = &rig.skin.as_ref().expect("a skin").source else {
             panic!("the mesh is from a file");
         };

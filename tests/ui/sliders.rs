@@ -1,12 +1,11 @@
 //! The nine sliders' rails, by mouse and keyboard.
 
+use crate::common::arm::{Arm, ArmEdit, ArmSession};
 use core::f32::consts::TAU;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2};
 use glam::Vec3;
-use ik_arm::document::Arm;
-use ik_arm::session::ArmEdit;
 
 use crate::bench::Bench;
 use crate::panel::SLIDERS;
@@ -80,12 +79,12 @@ fn each_slider_changes_its_own_number_and_no_other_bit() {
             ArmEdit::SetRoot(Vec3::new(-12.345_679, 0.333_333_34, 1e-7)),
             ArmEdit::SetTwist(1.234_567_9),
         ]);
-        let before = *bench.session().arm();
+        let before = bench.session().arm();
         let (from, to) = (on_rail(&bench, slider, 0.5), on_rail(&bench, slider, 0.8));
         bench.drag_and_drop(PointerButton::Primary, from, to);
         let after = bench.session().arm();
-        assert_ne!(value(after, slider), value(&before, slider), "{slider}");
-        assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
+        assert_ne!(value(&after, slider), value(&before, slider), "{slider}");
+        assert!(is_same_but(slider, &after, &before), "{slider}: {after:?}");
     }
 }
 
@@ -103,18 +102,18 @@ fn a_click_on_a_rail_goes_there() {
 #[test]
 fn esc_cancels_the_drag_of_a_rail_and_further_movement_changes_nothing() {
     let mut bench = Bench::after(awkward());
-    let before = *bench.session().arm();
+    let before = bench.session().arm();
     let (from, to) = (on_rail(&bench, "Hand x", 0.4), on_rail(&bench, "Hand x", 0.7));
     bench.drag(PointerButton::Primary, from, to);
-    assert_ne!(bench.session().arm(), &before);
+    assert_ne!(&bench.session().arm(), &before);
     bench.key(Key::Escape);
-    assert_eq!(bench.session().arm(), &before);
+    assert_eq!(&bench.session().arm(), &before);
     assert!(!bench.session().history().is_editing());
     bench.move_to(on_rail(&bench, "Hand x", 0.2));
     bench.move_to(on_rail(&bench, "Hand x", 0.9));
     bench.release(PointerButton::Primary);
     bench.settle();
-    assert_eq!(bench.session().arm(), &before);
+    assert_eq!(&bench.session().arm(), &before);
 }
 
 #[test]
@@ -122,11 +121,11 @@ fn esc_cancels_a_press_on_a_rail() {
     let mut bench = Bench::new();
     bench.move_to(on_rail(&bench, "Hand x", 0.2));
     bench.press(PointerButton::Primary);
-    assert_ne!(bench.session().arm(), &Arm::default());
+    assert_ne!(&bench.session().arm(), &Arm::default());
     bench.key(Key::Escape);
     bench.release(PointerButton::Primary);
     bench.settle();
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
 }
 
 #[test]
@@ -147,7 +146,7 @@ fn space_and_enter_on_a_rail_change_nothing() {
     bench.focus(Role::Slider, "Hand x");
     bench.key(Key::Space);
     bench.key(Key::Enter);
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
 }
 
 #[test]
@@ -159,7 +158,7 @@ fn esc_cancels_the_drag_of_a_number_too() {
     bench.key(Key::Escape);
     bench.move_to(at - egui::vec2(40.0, 0.0));
     bench.release(PointerButton::Primary);
-    assert_eq!(bench.session().arm(), &Arm::default());
+    assert_eq!(&bench.session().arm(), &Arm::default());
 }
 
 #[test]
@@ -167,14 +166,14 @@ fn a_double_click_on_rail_or_label_resets() {
     for slider in SLIDERS {
         for on_label in [false, true] {
             let mut bench = Bench::after(awkward());
-            let before = *bench.session().arm();
+            let before = bench.session().arm();
             bench.reveal(Role::Slider, slider);
             let rail = bench.rect(Role::Slider, slider);
             let label = pos2(rail.left() - 30.0, rail.center().y);
             bench.double_click_at(if on_label { label } else { on_rail(&bench, slider, 0.3) });
             let after = bench.session().arm();
-            assert_eq!(value(after, slider), value(&Arm::default(), slider), "{slider}");
-            assert!(is_same_but(slider, after, &before), "{slider}: {after:?}");
+            assert_eq!(value(&after, slider), value(&Arm::default(), slider), "{slider}");
+            assert!(is_same_but(slider, &after, &before), "{slider}: {after:?}");
             assert!(!bench.session().history().is_editing());
         }
     }
@@ -197,9 +196,9 @@ fn arrows_step_by_one_with_shift_by_a_tenth_and_page_keys_by_ten() {
             (Modifiers::NONE, Key::PageUp, 10.0),
             (Modifiers::NONE, Key::PageDown, -10.0),
         ] {
-            let before = value(bench.session().arm(), slider);
+            let before = value(&bench.session().arm(), slider);
             bench.key_with(modifiers, key);
-            let stepped = value(bench.session().arm(), slider) - before;
+            let stepped = value(&bench.session().arm(), slider) - before;
             assert!((stepped - step).abs() < 1e-4, "{slider}: {key:?} steps by {stepped}");
         }
         assert_eq!(bench.focused(), Some((Role::Slider, slider.to_owned())));
@@ -217,9 +216,9 @@ fn home_and_end_go_to_the_ends_of_the_range() {
         let mut bench = Bench::new();
         bench.focus(Role::Slider, slider);
         bench.key(Key::Home);
-        assert_eq!(value(bench.session().arm(), slider), low, "{slider}");
+        assert_eq!(value(&bench.session().arm(), slider), low, "{slider}");
         bench.key(Key::End);
-        assert_eq!(value(bench.session().arm(), slider), high, "{slider}");
+        assert_eq!(value(&bench.session().arm(), slider), high, "{slider}");
     }
 }
 
@@ -229,7 +228,7 @@ fn the_hands_ranges_follow_the_lengths() {
     bench.enter("Upper length", "900");
     for (slider, end) in [("Hand x", 1.0), ("Hand z", 0.0)] {
         bench.click_at(on_rail(&bench, slider, end));
-        let reached = value(bench.session().arm(), slider);
+        let reached = value(&bench.session().arm(), slider);
         assert_eq!(reached, if end > 0.5 { 1200.0 } else { -1200.0 });
     }
 }

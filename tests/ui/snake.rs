@@ -45,7 +45,7 @@ fn the_mouse_drags_the_head_and_the_body_follows_in_one_undo_step() {
 #[test]
 fn the_panel_chooses_what_the_body_follows() {
     let mut bench = snake();
-    let follows = |bench: &Bench| bench.session().skeleton_rig().path_kind(HEAD);
+    let follows = |bench: &Bench| bench.session().rig().path_kind(HEAD);
     assert_eq!(follows(&bench), Some(PathKind::Head));
     for (name, slider) in [("Wavy ring", "Radius"), ("Head", "Head x")] {
         bench.reveal(Role::ComboBox, "Follow path");

@@ -3,9 +3,8 @@
 use egui::PointerButton;
 use egui::accesskit::Role;
 use egui::vec2;
-use ik_arm::document::RigKind;
 use ik_arm::io::Example;
-use ik_arm::session::{DisplayEdit, FileAction, PanelTab, Preferences, SelectAction};
+use ik_arm::session::{FileAction, PanelTab, Preferences, SelectAction};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::looks::has_tooltip;
@@ -112,18 +111,17 @@ fn each_tab_shows_its_page_and_the_choice_is_kept_for_each_rig() {
     ] {
         bench.click(Role::Tab, tab.name());
         assert!(bench.says(said), "{said}");
-        assert_eq!(bench.session().preferences().tab(bench.session().rig()), tab);
+        assert_eq!(bench.session().preferences().tab, tab);
         assert!(has_tooltip(&mut bench, Role::Tab, tab.name()), "{tab:?}");
     }
-    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
-    assert_eq!(bench.session().preferences().tab(bench.session().rig()), PanelTab::Solver);
+    bench.apply([FileAction::NewFigure]);
     bench.click(Role::Tab, "Race");
     assert!(bench.shows(Role::Button, "Race all solvers"));
     assert!(!bench.shows(Role::Tab, "Skin"));
     bench.click(Role::Tab, "Triangle");
     assert!(bench.says("Limb of left_hand"), "the first limb of the Human");
-    bench.apply([DisplayEdit::ShowRig(RigKind::Arm)]);
-    assert_eq!(bench.session().preferences().tab(bench.session().rig()), PanelTab::Pops);
+    bench.apply([FileAction::New]);
+    assert_eq!(bench.session().preferences().tab, PanelTab::Triangle);
 }
 
 #[test]
@@ -136,7 +134,7 @@ fn a_page_that_is_no_longer_there_gives_way_to_the_first() {
     let human = Example::find("human").expect("an example");
     bench.apply([FileAction::OpenExample(human)]);
     assert!(!bench.shows(Role::Tab, "Skin"));
-    assert!(bench.says("Limb of left_hand"), "the first page is shown instead");
+    assert!(bench.says("Press Run to see how the error falls"), "the solver is shown instead");
 }
 
 #[test]
@@ -144,7 +142,8 @@ fn an_empty_plot_is_not_shown_but_a_sentence_that_tells_how_to_fill_it() {
     let mut bench = first_start();
     bench.show_tab(PanelTab::Pops);
     assert!(!bench.says("Elbow speed / Cursor speed"));
-    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
+    bench.apply([FileAction::NewFigure]);
+    bench.show_tab(PanelTab::Solver);
     assert!(bench.says("Press Run to see how the error falls"));
     assert!(!bench.shows(Role::Slider, "Iteration"));
     bench.show_tab(PanelTab::Race);
@@ -161,8 +160,8 @@ fn the_status_bar_tells_what_the_mouse_does_here() {
     }
     bench.move_to(bench.cursor_on_screen());
     bench.settle();
-    assert!(bench.shows(Role::Label, "left drag: drag the hand"));
-    bench.apply([DisplayEdit::ShowRig(RigKind::Skeleton)]);
+    assert!(bench.shows(Role::Label, "left drag: drag the target of hand"));
+    bench.apply([FileAction::NewFigure]);
     bench.apply([SelectAction::Joints(Vec::new())]);
     assert!(bench.shows(Role::Label, "wheel: zoom"));
     assert!(!bench.says("Test adapter"), "the adapter is in the statistics");

@@ -1,5 +1,6 @@
 //! Help → Statistics: times of frames; showing them requests no frame.
 
+use crate::common::arm::{ArmEdit, Step};
 use std::time::Duration;
 
 use egui::accesskit::Role;
@@ -8,7 +9,7 @@ use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::Theme;
 use ik_arm::render::Counts;
-use ik_arm::session::{Action, ArmEdit, Dialog, KeysEdit, PlaybackAction, ShellAction};
+use ik_arm::session::{Dialog, KeysEdit, PlaybackAction, ShellAction};
 use ik_arm::ui::{FrameTime, FrameTimes, Machine};
 
 use crate::bench::{Bench, LARGE, SMALL};
@@ -140,7 +141,7 @@ fn the_statistics_request_no_frame_and_do_not_block_the_window() {
     bench.drag_and_drop(PointerButton::Primary, at, at + vec2(-60.0, 20.0));
     assert_ne!(bench.hand(), before, "the hand is dragged");
     bench.apply([
-        Action::from(KeysEdit::Key(KeysEdit::all_channels(bench.session().shown()))),
+        Step::from(KeysEdit::Key(KeysEdit::all_channels(bench.session().shown()))),
         PlaybackAction::SetTime(1.0).into(),
         ArmEdit::SetHand(Vec3::new(100.0, 200.0, 0.0)).into(),
         KeysEdit::Key(KeysEdit::all_channels(bench.session().shown())).into(),

@@ -17,7 +17,7 @@ use crate::bench::Bench;
 /// The Human without targets.
 fn figure() -> Bench {
     let mut bench = Bench::example("human");
-    let targets = bench.session().skeleton_rig().targets.clone();
+    let targets = bench.session().rig().targets.clone();
     bench.apply(targets.into_iter().map(|target| TargetEdit::RemoveTarget(target.joint)));
     bench
 }
@@ -48,7 +48,7 @@ fn farthest(before: &[Vec3], after: &[Vec3]) -> f32 {
 }
 
 fn target<'a>(bench: &'a Bench, name: &str) -> &'a Target {
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     &rig.targets[rig.target(bench.joint(name)).expect("a target")]
 }
 
@@ -95,7 +95,7 @@ fn a_target_added_to_a_hand_or_foot_poses_its_limb_and_moves_nothing() {
     select(&mut bench, "left_hand");
     bench.key(Key::T);
     bench.settle();
-    assert_eq!(bench.session().skeleton_rig().targets.len(), 4, "T on a hand removes its target");
+    assert_eq!(bench.session().rig().targets.len(), 4, "T on a hand removes its target");
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn hands_and_feet_stay_while_the_pelvis_is_dragged_in_one_undo_step() {
     let lowers = ["left_forearm", "right_forearm", "left_shin", "right_shin"];
     let before = lowers.map(|name| bench.tip(name));
     let (pelvis, all) = (bench.tip("pelvis"), tips(&bench));
-    let reach = bench.session().skeleton_rig().reach();
+    let reach = bench.session().rig().reach();
     bench.apply([SelectAction::Joints(Vec::new())]);
     let start = bench.on_screen(pelvis);
     bench.move_to(start);
@@ -284,7 +284,7 @@ fn a_target_that_is_reached_has_a_tick_and_one_that_is_not_its_distance() {
     let mut bench = with_targets();
     // The note on a selected target says "Reached", too.
     bench.apply([SelectAction::Joints(Vec::new())]);
-    let all = bench.session().skeleton_rig().targets.len();
+    let all = bench.session().rig().targets.len();
     let ticks =
         |bench: &Bench| bench.harness.query_all_by_role_and_label(Role::Label, "Reached").count();
     assert_eq!(ticks(&bench), all);

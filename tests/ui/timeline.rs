@@ -1,17 +1,18 @@
 //! The timeline by mouse: dragging times and keys.
 
+use crate::common::arm::{ArmEdit, Step, channels};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::kinematics::skeleton::{Joint, JointId};
 use ik_arm::kinematics::spline::{Interpolation, Knot, Spline};
 use ik_arm::session::{
-    Action, ArmEdit, FileAction, KeysEdit, PlaybackAction, SelectAction, ShellAction,
-    TransactionAction, ViewAction,
+    Action, FileAction, KeysEdit, PlaybackAction, SelectAction, ShellAction, TransactionAction,
+    ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SECONDS_PER_FRAME, SMALL};
@@ -28,9 +29,9 @@ pub fn keyed() -> Bench {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([PlaybackAction::SetAutoKey(false)]);
     for (time, hand) in HAND {
-        let key = KeysEdit::Key(vec![Channel::Hand]).into();
+        let key = KeysEdit::Key(vec![channels::HAND]).into();
         bench.apply([
-            Action::from(PlaybackAction::SetTime(time)),
+            Step::from(PlaybackAction::SetTime(time)),
             ArmEdit::SetHand(hand).into(),
             key,
         ]);
@@ -38,7 +39,7 @@ pub fn keyed() -> Bench {
     for time in [1.0, 4.0] {
         bench.apply([
             Action::from(PlaybackAction::SetTime(time)),
-            KeysEdit::Key(vec![Channel::Twist]).into(),
+            KeysEdit::Key(vec![channels::TWIST]).into(),
         ]);
     }
     bench.apply([PlaybackAction::SetTime(0.0)]);
@@ -51,7 +52,7 @@ pub fn times(bench: &Bench, channel: Channel) -> Vec<f64> {
 }
 
 pub fn key_of_hand(bench: &Bench, time: f64) -> Pos2 {
-    bench.rect(Role::Button, &format!("Key of Hand at {time:.2} s")).center()
+    bench.rect(Role::Button, &format!("Key of hand · target at {time:.2} s")).center()
 }
 
 /// Screen position of a time on the ruler, from two keys of the hand.
@@ -65,14 +66,18 @@ fn the_key_button_keys_hand_and_twist_of_an_arm() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.apply([PlaybackAction::SetTime(1.5)]);
     bench.click(Role::Button, "Key");
-    assert_eq!(times(&bench, Channel::Hand), [1.5]);
-    assert_eq!(times(&bench, Channel::Twist), [1.5]);
-    assert!(times(&bench, Channel::Upper).is_empty());
-    assert!(bench.shows(Role::Button, "Key of Hand at 1.50 s"));
-    assert!(bench.shows(Role::Button, "Channel Socket twist"));
+    assert_eq!(times(&bench, channels::HAND), [1.5]);
+    assert_eq!(times(&bench, channels::TWIST), [1.5]);
+    assert!(times(&bench, channels::UPPER_LENGTH).is_empty());
+    assert!(bench.shows(Role::Button, "Key of hand · target at 1.50 s"));
+    assert!(bench.shows(Role::Button, "Channel hand · Socket twist"));
     bench.click(Role::Button, "Key all");
-    for channel in Channel::ARM {
-        let expected = if channel.shapes(bench.session().arm()) { &[1.5][..] } else { &[] };
+    for channel in channels::ALL {
+        let is_keyed = match channel.target() {
+            Some(_) => channel.shapes(&bench.session().rig().targets[0]),
+            None => !matches!(channel, Channel::Length(_)),
+        };
+        let expected = if is_keyed { &[1.5][..] } else { &[] };
         assert_eq!(times(&bench, channel), expected, "{channel:?}");
     }
 }
@@ -123,18 +128,18 @@ fn a_key_is_dragged_to_a_frame_and_the_whole_drag_is_one_step() {
     let (from, to) = (key_of_hand(&bench, 2.0), key_of_hand(&bench, 2.0) + vec2(149.0, 3.0));
     bench.drag(PointerButton::Primary, from, to);
     assert!(bench.says("Move 1 key: +"));
-    let moved = times(&bench, Channel::Hand)[1];
+    let moved = times(&bench, channels::HAND)[1];
     assert!(moved > 2.5, "{moved}");
     assert_eq!(moved, Timeline::default().snapped(moved), "on a frame");
-    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0], "others stay");
+    assert_eq!(times(&bench, channels::TWIST), [1.0, 4.0], "others stay");
     bench.release(PointerButton::Primary);
     bench.settle();
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, moved)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, moved)]);
     assert_eq!(bench.session().history().undo_label(), Some("Move keys"));
     bench.apply([TransactionAction::Undo]);
     assert_eq!(bench.session().document(), &before);
     bench.apply([TransactionAction::Redo]);
-    assert_eq!(times(&bench, Channel::Hand)[1], moved);
+    assert_eq!(times(&bench, channels::HAND)[1], moved);
 }
 
 #[test]
@@ -145,7 +150,7 @@ fn ctrl_moves_a_key_between_frames() {
     bench.hold(Modifiers::COMMAND);
     bench.release(PointerButton::Primary);
     bench.hold(Modifiers::NONE);
-    let moved = times(&bench, Channel::Hand)[1];
+    let moved = times(&bench, channels::HAND)[1];
     assert!(moved > 2.0 && moved != Timeline::default().snapped(moved), "{moved}");
 }
 
@@ -161,7 +166,7 @@ fn esc_cancels_a_drag_of_keys_and_they_stay_selected() {
     bench.move_to(from + vec2(-60.0, 0.0));
     bench.release(PointerButton::Primary);
     assert_eq!(bench.session().document(), &before);
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 2.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, 2.0)]);
     assert!(!bench.session().history().is_editing());
 }
 
@@ -169,12 +174,12 @@ fn esc_cancels_a_drag_of_keys_and_they_stay_selected() {
 fn a_click_selects_a_key_and_shift_adds_another_or_removes_it() {
     let mut bench = keyed();
     bench.click_at(key_of_hand(&bench, 1.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 1.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, 1.0)]);
     bench.hold(Modifiers::SHIFT);
     bench.click_at(key_of_hand(&bench, 5.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 1.0), (Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, 1.0), (channels::HAND, 5.0)]);
     bench.click_at(key_of_hand(&bench, 1.0));
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, 5.0)]);
     bench.hold(Modifiers::NONE);
     bench.click_at(key_of_hand(&bench, 1.0) + vec2(60.0, 0.0));
     assert!(bench.session().selection().keys().is_empty(), "a click beside all selects none");
@@ -186,11 +191,11 @@ fn the_diamonds_on_top_select_and_move_all_keys_at_their_time() {
     let mut bench = keyed();
     let at = bench.rect(Role::Button, "Keys at 1.00 s").center();
     bench.click_at(at);
-    let both = [(Channel::Hand, 1.0), (Channel::Twist, 1.0)];
+    let both = [(channels::HAND, 1.0), (channels::TWIST, 1.0)];
     assert_eq!(bench.session().selection().keys(), both);
     bench.drag_and_drop(PointerButton::Primary, at, at - vec2(70.0, 0.0));
     bench.settle();
-    let (hand, twist) = (times(&bench, Channel::Hand), times(&bench, Channel::Twist));
+    let (hand, twist) = (times(&bench, channels::HAND), times(&bench, channels::TWIST));
     assert!(hand[0] < 0.8 && hand[0] == twist[0], "{hand:?} {twist:?}");
     assert_eq!((hand[1], twist[1]), (2.0, 4.0));
 }
@@ -201,7 +206,7 @@ fn a_box_selects_what_is_in_it() {
     let (first, last) = (key_of_hand(&bench, 1.0), key_of_hand(&bench, 2.0));
     let (from, to) = (first - vec2(20.0, 8.0), last + vec2(20.0, 30.0));
     bench.drag_and_drop(PointerButton::Primary, from, to);
-    let inside = [(Channel::Hand, 1.0), (Channel::Hand, 2.0), (Channel::Twist, 1.0)];
+    let inside = [(channels::HAND, 1.0), (channels::HAND, 2.0), (channels::TWIST, 1.0)];
     assert_eq!(bench.session().selection().keys(), inside);
     bench.hold(Modifiers::SHIFT);
     let at = key_of_hand(&bench, 5.0);
@@ -219,10 +224,10 @@ fn a_double_click_on_a_row_adds_a_key_on_the_curve() {
     let mut bench = keyed();
     let at = pos2(ruler_position(&bench, 3.0).x, key_of_hand(&bench, 1.0).y);
     bench.double_click_at(at);
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 3.0, 5.0]);
     assert_eq!(bench.session().playback().time(), 3.0);
     let spline = spline();
-    let key = bench.session().document().keys.track(Channel::Hand).and_then(|it| it.get(3.0));
+    let key = bench.session().document().keys.track(channels::HAND).and_then(|it| it.get(3.0));
     assert!(key.expect("there").distance(spline.at(3.0).expect("there")) < 1e-3);
 }
 
@@ -313,8 +318,10 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
     bench.apply([PlaybackAction::SetTime(3.0)]);
     bench.enter("Hand x", "77");
     assert_eq!(bench.hand().x, 77.0);
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
-    assert!(bench.says("Hand: unkeyed change, press K or it is lost when the time changes"));
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 5.0]);
+    assert!(
+        bench.says("hand · target: unkeyed change, press K or it is lost when the time changes")
+    );
     bench.click(Role::Button, "Next key");
     bench.click(Role::Button, "Previous key");
     bench.apply([PlaybackAction::SetTime(3.0)]);
@@ -324,7 +331,7 @@ fn with_auto_key_an_edit_makes_a_key_and_without_it_is_gone_when_the_time_change
     bench.click(Role::Button, "Auto-key");
     assert!(bench.session().playback().is_auto_key());
     bench.enter("Hand x", "77");
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 3.0, 5.0]);
     bench.apply([PlaybackAction::SetTime(0.0), PlaybackAction::SetTime(3.0)]);
     assert!((bench.hand().x - 77.0).abs() < 1e-4);
 }
@@ -416,20 +423,20 @@ fn the_wheel_zooms_about_the_mouse_and_a_double_click_shows_all_again() {
 #[test]
 fn a_click_on_a_name_selects_the_channel_and_shift_adds_one() {
     let mut bench = keyed();
-    bench.click(Role::Button, "Channel Hand");
+    bench.click(Role::Button, "Channel hand · target");
     let selected =
         |bench: &Bench| bench.session().selection().channels().iter().copied().collect::<Vec<_>>();
-    assert_eq!(selected(&bench), [Channel::Hand]);
+    assert_eq!(selected(&bench), [channels::HAND]);
     bench.hold(Modifiers::SHIFT);
-    bench.click(Role::Button, "Channel Socket twist");
+    bench.click(Role::Button, "Channel hand · Socket twist");
     bench.hold(Modifiers::NONE);
-    assert_eq!(selected(&bench), [Channel::Hand, Channel::Twist]);
-    bench.click(Role::Button, "Channel Socket twist");
-    assert_eq!(selected(&bench), [Channel::Twist]);
+    assert_eq!(selected(&bench), [channels::HAND, channels::TWIST]);
+    bench.click(Role::Button, "Channel hand · Socket twist");
+    assert_eq!(selected(&bench), [channels::TWIST]);
     bench.apply([PlaybackAction::SetTime(7.0)]);
     bench.click(Role::Button, "Key");
-    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0, 7.0]);
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
+    assert_eq!(times(&bench, channels::TWIST), [1.0, 4.0, 7.0]);
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 5.0]);
 }
 
 fn right_click(bench: &mut Bench, at: Pos2) {
@@ -448,24 +455,24 @@ fn the_right_button_offers_what_can_be_done_with_keys_and_channels() {
     let empty = pos2(ruler_position(&bench, 3.0).x, key.y);
     right_click(&mut bench, empty);
     bench.click(Role::Button, "Paste here");
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 3.0, 5.0]);
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 3.0, 5.0]);
     let key = key_of_hand(&bench, 1.0);
     right_click(&mut bench, key);
     bench.click(Role::Button, "Delete keys");
-    assert_eq!(times(&bench, Channel::Hand), [2.0, 3.0, 5.0]);
-    let name = bench.rect(Role::Button, "Channel Hand").center();
+    assert_eq!(times(&bench, channels::HAND), [2.0, 3.0, 5.0]);
+    let name = bench.rect(Role::Button, "Channel hand · target").center();
     right_click(&mut bench, name);
     bench.click(Role::Button, "Delete all keys of channel");
-    assert!(times(&bench, Channel::Hand).is_empty());
-    assert_eq!(times(&bench, Channel::Twist), [1.0, 4.0]);
+    assert!(times(&bench, channels::HAND).is_empty());
+    assert_eq!(times(&bench, channels::TWIST), [1.0, 4.0]);
 }
 
 #[test]
 fn a_screen_reader_selects_keys_and_scrubs() {
     let mut bench = keyed();
-    bench.node(Role::Button, "Key of Hand at 5.00 s").click_accesskit();
+    bench.node(Role::Button, "Key of hand · target at 5.00 s").click_accesskit();
     bench.settle();
-    assert_eq!(bench.session().selection().keys(), [(Channel::Hand, 5.0)]);
+    assert_eq!(bench.session().selection().keys(), [(channels::HAND, 5.0)]);
     bench.node(Role::Slider, "Timeline ruler").increment_accesskit();
     bench.frame([]);
     assert_eq!(bench.session().playback().time(), 1.0 / 30.0);
@@ -481,13 +488,13 @@ fn dragging_in_the_graph_editor_scrubs() {
     let (from, to) = (ruler_position(&bench, 1.5), ruler_position(&bench, 4.0));
     bench.click(Role::Button, "Graph editor");
     // With one axis of values the times are where the dope sheet has them.
-    bench.apply([SelectAction::Channels(vec![Channel::Hand])]);
+    bench.apply([SelectAction::Channels(vec![channels::HAND])]);
     assert!(bench.session().preferences().curves);
-    let middle = bench.rect(Role::Image, "Curves of Hand").center().y;
+    let middle = bench.rect(Role::Image, "Curves of hand · target").center().y;
     bench.drag_and_drop(PointerButton::Primary, pos2(from.x, middle), pos2(to.x, middle));
     assert_eq!(bench.session().playback().time(), 4.0);
     bench.click(Role::Button, "Graph editor");
-    assert!(bench.shows(Role::Button, "Channel Hand"));
+    assert!(bench.shows(Role::Button, "Channel hand · target"));
 }
 
 #[test]
@@ -513,20 +520,16 @@ fn channels_of_a_skeleton_have_the_names_of_its_joints() {
         Channel::Rotation(JointId::new(1)),
         // For the tip of the forearm, which the hand is at.
         Channel::Target(JointId::new(7)),
-        Channel::Hand,
     ])]);
-    for name in [format!("{turned} · rotation"), format!("{reached} · target"), "Hand".to_owned()]
-    {
-        assert!(bench.shows(Role::Button, &format!("Channel {name}")), "{name}");
-    }
-    let top = |name: &str| bench.rect(Role::Button, name).top();
-    assert!(top(&format!("Channel {turned} · rotation")) < top("Channel Hand"));
+    let [turned, reached] = [format!("{turned} · rotation"), format!("{reached} · target")];
+    let top = |name: &str| bench.rect(Role::Button, &format!("Channel {name}")).top();
+    assert!(top(&turned) < top(&reached));
 }
 
 /// Only the rows in sight are laid out.
 #[test]
 fn ten_thousand_channels_scroll_quickly() {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     for joint in document.skeleton().joints().len()..5_000 {
         let joint = Joint::new(&format!("j{joint}"), Some(JointId::new(0)), Vec3::ONE);
         document.skeleton_mut().add(joint).expect("room");
@@ -587,7 +590,7 @@ fn the_zoom_of_the_timeline_is_that_of_one_document() {
 #[test]
 fn the_status_line_says_how_many_keys_and_joints_are_selected() {
     let mut bench = keyed();
-    bench.apply([SelectAction::Keys(vec![(Channel::Hand, 1.0), (Channel::Hand, 2.0)])]);
+    bench.apply([SelectAction::Keys(vec![(channels::HAND, 1.0), (channels::HAND, 2.0)])]);
     bench.apply([ShellAction::ClearMessage]);
     assert!(bench.says("2 keys selected"));
     let mut bench = Bench::example("human");

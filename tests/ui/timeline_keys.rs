@@ -1,5 +1,6 @@
 //! The timeline by keyboard.
 
+use crate::common::arm::channels;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use ik_arm::document::Channel;
@@ -20,16 +21,19 @@ fn is_keyed(bench: &Bench, channel: Channel) -> bool {
 fn k_keys_the_active_channels_and_shift_k_all() {
     let mut bench = Bench::with_timeline(LARGE);
     bench.key(Key::K);
-    assert!(is_keyed(&bench, Channel::Hand) && is_keyed(&bench, Channel::Twist));
-    assert!(!is_keyed(&bench, Channel::Root));
+    assert!(is_keyed(&bench, channels::HAND) && is_keyed(&bench, channels::TWIST));
+    assert!(!is_keyed(&bench, channels::ROOT_OFFSET));
     bench.key_with(Modifiers::SHIFT, Key::K);
-    let arm = *bench.session().arm();
-    for channel in Channel::ARM {
-        assert_eq!(is_keyed(&bench, channel), channel.shapes(&arm), "{channel:?}");
+    for channel in channels::ALL {
+        let expected = match channel.target() {
+            Some(_) => channel.shapes(&bench.session().rig().targets[0]),
+            None => !matches!(channel, Channel::Length(_)),
+        };
+        assert_eq!(is_keyed(&bench, channel), expected, "{channel:?}");
     }
     let mut hidden = Bench::new();
     hidden.key(Key::K);
-    assert!(is_keyed(&hidden, Channel::Hand), "without the panel too");
+    assert!(is_keyed(&hidden, channels::HAND), "without the panel too");
 }
 
 #[test]
@@ -39,13 +43,13 @@ fn k_keys_after_a_slider_was_dragged_but_is_a_letter_in_a_text() {
     bench.drag_and_drop(PointerButton::Primary, at, at + egui::vec2(20.0, 0.0));
     assert_eq!(bench.focused().map(|it| it.0), Some(Role::Slider));
     bench.key(Key::K);
-    assert_eq!(times(&bench, Channel::Hand), [0.0]);
+    assert_eq!(times(&bench, channels::HAND), [0.0]);
     bench.apply([PlaybackAction::SetTime(1.0)]);
     bench.click(Role::SpinButton, "Hand x value");
     bench.type_text("k");
     bench.key(Key::Escape);
     bench.settle();
-    assert_eq!(times(&bench, Channel::Hand), [0.0]);
+    assert_eq!(times(&bench, channels::HAND), [0.0]);
 }
 
 #[test]
@@ -134,17 +138,17 @@ fn delete_removes_the_selected_keys() {
         bench.click_at(key_of_hand(&bench, 2.0));
         bench.key(key);
         bench.settle();
-        assert_eq!(times(&bench, Channel::Hand), [1.0, 5.0], "{key:?}");
+        assert_eq!(times(&bench, channels::HAND), [1.0, 5.0], "{key:?}");
         assert!(bench.session().selection().keys().is_empty());
         bench.apply([TransactionAction::Undo]);
-        assert_eq!(times(&bench, Channel::Hand), HAND.map(|it| it.0), "{key:?}");
+        assert_eq!(times(&bench, channels::HAND), HAND.map(|it| it.0), "{key:?}");
     }
 }
 
 #[test]
 fn delete_means_keys_or_joints_whatever_was_clicked_last() {
     let mut bench = Bench::with_timeline(LARGE);
-    bench.choose(&["File", "New skeleton"]);
+    bench.choose(&["File", "New", "Empty"]);
     bench.click(Role::Button, "Add child");
     bench.click(Role::Button, "Add child");
     bench.apply([KeysEdit::Key(vec![Channel::Rotation(JointId::new(1))])]);
@@ -177,18 +181,18 @@ fn copied_keys_are_pasted_at_the_playhead() {
     bench.frame([Event::Copy]);
     let effects = bench.effects();
     assert!(
-        matches!(&effects[..], [Effect::CopyText(text)] if text.contains("Hand")),
+        matches!(&effects[..], [Effect::CopyText(text)] if text.contains("Target")),
         "{effects:?}"
     );
     bench.apply([PlaybackAction::SetTime(6.0)]);
     bench.frame([Event::Paste("whatever".to_owned())]);
     bench.settle();
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0, 6.0, 7.0]);
-    let track = bench.session().document().keys.track(Channel::Hand).expect("keys");
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 5.0, 6.0, 7.0]);
+    let track = bench.session().document().keys.track(channels::HAND).expect("keys");
     assert_eq!((track.get(6.0), track.get(7.0)), (Some(HAND[0].1), Some(HAND[1].1)));
     assert_eq!(bench.session().selection().keys().len(), 2, "they are selected");
     bench.apply([TransactionAction::Undo]);
-    assert_eq!(times(&bench, Channel::Hand), [1.0, 2.0, 5.0]);
+    assert_eq!(times(&bench, channels::HAND), [1.0, 2.0, 5.0]);
 }
 
 #[test]
@@ -226,7 +230,7 @@ fn after_the_first_key_a_pose_at_another_time_is_kept_and_a_note_says_why() {
     let at = bench.cursor_on_screen();
     bench.drag_and_drop(PointerButton::Primary, at, at + egui::vec2(-60.0, 20.0));
     bench.settle();
-    assert_eq!(times(&bench, Channel::Hand), [0.0, 2.0]);
+    assert_eq!(times(&bench, channels::HAND), [0.0, 2.0]);
     assert!(!bench.says(NOTE), "said once");
 
     let mut bench = Bench::new();

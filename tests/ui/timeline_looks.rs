@@ -1,48 +1,49 @@
 //! Appearance of the timeline in both themes and in windows of all sizes.
 
+use crate::common::arm::{ArmEdit, Step, channels};
 use egui::accesskit::Role;
 use egui::{Rect, Vec2};
 use egui_kittest::SnapshotResults;
 use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
-use ik_arm::document::{Channel, Theme};
+use ik_arm::document::Theme;
 use ik_arm::session::{
-    Action, Actions, ArmEdit, KeysEdit, PlaybackAction, SelectAction, ShellAction, ViewAction,
+    Action, Actions, KeysEdit, PlaybackAction, SelectAction, ShellAction, ViewAction,
 };
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::looks::has_tooltip;
 
 /// An arm with keys at three times, between them.
-pub fn animated() -> Vec<Action> {
+pub fn animated() -> Vec<Step> {
     let keyed = |time, hand, twist: f32| {
         [
-            Action::from(PlaybackAction::SetTime(time)),
+            Step::from(PlaybackAction::SetTime(time)),
             ArmEdit::SetHand(hand).into(),
             ArmEdit::SetTwist(twist.to_radians()).into(),
-            KeysEdit::Key(vec![Channel::Hand, Channel::Twist]).into(),
+            KeysEdit::Key(vec![channels::HAND, channels::TWIST]).into(),
         ]
     };
-    let mut actions = vec![Action::from(PlaybackAction::SetAutoKey(false))];
+    let mut actions = vec![Step::from(PlaybackAction::SetAutoKey(false))];
     actions.extend(keyed(1.0, Vec3::new(250.0, 120.0, 60.0), 0.0));
     actions.extend(keyed(3.5, Vec3::new(-100.0, 300.0, 160.0), 90.0));
     actions.extend(keyed(6.0, Vec3::new(200.0, -50.0, -60.0), 30.0));
     actions.extend([
-        Action::from(PlaybackAction::SetTime(2.0)),
+        Step::from(PlaybackAction::SetTime(2.0)),
         ArmEdit::SetUpper(220.0).into(),
-        KeysEdit::Key(vec![Channel::Upper]).into(),
+        KeysEdit::Key(vec![channels::UPPER_LENGTH]).into(),
         PlaybackAction::SetTime(5.0).into(),
         ArmEdit::SetUpper(180.0).into(),
-        KeysEdit::Key(vec![Channel::Upper]).into(),
-        SelectAction::Keys(vec![(Channel::Hand, 3.5), (Channel::Twist, 3.5)]).into(),
-        SelectAction::Channels(vec![Channel::Hand]).into(),
+        KeysEdit::Key(vec![channels::UPPER_LENGTH]).into(),
+        SelectAction::Keys(vec![(channels::HAND, 3.5), (channels::TWIST, 3.5)]).into(),
+        SelectAction::Channels(vec![channels::HAND]).into(),
         PlaybackAction::SetTime(4.5).into(),
         ArmEdit::SetHand(Vec3::new(100.0, 100.0, 100.0)).into(),
     ]);
     actions
 }
 
-fn bench(size: Vec2, more: impl IntoIterator<Item = impl Into<Action>>) -> Bench {
+fn bench(size: Vec2, more: impl IntoIterator<Item = impl Into<Step>>) -> Bench {
     let mut bench = Bench::with_timeline(size);
     bench.apply(animated());
     bench.apply(more);
@@ -142,7 +143,7 @@ fn a_timeline_without_keys_says_how_to_set_the_first_one() {
     assert!(bench.says("No curves"));
     bench.apply([
         Action::from(ViewAction::ShowGraphEditor(false)),
-        KeysEdit::Key(vec![Channel::Hand]).into(),
+        KeysEdit::Key(vec![channels::HAND]).into(),
     ]);
     assert!(!bench.says("press K to add keys"));
 }
@@ -151,10 +152,10 @@ fn a_timeline_without_keys_says_how_to_set_the_first_one() {
 fn every_control_of_the_timeline_has_a_tooltip() {
     let mut bench = bench(LARGE, Actions::new());
     let more = [
-        (Role::Button, "Channel Hand"),
-        (Role::Button, "Key of Hand at 1.00 s"),
+        (Role::Button, "Channel hand · target"),
+        (Role::Button, "Key of hand · target at 1.00 s"),
         (Role::Button, "Keys at 2.00 s"),
-        (Role::Image, "Hand: unkeyed change, press K or it is lost when the time changes"),
+        (Role::Image, "hand · target: unkeyed change, press K or it is lost when the time changes"),
     ];
     for (role, name) in CONTROLS.into_iter().chain(more) {
         assert!(has_tooltip(&mut bench, role, name), "{name}");
@@ -183,8 +184,10 @@ fn controls_that_cannot_act_are_disabled() {
 fn the_curves_are_those_of_the_selected_channels_or_of_the_whole_rig() {
     let mut bench = bench(LARGE, [ViewAction::ShowGraphEditor(true)]);
     bench.apply([SelectAction::Channels(Vec::new())]);
-    assert!(bench.shows(Role::Image, "Curves of Hand, Socket twist, Upper length"));
-    bench.apply([SelectAction::Channels(vec![Channel::Upper])]);
-    assert!(bench.shows(Role::Image, "Curves of Upper length"));
-    assert!(bench.shows(Role::Button, "Curve of Hand"), "its name stays, to be clicked");
+    assert!(
+        bench.shows(Role::Image, "Curves of upper · length, hand · target, hand · Socket twist")
+    );
+    bench.apply([SelectAction::Channels(vec![channels::UPPER_LENGTH])]);
+    assert!(bench.shows(Role::Image, "Curves of upper · length"));
+    assert!(bench.shows(Role::Button, "Curve of hand · target"), "its name stays, to be clicked");
 }

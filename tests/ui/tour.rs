@@ -1,5 +1,6 @@
 //! The tour in the window: every step done with the mouse and with the keyboard, at two sizes.
 
+use crate::common::arm::ArmSession;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, Rect, Vec2, pos2};
 use egui_kittest::kittest::Queryable as _;
@@ -7,6 +8,7 @@ use egui_kittest::{SnapshotResults, try_image_snapshot_options};
 use glam::{Quat, Vec3};
 use ik_arm::document::Theme;
 use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::rig::LimbPart;
 use ik_arm::session::{
     PlaybackAction, Preferences, SelectAction, SolverAction, TourAction, TourEnd, TourStep, filled,
 };
@@ -80,8 +82,8 @@ fn drag_rail(bench: &mut Bench, slider: &str, from: f32, to: f32) {
 
 /// Does the task of a step as its text says, with the mouse.
 fn do_with_the_mouse(bench: &mut Bench, number: usize) {
-    let arm = *bench.session().arm();
-    let (hand, pose) = (arm.cursor_in_world(), *bench.session().pose());
+    let limb = bench.session().limb().map(|limb| limb.frames);
+    let hand = limb.as_ref().map_or(Vec3::ZERO, |limb| limb.origin(LimbPart::Cursor));
     let on_screen = |bench: &Bench, point: Vec3| bench.on_screen(point);
     match number {
         1 => {
@@ -100,6 +102,7 @@ fn do_with_the_mouse(bench: &mut Bench, number: usize) {
             drag_through(bench, line(from, from + away * 0.6, 80));
         }
         4 => {
+            let pose = bench.session().pose();
             let axis = pose.pointer.direction;
             let centre = axis * pose.along;
             let turned = |part: f32| {
@@ -142,7 +145,7 @@ fn do_with_the_mouse(bench: &mut Bench, number: usize) {
         }
         9 => {
             bench.click(Role::CheckBox, "Pinned to world");
-            let root = on_screen(bench, arm.root);
+            let root = on_screen(bench, bench.session().arm().root);
             drag_through(bench, line(root, root + Vec2::new(-30.0, -30.0), 20));
         }
         10 => {

@@ -1,5 +1,6 @@
 //! Axis views by key and by name, and the glide of the camera.
 
+use crate::common::arm::ArmSession;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, pos2};
 use glam::Vec3;
@@ -37,10 +38,9 @@ fn five_toggles_f_frames_the_arm_home_frames_all() {
     for key in [Key::F, Key::Home] {
         bench.key(key);
         bench.settle();
-        let (arm, pose) = (bench.session().arm(), bench.session().pose());
         let (centre, radius) = match key {
-            Key::F => arm.bounds(pose),
-            _ => (arm.root, arm.reach_limits().outer),
+            Key::F => bench.session().posed().bounds(),
+            _ => (Vec3::ZERO, bench.session().arm().reach_limits().outer),
         };
         assert_eq!(bench.session().camera().target, centre, "{key:?}");
         let (_, right, up) = bench.session().camera().basis();

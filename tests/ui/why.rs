@@ -5,7 +5,9 @@ use egui::{PointerButton, vec2};
 use glam::Vec3;
 use ik_arm::document::Target;
 use ik_arm::kinematics::diagnosis::Remedy;
-use ik_arm::session::{PlaybackAction, SelectAction, SolverAction, TargetEdit, TransactionAction};
+use ik_arm::session::{
+    PanelTab, PlaybackAction, SelectAction, SolverAction, TargetEdit, TransactionAction,
+};
 use ik_arm::words;
 
 use crate::bench::Bench;
@@ -18,13 +20,14 @@ const STRETCH: &str = "Let the limb stretch by up to";
 fn bench() -> Bench {
     let mut bench = Bench::example("human");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..target(&bench) };
+    bench.show_tab(PanelTab::Solver);
     bench.apply([TargetEdit::SetTarget(target)]);
     bench.settle();
     bench
 }
 
 fn target(bench: &Bench) -> Target {
-    let rig = bench.session().skeleton_rig();
+    let rig = bench.session().rig();
     rig.targets[rig.target_of_end(bench.joint("left_hand")).expect("a target")]
 }
 
@@ -61,7 +64,7 @@ fn the_button_of_the_note_applies_the_remedy_as_one_undo_step_and_says_what_it_d
     let before = bench.session().document().clone();
     bench.click(Role::Button, MOVE);
     bench.settle();
-    assert!(error(&bench) <= bench.session().skeleton_rig().tolerance());
+    assert!(error(&bench) <= bench.session().rig().tolerance());
     assert_eq!(labels(&bench, TOO_FAR), 0);
     let done = "Moved the target of left_hand within reach: left_hand is at its target now";
     assert!(bench.says(done), "{:?}", bench.session().shell().message());
@@ -79,7 +82,7 @@ fn each_remedy_in_the_panel_leaves_what_its_tooltip_tells() {
         bench.session().why(true).iter().flat_map(|it| it.remedies.clone()).collect();
     assert!(matches!(tried[..], [_, _]), "{tried:?}");
     for tried in tried {
-        let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
+        let name = words::remedy(bench.session().rig(), &tried.remedy);
         if matches!(tried.remedy, Remedy::Stretch { .. }) {
             // It may be below the edge of the note.
             bench.node(Role::Button, &name).click_accesskit();
@@ -134,6 +137,7 @@ fn a_cancelled_drag_says_why_again() {
 /// The Human with its left foot asked to turn about x by so many degrees, the foot selected.
 fn foot_turned_by(degrees: &str) -> Bench {
     let mut bench = Bench::example("human");
+    bench.show_tab(PanelTab::Solver);
     let foot = bench.joint("left_foot");
     bench.apply([SelectAction::Joints(vec![foot])]);
     bench.settle();
@@ -154,7 +158,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
     let [some, more] = ["80", "120"].map(|degrees| {
         let bench = foot_turned_by(degrees);
         let missing = missing_degrees(&bench);
-        let sentence = words::cause(bench.session().skeleton_rig(), &bench.session().why(true)[0]);
+        let sentence = words::cause(bench.session().rig(), &bench.session().why(true)[0]);
         assert!(sentence.starts_with("left_foot is "), "{sentence}");
         assert!(sentence.contains("its limit about x is in the way"), "{sentence}");
         assert_eq!(labels(&bench, &sentence), 4, "as many as for a place that is not reached");
@@ -184,7 +188,7 @@ fn a_foot_that_cannot_turn_that_far_says_so_and_names_the_limit() {
 fn the_remedy_of_a_foot_widens_the_limit_that_is_in_the_way() {
     let mut bench = foot_turned_by("80");
     let tried = bench.session().why(true)[0].remedies[0].clone();
-    let name = words::remedy(bench.session().skeleton_rig(), &tried.remedy);
+    let name = words::remedy(bench.session().rig(), &tried.remedy);
     assert!(name.starts_with("Widen the limit of left_foot about x by "), "{name}");
     let target = bench.joint("left_shin");
     bench.apply([TargetEdit::ApplyRemedy { target, remedy: tried.remedy }]);

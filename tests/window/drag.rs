@@ -62,7 +62,7 @@ fn a_mouse_drags_a_slider_and_the_hand_and_the_screen_follows() {
 fn a_mouse_drags_the_pelvis_of_the_human_and_the_hands_stay() {
     let (_folder, places, program) = open();
     let arm = program.at_rest();
-    program.click(places.skeleton_switch);
+    program.key("ctrl+alt+n");
     program.wait_until("the Human is shown", |now| changed(&arm, now, places.head, 10.0) > 100);
     // Away from all bones, so that none is highlighted.
     program.mouse_to(places.empty);

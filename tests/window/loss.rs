@@ -94,7 +94,7 @@ fn a_device_that_cannot_be_recreated_three_times_ends_the_program_and_keeps_the_
     let errors = program.errors();
     assert!(errors.contains("could not be created again in three attempts"), "{errors}");
     assert!(errors.contains(&first.display().to_string()), "{errors}");
-    let hand = document_of(first).arm.cursor_in_root();
+    let hand = document_of(first).rig.targets[0].home;
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
     let program = Program::open(folder.path());

@@ -1,7 +1,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use ik_arm::document::RigKind;
-use ik_arm::session::{Actions, DisplayEdit, Session};
+use ik_arm::rig::LimbPart;
+use ik_arm::session::{Actions, FileAction, Session};
 use ik_arm::ui::{self, Machine};
 
 use crate::screen::SIZE;
@@ -21,7 +21,6 @@ pub struct Places {
     pub empty: egui::Pos2,
     /// The middle of the axes in the corner of the viewport.
     pub view_axes: egui::Pos2,
-    pub skeleton_switch: egui::Pos2,
     /// The middle of the Human's head, while that is shown.
     pub head: egui::Pos2,
     /// The pelvis of the Human.
@@ -53,8 +52,6 @@ impl Places {
             })
             .rect()
             .translate(-HARNESS_MARGIN);
-        let switch = harness.get_by_role_and_label(egui::accesskit::Role::Button, "Skeleton");
-        let skeleton_switch = switch.rect().center() - HARNESS_MARGIN;
         let place_in = |session: &Session, point| {
             let projection = session.camera().projection(viewport.aspect_ratio());
             let at = projection.project(point).expect("in the picture");
@@ -62,7 +59,7 @@ impl Places {
         };
         let place = |point| place_in(&session, point);
         let mut human = Session::default();
-        human.apply(DisplayEdit::ShowRig(RigKind::Skeleton));
+        human.apply(FileAction::NewFigure);
         let pose = human.skeleton_pose();
         let joint = |name: &str| human.skeleton().find(name).expect("the Human has this joint");
         let head = joint("head");
@@ -71,18 +68,17 @@ impl Places {
         let wrists = ["left_forearm", "right_forearm"]
             .map(|forearm| place_in(&human, pose.tip(joint(forearm))));
         let toes = ["left_foot", "right_foot"].map(|foot| place_in(&human, pose.tip(joint(foot))));
+        let limb = &session.limb().expect("a limb").frames;
         let track = rail.x_range().shrink(8.5);
-        let part =
-            (session.arm().cursor_in_root().x / session.arm().bones.outer_limit() + 1.0) / 2.0;
+        let part = (limb.posed.cursor.x / limb.bones().outer_limit() + 1.0) / 2.0;
         Self {
             thumb: egui::pos2(track.min + part * track.span(), rail.center().y),
             rail_end: egui::pos2(track.min + 0.2 * track.span(), rail.center().y),
             number,
-            hand: place(session.arm().root + session.pose().hand),
-            elbow: place(session.arm().root + session.pose().elbow),
+            hand: place(limb.origin(LimbPart::Hand)),
+            elbow: place(limb.origin(LimbPart::Elbow)),
             empty: viewport.left_top() + egui::vec2(40.0, 40.0),
             view_axes: viewport.right_bottom() - egui::vec2(63.0, 63.0),
-            skeleton_switch,
             head,
             pelvis,
             wrists,

@@ -40,7 +40,7 @@ fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_ne
     program.terminate();
     assert_eq!(program.end(), Some(130));
     let [first] = &kept(folder.path())[..] else { panic!("nothing is kept") };
-    let hand = document_of(first).arm.cursor_in_root();
+    let hand = document_of(first).rig.targets[0].home;
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 
     let program = Program::open(folder.path());
@@ -54,7 +54,7 @@ fn unsaved_changes_are_kept_when_the_program_is_terminated_and_offered_at_the_ne
         _ => None,
     });
     program.kill();
-    assert_eq!(document_of(&second).arm.cursor_in_root(), hand);
+    assert_eq!(document_of(&second).rig.targets[0].home, hand);
 }
 
 #[test]
@@ -84,9 +84,8 @@ fn a_recovered_document_that_is_given_up_is_not_offered_again() {
 fn settings_are_kept_when_the_program_is_killed() {
     let (folder, places, program) = open();
     let before = program.at_rest();
-    program.click(places.skeleton_switch);
-    program
-        .wait_until("the skeleton", |now| changed(&before, now, places.skeleton_switch, 8.0) > 20);
+    program.key("ctrl+alt+n");
+    program.wait_until("the figure", |now| changed(&before, now, places.head, 8.0) > 20);
     let file = folder.path().join("ik-arm/settings.ron");
     wait_for("the settings", || file.exists().then_some(()));
     program.kill();
@@ -101,7 +100,7 @@ fn unsaved_changes_are_backed_up_within_ten_seconds_of_a_change() {
     let file = wait_for("a backup", || kept(folder.path()).pop());
     assert!(before.elapsed() < Duration::from_secs(10), "after {:?}", before.elapsed());
     program.kill();
-    let hand = document_of(&file).arm.cursor_in_root();
+    let hand = document_of(&file).rig.targets[0].home;
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
 }
 
@@ -115,7 +114,7 @@ fn unsaved_changes_are_kept_when_the_display_server_dies() {
     server.kill();
     assert_eq!(program.end(), Some(1));
     let [file] = &kept(folder.path())[..] else { panic!("nothing is kept") };
-    let hand = document_of(file).arm.cursor_in_root();
+    let hand = document_of(file).rig.targets[0].home;
     assert!(hand.x < 0.0, "{hand} is not where it was dragged");
     let errors = program.errors();
     assert!(errors.contains(&file.display().to_string()), "{errors}");

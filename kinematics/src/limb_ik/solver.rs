@@ -266,7 +266,9 @@ impl SolvedLimb {
         let target = local.target;
         let to_target = local.point - fk.base;
         let wanted = to_target.length();
-        let pointer = to_target.try_normalize().unwrap_or_else(|| fk.aim().pointer);
+        let pointer = to_target.try_normalize().unwrap_or_else(|| {
+            carried.aim.map_or(fk.aim().pointer, |aim| fk.above.rotation * aim.pointer)
+        });
         let range = fk.range(target.soft_reach);
         let (distance, stretch) = target.soft_reach.between(range[0], range[1], wanted);
 

@@ -1,9 +1,10 @@
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Mat3A, Vec2, Vec3};
 
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::tapered_cylinder::TaperedCylinder;
 use super::target::{LimbSettings, Target};
+use crate::angle;
 use crate::fk::Fk;
 use crate::ik::{self, Ik, IkSolution};
 use crate::limb_ik::{
@@ -123,6 +124,13 @@ impl LimbFrames {
     /// other limbs.
     const BASE_RADIUS: f32 = 30.0;
     const TIP_RADIUS: f32 = 20.0;
+    /// Radius of the balls of base and elbow: as large as the ends of the limbs, so that no gap shows
+    /// when the elbow bends. This and the next two are for a limb of length 500.
+    pub const JOINT_BALL: f32 = 33.0;
+    /// Radius of the ball of the wrist.
+    pub const WRIST_BALL: f32 = 22.0;
+    /// Distance from the wrist to the tip of the middle finger.
+    pub const HAND: f32 = 105.0;
     const POINTER_RADIUS: f32 = 4.0;
     const SEED_LENGTH: f32 = 500.0;
 
@@ -255,6 +263,42 @@ impl LimbFrames {
 }
 
 impl SkeletonRig {
+    /// Axes of the Root of the limb that ends at a joint, in the space of the parent of the limb's
+    /// upper joint; `None` without such a limb.
+    pub fn limb_axes(&self, joint: JointId) -> Option<Mat3> {
+        let limb = Limb::ending_at(&self.skeleton, joint).ok()?;
+        Some(LimbAim::in_bind_pose(&self.skeleton, limb)?.frame().as_mat3())
+    }
+
+    /// Rotation in the world of the hand of the limb that ends at a joint, or of its lower bone if it
+    /// has none, in a pose: +x points out of the lower bone in the bind pose, +y to the side of the
+    /// elbow there. `None` without such a limb.
+    pub fn hand_rotation(&self, pose: &Skeleton, joint: JointId) -> Option<DMat3> {
+        let hand = Limb::ending_at(&self.skeleton, joint).ok()?.hand.unwrap_or(joint);
+        Some(DMat3::from_quat(pose.rotation_in_world(hand)) * self.end_axes(joint)?)
+    }
+
+    /// Roll of the hand about the lower bone of the limb that ends at a joint, in a pose, in
+    /// radians, whole turns included; `None` without a hand.
+    pub fn hand_roll(&self, pose: &Skeleton, joint: JointId) -> Option<f32> {
+        let hand = Limb::ending_at(&self.skeleton, joint).ok()?.hand?;
+        let axes = self.end_axes(joint)?;
+        let lower = DMat3::from_quat(pose.rotation_in_world(joint)) * axes;
+        let own = lower.transpose() * (DMat3::from_quat(pose.rotation_in_world(hand)) * axes);
+        // The angle about x includes the whole turns if x is along the bone.
+        let is_along = pose[hand].frame.x_axis.as_dvec3().dot(axes.x_axis) > 1.0 - 1e-6;
+        Some(angle::roll(own, if is_along { pose[hand].rotation.x } else { 0.0 }))
+    }
+
+    /// Axes of the end of the limb of a joint in the bind pose: along the lower bone, and to the
+    /// elbow's side.
+    fn end_axes(&self, joint: JointId) -> Option<DMat3> {
+        let along = self.skeleton.joint(joint)?.axis.as_dvec3().try_normalize()?;
+        let side = self.limb_axes(joint)?.as_dmat3().y_axis;
+        let side = side.reject_from_normalized(along).try_normalize()?;
+        Some(DMat3::from_cols(along, side, along.cross(side)))
+    }
+
     /// The frames of the limb of the target with an index, in an evaluated pose of this rig; `None`
     /// for a whole-body target, a joint that ends no limb, bones without length, and a singular
     /// transform of the skeleton.
@@ -301,7 +345,7 @@ impl SkeletonRig {
                 ik: Ik { bones, reference, soft_reach },
                 kind,
                 twist: settings.twist,
-                pinned_root: None,
+                pinned_root: target.is_pinned.then(|| root.to_world.translation.as_vec3()),
                 influence: posing,
                 fk: Fk::matching(&fk, Fk::default()),
             },

@@ -1,6 +1,7 @@
 //! Rigs: the arm as a hierarchy of transforms (Root → Limb → Socket) with limbs and
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
+mod arm;
 mod carried;
 mod crowd;
 mod diagnose;

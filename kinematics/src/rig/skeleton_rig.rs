@@ -88,7 +88,7 @@ impl SkeletonRig {
         influences.clear();
         influences.resize(self.skeleton.joints().len(), 0.0);
         for target in self.targets.iter().filter(|target| self.is_solved_for(target)) {
-            for joint in self.moved_by(target).turned {
+            for joint in MovedJoints::turned(&self.skeleton, self.solver.root, target) {
                 let influence = &mut influences[joint.index()];
                 *influence = influence.max(target.influence);
             }
@@ -161,6 +161,16 @@ impl SkeletonRig {
             })
         };
         self.targets.iter().position(has)
+    }
+
+    /// The target of a rig that is one limb: the only target, if it moves a limb, and every joint is
+    /// one of the limb's or above them. `None` for any other figure.
+    pub fn sole_limb(&self) -> Option<&Target> {
+        let [target] = &self.targets[..] else { return None };
+        let limb =
+            target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok())?;
+        let chain = self.skeleton.ancestors(limb.hand.unwrap_or(limb.lower));
+        (chain.count() == self.skeleton.joints().len()).then_some(target)
     }
 
     /// A target with full influence at the tip of a joint in a pose: for a hand or foot, or the

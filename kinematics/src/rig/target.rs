@@ -68,6 +68,11 @@ impl Target {
         }
     }
 
+    /// The limb that the target poses; `None` for a whole-body target and a joint that ends none.
+    pub(super) fn limb_in(&self, skeleton: &Skeleton) -> Option<Limb> {
+        self.limb().and_then(|_| Limb::ending_at(skeleton, self.joint).ok())
+    }
+
     /// Settings of a limb target; `None` for a whole-body target.
     pub fn limb(&self) -> Option<&LimbSettings> {
         match &self.kind {
@@ -326,6 +331,16 @@ impl Default for LimbSettings {
 }
 
 impl LimbSettings {
+    /// True if the twist is measured from a pole that is not there.
+    pub fn lacks_pole(&self) -> bool {
+        self.reference == TwistReferenceKind::Pole && self.pole.is_none()
+    }
+
+    /// True if the bones are stretched by FK, or can be by IK.
+    pub fn is_stretching(&self) -> bool {
+        self.soft_reach.max_stretch() > 1.0 || self.fk_stretch != 1.0
+    }
+
     /// The space and the position of the pole that is in use; `None` for another reference.
     pub fn pole(&self) -> Option<(TargetSpace, Vec3)> {
         let pole = self.pole.filter(|_| self.reference == TwistReferenceKind::Pole);
@@ -431,21 +446,26 @@ pub(super) struct MovedJoints {
 impl MovedJoints {
     /// The joints that `target` turns if it poses a skeleton whose solver has this mode of roots.
     pub fn new(skeleton: &Skeleton, root: Root, target: &Target) -> Self {
+        let limb = target.limb_in(skeleton);
+        let turned = Self::turned(skeleton, root, target).collect();
+        Self { turned, upper: limb.map(|limb| limb.upper) }
+    }
+
+    /// The joints that are turned, one after the other.
+    pub fn turned(
+        skeleton: &Skeleton,
+        root: Root,
+        target: &Target,
+    ) -> impl Iterator<Item = JointId> {
         let is_free = root == Root::Free;
-        let can_turn = |joint: &JointId| {
+        let can_turn = move |joint: &JointId| {
             let joint = &skeleton[*joint];
             !joint.locked || (is_free && joint.parent.is_none())
         };
-        match target.kind {
-            TargetKind::WholeBody => Self {
-                turned: skeleton.ancestors(target.joint).filter(can_turn).collect(),
-                upper: None,
-            },
-            TargetKind::Limb(_) => match Limb::ending_at(skeleton, target.joint) {
-                Ok(limb) => Self { turned: limb.joints().collect(), upper: Some(limb.upper) },
-                Err(_) => Self { turned: Vec::new(), upper: None },
-            },
-        }
+        let is_body = matches!(target.kind, TargetKind::WholeBody);
+        let body = is_body.then(|| skeleton.ancestors(target.joint).filter(can_turn));
+        let limb = target.limb_in(skeleton).map(Limb::joints);
+        body.into_iter().flatten().chain(limb.into_iter().flatten())
     }
 
     /// True if the target moves `joint`: turns it or a joint above it.

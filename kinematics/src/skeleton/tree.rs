@@ -165,9 +165,20 @@ impl Skeleton {
     ///
     /// If there is no such joint.
     pub fn full_transform(&self, joint: JointId) -> Affine3A {
-        let mut path: Vec<_> = self.ancestors(joint).collect();
-        path.reverse();
-        path.into_iter().fold(self.transform, |above, joint| above * self[joint].local())
+        self.fold_down(joint, self.transform, |above, joint| above * self[joint].local())
+    }
+
+    /// Folds the joints from the root above a joint down to it. Allocates only for long chains.
+    fn fold_down<T>(&self, joint: JointId, start: T, step: impl FnMut(T, JointId) -> T) -> T {
+        const SHORT: usize = 32;
+        let count = self.ancestors(joint).count();
+        if count > SHORT {
+            let path: Vec<_> = self.ancestors(joint).collect();
+            return path.into_iter().rev().fold(start, step);
+        }
+        let mut path = [joint; SHORT];
+        path.iter_mut().zip(self.ancestors(joint)).for_each(|(place, joint)| *place = joint);
+        path[..count].iter().rev().copied().fold(start, step)
     }
 
     /// Position of the bone's base in the world.
@@ -198,9 +209,9 @@ impl Skeleton {
     pub fn rotation_in_world(&self, joint: JointId) -> DQuat {
         let (_, rotation, _) = self.transform.as_daffine3().to_scale_rotation_translation();
         let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
-        let joints: Vec<_> = self.ancestors(joint).collect();
-        let below = joints.into_iter().rev().map(|it| self[it].rotation_f64(self[it].rotation));
-        let below = below.fold(DMat3::IDENTITY, |above, local| above * local);
+        let below = self.fold_down(joint, DMat3::IDENTITY, |above, joint| {
+            above * self[joint].rotation_f64(self[joint].rotation)
+        });
         (rotation * DQuat::from_mat3(&below)).normalize()
     }
 

@@ -107,6 +107,13 @@ pub struct LengthError {
     pub value: f32,
 }
 
+impl Default for TwoBone {
+    /// The bones of the arm of E. Palmieri's report (2014).
+    fn default() -> Self {
+        Self { upper: 200.0, lower: 300.0 }
+    }
+}
+
 impl TwoBone {
     /// Two bones of finite lengths above 0.
     ///

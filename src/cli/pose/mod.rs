@@ -11,7 +11,7 @@ use super::argument::time;
 use super::open::{self, InputArgs};
 use super::report::{CommandError, print_json, say};
 use super::time_limit::TimeLimitArgs;
-use crate::document::{Posed, RigKind, Track};
+use crate::document::{Posed, Track};
 use crate::io::{OpenOptions, Opened};
 use crate::kinematics::chain_ik::{Method, SolveError, SolverOptions};
 use crate::kinematics::skeleton::JointId;
@@ -25,20 +25,25 @@ The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
    "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
-    "error":E,"rotation_error_deg":A}, …],
+    "error":E,"rotation_error_deg":A,"limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
+    "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
+    "along":H,"out":O,"shoulder_angle_deg":A,"elbow_angle_deg":A}|null}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false},
    "why":[{"cause":"…","target":"JOINT","joints":["…"],"sentence":"…","remedy":"…",
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
-foot to that which the target asks for, null if it asks for none. The report is that of --solver, or
+foot to that which the target asks for, null if it asks for none. Limb has the figures of a limb's
+target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
+angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
+the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
+for other targets, and with --fk and --solver. The report is that of --solver, or
 of the solver of the whole-body targets, else null, also if there is nothing to solve. Why lists the
 causes for which targets are not reached, the most likely first, each with the remedy that helps
 most and the distance from tip to target and the angle that it leaves, or null if no remedy was
 found; it is empty if all targets are reached, and with --fk. Causes: out_of_reach, limits,
 rotation_limits, locked, conflict, stalled, lost, singular, out_of_iterations, influence. A solve that
-does not converge is not an error. For documents that
-show the arm use `ik-arm solve`.
+does not converge is not an error. `ik-arm solve` solves two bones without a file.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#,
     mut_arg("file", |file| file.help(open::input_help("File to pose")))
@@ -98,9 +103,6 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
     // A list needs no camera, and a skeleton is solved to be framed by one.
     let options = OpenOptions { without_camera: args.list, ..args.input.options() };
     let opened = open::open(&args.input.file, &options)?;
-    if opened.document.rig == RigKind::Arm {
-        return Err(CommandError::PoseOfArm(file));
-    }
     if args.list {
         let list = FileList::new(&opened, options.skeleton.as_deref());
         let text = serde_json::to_string_pretty(&list).map_err(io::Error::from)?;
@@ -113,7 +115,7 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
     if let Some(remark) = &answer.remark {
         say(&format_args!("{file}: {remark}"));
     }
-    let line = PoseLine::new(&posed.document().skeleton_rig, &answer, &order, args.time)
+    let line = PoseLine::new(&posed, &answer, &order)
         .map_err(|name| CommandError::Overflow { file, name: name.to_owned() })?;
     print_json(&line)
 }
@@ -125,7 +127,7 @@ fn answered(
     order: &[JointId],
     file: &str,
 ) -> Result<AnsweredPose, CommandError> {
-    let (rig, time) = (&posed.document().skeleton_rig, posed.time());
+    let (rig, time) = (&posed.document().rig, posed.time());
     let Some(method) = args.solver else {
         let answer = if args.fk { AnsweredPose::fk } else { AnsweredPose::by_targets };
         return Ok(answer(posed));

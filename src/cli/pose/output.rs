@@ -6,10 +6,12 @@ use serde::Serialize;
 use crate::document::{Channel, Document, Posed, SkeletonRig};
 use crate::io::{FileAnimation, Opened};
 use crate::kinematics::Shared;
+use crate::kinematics::angle::wrapped;
 use crate::kinematics::chain_ik::{self, Report, SolveError, SolverOptions, Status};
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{JointId, Skeleton, is_within_numbers};
-use crate::rig::{TargetKind, TargetOutcome};
+use crate::kinematics::two_bone::Reach;
+use crate::rig::{LimbFrames, LimbPart, Target, TargetKind, TargetOutcome};
 use crate::words;
 
 /// Output of the command: one line of JSON.
@@ -41,6 +43,51 @@ struct TargetLine {
     tip: Vec3,
     error: f32,
     rotation_error_deg: Option<f32>,
+    limb: Option<LimbLine>,
+}
+
+/// The figures of a limb, in the words of its page in the program.
+#[derive(Serialize)]
+struct LimbLine {
+    root: Vec3,
+    pointer: Vec3,
+    twist_deg: f32,
+    reach: Option<&'static str>,
+    upper: f32,
+    lower: f32,
+    distance: f32,
+    along: f32,
+    out: f32,
+    shoulder_angle_deg: f32,
+    elbow_angle_deg: f32,
+}
+
+impl LimbLine {
+    fn new(limb: &LimbFrames) -> Self {
+        let pose = limb.pose();
+        let reach = match pose.reach {
+            _ if limb.limited_by.is_some() => Some("limited"),
+            Some(Reach::Reached) => Some("reached"),
+            Some(Reach::TooFar) => Some("too_far"),
+            Some(Reach::TooClose) => Some("too_close"),
+            None => None,
+        };
+        let bones = limb.bones().stretched(pose.stretch);
+        let pointer = limb.root.transform_vector3(pose.pointer.direction);
+        Self {
+            root: limb.origin(LimbPart::Root),
+            pointer: pointer.normalize_or_zero(),
+            twist_deg: wrapped(pose.twist).to_degrees(),
+            reach,
+            upper: bones.upper(),
+            lower: bones.lower(),
+            distance: pose.distance,
+            along: pose.along,
+            out: pose.out,
+            shoulder_angle_deg: pose.shoulder_angle().to_degrees(),
+            elbow_angle_deg: pose.elbow_angle().to_degrees(),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -52,19 +99,18 @@ struct ReportLine {
 }
 
 impl<'a> PoseLine<'a> {
-    /// Returns the output for a pose of a rig at `time`, in seconds. `order` has the rig's joints
-    /// in the file's order.
+    /// Returns the output for a pose of a document. `order` has the rig's joints in the file's
+    /// order.
     ///
     /// # Errors
     ///
     /// Fails with the name of a joint whose position overflows.
     pub fn new(
-        rig: &'a SkeletonRig,
-        posed: &'a AnsweredPose,
+        posed: &'a Posed,
+        answer: &'a AnsweredPose,
         order: &[JointId],
-        time: f64,
     ) -> Result<Self, &'a str> {
-        let skeleton = &posed.skeleton;
+        let (rig, time, skeleton) = (&posed.document().rig, posed.time(), &answer.skeleton);
         let mut index_of = vec![JointId::default(); order.len()];
         for (index, joint) in order.iter().enumerate() {
             index_of[joint.index()] = JointId::new(index);
@@ -88,6 +134,8 @@ impl<'a> PoseLine<'a> {
         });
         let joints = joints.collect::<Result<_, _>>()?;
         let enabled = rig.targets.iter().filter(|target| target.enabled);
+        let limb =
+            |target: &Target| posed.limb_frames(target.joint).filter(|_| answer.is_evaluated);
         let targets = enabled.map(|target| {
             let (point, tip) = (target.in_world(skeleton, time), pose.tip(target.joint));
             let error = point.as_dvec3().distance(tip.as_dvec3());
@@ -102,11 +150,12 @@ impl<'a> PoseLine<'a> {
                 tip,
                 error: (error as f32).min(f32::MAX),
                 rotation_error_deg: rig.rotation_error(target, skeleton).map(f32::to_degrees),
+                limb: limb(target).as_ref().map(LimbLine::new),
             }
         });
         let targets = targets.collect();
-        let report = posed.report.as_ref().map(ReportLine::new);
-        let why = posed.why.iter().map(|found| WhyLine::new(found, rig)).collect();
+        let report = answer.report.as_ref().map(ReportLine::new);
+        let why = answer.why.iter().map(|found| WhyLine::new(found, rig)).collect();
         Ok(Self { joints, targets, report, why })
     }
 }
@@ -161,6 +210,8 @@ fn degrees(radians: Vec3) -> Vec3 {
 /// A pose of a rig's skeleton, with the report of the solver of several joints together, if any.
 pub struct AnsweredPose {
     pub skeleton: Shared<Skeleton>,
+    /// True for the evaluated pose of the document.
+    is_evaluated: bool,
     pub report: Option<Report>,
     /// Why targets are not reached.
     pub why: Vec<Diagnosis>,
@@ -171,8 +222,8 @@ pub struct AnsweredPose {
 impl AnsweredPose {
     /// The FK pose.
     pub fn fk(posed: &Posed) -> Self {
-        let skeleton = posed.document().skeleton_rig.fk_at(posed.time());
-        Self { skeleton, report: None, why: Vec::new(), remark: None }
+        let skeleton = posed.document().rig.fk_at(posed.time());
+        Self { skeleton, is_evaluated: false, report: None, why: Vec::new(), remark: None }
     }
 
     /// The pose by the rig's targets.
@@ -192,8 +243,8 @@ impl AnsweredPose {
         });
         let remark = refused.or(bounded);
         let before = posed.carried().unwrap_or_default();
-        let why = posed.document().skeleton_rig.diagnose(posed.time(), &before);
-        Self { skeleton: posed.skeleton().clone(), report, why, remark }
+        let why = posed.document().rig.diagnose(posed.time(), &before);
+        Self { skeleton: posed.skeleton().clone(), is_evaluated: true, report, why, remark }
     }
 
     /// The FK pose after a solve for all enabled targets.
@@ -202,12 +253,12 @@ impl AnsweredPose {
     ///
     /// [`SolveError`] if the solver refuses a target.
     pub fn solved(posed: &Posed, options: &SolverOptions) -> Result<Self, SolveError> {
-        let (rig, time) = (&posed.document().skeleton_rig, posed.time());
+        let (rig, time) = (&posed.document().rig, posed.time());
         let mut skeleton = rig.fk_at(time);
         let targets = rig.targets_at(time);
         let why = chain_ik::diagnose(&skeleton, &targets, options)?;
         let report = chain_ik::solve(skeleton.make_mut(), &targets, options)?;
-        Ok(Self { skeleton, report: Some(report), why, remark: None })
+        Ok(Self { skeleton, is_evaluated: false, report: Some(report), why, remark: None })
     }
 }
 
@@ -241,7 +292,7 @@ struct ListedAnimation {
 impl FileList {
     pub fn new(opened: &Opened, skeleton: Option<&str>) -> Self {
         let document = &opened.document;
-        let rig = &document.skeleton_rig;
+        let rig = &document.rig;
         let names = match &opened.skeletons[..] {
             [] => vec!["skeleton".to_owned()],
             names => names.to_vec(),

@@ -72,7 +72,7 @@ pub fn with_targets(
 /// Moves the joint's target, or adds one; returns the document and the target's index.
 fn place(posed: &Posed, joint: JointId, point: Vec3) -> (Document, usize) {
     let mut document = posed.document().clone();
-    let (rig, pose) = (&mut document.skeleton_rig, posed.skeleton());
+    let (rig, pose) = (&mut document.rig, posed.skeleton());
     let lower = Limb::for_end(&rig.skeleton, joint).map_or(joint, |limb| limb.lower);
     let existing = rig.target_of_end(joint).or_else(|| rig.target(lower));
     let index = existing.unwrap_or_else(|| {

@@ -24,7 +24,7 @@ use core::ops::RangeInclusive;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Channel, Document, RigKind, Timeline, Track};
+use crate::document::{Channel, Document, Timeline, Track};
 use motion::{BakedFrames, BakedTrack, Motion};
 use reduction::Reduction;
 
@@ -55,10 +55,7 @@ impl Bake {
     ///
     /// See [`BakeError`]; [`BakeError::Nothing`] may also come from [`Bake::run`] only.
     pub fn check(&self, document: &Document) -> Result<(), BakeError> {
-        let rig = &document.skeleton_rig;
-        if document.rig == RigKind::Arm {
-            return Err(BakeError::Arm);
-        }
+        let rig = &document.rig;
         if rig.targets.is_empty() && !document.follows_path() {
             return Err(BakeError::Nothing);
         }
@@ -133,9 +130,6 @@ pub struct Baked {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BakeError {
-    /// The document shows the arm.
-    #[error("only a skeleton can be baked, and the document shows the arm")]
-    Arm,
     /// No target and no path poses the skeleton in the range.
     #[error("nothing to bake: no target and no path poses the skeleton in this range")]
     Nothing,
@@ -194,6 +188,6 @@ fn baked(track: &Track, frames: &BakedFrames, motion: &Motion, tracks: &[BakedTr
         }
         baked.keys.set_track(channel, spline);
     }
-    baked.skeleton_rig.follow_paths.clear();
+    baked.rig.follow_paths.clear();
     baked
 }

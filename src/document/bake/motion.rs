@@ -57,7 +57,7 @@ impl Motion {
         go_on: &mut impl FnMut(usize) -> Result<(), E>,
     ) -> Result<Self, E> {
         let first = track.at(frames.start);
-        let rig = &first.document().skeleton_rig;
+        let rig = &first.document().rig;
         let joints = rig.skeleton.joints().len();
         let mut motion = Self {
             skeleton: Skeleton::clone(&rig.skeleton),
@@ -78,7 +78,7 @@ impl Motion {
 
     /// Appends a frame.
     fn add(&mut self, posed: &Posed) {
-        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
+        let (rig, solved) = (&posed.document().rig, posed.skeleton());
         self.keyed.extend(placements(&rig.skeleton));
         self.solved.extend(placements(solved));
         let pose = solved.pose_in_skeleton();

@@ -36,7 +36,7 @@ impl Grid {
         let grid =
             Self { start: document.motion_start(), rate: frame_rate, steps_per_frame, last: 0 };
         let end = document.keys.times().last().map_or(end, |last| last.max(end));
-        let last = if document.moves_skeleton() { grid.steps_until(end) } else { 0.0 };
+        let last = if document.moves_rig() { grid.steps_until(end) } else { 0.0 };
         Self { last: (last - Self::ROUNDING).ceil().clamp(0.0, Self::MOST) as usize, ..grid }
     }
 

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::grid::{Grid, Place};
-use crate::document::{Channel, Document, RigKind};
+use crate::document::{Channel, Document};
 use crate::kinematics::Shared;
 use crate::rig::{Carried, Posture, SkeletonRig};
 
@@ -130,7 +130,7 @@ impl Motion {
 
     /// The state before the first step.
     fn before_first(&self, grid: &Grid) -> Arc<Carried> {
-        Arc::new(match &self.document.skeleton_rig.posture {
+        Arc::new(match &self.document.rig.posture {
             Some(posture) => Carried::from_posture(posture),
             None if grid.last > 0 => Carried::relaxed(),
             None => Carried::default(),
@@ -139,7 +139,7 @@ impl Motion {
 
     /// True if the first pose is as near to the FK pose as the targets allow.
     fn begins_relaxed(&self) -> bool {
-        let has_posture = self.document.skeleton_rig.posture.is_some();
+        let has_posture = self.document.rig.posture.is_some();
         !has_posture && self.grid.is_some_and(|grid| grid.last > 0)
     }
 
@@ -155,7 +155,7 @@ impl Motion {
         let (known, of_known) =
             states.before(wanted).map_or((0, 0), |(step, state)| (step + 1, state.work));
         let of_step = of_known.checked_div(known as u64).unwrap_or_else(|| {
-            let rig = &self.document.skeleton_rig;
+            let rig = &self.document.rig;
             Self::WORK_OF_STEP + (2 * rig.skeleton.joints().len() * rig.targets.len()) as u64
         });
         // States after the end, which is not known, are counted, too.
@@ -182,16 +182,16 @@ impl Motion {
         edited: &Document,
         may_start_afresh: bool,
     ) -> Option<Shared<Posture>> {
-        let is_tracked = |document: &Document| document.skeleton_rig.is_tracked;
+        let is_tracked = |document: &Document| document.rig.is_tracked;
         if !is_tracked(&self.document) || !is_tracked(edited) {
-            return self.document.skeleton_rig.posture.clone();
+            return self.document.rig.posture.clone();
         }
         let grid = self.grid?;
         if !edited.is_tracked() {
             return None;
         }
         let [before, after] = [&self.document, edited].map(|it| rig_at(it, grid.start));
-        let present = self.document.skeleton_rig.posture.as_ref();
+        let present = self.document.rig.posture.as_ref();
         let first = self.state(&grid, 0).1.carried;
         if has_same_inputs(&before, &after) {
             // The first key and the removal of the last one must not move a figure, although a
@@ -272,9 +272,8 @@ impl Motion {
         if is_over {
             return Some(End { step, rests: false });
         }
-        let rests = step >= grid.last
-            && !self.document.skeleton_rig.is_moving()
-            && !state.carried.is_held_back();
+        let rests =
+            step >= grid.last && !self.document.rig.is_moving() && !state.carried.is_held_back();
         rests.then_some(End { step, rests })
     }
 
@@ -298,14 +297,13 @@ impl Motion {
         let (Some(grid), Some(others)) = (self.grid, other.grid) else { return Some(0) };
         let [one, two] = [&self.document, &other.document];
         let is_same_grid = grid.has_same_times(&others);
-        let is_same_rig = has_same_inputs(&one.skeleton_rig, &two.skeleton_rig)
-            && one.skeleton_rig.posture == two.skeleton_rig.posture;
+        let is_same_rig = has_same_inputs(&one.rig, &two.rig) && one.rig.posture == two.rig.posture;
         if !is_same_grid || !is_same_rig || self.begins_relaxed() != other.begins_relaxed() {
             return Some(0);
         }
         let changed = one.keys.changed_channels(&two.keys);
-        let changed = changed.into_iter().filter(|it| it.rig() == Some(RigKind::Skeleton));
-        let follows_path = !two.skeleton_rig.follow_paths.is_empty();
+        let changed = changed.into_iter().filter(|it| it.is_of_rig());
+        let follows_path = !two.rig.follow_paths.is_empty();
         let first = |channel: Channel| {
             let value = |document: &Document, step| {
                 let keyed = document.keys.value(channel, grid.time(step));
@@ -327,7 +325,7 @@ impl Motion {
 fn rig_at(document: &Document, time: f64) -> SkeletonRig {
     let mut document = document.clone();
     document.apply_keys(time);
-    document.skeleton_rig
+    document.rig
 }
 
 /// True if two rigs pose alike, but for their postures.

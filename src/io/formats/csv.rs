@@ -1,14 +1,14 @@
 use glam::Vec3;
 
-use crate::document::{Document, Posed, RigKind, Track};
+use crate::document::{Document, Posed, Track};
 use crate::io::exported::{ExportFrames, Exported, MotionError, Progress};
-use crate::kinematics::skeleton::{JointId, Skeleton, is_within_numbers};
+use crate::kinematics::skeleton::{JointId, is_within_numbers};
 
-/// Joint positions of the shown rig over time, as a table of comma-separated values.
+/// Joint positions over time, as a table of comma-separated values.
 ///
 /// Each row is a frame: the frame's number from 0, its time in seconds as in the document, and
-/// world positions in units of the scene. A skeleton has the positions of all joints' bases, then
-/// those of all leaf bones' tips. The arm has the positions of shoulder, elbow and hand.
+/// world positions in units of the scene: those of all joints' bases, then those of all leaf bones'
+/// tips.
 ///
 /// # Errors
 ///
@@ -55,17 +55,7 @@ struct Columns {
 
 impl Columns {
     fn new(document: &Document) -> Self {
-        match document.rig {
-            RigKind::Arm => {
-                let names = ["shoulder", "elbow", "hand"].map(str::to_owned).into();
-                Self { names, leaves: Vec::new() }
-            }
-            RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
-        }
-    }
-
-    fn of_skeleton(skeleton: &Skeleton) -> Self {
-        let joints = skeleton.joints();
+        let joints = document.skeleton().joints();
         let mut is_leaf: Vec<bool> = joints.iter().map(|joint| joint.axis != Vec3::ZERO).collect();
         for parent in joints.iter().filter_map(|joint| joint.parent) {
             is_leaf[parent.index()] = false;
@@ -83,18 +73,8 @@ impl Columns {
     }
 
     fn points(&self, posed: &Posed) -> Vec<Vec3> {
-        match posed.document().rig {
-            RigKind::Arm => {
-                let (arm, pose) = (posed.arm(), posed.arm_pose());
-                vec![arm.root, arm.root + pose.elbow, arm.root + pose.hand]
-            }
-            RigKind::Skeleton => {
-                let pose = posed.skeleton().pose();
-                let bases = pose.ids().map(|joint| pose.base(joint));
-                bases
-                    .chain(self.leaves.iter().map(|joint| pose.tip(JointId::new(*joint))))
-                    .collect()
-            }
-        }
+        let pose = posed.skeleton().pose();
+        let bases = pose.ids().map(|joint| pose.base(joint));
+        bases.chain(self.leaves.iter().map(|joint| pose.tip(JointId::new(*joint)))).collect()
     }
 }

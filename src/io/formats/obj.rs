@@ -2,7 +2,7 @@ use core::fmt::Write as _;
 
 use thiserror::Error;
 
-use crate::document::{Document, RigKind};
+use crate::document::Document;
 use crate::io::exported::Exported;
 use crate::kinematics::skeleton::is_within_numbers;
 use crate::kinematics::skin::{Skinning, TriangleMesh};
@@ -11,7 +11,7 @@ use crate::rig::SkinMeshError;
 /// The reason why no mesh is exported.
 #[derive(Debug, Error, PartialEq)]
 pub enum ObjError {
-    /// The document shows an arm, or its skeleton has no skin.
+    /// The skeleton has no skin.
     #[error("an .obj holds the skin of a skeleton, and there is none: ik-arm skin makes one")]
     NoSkin,
     /// The skin has no mesh.
@@ -40,8 +40,7 @@ pub fn to_obj(
     if !time.is_finite() {
         return Err(ObjError::Time(time));
     }
-    let shown = document.skeleton_rig.skin.as_ref().filter(|_| document.rig == RigKind::Skeleton);
-    let skin = shown.ok_or(ObjError::NoSkin)?;
+    let skin = document.rig.skin.as_ref().ok_or(ObjError::NoSkin)?;
     let skinning = skinning.unwrap_or(skin.skinning);
     let mesh = &skin.mesh()?.mesh;
     let posed = mesh.posed(&mesh.pose(document.at(time).skeleton()), skinning);

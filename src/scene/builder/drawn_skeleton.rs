@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, SkeletonPose};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, Shadow};
-use crate::session::{BodyPart, Overlays};
+use crate::session::Overlays;
 
 /// Maximum radius of a bone: as a fraction of its length, and as a fraction of the skeleton's
 /// reach.
@@ -93,7 +93,7 @@ impl<'a> DrawnSkeleton<'a> {
         };
         if overlays.selection.contains(&joint) {
             palette.accent
-        } else if overlays.hovered == Some(joint.into()) {
+        } else if overlays.hovered == Some(joint) {
             palette.lit(colour)
         } else {
             colour
@@ -237,13 +237,19 @@ impl<'a> DrawnSkeleton<'a> {
     }
 
     /// Adds the names of the selected joints and of the joint under the mouse.
-    pub fn add_labels(&self, scene: &mut Scene, overlays: &Overlays, labelled: &mut Vec<JointId>) {
+    pub fn add_labels(
+        &self,
+        scene: &mut Scene,
+        overlays: &Overlays,
+        labelled: &mut Vec<JointId>,
+        has_name: impl Fn(JointId) -> bool,
+    ) {
         labelled.clear();
-        let hovered = overlays.hovered.and_then(BodyPart::joint);
-        labelled.extend(overlays.selection.iter().copied().chain(hovered));
+        labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
         labelled.sort_unstable();
         labelled.dedup();
-        for joint in labelled.iter().copied().filter(|joint| joint.index() < self.joints.len()) {
+        let is_there = |joint: &JointId| joint.index() < self.joints.len();
+        for joint in labelled.iter().copied().filter(is_there).filter(|joint| has_name(*joint)) {
             let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
             let label =
                 Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);

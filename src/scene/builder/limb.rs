@@ -4,7 +4,7 @@
 use glam::Mat3;
 
 use super::{figure, twist};
-use crate::document::{Display, Overlay, Posed, RigKind};
+use crate::document::{Display, Overlay, Posed};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{LimbFrames, LimbPart};
 use crate::scene::{Globe, Scene, Solid, SphereShell};
@@ -41,10 +41,10 @@ pub(super) fn add_guides(
 /// all limbs.
 pub(super) fn add_circles(scene: &mut Scene, posed: &Posed, selected: Option<JointId>) {
     let document = posed.document();
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let is_of_limb = |joint: JointId| rig.limb_target_of(joint).is_some();
     let limbs = || rig.targets.iter().filter(|target| target.limb().is_some());
-    let is_alone = document.rig == RigKind::Arm || limbs().count() == 1;
+    let is_alone = limbs().count() == 1;
     if is_alone || selected.is_some_and(is_of_limb) {
         if let Some(limb) = ShownLimb::frames(posed, selected) {
             twist::add_circle(scene, &limb, true);

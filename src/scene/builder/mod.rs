@@ -1,6 +1,6 @@
 //! Fills a scene from a document, with one file for each group of parts.
 
-mod arm;
+mod cylinders;
 mod drawn_skeleton;
 mod figure;
 mod hand;
@@ -13,7 +13,8 @@ mod twist;
 use glam::Vec3;
 
 use super::{Ball, Line, Palette, Planes, Scene};
-use crate::document::{Overlay, Posed, RigKind, Theme};
+use crate::document::{Overlay, Posed, Theme};
+use crate::rig::LimbPart;
 use crate::session::{Overlays, ShownLimb};
 use skeleton::Scratch;
 
@@ -46,12 +47,13 @@ impl SceneBuilder {
         scene.clear();
         let document = posed.document();
         let display = document.display;
-        let (centre, reach, cell) = match document.rig {
-            RigKind::Arm => {
-                let arm = &document.arm;
-                (arm.root, arm.bones.outer_limit(), arm.grid_cell())
+        let limb = posed.measured_frames();
+        let (centre, reach, cell) = match &limb {
+            Some(limb) => {
+                let reach = limb.bones().outer_limit();
+                (limb.origin(LimbPart::Root), reach, document.grid_cell())
             }
-            RigKind::Skeleton => skeleton::measure(&document.skeleton_rig, &mut self.scratch),
+            None => skeleton::measure(&document.rig, &mut self.scratch),
         };
         scene.camera = document.camera;
         scene.palette = Palette::new(theme);
@@ -62,29 +64,17 @@ impl SceneBuilder {
             }
             return;
         }
-        let ground_reach = match document.rig {
-            RigKind::Arm => reach.max(document.arm.reach_limits().outer),
-            RigKind::Skeleton => reach,
-        };
+        let ground_reach = limb.map_or(reach, |limb| reach.max(limb.limits.outer));
         scene.planes = Planes::around(centre, ground_reach, cell, display);
         if display.shows(Overlay::Axes) {
             add_axes(scene, reach);
         }
-        match document.rig {
-            RigKind::Arm => {
-                arm::add(scene, posed, overlays);
-                arm::add_onion_skins(scene, &overlays.onion_skins, reach);
-            }
-            RigKind::Skeleton => skeleton::add(scene, posed, overlays, &mut self.scratch),
-        }
+        skeleton::add(scene, posed, overlays, &mut self.scratch);
         if display.shows(Overlay::ElbowCircle) {
             limb::add_circles(scene, posed, overlays.selection.last().copied());
         }
         if let Some(limb) = ShownLimb::frames(posed, overlays.selection.last().copied()) {
-            // Of a figure, the Pointer is shown while a limb of it is selected.
-            let has_pointer = document.rig == RigKind::Arm || !overlays.selection.is_empty();
-            let pointer = display.shows(Overlay::Pointer) && has_pointer;
-            limb::add_guides(scene, &limb, overlays, display.with(Overlay::Pointer, pointer));
+            limb::add_guides(scene, &limb, overlays, display);
         }
         add_trail(scene, overlays, reach);
         scene.spare_skin_pose = None;

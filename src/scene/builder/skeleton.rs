@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::cylinders::{self, CylinderLimb};
 use super::drawn_skeleton::DrawnSkeleton;
 use super::skin::ShownSkin;
 use super::solver::{self, InsideDrawing};
@@ -40,6 +41,8 @@ pub(super) struct Scratch {
     pub are_leaves: Vec<bool>,
     /// Joints that get a label.
     pub labelled: Vec<JointId>,
+    /// For each joint, true if cylinders stand for it.
+    pub cylinders: Vec<bool>,
 }
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
@@ -57,8 +60,9 @@ const BY_ITSELF_FADED: f32 = 0.3;
 /// Adds the bones with their shadows, the ghosts of other solvers, the targets with their trails,
 /// the followed path, and labels.
 pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch: &mut Scratch) {
-    let (rig, display) = (&posed.document().skeleton_rig, posed.document().display);
-    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled } = scratch;
+    let (rig, display) = (&posed.document().rig, posed.document().display);
+    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled, cylinders } =
+        scratch;
     let skeleton = &*rig.skeleton;
     posed.skeleton().write_pose(pose);
     read_tree(skeleton.joints(), depths, are_leaves);
@@ -67,7 +71,13 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     let joints = skeleton.joints();
     let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
     let skin = ShownSkin::new(rig, display);
-    for joint in skeleton.ids() {
+    cylinders.clear();
+    cylinders.resize(joints.len(), false);
+    for limb in CylinderLimb::all(posed) {
+        limb.mark(skeleton, cylinders);
+        limb.add(scene, posed, overlays);
+    }
+    for joint in skeleton.ids().filter(|joint| !cylinders[joint.index()]) {
         if let Some(skin) = skin.filter(|skin| !skin.has_bones()) {
             skin.add_joint(scene, &drawn, joint, overlays, display);
             continue;
@@ -113,7 +123,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         solver::add_wiggle(scene, &drawn, skeleton, view);
     }
     if display.shows(Overlay::Cursor) {
-        for (target, report) in rig.targets.iter().zip(posed.targets()) {
+        let targets = rig.targets.iter().zip(posed.targets());
+        // Cylinders have their targets.
+        for (target, report) in targets.filter(|(it, _)| !cylinders[it.joint.index()]) {
             drawn.add_target(scene, target, report);
             if target.enabled && target.is_moving() && !rig.leads_path(target) {
                 add_trail(scene, target, posed.skeleton(), posed.time());
@@ -125,11 +137,11 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
             }
         }
     }
-    if display.shows(Overlay::Pointer) {
+    if display.shows(Overlay::Paths) {
         rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, posed.time()));
     }
     if display.shows(Overlay::Labels) {
-        drawn.add_labels(scene, overlays, labelled);
+        drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);
     }
 }
 
@@ -191,6 +203,9 @@ impl DrawnSkeleton<'_> {
         let guide = scene.palette.guide;
         let colour = if target.enabled { guide } else { guide.with_opacity(0.35) };
         scene.guide_balls.push(Ball { centre: at, radius, colour });
+        if target.is_pinned {
+            cylinders::add_pin(scene, at, radius);
+        }
         if !target.enabled {
             return;
         }

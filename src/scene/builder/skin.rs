@@ -113,7 +113,7 @@ impl<'a> ShownSkin<'a> {
                 scene.shadows.extend(limb.above_ground());
             }
         }
-        if overlays.selection.contains(&joint) || overlays.hovered == Some(joint.into()) {
+        if overlays.selection.contains(&joint) || overlays.hovered == Some(joint) {
             let colour = drawn.colour(scene, joint, overlays);
             let plain = drawn.radius(joint);
             let radius = plain.min(0.4 * thickness.max(plain));

@@ -9,7 +9,7 @@ use crate::document::TwistReferenceKind;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::LimbFrames;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
-use crate::session::{BodyPart, TwistReferencePoses};
+use crate::session::TwistReferencePoses;
 
 /// Radii of a ghost's limbs and of its elbow, on an arm of thickness 1.
 const LIMB_RADIUS: f32 = 7.0;
@@ -69,7 +69,7 @@ fn add_label(scene: &mut Scene, limb: &LimbFrames, group: &[Option<ReferenceGhos
     let ghosts = || group.iter().flatten();
     let Some(ghost) = ghosts().find(|ghost| ghost.is_own).or(ghosts().last()) else { return };
     let (ball, colour) = if ghost.is_own {
-        (BodyPart::JOINT_BALL, scene.palette.text)
+        (LimbFrames::JOINT_BALL, scene.palette.text)
     } else {
         (ELBOW_RADIUS, scene.palette.twist_reference(ghost.twist_reference))
     };

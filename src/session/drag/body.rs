@@ -1,63 +1,83 @@
-use glam::{Mat3, Quat, Vec3, Vec3A};
+use glam::{Quat, Vec3, Vec3A};
 
 use super::grip::Grip;
 use super::point::PointHandle;
 use super::turn::GripRing;
-use crate::document::{HandSpace, Overlay, PathKind, Posed, Ray, SkeletonRig};
-use crate::kinematics::angle;
-use crate::kinematics::fk::limb_rotations;
+use crate::document::{Overlay, PathKind, Posed, Ray, SkeletonRig};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 use crate::rig::{EvaluatedSkeleton, LimbFrames, LimbPart, TaperedCylinder, Target};
-use crate::session::parts::BodyPart;
+
+/// Radius of the shape that the mouse hits around the fingers, for a limb of length 500.
+const FINGERS: f32 = 24.0;
 
 /// Drags of the parts of bodies.
 impl Grip {
-    /// The grip that a press on a part of a body drags; `None` if it cannot be dragged.
+    /// The grip that a press on the bone or skin of a joint drags; `None` if it cannot be dragged.
     ///
     /// | part | drag |
     /// | --- | --- |
-    /// | shoulder of the arm | Root |
-    /// | hand of the arm | Cursor; in FK the elbow's bend |
-    /// | limb of the arm | Socket twist, or the Cursor of a straight arm; in FK shoulder or bend |
     /// | head of a chain on a path | the head, or the target that leads it |
     /// | root without a bone, such as a pelvis | the root |
     /// | end of a target, such as a hand or foot | the target |
-    /// | bone of a target's limb | the elbow |
+    /// | bone of a target's limb | the elbow; the target of a straight limb |
     /// | other bone that a target turns | the target |
     /// | other bone | the tip, by FK angles |
-    pub fn of_part(posed: &Posed, part: BodyPart) -> Option<Self> {
-        let rig = &posed.document().skeleton_rig;
-        let (free, is_led) = (PointHandle::Free, posed.arm().uses_ik());
-        Some(match part {
-            BodyPart::Root => Self::Root(free),
-            BodyPart::Hand if is_led => Self::Hand(free),
-            BodyPart::UpperLimb | BodyPart::LowerLimb if is_led => {
-                if is_bent(posed) {
-                    Self::Limb
-                } else {
-                    Self::Hand(free)
-                }
-            }
-            BodyPart::UpperLimb => Self::UpperLimb,
-            BodyPart::LowerLimb | BodyPart::Hand => Self::Bend,
-            BodyPart::Joint(joint) if rig.is_joint_on_path(joint, posed.time()) => {
-                match rig.path_kind(joint)? {
-                    PathKind::Head => Self::Head(joint, free),
-                    PathKind::Target => Self::Target(joint, free),
-                    PathKind::Ring(_) => return None,
-                }
-            }
-            BodyPart::Joint(joint) if rig.skeleton.joint(joint)?.is_root_point() => {
-                Self::Tip(joint, free)
-            }
-            BodyPart::Joint(joint) => match role_of(posed, joint)? {
-                Role::End(target) | Role::Led(target) => Self::Target(target, free),
-                Role::Elbow(upper) => Self::Tip(upper, free),
-                Role::Free => Self::Tip(joint, free),
-                Role::WithoutBone(parent) => Self::of_part(posed, BodyPart::Joint(parent))?,
-            },
+    pub fn of_part(posed: &Posed, joint: JointId) -> Option<Self> {
+        let (rig, free) = (&posed.document().rig, PointHandle::Free);
+        if rig.is_joint_on_path(joint, posed.time()) {
+            return match rig.path_kind(joint)? {
+                PathKind::Head => Some(Self::Head(joint, free)),
+                PathKind::Target => Some(Self::Target(joint, free)),
+                PathKind::Ring(_) => None,
+            };
+        }
+        if rig.skeleton.joint(joint)?.is_root_point() {
+            return Some(Self::Tip(joint, free));
+        }
+        Some(match role_of(posed, joint)? {
+            Role::End(target) | Role::Led(target) => Self::Target(target, free),
+            Role::Elbow(upper) => Self::Tip(upper, free),
+            Role::Free => Self::Tip(joint, free),
+            Role::WithoutBone(parent) => Self::of_part(posed, parent)?,
         })
+    }
+
+    /// The joint whose cylinder a ray meets first, if limbs are drawn as cylinders.
+    pub fn joint_on_cylinders(posed: &Posed, ray: Ray) -> Option<JointId> {
+        let (document, pose) = (posed.document(), posed.skeleton());
+        if !document.display.shows(Overlay::Cylinders) {
+            return None;
+        }
+        let rig = &document.rig;
+        let hits = rig.targets.iter().filter_map(|target| {
+            let limb = Limb::ending_at(pose, target.joint).ok()?;
+            let frames = posed.limb_frames(target.joint)?;
+            let ball = |radius: f32| [radius * frames.thickness(); 2];
+            let [base, elbow, wrist] =
+                [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| frames.origin(part));
+            let radii = |limb: TaperedCylinder| [limb.base_radius, limb.tip_radius];
+            let has_hand = document.display.shows(Overlay::Hand);
+            let hand = limb.hand.unwrap_or(limb.lower);
+            let forwards = rig.hand_rotation(pose, target.joint)?.x_axis.as_vec3();
+            let reach = if has_hand { LimbFrames::HAND - FINGERS } else { 0.0 };
+            let fingers = wrist + forwards * reach * frames.thickness();
+            let palm = if has_hand { FINGERS } else { LimbFrames::WRIST_BALL };
+            let point = |joint: &JointId| pose[*joint].is_root_point();
+            let root = pose[limb.upper].parent.filter(point).unwrap_or(limb.upper);
+            let shapes = [
+                (root, [base; 2], ball(LimbFrames::JOINT_BALL)),
+                (limb.upper, [base, elbow], radii(frames.upper())),
+                (limb.lower, [elbow; 2], ball(LimbFrames::JOINT_BALL)),
+                (limb.lower, [elbow, wrist], radii(frames.lower())),
+                (hand, [wrist, fingers], ball(palm)),
+            ];
+            let hits = shapes.into_iter().filter_map(|(joint, ends, radii)| {
+                ray.enters_capsule(ends, radii).map(|distance| (distance, joint))
+            });
+            hits.min_by(|one, other| one.0.total_cmp(&other.0))
+        });
+        hits.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, joint)| joint)
     }
 
     /// The heads that can be dragged and whose chains follow.
@@ -68,7 +88,7 @@ impl Grip {
 
     /// True if a drag of the tip of `joint` changes the pose.
     pub fn can_drag_tip(posed: &Posed, joint: JointId) -> bool {
-        let rig = &posed.document().skeleton_rig;
+        let rig = &posed.document().rig;
         let Some(own) = rig.skeleton.joint(joint) else {
             return false;
         };
@@ -94,7 +114,7 @@ impl Grip {
     pub fn turns_elbow(posed: &Posed, joint: JointId) -> bool {
         // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
         const LEAST: f32 = 0.02;
-        let (rig, pose) = (&posed.document().skeleton_rig, posed.skeleton());
+        let (rig, pose) = (&posed.document().rig, posed.skeleton());
         let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
         let Some(target) = posing.filter(|it| is_elbow(&rig.skeleton, it, joint)) else {
             return false;
@@ -104,41 +124,6 @@ impl Grip {
         let out = (elbow - base).reject_from((tip - base).normalize_or_zero()).length();
         out > LEAST * (base.distance(elbow) + elbow.distance(tip))
     }
-}
-
-impl BodyPart {
-    /// The part of the arm that a ray meets first; `None` if it meets none.
-    pub fn of_arm_at(posed: &Posed, ray: Ray) -> Option<Self> {
-        let (arm, pose) = (posed.arm(), posed.arm_pose());
-        let rig = posed.arm_frames();
-        let thickness = rig.thickness();
-        let [root, elbow, wrist] =
-            [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand].map(|part| rig.origin(part));
-        let limb = |limb: TaperedCylinder| [limb.base_radius, limb.tip_radius];
-        let ball = |radius: f32| [radius * thickness; 2];
-        let forwards = arm.hand_rotation(pose).x_axis.as_vec3();
-        let has_hand = posed.document().display.shows(Overlay::Hand);
-        let reach = if has_hand { Self::HAND - Self::FINGERS } else { 0.0 };
-        let fingers = wrist + forwards * reach * thickness;
-        let palm = if has_hand { Self::FINGERS } else { Self::WRIST_BALL };
-        let shapes = [
-            (Self::Root, [root; 2], ball(Self::JOINT_BALL)),
-            (Self::UpperLimb, [root, elbow], limb(rig.upper())),
-            (Self::LowerLimb, [elbow; 2], ball(Self::JOINT_BALL)),
-            (Self::LowerLimb, [elbow, wrist], limb(rig.lower())),
-            (Self::Hand, [wrist, fingers], ball(palm)),
-        ];
-        let hits = shapes.into_iter().filter_map(|(part, ends, radii)| {
-            ray.enters_capsule(ends, radii).map(|distance| (distance, part))
-        });
-        hits.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, part)| part)
-    }
-}
-
-/// True if the elbow of the arm is so far from the Pointer that its circle can be seen.
-fn is_bent(posed: &Posed) -> bool {
-    const LEAST: f32 = 0.02;
-    posed.arm_pose().out > LEAST * posed.arm().bones.outer_limit()
 }
 
 /// The role of a joint for the targets of its skeleton.
@@ -157,7 +142,7 @@ enum Role {
 }
 
 fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
-    let rig = &posed.document().skeleton_rig;
+    let rig = &posed.document().rig;
     let own = rig.skeleton.joint(joint)?;
     let ends = |target: &&Target| target.is_posing() && rig.end_of(target) == joint;
     if let Some(target) = rig.targets.iter().find(ends) {
@@ -189,31 +174,6 @@ pub(in crate::session) fn is_elbow(skeleton: &Skeleton, target: &Target, joint: 
 
 /// Rings of a pose.
 impl GripRing {
-    /// The ring of a grip of the arm. With IK it is the ring of the Socket twist, around the
-    /// Pointer at the elbow; in FK those of the shoulder's angles and of the elbow's bend; with
-    /// both those of the hand's angles. `None` for other grips.
-    pub fn of_arm(posed: &Posed, grip: Grip) -> Option<Self> {
-        let (arm, pose) = (posed.arm(), posed.arm_pose());
-        let (along, axis) = match (grip, arm.uses_ik()) {
-            (Grip::HandRing(axis), _) => {
-                let axis = turned_axis(arm.hand_orientation.angles, axis).as_dvec3();
-                let axis = match arm.hand_orientation.space {
-                    HandSpace::LowerLimb => limb_rotations(pose).1 * axis,
-                    HandSpace::World => axis,
-                };
-                (pose.hand, axis.as_vec3())
-            }
-            (Grip::Twist, true) => return Self::of_twist(&posed.arm_frames()),
-            (Grip::Shoulder(axis), false) => (Vec3::ZERO, turned_axis(arm.fk.shoulder, axis)),
-            // The lower limb turns clockwise about the hinge as the bend grows.
-            (Grip::Bend, false) => {
-                (pose.elbow, -angle::euler_rotation(arm.fk.shoulder).z_axis.as_vec3())
-            }
-            _ => return None,
-        };
-        Some(Self { centre: arm.root + along, axis })
-    }
-
     /// The ring of the twist of a limb, around the Pointer through the elbow, in world space;
     /// `None` where FK alone poses the limb or limits turn the elbow aside.
     pub fn of_twist(limb: &LimbFrames) -> Option<Self> {
@@ -230,7 +190,7 @@ impl GripRing {
     /// angle, if there is no such joint, or if a target alone poses the joint and the FK pose is
     /// hidden.
     pub fn of_joint(posed: &Posed, joint: JointId, axis: RotationAxis) -> Option<Self> {
-        let rig = &posed.document().skeleton_rig;
+        let rig = &posed.document().rig;
         let own = rig.skeleton.joint(joint)?;
         if own.limits.is_fixed(axis) {
             return None;
@@ -260,7 +220,7 @@ impl GripRing {
     /// The ring, at the target of a joint and in world space, of the angle about x, y or z of the
     /// orientation that the target holds. `None` if it holds none, or if there is no hand or foot.
     pub fn of_orientation(posed: &Posed, joint: JointId, axis: RotationAxis) -> Option<Self> {
-        let rig = &posed.document().skeleton_rig;
+        let rig = &posed.document().rig;
         let index = rig.target(joint)?;
         let angles = rig.targets[index].limb()?.orientation?;
         Limb::ending_at(&rig.skeleton, joint).ok()?.hand?;
@@ -274,16 +234,5 @@ impl GripRing {
         let frame = target.hand_frame(posed.skeleton());
         let axis = target.present_space().rotation(posed.skeleton()) * (frame * local);
         Some(Self { centre: posed.targets().get(index)?.position, axis })
-    }
-}
-
-/// The axis about which the angle x, y or z of a ball joint of the arm turns, in the space of the
-/// angles: see [`angle`].
-fn turned_axis(angles: Vec3, axis: RotationAxis) -> Vec3 {
-    let yaw = Mat3::from_rotation_y(angles.y);
-    match axis {
-        RotationAxis::X => (yaw * Mat3::from_rotation_z(angles.z)).x_axis,
-        RotationAxis::Y => Vec3::Y,
-        RotationAxis::Z => yaw.z_axis,
     }
 }

@@ -37,7 +37,7 @@ impl FollowMouse {
 
     /// Lets the heads of a pose follow the mouse from its time on; `None` if targets move no heads.
     pub fn new(posed: &Posed) -> Option<Self> {
-        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
+        let (rig, solved) = (&posed.document().rig, posed.skeleton());
         let leaders = rig.targets.iter().filter(|it| it.enabled && rig.leads_path(it));
         let mut heads: Vec<_> = leaders
             .filter_map(|target| {
@@ -52,7 +52,7 @@ impl FollowMouse {
 
     /// Sets where the mouse is: the heads swim to the point of the ray on their level.
     pub fn lead(&mut self, ray: Ray, posed: &Posed) {
-        let (rig, solved) = (&posed.document().skeleton_rig, posed.skeleton());
+        let (rig, solved) = (&posed.document().rig, posed.skeleton());
         let homes = self.heads.iter().filter_map(|head| home_in_world(rig, solved, head.joint));
         let level = homes.sum::<Vec3>() / self.heads.len() as f32;
         // A ray that is nearly level meets the level at the horizon.

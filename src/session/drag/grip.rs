@@ -3,29 +3,10 @@ use glam::Vec3;
 use super::point::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn::TurnDrag;
 use crate::kinematics::skeleton::{JointId, RotationAxis};
-use crate::session::parts::ArmJoint;
 
 /// A part of a gizmo that can be dragged in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
-    /// The hand of the arm; dragging it moves the Cursor.
-    Hand(PointHandle),
-    /// The pole, towards which the elbow points.
-    Pole(PointHandle),
-    /// The Root, which is the shoulder.
-    Root(PointHandle),
-    /// The ring of the Socket twist, about the Pointer.
-    Twist,
-    /// A limb of the arm; dragging it turns the elbow about the Pointer.
-    Limb,
-    /// The Upper limb in FK; dragging it turns the shoulder.
-    UpperLimb,
-    /// The ring of the shoulder's angle about x, y or z.
-    Shoulder(RotationAxis),
-    /// The elbow's bend: its ring, or the Lower limb in FK.
-    Bend,
-    /// The ring of the hand's angle about x, y or z.
-    HandRing(RotationAxis),
     /// The target of a joint.
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
@@ -47,73 +28,24 @@ impl Grip {
     /// True if the axis of the grip's handle, if it has one, is 0, 1 or 2.
     pub(in crate::session) fn has_valid_axis(self) -> bool {
         match self {
-            Self::Hand(handle)
-            | Self::Pole(handle)
-            | Self::Root(handle)
-            | Self::Target(_, handle)
+            Self::Target(_, handle)
             | Self::LimbPole(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
-            Self::Shoulder(_)
-            | Self::HandRing(_)
-            | Self::Ring(..)
-            | Self::Orientation(..)
-            | Self::Bend
-            | Self::Twist
-            | Self::LimbTwist(_)
-            | Self::Limb
-            | Self::UpperLimb => true,
+            Self::Ring(..) | Self::Orientation(..) | Self::LimbTwist(_) => true,
         }
     }
 
     /// Label of the undo step of a drag of this part.
     pub(in crate::session) fn label(self) -> &'static str {
         match self {
-            Self::Hand(_) => "Move hand",
-            Self::Pole(_) => "Move pole",
-            Self::Root(_) => "Move shoulder",
-            Self::Twist | Self::Limb | Self::LimbTwist(_) => "Set Socket twist",
-            Self::Shoulder(_) | Self::UpperLimb => "Turn shoulder",
-            Self::Bend => "Bend elbow",
-            Self::HandRing(_) => "Turn hand",
+            Self::LimbTwist(_) => "Set Socket twist",
             Self::Target(..) => "Move target",
             Self::LimbPole(..) => "Move pole",
             Self::Head(..) => "Move head",
             Self::Tip(..) => "Pose joints",
             Self::Ring(..) => "Turn joint",
             Self::Orientation(..) => "Turn target",
-        }
-    }
-
-    /// True if the grip is of the arm rather than of a skeleton.
-    pub(in crate::session) fn is_of_arm(self) -> bool {
-        match self {
-            Self::Hand(_)
-            | Self::Pole(_)
-            | Self::Root(_)
-            | Self::Twist
-            | Self::Limb
-            | Self::UpperLimb
-            | Self::Shoulder(_)
-            | Self::Bend
-            | Self::HandRing(_) => true,
-            Self::Target(..)
-            | Self::LimbPole(..)
-            | Self::LimbTwist(_)
-            | Self::Head(..)
-            | Self::Tip(..)
-            | Self::Ring(..)
-            | Self::Orientation(..) => false,
-        }
-    }
-
-    /// The joint of the arm that the grip selects; `None` for handles that are always shown.
-    pub(in crate::session) fn arm_joint(self) -> Option<ArmJoint> {
-        match self {
-            Self::Root(_) => Some(ArmJoint::Root),
-            Self::Twist | Self::Limb => Some(ArmJoint::Elbow),
-            Self::HandRing(_) => Some(ArmJoint::Hand),
-            _ => None,
         }
     }
 }

@@ -1,10 +1,11 @@
 use glam::Vec3;
 
-use crate::document::{Channel, PathKind, Posed, Ray, Target, Track};
+use crate::document::{Channel, Document, PathKind, Posed, Ray, Target, Track};
 use crate::kinematics::angle;
 use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
+use crate::rig::TargetSpace;
 use crate::session::drag::body::is_elbow;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
 use crate::session::drag::point::{Constraint, PointDrag, PointHandle};
@@ -27,7 +28,7 @@ pub(in crate::session) fn grab(
 ) -> Option<Drag> {
     let report = |joint| session.posed().target_report(joint);
     let (handle, at) = match grip {
-        Grip::Target(joint, handle) => (handle, report(joint)?.position),
+        Grip::Target(joint, handle) => (handle, grabbed_target(session, joint, handle, ray)?),
         Grip::LimbPole(joint, handle) => (handle, report(joint)?.pole?),
         Grip::Tip(joint, handle) => (handle, free_tip(session, joint)?),
         Grip::Head(joint, handle) => (handle, head(session, joint)?),
@@ -47,10 +48,10 @@ pub(in crate::session) fn grab(
                 TurnDrag::new(GripRing::of_orientation(session.posed(), joint, axis)?, start, ray);
             return Some(Drag::of_ring(grip, drag));
         }
-        _ => return None,
     };
+    let step = session.shown().grid_cell() * PointDrag::SNAP_CELLS;
     let point = PointDrag::new(handle, at, Vec3::ZERO, forward, ray)
-        .with_step(session.shown().grid_cell() * PointDrag::SNAP_CELLS);
+        .with_steps(step, snapped_from(session, grip));
     let mut drag = Drag::of_point(grip, point);
     let is_head = matches!(grip, Grip::Head(..));
     if is_head && handle == PointHandle::Free && forward.y.abs() > EDGE_ON {
@@ -60,16 +61,48 @@ pub(in crate::session) fn grab(
     Some(drag)
 }
 
+/// The origin of the coordinates that panels show of a dragged point.
+fn snapped_from(session: &Session, grip: Grip) -> Vec3 {
+    let space = |joint| match grip {
+        Grip::LimbPole(..) => Some(target(session, joint)?.limb()?.pole_space),
+        _ => target(session, joint).filter(|it| !it.is_pinned).map(|it| it.space),
+    };
+    let joint = match grip {
+        Grip::Target(joint, _) | Grip::LimbPole(joint, _) => {
+            space(joint).and_then(TargetSpace::joint)
+        }
+        _ => None,
+    };
+    joint.map_or(Vec3::ZERO, |joint| session.skeleton_pose().base(joint))
+}
+
+/// The point at which the drag of a target starts: the target. If that is out of reach and the mouse
+/// is nearer to the tip, a free drag starts with the target at the tip, which does not change the
+/// pose.
+fn grabbed_target(
+    session: &Session,
+    joint: JointId,
+    handle: PointHandle,
+    ray: Ray,
+) -> Option<Vec3> {
+    let at = session.posed().target_report(joint)?.position;
+    let aside = |point: Vec3| (point - ray.origin).cross(ray.direction).length();
+    let is_full = target(session, joint)?.influence >= 1.0;
+    let tip = session.posed().skeleton().tip(joint);
+    let is_at_tip = handle == PointHandle::Free && is_full && aside(tip) < aside(at);
+    Some(if is_at_tip { tip } else { at })
+}
+
 /// The tip of a joint that no path poses.
 fn free_tip(session: &Session, joint: JointId) -> Option<Vec3> {
     let is_there = joint.index() < session.skeleton_pose().len();
-    let is_on_path = || session.skeleton_rig().is_joint_on_path(joint, session.playback().time());
+    let is_on_path = || session.rig().is_joint_on_path(joint, session.playback().time());
     (is_there && !is_on_path()).then(|| session.skeleton_pose().tip(joint))
 }
 
 /// The base of a root that is dragged as the head of its chain.
 fn head(session: &Session, joint: JointId) -> Option<Vec3> {
-    let is_head = session.skeleton_rig().path_kind(joint) == Some(PathKind::Head);
+    let is_head = session.rig().path_kind(joint) == Some(PathKind::Head);
     is_head.then(|| session.posed().evaluated_skeleton().fk.base(joint))
 }
 
@@ -86,7 +119,10 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         }
         (Grip::LimbTwist(joint), Dragged::Angle(angle)) => drag_twist(session, joint, angle),
         (Grip::Head(root, _), Dragged::Point { .. }) => drag_head(session, root),
-        (_, Dragged::Point { has_moved: false, .. }) => Outcome::default(),
+        (_, Dragged::Point { has_moved: false, .. }) => {
+            let camera = session.shown().camera;
+            Outcome::write(Document { camera, ..session.history().shown_before().clone() })
+        }
         (Grip::Target(joint, _), Dragged::Point { to, .. }) => drag_target(session, joint, to),
         (Grip::LimbPole(joint, _), Dragged::Point { to, .. }) => drag_limb_pole(session, joint, to),
         (Grip::Tip(joint, _), Dragged::Point { to, moved, .. }) => {
@@ -144,7 +180,7 @@ fn drag_orientation(session: &Session, joint: JointId, axis: RotationAxis, angle
 /// Moves a head from where it was at the press through the points of its drag; back without points.
 /// A head with keys gets one at the playhead.
 fn drag_head(session: &mut Session, root: JointId) -> Outcome {
-    let before = session.history().shown_before().skeleton_rig.clone();
+    let before = session.history().shown_before().rig.clone();
     let to_skeleton = before.skeleton.transform().inverse();
     let waypoints = session.history().drag().map_or(&[][..], Drag::waypoints);
     let points: Vec<Vec3> =
@@ -158,7 +194,7 @@ fn drag_head(session: &mut Session, root: JointId) -> Outcome {
 
 /// The target of a joint; `None` if the joint has none.
 fn target(session: &Session, joint: JointId) -> Option<Target> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     Some(rig.targets[rig.target(joint)?])
 }
 
@@ -174,7 +210,7 @@ const ITERATIONS: u32 = 64;
 /// - any other tip is solved for by the FK angles of the joints that no target poses alone.
 fn drag_tip(session: &Session, joint: JointId, to: Vec3, moved: Vec3) -> Outcome {
     let start = session.history().posed_before();
-    let before = &start.document().skeleton_rig;
+    let before = &start.document().rig;
     let Some(dragged) = before.skeleton.joint(joint) else {
         return Outcome::default();
     };
@@ -224,7 +260,7 @@ fn drag_elbow(session: &Session, before: &Posed, mut target: Target, moved: Vec3
 /// Solves for the tip of `joint` and writes the angles of the joints that no target poses alone.
 fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Outcome {
     let start = fk_start(session.history().track(), posed);
-    let before = &posed.document().skeleton_rig;
+    let before = &posed.document().rig;
     let chain = before.skeleton.ancestors(joint);
     if chain.into_iter().all(|joint| start[joint].locked) {
         return Outcome::say("A target poses this bone; drag the target instead");
@@ -254,10 +290,10 @@ fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Out
 /// influence, with the joints that such a target turns locked.
 fn fk_start(track: &Track, before: &Posed) -> Skeleton {
     let mut document = before.document().clone();
-    document.skeleton_rig.targets.retain(|target| target.influence >= 1.0);
+    document.rig.targets.retain(|target| target.influence >= 1.0);
     let full = track.pose(document, before.time());
     let mut pose = Skeleton::clone(full.skeleton());
-    let influences = full.document().skeleton_rig.influences();
+    let influences = full.document().rig.influences();
     for (joint, influence) in pose.ids().zip(influences) {
         if influence > 0.0 {
             pose.write_local(joint, |joint| joint.locked = true);

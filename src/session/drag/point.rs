@@ -65,6 +65,8 @@ pub struct PointDrag {
     origin: Vec3,
     /// Step of snapping, in world units.
     step: f32,
+    /// Point from which whole steps are counted, relative to `origin`.
+    snapped_from: Vec3,
     /// Normal of the picture, in the direction in which the camera looks.
     forward: Vec3,
     pressed: Ray,
@@ -106,6 +108,7 @@ impl PointDrag {
             start,
             origin,
             step: Self::SNAP,
+            snapped_from: Vec3::ZERO,
             forward,
             pressed: ray,
             now,
@@ -115,9 +118,9 @@ impl PointDrag {
         }
     }
 
-    /// The same drag with another step of snapping.
-    pub(in crate::session) fn with_step(self, step: f32) -> Self {
-        Self { step, ..self }
+    /// The same drag, which snaps to whole steps from a point.
+    pub(in crate::session) fn with_steps(self, step: f32, snapped_from: Vec3) -> Self {
+        Self { step, snapped_from, ..self }
     }
 
     /// The part of the gizmo that is dragged.
@@ -184,7 +187,8 @@ impl PointDrag {
         for axis in 0..3 {
             if self.is_moved(axis) {
                 let to = self.start[axis] + offset[axis];
-                let to = if snap { (to / step).round() * step } else { to };
+                let from = self.snapped_from[axis];
+                let to = if snap { ((to - from) / step).round() * step + from } else { to };
                 self.last[axis] = to.clamp(f32::MIN, f32::MAX);
             } else {
                 self.last[axis] = self.start[axis];

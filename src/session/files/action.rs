@@ -81,10 +81,12 @@ pub enum FileAction {
     DeclineTurn,
     /// Opens an example.
     OpenExample(Example),
-    /// Opens a new document, which shows the arm.
+    /// Opens a new document with the arm.
     New,
-    /// Opens a new document with a skeleton of one root joint.
-    NewSkeleton,
+    /// Opens a new document with a figure: two legs and two arms, each with a target.
+    NewFigure,
+    /// Opens a new document with one root joint.
+    NewEmpty,
     /// Saves a picture of the viewport to a path.
     SavePicture(String),
     /// Starts an export.
@@ -143,7 +145,8 @@ impl FileAction {
             Self::Opened { .. }
                 | Self::OpenExample(_)
                 | Self::New
-                | Self::NewSkeleton
+                | Self::NewFigure
+                | Self::NewEmpty
                 | Self::Recover { .. }
                 | Self::Quit
         )

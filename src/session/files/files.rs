@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Export, ExportJob, FileAction, FileContents, PathDialog};
 use crate::document::Document;
-use crate::io::{FileStamp, Upwards, new_document};
+use crate::io::{FileStamp, Upwards};
 use crate::session::dialog::Dialog;
 use crate::session::outcome::{Consequence, Effect, Opening, Outcome};
 
@@ -330,14 +330,12 @@ impl Files {
                 self.seems_z_up = false;
                 Outcome::default()
             }
-            FileAction::New => {
-                let opening = Opening { document: new_document(), ..Opening::default() };
-                Consequence::Open(Box::new(opening)).into()
-            }
+            FileAction::New => Consequence::Open(Box::default()).into(),
             FileAction::Quit => Effect::Quit.into(),
             action @ (FileAction::SkinLocated { .. }
             | FileAction::OpenExample(_)
-            | FileAction::NewSkeleton) => return Err(action),
+            | FileAction::NewFigure
+            | FileAction::NewEmpty) => return Err(action),
         })
     }
 

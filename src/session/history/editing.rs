@@ -37,7 +37,7 @@ pub struct Editing {
     /// The revision with which the document was opened.
     first_revision: u64,
     /// Revision of the document's content: documents with the same one differ at most in their
-    /// cameras, shown rig and overlays.
+    /// cameras and overlays.
     content: u64,
     saved_content: u64,
 }
@@ -149,9 +149,10 @@ impl Editing {
         self.transaction.as_ref().map_or(self.shown(), |transaction| &transaction.shown)
     }
 
-    /// Slider unit of the arm, frozen during a drag so that ranges do not move under the mouse.
-    pub fn arm_unit(&self) -> f32 {
-        self.shown_before().arm.grid_cell() * 0.01
+    /// Unit of sliders of lengths, a hundredth of a cell of the grid, frozen during a drag so that
+    /// ranges do not move under the mouse.
+    pub fn unit(&self) -> f32 {
+        self.shown_before().grid_cell() * 0.01
     }
 
     /// The pose from which a drag starts: as shown before the open transaction, or as shown now if
@@ -227,8 +228,7 @@ impl Editing {
         self.history.redo_label()
     }
 
-    /// True if the document differs from the saved one in more than cameras, shown rig and
-    /// overlays.
+    /// True if the document differs from the saved one in more than camera and overlays.
     pub fn is_unsaved(&self) -> bool {
         let before = self.transaction.as_ref().map(|transaction| &transaction.before);
         self.content != self.saved_content
@@ -253,15 +253,15 @@ impl Editing {
         self.overrides.remove(&channel);
     }
 
-    /// Removes the twist's unkeyed edit if the keys give the same twist at `time`, in seconds;
+    /// Removes an angle's unkeyed edit if its keys give the same angle at `time`, in seconds;
     /// returns whether they do.
-    pub(in crate::session) fn forget_twist_like_keys(&mut self, time: f64) -> bool {
+    pub(in crate::session) fn forget_like_keys(&mut self, channel: Channel, time: f64) -> bool {
         const SAME: f32 = 1e-4;
-        let twist = |document: &Document| Channel::Twist.value(document).unwrap_or_default().x;
-        let apart = wrapped(twist(self.document.at(time).document()) - twist(self.shown()) + SAME);
-        let is_same = apart < 2.0 * SAME && self.document.keys.has(Channel::Twist);
+        let angle = |document: &Document| channel.value(document).unwrap_or_default().x;
+        let apart = wrapped(angle(self.document.at(time).document()) - angle(self.shown()) + SAME);
+        let is_same = apart < 2.0 * SAME && self.document.keys.has(channel);
         if is_same {
-            self.forget_override(Channel::Twist);
+            self.forget_override(channel);
         }
         is_same
     }
@@ -379,10 +379,15 @@ impl Editing {
     /// Closes the transaction, if one is open, with an undo step.
     pub(in crate::session) fn commit(&mut self, time: f64) {
         if let Some(transaction) = self.transaction.take() {
+            if transaction.before.differs_in_motion_start_alone(&self.document) {
+                // A drag that has returned leaves no posture.
+                self.document = transaction.before.document(&self.document);
+                self.evaluate(time);
+            }
             // Not during a drag, which would stop for the time that it takes.
-            self.document.skeleton_rig.refresh_skin();
+            self.document.rig.refresh_skin();
             self.track = self.track.updated(&self.document);
-            self.posed.set_skin(self.document.skeleton_rig.skin.clone());
+            self.posed.set_skin(self.document.rig.skin.clone());
             self.remember(transaction.label.unwrap_or(CHANGE), transaction.before, time);
         }
     }

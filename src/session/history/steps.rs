@@ -104,7 +104,7 @@ pub(in crate::session) struct Snapshot {
     /// cameras.
     pub revision: u64,
     /// Number of the document's content: equal numbers mean documents that are equal except for
-    /// their cameras, shown rig and overlays.
+    /// their cameras and overlays.
     pub content: u64,
 }
 
@@ -120,36 +120,32 @@ impl Snapshot {
         Self { document, overrides, time, revision, content }
     }
 
-    /// The snapshot's document, with the cameras of the `open` document.
+    /// The snapshot's document, with the camera of the `open` document.
     pub fn document(&self, open: &Document) -> Document {
-        let mut document = Document {
-            rig: open.rig,
-            camera: open.camera,
-            other_rig_camera: open.other_rig_camera,
-            ..self.document.clone()
-        };
-        document.show(self.document.rig);
-        document
+        Document { camera: open.camera, ..self.document.clone() }
     }
 
-    /// True if the snapshot's document differs from `document` in more than cameras.
+    /// True if the snapshot's document differs from `document` in more than the camera.
     pub fn differs_from(&self, document: &Document) -> bool {
-        self.document.rig != document.rig
-            || self.document.display != document.display
-            || self.differs_in_content_from(document)
+        self.document.display != document.display || self.differs_in_content_from(document)
     }
 
-    /// True if the snapshot's document differs from `other` in more than cameras, shown rig and
-    /// overlays.
+    /// True if the snapshot's document differs from `other` in more than camera and overlays.
     pub fn differs_in_content_from(&self, other: &Document) -> bool {
-        let Document { arm, skeleton_rig, keys, timeline, track_start, metres_per_unit, .. } =
-            &self.document;
-        *arm != other.arm
-            || *skeleton_rig != other.skeleton_rig
+        let Document { rig, keys, timeline, track_start, metres_per_unit, .. } = &self.document;
+        *rig != other.rig
             || *keys != other.keys
             || *timeline != other.timeline
             || *track_start != other.track_start
             || *metres_per_unit != other.metres_per_unit
+    }
+
+    /// True if the snapshot's document differs from `other` in nothing but the posture and the time
+    /// with which a motion starts, and the camera.
+    pub fn differs_in_motion_start_alone(&self, other: &Document) -> bool {
+        let mut other = Document { track_start: self.document.track_start, ..other.clone() };
+        other.rig.posture.clone_from(&self.document.rig.posture);
+        !self.differs_from(&other)
     }
 
     pub fn overrides(&self) -> &Overrides {
@@ -168,7 +164,7 @@ impl Snapshot {
         size_of::<Self>()
             + self.unshared_joint_bytes(other)
             + self.unshared_mesh_bytes(other)
-            + size_of_val(&*self.document.skeleton_rig.targets)
+            + size_of_val(&*self.document.rig.targets)
             + self.overrides.len() * size_of::<(Channel, Vec3)>()
             + self.document.keys.unshared_bytes(other.map(|other| &other.keys))
     }
@@ -176,7 +172,7 @@ impl Snapshot {
     /// Bytes of the mesh of a skin from a file. That of a skin from bones is made again when it is
     /// needed.
     fn unshared_mesh_bytes(&self, other: Option<&Document>) -> usize {
-        let mesh = |document: &Document| match &document.skeleton_rig.skin.as_ref()?.source {
+        let mesh = |document: &Document| match &document.rig.skin.as_ref()?.source {
             SkinSource::Mesh(mesh) => mesh.mesh().ok().cloned(),
             SkinSource::Bones(_) => None,
         };
@@ -186,8 +182,8 @@ impl Snapshot {
     }
 
     fn unshared_joint_bytes(&self, other: Option<&Document>) -> usize {
-        let skeleton = &self.document.skeleton_rig.skeleton;
-        let theirs = other.map(|other| &other.skeleton_rig.skeleton);
+        let skeleton = &self.document.rig.skeleton;
+        let theirs = other.map(|other| &other.rig.skeleton);
         if theirs.is_some_and(|theirs| skeleton.is_same(theirs)) {
             return 0;
         }

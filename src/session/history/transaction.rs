@@ -1,7 +1,6 @@
 use glam::Vec3;
 
 use crate::document::Ray;
-use crate::session::arm;
 use crate::session::drag::grip::{Drag, Grip};
 use crate::session::drag::joints;
 use crate::session::drag::point::{Constraint, DragInput};
@@ -66,15 +65,15 @@ impl TransactionAction {
 }
 
 fn commit(session: &Session) -> Outcome {
-    let has_dragged_hand = session.history().drag().is_some_and(moves_hand);
+    let has_dragged_hand = session.history().drag().is_some_and(moves_target);
     let known = Preferences { has_dragged_hand: true, ..*session.preferences() };
     Outcome::from(has_dragged_hand.then_some(Consequence::Prefer(known))).and(Consequence::Commit)
 }
 
-/// True if a drag has moved the hand of the arm.
-fn moves_hand(drag: &Drag) -> bool {
-    let is_hand = matches!(drag.grip(), Grip::Hand(_));
-    is_hand && drag.point().is_some_and(|point| point.moved() != Vec3::ZERO)
+/// True if a drag has moved a target.
+fn moves_target(drag: &Drag) -> bool {
+    let is_target = matches!(drag.grip(), Grip::Target(..));
+    is_target && drag.point().is_some_and(|point| point.moved() != Vec3::ZERO)
 }
 
 /// Presses a grip: opens a transaction that drags it, if it can be dragged.
@@ -82,22 +81,13 @@ fn grab(session: &mut Session, grip: Grip, ray: Ray, forward: Vec3) -> Outcome {
     if !grip.has_valid_axis() {
         return Outcome::default();
     }
-    session.act(Consequence::Press(grip));
-    let drag = if grip.is_of_arm() {
-        arm::drag::grab(session, grip, ray, forward)
-    } else {
-        joints::grab(session, grip, ray, forward)
-    };
+    session.act(Consequence::Press);
+    let drag = joints::grab(session, grip, ray, forward);
     drag.map(|drag| Consequence::Begin(Some(Box::new(drag)))).into()
 }
 
 /// Changes the open drag and edits what it drags.
 fn drag(session: &mut Session, change: impl FnOnce(&mut Drag)) -> Outcome {
     let Some((grip, dragged)) = session.change_drag(change) else { return Outcome::default() };
-    if grip.is_of_arm() {
-        let before = session.history().shown_before().arm;
-        arm::drag::drag(session, grip, dragged, &before)
-    } else {
-        joints::drag(session, grip, dragged)
-    }
+    joints::drag(session, grip, dragged)
 }

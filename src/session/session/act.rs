@@ -1,13 +1,12 @@
 use super::{ASPECT, Session};
-use crate::document::{Document, RigKind};
+use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::JointId;
-use crate::kinematics::two_bone::TwoBonePose;
+use crate::rig::LimbFrames;
 use crate::session::dialog::Message;
 use crate::session::drag::grip::{Drag, Dragged, Grip};
 use crate::session::history::steps::{Snapshot, TreeChange};
 use crate::session::limb::ShownLimb;
 use crate::session::outcome::{Consequence, Effect, Outcome};
-use crate::session::parts::ArmJoint;
 use crate::session::pops::CursorMove;
 use crate::session::preferences::PanelTab;
 use crate::session::solver::run::SolverInputs;
@@ -57,10 +56,7 @@ impl Session {
             Action::View(action) => self.view.apply(action, document.camera, self.preferences),
             Action::Playback(action) => self.playback.apply(action, &document.timeline),
             Action::Solver(action) => self.apply_to_solvers(action),
-            Action::Shell(action) => {
-                let arm = (self.rig() == RigKind::Arm).then(|| self.arm());
-                action.apply(arm, self.preferences)
-            }
+            Action::Shell(action) => action.apply(self.evaluated.limb(), self.preferences),
         };
         self.act(outcome)
     }
@@ -72,7 +68,7 @@ impl Session {
     /// Applies an edit as an undo step of its own, or as part of the open transaction.
     pub(in crate::session) fn edit(&mut self, edit: impl Into<Edit>) {
         let edit = edit.into();
-        let label = edit.label();
+        let label = edit.label(self);
         let is_part = self.editing.label_transaction(label);
         let before = (!is_part).then(|| self.editing.state(self.playback.time()));
         let outcome = edit.apply(self);
@@ -117,16 +113,14 @@ impl Session {
             Consequence::TakeZAsUp => self.files.take_z_as_up(),
 
             Consequence::Message(message) => self.shell.set_message(message),
-            Consequence::SayIfArmMoved(from) => self.say_if_arm_moved(&from),
+            Consequence::SayIfLimbMoved(joint, from) => self.say_if_limb_moved(joint, &from),
             Consequence::OpenDialog(dialog) => self.open_dialog(*dialog),
             Consequence::ShowDialog(dialog) => self.shell.open_dialog(*dialog),
             Consequence::CloseDialog => self.close_dialog(),
             Consequence::TakeDialog => drop(self.shell.take_dialog()),
             Consequence::SetChoosing(choosing) => self.shell.set_choosing(choosing),
             Consequence::Prefer(preferences) => self.preferences = preferences,
-            Consequence::ShowTab(tab) => {
-                self.preferences.show_tab(self.editing.document().rig, tab);
-            }
+            Consequence::ShowTab(tab) => self.preferences.tab = tab,
 
             Consequence::Write(after) => self.write(*after),
             Consequence::ResetPosture => self.editing.reset_posture(),
@@ -135,20 +129,20 @@ impl Session {
             Consequence::ForgetUnkeyed(channels) => {
                 channels.into_iter().for_each(|channel| self.editing.forget_override(channel));
             }
-            Consequence::ForgetTwistLikeKeys => self.forget_twist_like_keys(),
+            Consequence::ForgetLikeKeys(channel) => self.forget_like_keys(channel),
             Consequence::RestartKeysFrom(keys) => self.editing.restart_keys_from(*keys),
             Consequence::Begin(drag) => self.begin(drag.map(|drag| *drag)),
             Consequence::Commit => self.commit(),
             Consequence::Cancel => self.cancel(),
             Consequence::Undo => self.undo(),
             Consequence::Redo => self.redo(),
-            Consequence::Press(grip) => self.press(grip),
+            Consequence::Press => self.view.stop_glide(),
             Consequence::FollowMouse(follows) => self.follow_mouse(follows),
             Consequence::Lead(ray) => self.editing.lead_heads(ray),
 
             Consequence::Select(joints) => self.select(joints),
-            Consequence::Hover(part) => {
-                self.selection.hover(part, self.evaluated.skeleton_pose().len());
+            Consequence::Hover(joint) => {
+                self.selection.hover(joint, self.evaluated.skeleton_pose().len());
             }
             Consequence::SelectKeys(keys) => self.selection.set_keys(keys),
             Consequence::RemapKeys(moved, before) => {
@@ -173,10 +167,6 @@ impl Session {
             Consequence::KeepInView => self.keep_in_view(),
             Consequence::CentreFollowed => self.centre_followed(),
             Consequence::EndGlide => self.end_glide(),
-            Consequence::SettleCamera => {
-                self.view.drop();
-                self.end_glide();
-            }
             Consequence::ResetCrowd => self.view.reset_crowd(),
             Consequence::ResetTransport => self.evaluated.reset_transport(),
             Consequence::LookInside => {
@@ -247,19 +237,20 @@ impl Session {
         self.evaluated.forget_trail();
     }
 
-    fn forget_twist_like_keys(&mut self) {
-        if self.editing.forget_twist_like_keys(self.playback.time()) {
+    fn forget_like_keys(&mut self, channel: Channel) {
+        if self.editing.forget_like_keys(channel, self.playback.time()) {
             self.shell.set_message(None);
             self.refresh();
         }
     }
 
-    fn say_if_arm_moved(&mut self, from: &TwoBonePose) {
+    fn say_if_limb_moved(&mut self, joint: JointId, from: &LimbFrames) {
         const MOVED: f32 = 1e-3;
-        let pose = self.pose();
-        let moved = pose.elbow.distance(from.elbow).max(pose.hand.distance(from.hand));
-        if moved > MOVED * self.arm().bones.outer_limit() {
-            self.act(Outcome::say("The arm moved: its soft limits exclude the pose"));
+        let Some(limb) = self.posed().limb_frames(joint) else { return };
+        let (pose, before) = (limb.pose(), from.pose());
+        let moved = pose.elbow.distance(before.elbow).max(pose.hand.distance(before.hand));
+        if moved > MOVED * limb.bones().outer_limit() {
+            self.act(Outcome::say("The limb moved: its soft limits exclude the pose"));
         }
     }
 
@@ -336,12 +327,5 @@ impl Session {
         self.selection.select(joints, self.evaluated.skeleton_pose().len());
         self.follow_limb(CursorMove::Set);
         self.evaluated.forget_trail();
-    }
-
-    fn press(&mut self, grip: Grip) {
-        self.view.stop_glide();
-        let is_hand = matches!(grip, Grip::Hand(_));
-        let kept = self.selection.arm_joint().filter(|joint| is_hand && *joint == ArmJoint::Hand);
-        self.selection.set_arm_joint(grip.arm_joint().or(kept));
     }
 }

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::Session;
-use crate::document::{Document, RigKind};
+use crate::document::{Document, SkeletonRig};
 use crate::io::{Example, ExampleGroup};
 use crate::kinematics::skeleton::JointId;
 use crate::session::dialog::Dialog;
@@ -41,7 +41,8 @@ impl Session {
                 }
             }
             Err(FileAction::OpenExample(example)) => open_example(example),
-            Err(_) => new_skeleton(),
+            Err(FileAction::NewFigure) => new_figure(),
+            Err(_) => new_empty(),
         };
         let effect = self.act(outcome);
         if matches!(effect, Some(Effect::ChoosePath(_))) {
@@ -114,8 +115,21 @@ fn open_example(example: Example) -> Outcome {
         .and(Outcome::say(example.sentence))
 }
 
-fn new_skeleton() -> Outcome {
-    let document = Document { rig: RigKind::Skeleton, ..Document::default() };
+/// Opens the figure of the example "Human" as a new document.
+fn new_figure() -> Outcome {
+    let figure = Example::find("human").map(Example::open);
+    match figure {
+        Some(Ok(opened)) => {
+            let opening = Opening { document: opened.document, ..Opening::default() };
+            Consequence::Open(Box::new(opening)).into()
+        }
+        Some(Err(error)) => Outcome::fail(error.to_string()),
+        None => Outcome::default(),
+    }
+}
+
+fn new_empty() -> Outcome {
+    let document = Document::new(SkeletonRig::default());
     let opening = Opening { document, ..Opening::default() };
     // A sphere that a skeleton of one or two units fits into.
     Outcome::from(Consequence::Open(Box::new(opening)))

@@ -59,7 +59,7 @@ impl Session {
         self.solvers.advance_walk(passed);
         let plays = self.playback.is_playing() && self.document().is_moving();
         let is_dragged = self.editing.drag().is_some();
-        self.solvers.advance(self.skeleton_rig().iterations_per_frame, plays || is_dragged);
+        self.solvers.advance(self.rig().iterations_per_frame, plays || is_dragged);
     }
 
     /// Opens a transaction in which the heads follow the mouse, and plays; or commits it.

@@ -104,16 +104,8 @@ impl Session {
     pub(super) fn leave_tour(&mut self) {
         let Some(own) = self.own.take() else { return };
         self.cancel_bake();
-        let Preferences { explain, arm_tab, skeleton_tab, timeline_open, curves, .. } =
-            own.preferences;
-        let preferences = Preferences {
-            explain,
-            arm_tab,
-            skeleton_tab,
-            timeline_open,
-            curves,
-            ..self.preferences
-        };
+        let Preferences { explain, tab, timeline_open, curves, .. } = own.preferences;
+        let preferences = Preferences { explain, tab, timeline_open, curves, ..self.preferences };
         let files = std::mem::take(&mut self.files);
         *self = Self { files, preferences, ..*own };
     }

@@ -1,11 +1,10 @@
 use glam::Vec3;
 
-use crate::document::{Document, RigKind};
+use crate::document::{Channel, Document};
 use crate::kinematics::skeleton::{
     Joint, JointId, JointLimits, JointRemap, Skeleton, SkeletonError,
 };
 use crate::session::outcome::{Consequence, Outcome};
-use crate::session::parts::BodyPart;
 use crate::session::session::Session;
 
 /// A change of the skeleton's joints.
@@ -58,6 +57,20 @@ pub enum JointEdit {
         /// The vector, in the joint's own space.
         axis: Vec3,
     },
+    /// Sets the length of a joint's bone; children at its tip move with it.
+    SetLength {
+        /// The joint.
+        joint: JointId,
+        /// The length, in units of the skeleton.
+        length: f32,
+    },
+    /// Moves a joint's base in its parent's space; a root in skeleton space.
+    SetOffset {
+        /// The joint.
+        joint: JointId,
+        /// Vector from the base of the parent.
+        offset: Vec3,
+    },
     /// Sets the limits of a joint's rotation.
     SetLimits {
         /// The joint.
@@ -92,6 +105,8 @@ impl JointEdit {
             Self::ReparentJoint { .. } => "Re-parent joint",
             Self::SetRotation { .. } => "Turn joint",
             Self::SetAxis { .. } => "Change bone",
+            Self::SetLength { .. } => "Change length",
+            Self::SetOffset { .. } => "Move joint",
             Self::SetLimits { .. } => "Change limit",
             Self::SetLocked { locked: true, .. } => "Lock joint",
             Self::SetLocked { locked: false, .. } => "Unlock joint",
@@ -120,6 +135,17 @@ impl JointEdit {
             Self::SetAxis { joint, axis } => {
                 Outcome::edit_rig(session.shown(), |rig| rig.skeleton_mut().set_axis(joint, axis))
             }
+            Self::SetLength { joint, length } if length.is_finite() && length > 0.0 => {
+                Outcome::change(session.shown(), |document| {
+                    Channel::Length(joint).set(document, Vec3::X * length);
+                })
+            }
+            Self::SetLength { length, .. } => Outcome::fail(format!(
+                "The length of a bone must be finite and above 0, got {length}"
+            )),
+            Self::SetOffset { joint, offset } => {
+                Outcome::edit_joint(session.shown(), joint, |joint| joint.offset = offset)
+            }
             Self::SetLimits { joint, limits } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.limits = limits)
             }
@@ -141,7 +167,7 @@ impl JointEdit {
 /// a bone.
 fn add(session: &Session, parent: Option<JointId>, tip: Option<Vec3>) -> Outcome {
     let added = Outcome::edit_with(session.shown(), |document| {
-        let skeleton = document.skeleton_rig.skeleton_mut();
+        let skeleton = document.rig.skeleton_mut();
         let Some(parent) = parent else {
             let name = skeleton.free_name("root");
             let root = Joint { locked: true, ..Joint::new(&name, None, Vec3::ZERO) };
@@ -209,8 +235,7 @@ fn reparent(session: &Session, joint: JointId, parent: Option<JointId>) -> Outco
         Ok(changed) => changed,
         Err(refused) => return refused,
     };
-    let hovered =
-        session.selection().hovered().and_then(|joint| moved.get(joint)).map(BodyPart::Joint);
+    let hovered = session.selection().hovered().and_then(|joint| moved.get(joint));
     let selected =
         session.selection().joints().iter().filter_map(|joint| moved.get(*joint)).collect();
     let keys = session.selection().in_timeline();
@@ -224,11 +249,12 @@ fn reparent(session: &Session, joint: JointId, parent: Option<JointId>) -> Outco
 /// file will be turned, too.
 fn turn_y_up(session: &mut Session) -> Outcome {
     session.act(Outcome::from(Consequence::DiscardUnkeyed).and(Consequence::Refresh));
-    let framed = (session.rig() == RigKind::Skeleton).then_some(Consequence::FrameAll);
-    Outcome::change(session.shown(), Document::turn_y_up).and(Consequence::TakeZAsUp).and(framed)
+    Outcome::change(session.shown(), Document::turn_y_up)
+        .and(Consequence::TakeZAsUp)
+        .and(Consequence::FrameAll)
 }
 
-/// Resets all angles of the skeleton.
+/// Resets all angles of the joints.
 pub(in crate::session) fn bind_pose(session: &Session) -> Outcome {
     Outcome::edit_rig(session.shown(), |rig| {
         let mut joints = rig.skeleton.ids();

@@ -1,11 +1,12 @@
 use glam::Vec3;
 
-use crate::document::{Channel, Document, PathKind, RigKind, SkeletonRig, Target};
+use crate::document::{Channel, Document, PathKind, SkeletonRig, Target};
 use crate::kinematics::diagnosis::{Diagnosis, Remedy};
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::kinematics::twist::TwistReferenceKind;
-use crate::rig::{Carried, TargetSpace};
+use crate::rig::{Carried, LimbSettings, TargetSpace};
 use crate::session::outcome::{Consequence, Outcome};
+use crate::session::parts::PoseMode;
 use crate::session::session::Session;
 use crate::words::{self, significant};
 
@@ -39,6 +40,29 @@ pub enum TargetEdit {
         /// The reference.
         reference: TwistReferenceKind,
     },
+    /// Pins the target of a joint to the world, or unpins it; it does not move.
+    Pin {
+        /// Joint of the target.
+        joint: JointId,
+        /// True to pin it.
+        is_pinned: bool,
+    },
+    /// Lets the target of a joint turn the hand of its limb, or the hand follow the bone above it;
+    /// the hand does not turn.
+    KeepHand {
+        /// Joint of the target.
+        joint: JointId,
+        /// True if the target turns the hand.
+        is_kept: bool,
+    },
+    /// Switches the limb of a joint's target to FK or to IK; the pose does not change, unless the
+    /// soft limits exclude it.
+    SwitchPoseMode {
+        /// Joint of the target.
+        joint: JointId,
+        /// FK or IK.
+        mode: PoseMode,
+    },
     /// Moves the target of a joint to where the FK pose has the tip, with the hand's orientation
     /// and the elbow's side.
     MatchTargetToFk(JointId),
@@ -59,12 +83,18 @@ impl TargetEdit {
         match self {
             Self::AddTarget(_) => "Add target",
             Self::RemoveTarget(_) => "Remove target",
+            // A finer one is given by `changed_label`.
             Self::SetTarget(_) => "Change target",
             Self::MatchTargetToFk(_) => "Move target to FK",
             Self::MatchFkToPose(_) => "Write pose to FK",
             Self::SetTargetSpace { .. } => "Change target space",
             Self::SetPoleSpace { .. } => "Change pole space",
             Self::SetReference { .. } => "Change twist reference",
+            Self::Pin { is_pinned: true, .. } => "Pin target",
+            Self::Pin { is_pinned: false, .. } => "Unpin target",
+            Self::KeepHand { .. } => "Turn hand",
+            Self::SwitchPoseMode { mode: PoseMode::Hand, .. } => "Switch to IK",
+            Self::SwitchPoseMode { mode: PoseMode::Angles, .. } => "Switch to FK",
             Self::ApplyRemedy { remedy, .. } => remedy_label(remedy),
         }
     }
@@ -89,12 +119,93 @@ impl TargetEdit {
             Self::SetPoleSpace { joint, space } => {
                 Outcome::change(shown, |document| document.set_pole_space(joint, space, time))
             }
-            Self::SetReference { joint, reference } => Outcome::change(shown, |document| {
-                document.set_limb_reference(joint, reference, time);
+            Self::SetReference { joint, reference } => set_reference(session, joint, reference),
+            Self::Pin { joint, is_pinned } => Outcome::change(shown, |document| {
+                if let Some(index) = document.rig.target(joint) {
+                    let target = document.rig.targets[index];
+                    let pinned = target.with_pinned(is_pinned, session.posed().skeleton(), time);
+                    document.rig.targets[index] = pinned;
+                }
             }),
+            Self::KeepHand { joint, is_kept } => {
+                Outcome::change(shown, |document| document.set_hand_kept(joint, is_kept, time))
+            }
+            Self::SwitchPoseMode { joint, mode } => switch_pose_mode(session, joint, mode),
             Self::ApplyRemedy { target, remedy } => apply_remedy(session, target, &remedy),
         }
     }
+}
+
+/// Label of the undo step that replaces the target of a joint: what differs from the present one.
+pub(in crate::session) fn changed_label(session: &Session, target: &Target) -> &'static str {
+    let rig = session.rig();
+    let Some(index) = rig.target(target.joint) else { return "Change target" };
+    let now = &rig.targets[index];
+    let differs =
+        |part: fn(&LimbSettings) -> Option<Vec3>| target.limb().map(part) != now.limb().map(part);
+    if [target.home, target.pin] != [now.home, now.pin] {
+        "Move target"
+    } else if target.influence != now.influence {
+        "Blend FK and IK"
+    } else if differs(|limb| Some(Vec3::X * limb.twist)) {
+        "Set Socket twist"
+    } else if differs(|limb| limb.pole) {
+        "Move pole"
+    } else if differs(|limb| limb.orientation) {
+        "Turn hand"
+    } else if target.limb().map(|it| it.soft_reach) != now.limb().map(|it| it.soft_reach) {
+        "Change soft reach"
+    } else {
+        "Change target"
+    }
+}
+
+/// Changes the twist reference of a limb and of all keys of its twist; the elbow does not move. If
+/// the converted keys give the shown twist at the playhead, there is no unkeyed edit.
+fn set_reference(session: &Session, joint: JointId, reference: TwistReferenceKind) -> Outcome {
+    let channel = Channel::TargetTwist(joint);
+    let was_overridden = session.history().is_overridden(channel);
+    let forget = (!was_overridden).then_some(Consequence::ForgetLikeKeys(channel));
+    let time = session.playback().time();
+    Outcome::change(session.shown(), |document| {
+        document.set_limb_reference(joint, reference, time);
+    })
+    .and(forget)
+}
+
+/// Switches a limb to FK or IK. The pose does not change, unless the soft limits exclude it.
+fn switch_pose_mode(session: &Session, joint: JointId, mode: PoseMode) -> Outcome {
+    let Some(index) = session.rig().target(joint) else { return Outcome::default() };
+    let time = session.playback().time();
+    let before = session.posed().clone().into_known().carried().unwrap_or_default();
+    let say = session
+        .posed()
+        .limb_frames(joint)
+        .map(|limb| Consequence::SayIfLimbMoved(joint, Box::new(limb)));
+    Outcome::change(session.shown(), |document| match mode {
+        PoseMode::Hand => {
+            let mut posed = document.rig.clone();
+            if posed.targets[index].is_posing() {
+                posed.match_fk_to_pose(index, time, &before);
+            }
+            posed.match_target_to_fk(index, time, &before);
+            document.rig.targets[index] = Target { influence: 1.0, ..posed.targets[index] };
+            if let (Some(limb), Some(fk_stretch)) =
+                (document.rig.targets[index].limb_mut(), fk_stretch(session.rig(), index))
+            {
+                limb.fk_stretch = fk_stretch;
+            }
+        }
+        PoseMode::Angles => {
+            document.rig.match_fk_to_pose(index, time, &before);
+            document.rig.targets[index].influence = 0.0;
+        }
+    })
+    .and(say)
+}
+
+fn fk_stretch(rig: &SkeletonRig, index: usize) -> Option<f32> {
+    Some(rig.targets[index].limb()?.fk_stretch)
 }
 
 fn remedy_label(remedy: &Remedy) -> &'static str {
@@ -117,20 +228,20 @@ fn remedy_label(remedy: &Remedy) -> &'static str {
 /// Adds a target for a joint that has none.
 fn add(session: &Session, joint: JointId) -> Outcome {
     let pose = &session.posed().evaluated_skeleton().solved;
-    let Some(target) = session.skeleton_rig().new_target(joint, pose) else {
+    let Some(target) = session.rig().new_target(joint, pose) else {
         return Outcome::default();
     };
     if !target.home.is_finite() {
         let home = target.home;
         return Outcome::fail(format!("The position of a target must be finite, got {home}"));
     }
-    Outcome::change(session.shown(), |document| document.skeleton_rig.targets.push(target))
+    Outcome::change(session.shown(), |document| document.rig.targets.push(target))
 }
 
 /// Removes the target of a joint, with its keys.
 fn remove(shown: &Document, joint: JointId) -> Outcome {
     Outcome::change(shown, |document| {
-        document.skeleton_rig.targets.retain(|target| target.joint != joint);
+        document.rig.targets.retain(|target| target.joint != joint);
         Channel::of_target(joint).into_iter().for_each(|it| document.keys.clear(it));
     })
 }
@@ -141,13 +252,13 @@ fn matched(
     joint: JointId,
     matched: fn(&mut SkeletonRig, usize, f64, &Carried),
 ) -> Outcome {
-    let Some(index) = session.skeleton_rig().target(joint) else {
+    let Some(index) = session.rig().target(joint) else {
         return Outcome::default();
     };
     let time = session.playback().time();
     let before = session.posed().clone().into_known().carried().unwrap_or_default();
     Outcome::change(session.shown(), |document| {
-        matched(&mut document.skeleton_rig, index, time, &before);
+        matched(&mut document.rig, index, time, &before);
     })
 }
 
@@ -156,10 +267,10 @@ pub(in crate::session) fn set_target(session: &Session, target: Target) -> Outco
     if let Some(fault) = fault(&target) {
         return Outcome::fail(fault);
     }
-    let Some(index) = session.skeleton_rig().target(target.joint) else {
+    let Some(index) = session.rig().target(target.joint) else {
         return Outcome::default();
     };
-    Outcome::change(session.shown(), |document| document.skeleton_rig.targets[index] = target)
+    Outcome::change(session.shown(), |document| document.rig.targets[index] = target)
 }
 
 /// The rule that a target breaks; `None` for a valid one.
@@ -178,6 +289,8 @@ fn fault(target: &Target) -> Option<String> {
         Some(format!("The influence of a target must be from 0 to 1, got {influence}"))
     } else if !(0.0..1.0).contains(&softness) {
         Some(format!("The softness of a target must be from 0 to less than 1, got {softness}"))
+    } else if target.limb().is_some_and(LimbSettings::lacks_pole) {
+        Some("A limb with the reference Pole must have a pole".to_owned())
     } else if !target.has_finite_kind() {
         Some(
             "The twist, pole, orientation and FK stretch of a limb's target must be finite"
@@ -191,14 +304,13 @@ fn fault(target: &Target) -> Option<String> {
 /// Applies a remedy for a target that is not reached, and says what it did.
 fn apply_remedy(session: &mut Session, target: JointId, remedy: &Remedy) -> Outcome {
     let time = session.playback().time();
-    let edited = Outcome::edit_with(session.shown(), |document| {
-        document.skeleton_rig.apply_remedy(remedy, time)
-    });
+    let edited =
+        Outcome::edit_with(session.shown(), |document| document.rig.apply_remedy(remedy, time));
     match edited {
         Ok((written, _)) => drop(session.act(written)),
         Err(refused) => return refused,
     }
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let done = words::remedy_done(rig, remedy);
     let result = match rig.target(target).filter(|index| rig.targets[*index].enabled) {
         Some(index) => describe_result(session, rig, index),
@@ -226,8 +338,8 @@ fn describe_result(session: &Session, rig: &SkeletonRig, index: usize) -> String
 impl Session {
     /// The causes for which the target of the selected joint is not reached, the most likely first;
     /// without such a target, those of the posing target that is farthest from its tip. Empty if
-    /// all are reached, while something is dragged or plays, and for other rigs than skeletons.
-    /// Also empty if they are not known since the last change, unless `finds_out`.
+    /// all are reached, and while something is dragged or plays. Also empty if they are not known
+    /// since the last change, unless `finds_out`.
     pub fn why(&self, finds_out: bool) -> &[Diagnosis] {
         if !finds_out && !self.evaluated().knows_why() {
             return &[];
@@ -239,11 +351,10 @@ impl Session {
     /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets) is not reached. Empty if they are
     /// not known since the last change, unless `finds_out`.
     pub fn why_target(&self, index: usize, finds_out: bool) -> &[Diagnosis] {
-        let (rig, time) = (self.skeleton_rig(), self.playback().time());
+        let (rig, time) = (self.rig(), self.playback().time());
         let targets = rig.targets.len();
         let is_moving = self.history().is_editing() || self.playback().is_playing();
-        if self.rig() != RigKind::Skeleton || is_moving || rig.is_on_path(time) || index >= targets
-        {
+        if is_moving || rig.is_on_path(time) || index >= targets {
             &[]
         } else if finds_out {
             let before = || self.posed().carried().unwrap_or_default();
@@ -258,7 +369,7 @@ impl Session {
 /// The selected joint's target if it is not reached, or else the posing one farthest from its tip;
 /// if all tips are at their targets, the one whose hand misses most of its rotation.
 fn examined_target(session: &Session) -> Option<usize> {
-    let (rig, reports) = (session.skeleton_rig(), session.posed().targets());
+    let (rig, reports) = (session.rig(), session.posed().targets());
     let is_missed =
         |index: &usize| reports.get(*index).is_some_and(|report| !rig.is_reached(report));
     let selected = session.selection().active().and_then(|joint| rig.target_of_end(joint));
@@ -306,7 +417,7 @@ impl PathEdit {
     }
 
     pub(in crate::session) fn apply(self, session: &Session) -> Outcome {
-        let rig = session.skeleton_rig();
+        let rig = session.rig();
         match self {
             Self::SetFollowPath { root, .. } if rig.root_of(root) != Some(root) => {
                 Outcome::fail(format!("The joint of a path must be a root, got joint {root}"))

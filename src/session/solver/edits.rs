@@ -41,7 +41,7 @@ impl SolverEdit {
     pub(in crate::session) fn apply(self, session: &Session) -> Outcome {
         match self {
             Self::SetSolver(solver) if is_valid(&solver) => {
-                Outcome::change(session.shown(), |document| document.skeleton_rig.solver = solver)
+                Outcome::change(session.shown(), |document| document.rig.solver = solver)
             }
             Self::SetSolver(_) => {
                 Outcome::fail("Tolerance, damping, step and iterations must be above 0")
@@ -49,16 +49,16 @@ impl SolverEdit {
             Self::SetIterationsPerFrame(iterations) => {
                 let iterations = iterations.clamp(1, SkeletonRig::MAX_ITERATIONS_PER_FRAME);
                 Outcome::change(session.shown(), |document| {
-                    document.skeleton_rig.iterations_per_frame = iterations;
+                    document.rig.iterations_per_frame = iterations;
                 })
             }
             Self::SetTracked(is_tracked) => Outcome::change(session.shown(), |document| {
-                document.skeleton_rig.is_tracked = is_tracked;
+                document.rig.is_tracked = is_tracked;
             }),
             Self::ResetPosture => Outcome::from(Consequence::ResetPosture).and(Outcome::change(
                 session.shown(),
                 |document| {
-                    document.skeleton_rig.posture = None;
+                    document.rig.posture = None;
                 },
             )),
             Self::SetPosture(_) if session.history().is_editing() => {
@@ -67,7 +67,7 @@ impl SolverEdit {
             Self::SetPosture(posture) => Outcome::change(session.shown(), |document| {
                 let joints = document.skeleton().joints().len();
                 let posture = Some(posture).filter(|posture| posture.fits(joints));
-                document.skeleton_rig.posture = posture;
+                document.rig.posture = posture;
             }),
             Self::ApplyPose => apply_pose(session),
         }

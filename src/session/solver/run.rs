@@ -1,6 +1,6 @@
 use std::time::{Duration, Instant};
 
-use crate::document::{Document, Posed, RigKind};
+use crate::document::Posed;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{
     ChainSolver, Method, Report, SolveError, SolverOptions, SubStep, TipTarget,
@@ -27,11 +27,7 @@ impl SolverInputs {
     ///
     /// The reason why there is nothing to solve.
     pub fn of(posed: &Posed, from_fk: bool) -> Result<Self, &'static str> {
-        let Document { rig, skeleton_rig, .. } = posed.document();
-        if *rig != RigKind::Skeleton {
-            return Err("Show the skeleton to solve it");
-        }
-        let (rig, time) = (skeleton_rig, posed.time());
+        let (rig, time) = (&posed.document().rig, posed.time());
         let targets = rig.targets_at(time);
         if targets.iter().any(|target| rig.is_joint_on_path(target.joint, time)) {
             return Err("A chain that follows a path has nothing to solve");

@@ -72,7 +72,7 @@ impl Solvers {
             return Some(SolverStatus::of_run(run));
         }
         let (_, error) = farthest_target(posed)?;
-        let rig = &posed.document().skeleton_rig;
+        let rig = &posed.document().rig;
         let mut targets = rig.targets.iter().zip(posed.targets());
         let are_reached = targets.all(|(target, it)| !target.enabled || rig.is_reached(it));
         let state = if are_reached { SolverState::Reached } else { SolverState::NotReached };
@@ -83,7 +83,7 @@ impl Solvers {
 /// The enabled target of a pose that is farthest from its tip: its index in
 /// [`SkeletonRig::targets`](crate::rig::SkeletonRig::targets), and the distance in world units.
 pub(in crate::session) fn farthest_target(posed: &Posed) -> Option<(usize, f32)> {
-    let targets = posed.document().skeleton_rig.targets.iter().zip(posed.targets());
+    let targets = posed.document().rig.targets.iter().zip(posed.targets());
     let enabled = targets.enumerate().filter(|(_, (target, _))| target.enabled);
     let distances = enabled.map(|(index, (_, report))| (index, report.error));
     distances.max_by(|(_, one), (_, other)| one.total_cmp(other))

@@ -1,9 +1,14 @@
 //! Live numbers of the scene in the texts of the tour.
 
-use crate::document::{Arm, LengthFormat, Track};
+use glam::Vec3;
+
+use crate::document::{LengthFormat, Track};
 use crate::kinematics::chain_ik::{Method, Status};
+use crate::kinematics::ik::{Ik, IkState};
 use crate::kinematics::pop::ElbowStep;
 use crate::kinematics::soft_reach::SoftReach;
+use crate::rig::{LimbFrames, LimbPart};
+use crate::session::limb::ShownLimb;
 use crate::session::pops::{PopSampleKind, Spike};
 use crate::session::session::Session;
 use crate::session::solver::run::SolverRun;
@@ -18,20 +23,20 @@ const FIGURES: [(&str, Figure); 31] = [
     ("elbow_step", |session| Some(whole(elbow_step(session)?))),
     ("hand_step", |session| Some(whole(elbow_step(session)? / highest_spike(session)?.ratio))),
     ("hand", hand),
-    ("upper", |session| Some(length(session, session.arm().bones.upper()))),
-    ("lower", |session| Some(length(session, session.arm().bones.lower()))),
-    ("distance", |session| Some(length(session, session.pose().distance))),
-    ("elbow_angle", |session| Some(degrees(session.pose().elbow_angle()))),
-    ("twist", |session| Some(degrees(session.arm().twist))),
-    ("farthest", |session| Some(length(session, session.arm().reach_limits().outer))),
-    ("nearest", |session| Some(length(session, session.arm().reach_limits().inner))),
-    ("gap", |session| Some(length(session, gap(session.arm())))),
-    ("sum", |session| Some(length(session, session.arm().bones.outer_limit()))),
+    ("upper", |session| Some(length(session, limb(session)?.bones().upper()))),
+    ("lower", |session| Some(length(session, limb(session)?.bones().lower()))),
+    ("distance", |session| Some(length(session, limb(session)?.pose().distance))),
+    ("elbow_angle", |session| Some(degrees(limb(session)?.pose().elbow_angle()))),
+    ("twist", |session| Some(degrees(limb(session)?.posed.twist))),
+    ("farthest", |session| Some(length(session, limb(session)?.limits.outer))),
+    ("nearest", |session| Some(length(session, limb(session)?.limits.inner))),
+    ("gap", |session| Some(length(session, gap(limb(session)?)))),
+    ("sum", |session| Some(length(session, limb(session)?.bones().outer_limit()))),
     ("cursor_at_start", cursor_at_start),
     ("softness", softness),
-    ("race", |session| Some(factor(race(&at_start(session)?)))),
-    ("hard_race", |session| Some(factor(race(&hard(&at_start(session)?))))),
-    ("soft_gap", |session| Some(length(session, gap(&at_start(session)?)))),
+    ("race", |session| Some(factor(race(limb(session)?.posed.ik, cursor_of_start(session)?)))),
+    ("hard_race", |session| Some(factor(race(hard(limb(session)?), cursor_of_start(session)?)))),
+    ("soft_gap", soft_gap),
     ("holonomy", |session| Some(degrees(session.evaluated().transport_path()?.holonomy()))),
     ("shoulder_moved", shoulder_moved),
     ("fk_bow", |session| bow(session, 0.0)),
@@ -75,7 +80,7 @@ fn figure(name: &str, session: &Session) -> Option<String> {
 }
 
 fn length(session: &Session, length: f32) -> String {
-    LengthFormat::of_limb(session.arm().bones).show(length)
+    limb(session).map_or(String::new(), |limb| LengthFormat::of_limb(limb.bones()).show(length))
 }
 
 fn degrees(angle: f32) -> String {
@@ -114,46 +119,60 @@ fn elbow_step(session: &Session) -> Option<f32> {
 }
 
 fn hand(session: &Session) -> Option<String> {
-    let [x, y, z] = session.pose().hand.to_array().map(|value| length(session, value));
+    let [x, y, z] = limb(session)?.pose().hand.to_array().map(|value| length(session, value));
     Some(format!("({x}, {y}, {z})"))
 }
 
-fn gap(arm: &Arm) -> f32 {
-    arm.pose().hand.distance(arm.cursor_in_root())
+/// The shown limb.
+fn limb(session: &Session) -> Option<&LimbFrames> {
+    session.limb().map(|limb| &limb.frames)
 }
 
-/// The arm as it is, with the Cursor where the step began.
-fn at_start(session: &Session) -> Option<Arm> {
-    let mut arm = *session.arm();
-    arm.set_cursor(session.tour()?.start().arm.cursor_in_root());
-    Some(arm)
+fn gap(limb: &LimbFrames) -> f32 {
+    limb.pose().hand.distance(limb.posed.cursor)
+}
+
+/// The first limb as the step began.
+fn start(session: &Session) -> Option<LimbFrames> {
+    let start = session.tour()?.start();
+    ShownLimb::frames(&start.at(start.timeline.start), None)
+}
+
+/// The Cursor as the step began, in Root space.
+fn cursor_of_start(session: &Session) -> Option<Vec3> {
+    Some(start(session)?.posed.cursor)
 }
 
 fn cursor_at_start(session: &Session) -> Option<String> {
-    Some(length(session, at_start(session)?.cursor_in_root().length()))
+    Some(length(session, cursor_of_start(session)?.length()))
+}
+
+/// Distance of the hand from the Cursor as the step began, with the present soft limits.
+fn soft_gap(session: &Session) -> Option<String> {
+    let (ik, cursor) = (limb(session)?.posed.ik, cursor_of_start(session)?);
+    let hand = ik.solve(cursor, 0.0, IkState::default()).pose.hand;
+    Some(length(session, hand.distance(cursor)))
 }
 
 fn softness(session: &Session) -> Option<String> {
-    let softness = session.arm().soft_reach.softness();
+    let softness = limb(session)?.posed.ik.soft_reach.softness();
     (softness > 0.0).then(|| format!("{softness:.2}"))
 }
 
-/// The arm with hard limits.
-fn hard(arm: &Arm) -> Arm {
-    Arm { soft_reach: SoftReach::default(), ..*arm }
+/// The solver of a limb with hard limits.
+fn hard(limb: &LimbFrames) -> Ik {
+    Ik { soft_reach: SoftReach::default(), ..limb.posed.ik }
 }
 
 /// Distance that the elbow moves while the Cursor moves outwards by 1.
-fn race(arm: &Arm) -> f32 {
-    let cursor = arm.cursor_in_root();
-    let mut moved = *arm;
-    moved.set_cursor(cursor + cursor.normalize_or_zero());
-    arm.pose().elbow.distance(moved.pose().elbow)
+fn race(ik: Ik, cursor: Vec3) -> f32 {
+    let elbow = |cursor| ik.solve(cursor, 0.0, IkState::default()).pose.elbow;
+    elbow(cursor).distance(elbow(cursor + cursor.normalize_or_zero()))
 }
 
 fn shoulder_moved(session: &Session) -> Option<String> {
-    let start = session.tour()?.start();
-    Some(length(session, session.arm().root.distance(start.arm.root)))
+    let [from, to] = [start(session)?, *limb(session)?].map(|limb| limb.origin(LimbPart::Root));
+    Some(length(session, from.distance(to)))
 }
 
 /// Largest distance of the hand's path from the straight line between its first key and its middle
@@ -163,11 +182,12 @@ fn bow(session: &Session, influence: f32) -> Option<String> {
     let document = session.document();
     let (from, to) = (document.timeline.start, 0.5 * document.timeline.end);
     let track = Track::new(document);
+    let target = session.limb()?.target;
+    let index = document.rig.target(target)?;
     let hand = |time: f64| {
         let mut blended = track.at(time).into_document();
-        blended.arm.influence = influence;
-        let posed = track.pose(blended, time);
-        posed.arm().root + posed.arm_pose().hand
+        blended.rig.targets[index].influence = influence;
+        track.pose(blended, time).skeleton().tip(target)
     };
     let (first, last) = (hand(from), hand(to));
     let along = (last - first).try_normalize()?;
@@ -212,8 +232,8 @@ fn distance(session: &Session, distance: f32) -> String {
 /// Name of the end that misses its target most, and by how much.
 fn missed(session: &Session) -> Option<(String, String)> {
     let (index, miss) = farthest_target(session.posed())?;
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let end = rig.skeleton.joint(rig.end_of(&rig.targets[index]))?;
-    (miss > session.skeleton_rig().tolerance())
+    (miss > session.rig().tolerance())
         .then(|| (format!("the {}", end.name.replace('_', " ")), distance(session, miss)))
 }

@@ -5,21 +5,25 @@ use core::f32::consts::{FRAC_PI_2, PI, TAU};
 use glam::{Quat, Vec3};
 
 use super::steps::Goal;
-use crate::document::{Document, TwistReferenceKind};
+use crate::document::{Document, Target, TwistReferenceKind};
 use crate::kinematics::chain_ik::Status;
+use crate::kinematics::skeleton::JointId;
 use crate::kinematics::soft_reach::SoftReach;
+use crate::kinematics::two_bone::TwoBone;
+use crate::rig::{LimbFrames, LimbPart, LimbSettings, TargetKind};
 use crate::session::action::Action;
-use crate::session::arm::edits::ArmEdit;
+use crate::session::limb::ShownLimb;
 use crate::session::parts::PoseMode;
 use crate::session::playback::PlaybackAction;
 use crate::session::session::Session;
 use crate::session::skeleton::joints::JointEdit;
+use crate::session::skeleton::targets::TargetEdit;
 use crate::session::solver::solvers::SolverAction;
 use crate::session::solver::status::farthest_target;
 
-/// Smallest distance that counts as a move, as a fraction of the length of the straight arm.
+/// Smallest distance that counts as a move, as a fraction of the length of the straight limb.
 const MOVE: f32 = 0.05;
-/// Largest distance that counts as none, as a fraction of the length of the straight arm.
+/// Largest distance that counts as none, as a fraction of the length of the straight limb.
 const REST: f32 = 0.01;
 
 /// Compares the session with the document with which the step began.
@@ -68,118 +72,170 @@ impl Goal {
     }
 }
 
-/// Length of the straight arm.
+/// Length of the straight limb.
 fn length(session: &Session) -> f32 {
-    session.arm().bones.outer_limit()
+    session.limb().map_or(0.0, |limb| limb.frames.bones().outer_limit())
+}
+
+/// The first limb of the document with which a step began, in its pose at the start.
+fn limb_of(start: &Document) -> Option<LimbFrames> {
+    ShownLimb::frames(&start.at(start.timeline.start), None)
+}
+
+/// The target of the shown limb.
+fn target(session: &Session) -> Option<Target> {
+    let rig = session.rig();
+    Some(rig.targets[rig.target(session.limb()?.target)?])
+}
+
+/// The action that changes the target of the shown limb.
+fn with_target(session: &Session, change: impl FnOnce(Target) -> Target) -> Option<Action> {
+    Some(TargetEdit::SetTarget(change(target(session)?)).into())
+}
+
+/// The action that changes the settings of the shown limb.
+fn with_limb(
+    session: &Session,
+    change: impl FnOnce(LimbSettings) -> LimbSettings,
+) -> Option<Action> {
+    let limb = *target(session)?.limb()?;
+    with_target(session, |target| Target { kind: TargetKind::Limb(change(limb)), ..target })
 }
 
 fn passed_over_the_shoulder(session: &Session, start: &Document) -> bool {
-    let (from, hand) = (start.arm.pose().hand, session.pose().hand);
+    let Some((limb, before)) = session.limb().zip(limb_of(start)) else { return false };
+    let (from, hand) = (before.pose().hand, limb.frames.pose().hand);
     let is_above = hand.y > hand.x.abs() && hand.y > hand.z.abs();
     is_above && from.x * hand.x < 0.0 && hand.x.abs() > REST * length(session)
 }
 
 fn pass_over_the_shoulder(session: &Session) -> Vec<Action> {
     const STEPS: u16 = 72;
-    let cursor = session.arm().cursor_in_root();
+    let Some(limb) = session.limb() else { return Vec::new() };
+    let cursor = limb.frames.posed.cursor;
     let part = |step| 1.0 - 2.0 * f32::from(step) / f32::from(STEPS);
-    moves((0..=STEPS).map(|step| cursor.with_x(cursor.x * part(step))))
+    moves(session, (0..=STEPS).map(|step| cursor.with_x(cursor.x * part(step))))
 }
 
 fn moved_the_hand_by_fk(session: &Session, start: &Document) -> bool {
-    let moved = session.pose().hand.distance(start.arm.pose().hand);
-    session.arm().influence == 0.0 && moved > MOVE * length(session)
+    let Some((limb, before)) = session.limb().zip(limb_of(start)) else { return false };
+    let moved = limb.frames.pose().hand.distance(before.pose().hand);
+    !limb.frames.uses_ik() && moved > MOVE * length(session)
 }
 
-fn move_the_hand_by_fk(_: &Session) -> Vec<Action> {
-    vec![ArmEdit::SwitchPoseMode(PoseMode::Angles).into(), ArmEdit::SetBend(0.5 * FRAC_PI_2).into()]
+fn move_the_hand_by_fk(session: &Session) -> Vec<Action> {
+    let Some(joint) = session.limb().map(|limb| limb.target) else { return Vec::new() };
+    let rotation = Vec3::Z * (0.5 * FRAC_PI_2);
+    vec![
+        TargetEdit::SwitchPoseMode { joint, mode: PoseMode::Angles }.into(),
+        JointEdit::SetRotation { joint, rotation }.into(),
+    ]
 }
 
 fn bent_the_elbow_at_a_right_angle(session: &Session, _: &Document) -> bool {
     const TOLERANCE: f32 = 3.0 * PI / 180.0;
-    (session.pose().elbow_angle() - FRAC_PI_2).abs() < TOLERANCE
+    let is_right = |angle: f32| (angle - FRAC_PI_2).abs() < TOLERANCE;
+    session.limb().is_some_and(|limb| is_right(limb.frames.pose().elbow_angle()))
 }
 
 fn bend_the_elbow_at_a_right_angle(session: &Session) -> Vec<Action> {
-    let cursor = session.arm().cursor_in_root();
-    let bones = session.arm().bones;
-    let distance = bones.upper().hypot(bones.lower());
-    vec![ArmEdit::SetHand(cursor.normalize_or_zero() * distance).into()]
+    move_to_distance(session, |bones| bones.upper().hypot(bones.lower()))
+}
+
+/// Moves the Cursor along its line from the base to a distance.
+fn move_to_distance(session: &Session, distance: impl Fn(TwoBone) -> f32) -> Vec<Action> {
+    let Some(limb) = session.limb() else { return Vec::new() };
+    let at = limb.frames.posed.cursor.normalize_or_zero() * distance(limb.frames.bones());
+    moves(session, [at].into_iter())
 }
 
 fn turned_the_elbow_along_its_circle(session: &Session, start: &Document) -> bool {
-    let (now, before) = (session.pose(), start.arm.pose());
+    let Some((limb, before)) = session.limb().zip(limb_of(start)) else { return false };
+    let (now, before) = (limb.frames.pose(), before.pose());
     let (from, to) = (before.outward(), now.outward());
     from.dot(to) <= 0.0 && now.hand.distance(before.hand) < REST * length(session)
 }
 
 fn turn_the_elbow_along_its_circle(session: &Session) -> Vec<Action> {
-    vec![ArmEdit::SetTwist(session.arm().twist + 1.1 * FRAC_PI_2).into()]
+    let turned = |limb: LimbSettings| LimbSettings { twist: limb.twist + 1.1 * FRAC_PI_2, ..limb };
+    with_limb(session, turned).into_iter().collect()
 }
 
 fn closed_the_hole(session: &Session, _: &Document) -> bool {
-    session.arm().reach_limits().inner < REST * length(session)
+    session.limb().is_some_and(|limb| limb.frames.limits.inner < REST * length(session))
 }
 
 fn close_the_hole(session: &Session) -> Vec<Action> {
-    let bones = session.arm().bones;
-    vec![ArmEdit::SetLower(bones.upper()).into()]
+    let Some(limb) = session.limb() else { return Vec::new() };
+    let length = limb.frames.bones().upper();
+    vec![JointEdit::SetLength { joint: limb.target, length }.into()]
 }
 
 fn moved_the_cursor_out_of_reach(session: &Session, _: &Document) -> bool {
-    let arm = session.arm();
-    let outer = arm.reach_limits().outer;
-    arm.uses_ik() && arm.cursor_in_root().length() > outer * (1.0 + MOVE)
+    let is_out = |limb: &LimbFrames| {
+        limb.uses_ik() && limb.posed.cursor.length() > limb.limits.outer * (1.0 + MOVE)
+    };
+    session.limb().is_some_and(|limb| is_out(&limb.frames))
 }
 
 fn move_the_cursor_out_of_reach(session: &Session) -> Vec<Action> {
-    let cursor = session.arm().cursor_in_root();
-    let bones = session.arm().bones;
-    let distance = 1.3 * bones.outer_limit();
-    vec![ArmEdit::SetHand(cursor.normalize_or_zero() * distance).into()]
+    move_to_distance(session, |bones| 1.3 * bones.outer_limit())
 }
 
 fn softened_the_limits(session: &Session, _: &Document) -> bool {
-    session.arm().soft_reach.softness() >= 0.095
+    session.limb().is_some_and(|limb| limb.frames.posed.ik.soft_reach.softness() >= 0.095)
 }
 
-fn soften_the_limits(_: &Session) -> Vec<Action> {
+fn soften_the_limits(session: &Session) -> Vec<Action> {
     let soft = SoftReach::new(0.1, 1.0, 0.0);
-    soft.into_iter().map(|soft| ArmEdit::SetSoftReach(soft).into()).collect()
+    let softened =
+        soft.map(|soft_reach| with_limb(session, |limb| LimbSettings { soft_reach, ..limb }));
+    softened.ok().flatten().into_iter().collect()
 }
 
 fn chose_transport(session: &Session, _: &Document) -> bool {
-    session.arm().twist_reference == TwistReferenceKind::Transport
+    session.limb().is_some_and(|limb| limb.frames.posed.kind == TwistReferenceKind::Transport)
 }
 
 fn choose_transport(session: &Session) -> Vec<Action> {
-    let cursor = session.arm().cursor_in_root();
-    let transport = ArmEdit::SetTwistReference(TwistReferenceKind::Transport);
-    core::iter::once(transport.into()).chain(moves(round_trip(cursor))).collect()
+    let Some(limb) = session.limb() else { return Vec::new() };
+    let reference = TwistReferenceKind::Transport;
+    let chosen = TargetEdit::SetReference { joint: limb.target, reference };
+    // The moves change the place alone, so that they keep the reference that is chosen first.
+    let mut all = vec![chosen.into()];
+    all.extend(moves_with(session, round_trip(limb.frames.posed.cursor), Some(reference)));
+    all
 }
 
 fn moved_the_shoulder_and_kept_the_hand(session: &Session, start: &Document) -> bool {
-    let arm = session.arm();
-    let hand = arm.root + session.pose().hand;
-    let before = start.arm.root + start.arm.pose().hand;
-    arm.root.distance(start.arm.root) > MOVE * length(session)
-        && hand.distance(before) < REST * length(session)
+    let Some((limb, before)) = session.limb().zip(limb_of(start)) else { return false };
+    let place = |limb: &LimbFrames, part| limb.origin(part);
+    let moved = |part| place(&limb.frames, part).distance(place(&before, part));
+    moved(LimbPart::Root) > MOVE * length(session) && moved(LimbPart::Hand) < REST * length(session)
 }
 
 fn move_the_shoulder_and_keep_the_hand(session: &Session) -> Vec<Action> {
-    let bones = session.arm().bones;
+    let Some(limb) = session.limb() else { return Vec::new() };
+    let joint = JointId::default();
+    let Some(root) = session.skeleton().joint(joint) else { return Vec::new() };
+    let offset = root.offset + Vec3::Y * (0.2 * limb.frames.bones().outer_limit());
     vec![
-        ArmEdit::PinHand(true).into(),
-        ArmEdit::SetRoot(session.arm().root + Vec3::Y * (0.2 * bones.outer_limit())).into(),
+        TargetEdit::Pin { joint: limb.target, is_pinned: true }.into(),
+        JointEdit::SetOffset { joint, offset }.into(),
     ]
 }
 
 fn plays_by_ik(session: &Session, _: &Document) -> bool {
-    session.playback().is_playing() && session.arm().influence == 1.0
+    session.playback().is_playing()
+        && session.limb().is_some_and(|limb| limb.frames.posed.influence == 1.0)
 }
 
-fn play_by_ik(_: &Session) -> Vec<Action> {
-    vec![ArmEdit::SwitchPoseMode(PoseMode::Hand).into(), PlaybackAction::Play(true).into()]
+fn play_by_ik(session: &Session) -> Vec<Action> {
+    let Some(joint) = session.limb().map(|limb| limb.target) else { return Vec::new() };
+    vec![
+        TargetEdit::SwitchPoseMode { joint, mode: PoseMode::Hand }.into(),
+        PlaybackAction::Play(true).into(),
+    ]
 }
 
 fn raced_all_solvers(session: &Session, _: &Document) -> bool {
@@ -194,7 +250,7 @@ fn race_all_solvers(_: &Session) -> Vec<Action> {
 
 fn left_a_target_out_of_reach(session: &Session, _: &Document) -> bool {
     let farthest = farthest_target(session.posed()).map_or(0.0, |(_, miss)| miss);
-    farthest > REST * session.skeleton_rig().reach()
+    farthest > REST * session.rig().reach()
 }
 
 fn leave_a_target_out_of_reach(session: &Session) -> Vec<Action> {
@@ -202,9 +258,26 @@ fn leave_a_target_out_of_reach(session: &Session) -> Vec<Action> {
     vec![JointEdit::SetTranslation(at + Vec3::Y * 0.3).into()]
 }
 
-/// Moves of the hand through points in Root space.
-fn moves(points: impl Iterator<Item = Vec3>) -> Vec<Action> {
-    points.map(|point| ArmEdit::SetHand(point).into()).collect()
+/// Moves of the target of the shown limb through points in Root space.
+fn moves(session: &Session, points: impl Iterator<Item = Vec3>) -> Vec<Action> {
+    moves_with(session, points, None)
+}
+
+/// Moves of the target of the shown limb through points in Root space, with another twist reference.
+fn moves_with(
+    session: &Session,
+    points: impl Iterator<Item = Vec3>,
+    reference: Option<TwistReferenceKind>,
+) -> Vec<Action> {
+    let (Some(limb), Some(mut target)) = (session.limb(), target(session)) else {
+        return Vec::new();
+    };
+    if let (Some(settings), Some(reference)) = (target.limb_mut(), reference) {
+        settings.reference = reference;
+    }
+    let (pose, time) = (session.posed().skeleton(), session.playback().time());
+    let to = |point| target.placed(pose, time, limb.frames.in_world(point));
+    points.map(|point| TargetEdit::SetTarget(to(point)).into()).collect()
 }
 
 /// A cone of directions around the middle of `from` and +y, once around and back.

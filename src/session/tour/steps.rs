@@ -409,9 +409,9 @@ static STEPS: [TourStep; 12] = [
         tab: None,
         section: Some("Translation"),
         select: Some("pelvis"),
-        text: "Each hand and each foot of this figure has a target in the world. Each arm and each \
-            leg is a triangle, as in step 3, and a foot stays on the floor like the pinned hand of \
-            step 9. Drag a hand, a foot or the pelvis.",
+        text: "Each hand and each foot of this figure has a target in the world. Every limb is such \
+            an arm: a knee has its triangle (step 3) and its circle (step 4), and a foot stays on \
+            the floor like the pinned hand of step 9. Drag a hand, a foot or the pelvis.",
         guess: Guess {
             question: "The pelvis goes up and up. What do the feet do?",
             answers: &[

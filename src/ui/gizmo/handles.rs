@@ -66,16 +66,10 @@ impl TranslateHandles {
 
     /// The handle at a screen position if only the point itself has a handle, without arrows and
     /// squares; `None` if there is no handle.
-    pub fn free_at(&self, mouse: Pos2) -> Option<PointHandle> {
+    fn free_at(&self, mouse: Pos2) -> Option<PointHandle> {
         let on_free = |centre: Pos2| centre.distance(mouse) <= FREE_RADIUS;
         let is_hit = on_free(self.centre) || self.hand.is_some_and(on_free);
         is_hit.then_some(PointHandle::Free)
-    }
-
-    /// Draws the handle of the point itself, highlighted.
-    pub fn paint_free(&self, painter: &Painter, ui: &Ui) {
-        let colour = bright(ui.visuals().strong_text_color());
-        painter.circle_stroke(self.centre, FREE_RADIUS - 2.0, Stroke::new(2.0, colour));
     }
 
     /// Draws the handles, highlights the hovered or dragged one, and fades the others during a

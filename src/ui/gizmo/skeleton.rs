@@ -1,5 +1,4 @@
-//! The gizmo of the skeleton: targets, bone tips, and rings of the selected joint and of its
-//! target.
+//! The gizmo: targets, bone tips, and rings of the selected joint, of its target and of its limb.
 
 use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
@@ -26,8 +25,9 @@ const BONE_HIT: f32 = 8.0;
 /// A circle wins over a ring if its centre is nearer to the mouse by this distance in points.
 const CLEARLY: f32 = 3.0;
 
-/// Screen positions of the skeleton's handles.
-pub(in crate::ui) struct SkeletonGizmo {
+/// Screen positions of the rig's handles; there are none while a crowd is shown.
+#[derive(Default)]
+pub(in crate::ui) struct Gizmo {
     bones: Vec<ScreenBone>,
     marks: Vec<Mark>,
     /// Translation handles of the selected joint's target and its pole, or of the selected head.
@@ -64,8 +64,11 @@ struct Mark {
     enabled: bool,
 }
 
-impl SkeletonGizmo {
+impl Gizmo {
     pub fn new(screen: &ScreenProjection, session: &Session) -> Self {
+        if session.crowd().is_some() {
+            return Self::default();
+        }
         Self {
             bones: bones(screen, session),
             marks: targets(screen, session).into_iter().chain(heads(screen, session)).collect(),
@@ -188,7 +191,7 @@ impl JointHandles {
 }
 
 fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
-    let (rig, pose) = (session.skeleton_rig(), session.skeleton_pose());
+    let (rig, pose) = (session.rig(), session.skeleton_pose());
     let hides_bones = session.shown().hides_bones();
     let bone = |joint: JointId| {
         let (base, tip) = (pose.base(joint), pose.tip(joint));
@@ -215,14 +218,19 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
         let grip = Grip::Target(target.joint, PointHandle::Free);
         Some(Mark { grip, at, enabled: target.enabled })
     };
-    session.skeleton_rig().targets.iter().zip(reports).filter_map(mark).collect()
+    let rig = session.rig();
+    // A figure that is one limb has handles at its target instead.
+    let has_mark = |target: &Target| rig.sole_limb().is_none() || !target.is_posing();
+    let targets = rig.targets.iter().zip(reports);
+    targets.filter(|(target, _)| has_mark(target)).filter_map(mark).collect()
 }
 
-/// The ring of the twist of the limb that has the selected joint.
+/// The ring of the twist of the limb that has the selected joint, or of a figure that is one limb.
 fn twist_ring(screen: &ScreenProjection, session: &Session) -> Option<TwistRing> {
-    session.skeleton_rig().limb_target_of(session.selection().active()?)?;
-    let limb = session.limb()?;
-    TwistRing::new(screen, Grip::LimbTwist(limb.target?), &limb.frames, true)
+    let of_limb = |joint| session.rig().limb_target_of(joint);
+    let is_selected = session.selection().active().and_then(of_limb).is_some();
+    let limb = session.limb().filter(|_| is_selected || session.rig().sole_limb().is_some())?;
+    TwistRing::new(screen, Grip::LimbTwist(limb.target), &limb.frames, is_selected)
 }
 
 /// The circles of heads that can be dragged.
@@ -231,15 +239,19 @@ fn heads(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
         let at = screen.place(session.posed().evaluated_skeleton().fk.base(head))?;
         Some(Mark { grip: Grip::Head(head, PointHandle::Free), at, enabled: true })
     };
-    Grip::draggable_heads(session.skeleton_rig()).filter_map(mark).collect()
+    Grip::draggable_heads(session.rig()).filter_map(mark).collect()
 }
 
 fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
-    let rig = session.skeleton_rig();
-    let Some(selected) = session.selection().active() else { return Vec::new() };
-    let target = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
+    let rig = session.rig();
+    // The target of a figure that is one limb has its handles at all times.
+    let sole = rig.sole_limb().filter(|target| target.is_posing());
+    let active = session.selection().active();
+    let Some(selected) = active.or(sole.map(|target| target.joint)) else { return Vec::new() };
+    let of_end = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
+    let target = of_end.or(sole.map(|target| target.joint));
     let report = target.and_then(|joint| session.posed().target_report(joint));
-    let head = Grip::draggable_heads(session.skeleton_rig()).find(|head| *head == selected);
+    let head = Grip::draggable_heads(session.rig()).find(|head| *head == selected);
     let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
     let points: [(JointId, GripOfJoint, Option<Vec3>); 4] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
@@ -247,8 +259,13 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
         (selected, Grip::Tip, root),
         (selected, Grip::Head, head.map(|head| session.posed().evaluated_skeleton().fk.base(head))),
     ];
+    // Of a limb that IK alone poses, the hand is a handle, too.
+    let is_full = |joint| rig.target(joint).is_some_and(|it| rig.targets[it].influence >= 1.0);
+    let hand = target.filter(|joint| sole.is_some() && is_full(*joint));
+    let hand = hand.map(|joint| session.posed().skeleton().tip(joint));
     let handles = |(joint, grip, point): (JointId, GripOfJoint, Option<Vec3>)| {
-        let handles = TranslateHandles::new(screen, point?, None)?;
+        let is_target = matches!(grip(joint, PointHandle::Free), Grip::Target(..));
+        let handles = TranslateHandles::new(screen, point?, hand.filter(|_| is_target))?;
         Some(JointHandles { joint, grip, handles })
     };
     points.into_iter().filter_map(handles).collect()
@@ -261,11 +278,21 @@ fn is_dragged_root(session: &Session, joint: JointId) -> bool {
         && Grip::can_drag_tip(session.posed(), joint)
 }
 
-/// The rings of the selected joint, and those of the orientation that its target holds; empty if no
-/// joint is selected. A joint on a path has none.
+/// The rings of the selected joint, and those of the orientation that its target holds; without a
+/// selection those of a figure that is one limb and posed by FK, else none. A joint on a path has
+/// none.
 fn rings(screen: &ScreenProjection, session: &Session) -> Vec<RotateRing> {
-    let Some(joint) = session.selection().active() else { return Vec::new() };
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
+    let Some(joint) = session.selection().active() else {
+        let by_fk = rig.sole_limb().filter(|target| !target.is_posing());
+        let joints = by_fk.into_iter().flat_map(|target| rig.limb_joints(target.joint).take(2));
+        let rings = joints.flat_map(|joint| RotationAxis::ALL.map(|axis| (joint, axis)));
+        let ring = |(joint, axis)| {
+            let ring = GripRing::of_joint(session.posed(), joint, axis)?;
+            RotateRing::new(screen, Grip::Ring(joint, axis), ring, RADIUS)
+        };
+        return rings.filter_map(ring).collect();
+    };
     let target = rig.target_of_end(joint).map(|index| rig.targets[index].joint);
     let has_arrows = is_dragged_root(session, joint) || target.is_some_and(|it| it != joint);
     let radius = if has_arrows { OUTER_RADIUS } else { RADIUS };

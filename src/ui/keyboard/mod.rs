@@ -37,7 +37,9 @@ pub(super) fn global(ui: &Ui, session: &Session, actions: &mut Actions) {
         }
     }
     if pressed(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::N) {
-        actions.push(FileAction::NewSkeleton);
+        actions.push(FileAction::NewEmpty);
+    } else if pressed(Modifiers::COMMAND.plus(Modifiers::ALT), Key::N) {
+        actions.push(FileAction::NewFigure);
     } else if pressed(Modifiers::COMMAND, Key::N) {
         actions.push(FileAction::New);
     }

@@ -3,7 +3,7 @@
 use egui::{Event, Key, Ui};
 use glam::Vec2;
 
-use crate::document::{AxisView, RigKind};
+use crate::document::AxisView;
 use crate::session::{
     Actions, Constraint, JointEdit, PointDrag, SelectAction, Session, SolverAction,
     TransactionAction, ViewAction,
@@ -20,9 +20,7 @@ pub(in crate::ui) fn viewport(ui: &Ui, session: &Session, actions: &mut Actions)
         drag(ui, session, actions);
     } else {
         view(ui, session, actions);
-        if session.rig() == RigKind::Skeleton {
-            skeleton(ui, session, actions);
-        }
+        joints(ui, session, actions);
     }
 }
 
@@ -31,7 +29,7 @@ pub(in crate::ui) fn pressed(ui: &Ui, key: Key) -> bool {
     ui.input(|input| input.key_pressed(key) && input.modifiers.is_none())
 }
 
-fn skeleton(ui: &Ui, session: &Session, actions: &mut Actions) {
+fn joints(ui: &Ui, session: &Session, actions: &mut Actions) {
     let pressed = |key| pressed(ui, key);
     let selected = session.selection().active();
     if ui.input(|input| input.key_pressed(Key::A) && input.modifiers.command_only()) {

@@ -1,9 +1,9 @@
 //! The panels beside and over the viewport. On the left are the rig's settings, guides and display;
-//! on the right are pages that explain the pose of the arm or of the skeleton.
+//! on the right are pages that explain the pose.
 
-mod arm;
 pub(in crate::ui) mod crowd;
 mod explain;
+mod limb;
 mod skeleton;
 mod solver;
 pub(in crate::ui) mod statistics;
@@ -11,34 +11,36 @@ pub(in crate::ui) mod statistics;
 use egui::{ScrollArea, Ui};
 
 use super::widgets;
-use crate::document::{Overlay, RigKind};
+use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
+use limb::SoleLimb;
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
-    rig(ui, session, actions);
-    ui.add_space(2.0);
     let note = skeleton::noted(session);
     let height = ui.available_height();
     let room = height - note.map_or(0.0, |_| skeleton::note_height(height));
     let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
     rows.show(ui, |ui| {
-        match session.rig() {
-            RigKind::Arm => arm::ui(ui, session, actions),
-            RigKind::Skeleton => skeleton::ui(ui, session, actions),
+        let limb = SoleLimb::new(session);
+        match limb {
+            Some(limb) => limb::ui(ui, limb, actions),
+            None => skeleton::ui(ui, session, actions),
         }
         widgets::section(ui, "Guides", |ui| {
-            widgets::check_boxes(ui, session, 2, guides(session), None, actions);
+            let guides: &[Overlay] = if limb.is_some() { &Overlay::GUIDES } else { &FIGURE_GUIDES };
+            widgets::check_boxes(ui, session, 2, guides, None, actions);
         });
-        if session.rig() == RigKind::Arm {
-            arm::more(ui, session, actions);
+        if let Some(limb) = limb {
+            limb::more(ui, limb, actions);
+            skeleton::folded(ui, session, actions);
         }
-        let hand = (session.rig() == RigKind::Arm).then_some(Overlay::Hand);
-        let surroundings: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(hand).collect();
+        let bodies = [Overlay::Cylinders, Overlay::Hand, Overlay::Paths];
+        let display: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(bodies).collect();
         widgets::folded_section(ui, "Display", |ui| {
-            widgets::check_boxes(ui, session, 3, &surroundings, None, actions);
+            widgets::check_boxes(ui, session, 3, &display, None, actions);
         });
-        resets(ui, session, actions);
+        resets(ui, actions);
         ui.add_space(8.0);
     });
     if let Some(target) = note {
@@ -46,37 +48,21 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-fn rig(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rigs = [
-        (RigKind::Arm, "Arm", "Pose an arm of two limbs, solved in closed form"),
-        (RigKind::Skeleton, "Skeleton", "Pose a tree of joints, solved by iteration"),
-    ];
-    let chosen = widgets::segments(ui, session.rig(), &rigs);
-    actions.extend(chosen.map(DisplayEdit::ShowRig));
-}
+/// Guides of a figure.
+const FIGURE_GUIDES: [Overlay; 7] = [
+    Overlay::Cursor,
+    Overlay::Pointer,
+    Overlay::InnerLimit,
+    Overlay::OuterLimit,
+    Overlay::ElbowCircle,
+    Overlay::FkPose,
+    Overlay::ByItself,
+];
 
-fn guides(session: &Session) -> &'static [Overlay] {
-    match session.rig() {
-        RigKind::Arm => &Overlay::GUIDES,
-        RigKind::Skeleton => &[
-            Overlay::Cursor,
-            Overlay::Pointer,
-            Overlay::InnerLimit,
-            Overlay::OuterLimit,
-            Overlay::ElbowCircle,
-            Overlay::FkPose,
-            Overlay::ByItself,
-        ],
-    }
-}
-
-fn resets(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let (name, tooltip) = match session.rig() {
-        RigKind::Arm => ("Reset pose", "Reset everything that poses the arm"),
-        RigKind::Skeleton => ("Reset to bind pose", "Set every joint rotation to 0"),
-    };
+fn resets(ui: &mut Ui, actions: &mut Actions) {
     ui.horizontal(|ui| {
-        if widgets::button(ui, name, tooltip, None) {
+        let tooltip = "Reset the arm; set every joint angle of a figure to 0";
+        if widgets::button(ui, "Reset pose", tooltip, None) {
             actions.push(DisplayEdit::ResetPose);
         }
         let tooltip = "Reset pose, guides, display and view; hide the crowd";
@@ -98,8 +84,7 @@ pub(super) fn has_room(ui: &Ui) -> bool {
 pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Option<LimbFigure> {
     let shown = shown(session);
     ui.add_space(4.0);
-    let tabs: Vec<_> =
-        tabs(session).map(|tab| (tab, tab.name(), tooltip(session.rig(), tab))).collect();
+    let tabs: Vec<_> = tabs(session).map(|tab| (tab, tab.name(), tooltip(tab))).collect();
     actions.extend(widgets::tabs(ui, shown, &tabs).map(ViewAction::ShowTab));
     ui.separator();
     // Each page is scrolled on its own.
@@ -110,8 +95,13 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
             PanelTab::Twist => explain::twist(ui, session, actions),
             PanelTab::Reach => explain::reach(ui, session),
             PanelTab::Pops => explain::pops(ui, session, actions),
-            PanelTab::Solver if session.rig() == RigKind::Arm => explain::closed_form(ui, session),
-            PanelTab::Solver => solver::solver(ui, session, actions),
+            PanelTab::Solver => {
+                if session.rig().sole_limb().is_some() {
+                    explain::closed_form(ui, session);
+                    ui.separator();
+                }
+                solver::solver(ui, session, actions);
+            }
             PanelTab::Race => solver::race(ui, session, actions),
             PanelTab::Skin => skeleton::skin_areas(ui, session),
         }
@@ -120,33 +110,33 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
     figure
 }
 
-/// The tabs of the rig. The page of the skin is there while the skin is compared.
+/// The tabs: those of limbs if the figure has one, that of the race if it is more than one limb,
+/// that of the skin while the skin is compared.
 fn tabs(session: &Session) -> impl Iterator<Item = PanelTab> + use<> {
     let compares = session.shown().compares_skinning();
-    let tabs = PanelTab::of(session.rig()).iter().copied();
-    tabs.filter(move |tab| *tab != PanelTab::Skin || compares)
+    let has_limb = session.limb().is_some();
+    let is_limb = session.rig().sole_limb().is_some();
+    PanelTab::ALL.into_iter().filter(move |tab| match tab {
+        PanelTab::Skin => compares,
+        PanelTab::Race => !is_limb,
+        tab => has_limb || !tab.is_of_limb(),
+    })
 }
 
-/// The chosen tab, or the first if the chosen one is not there.
+/// The chosen tab, or the solver's if the chosen one is not there.
 fn shown(session: &Session) -> PanelTab {
-    let chosen = session.preferences().tab(session.rig());
-    let mut all = tabs(session);
-    let first = all.next().unwrap_or(chosen);
-    if all.any(|tab| tab == chosen) { chosen } else { first }
+    let chosen = session.preferences().tab;
+    if tabs(session).any(|tab| tab == chosen) { chosen } else { PanelTab::Solver }
 }
 
-fn tooltip(rig: RigKind, tab: PanelTab) -> &'static str {
-    match (rig, tab) {
-        (_, PanelTab::Triangle) => "Show the triangle of shoulder, elbow and hand",
-        (_, PanelTab::Twist) => "Compare what the Socket twist can be measured from",
-        (_, PanelTab::Reach) => "Show how near and how far the hand can be",
-        (RigKind::Arm, PanelTab::Pops) => "Show where the elbow jumped, and why",
-        (RigKind::Skeleton, PanelTab::Pops) => {
-            "Show where joints jump, targets are lost and feet slide, and why"
-        }
-        (RigKind::Arm, PanelTab::Solver) => "Show why the arm needs no iterations",
-        (RigKind::Skeleton, PanelTab::Solver) => "Watch a solver bring the tips to their targets",
-        (_, PanelTab::Race) => "Run all solvers on the same targets",
-        (_, PanelTab::Skin) => "Plot the skin's cross-section for each way of blending joints",
+fn tooltip(tab: PanelTab) -> &'static str {
+    match tab {
+        PanelTab::Triangle => "Show the triangle of shoulder, elbow and hand",
+        PanelTab::Twist => "Compare what the Socket twist can be measured from",
+        PanelTab::Reach => "Show how near and how far the hand can be",
+        PanelTab::Pops => "Show where joints jump, targets are lost and feet slide, and why",
+        PanelTab::Solver => "Watch a solver bring the tips to their targets",
+        PanelTab::Race => "Run all solvers on the same targets",
+        PanelTab::Skin => "Plot the skin's cross-section for each way of blending joints",
     }
 }

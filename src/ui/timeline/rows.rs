@@ -96,13 +96,9 @@ pub(in crate::ui) enum DopeSheetRow {
     Channel(Channel),
 }
 
-/// The channels that have keys; channels of the shown rig come first.
+/// The channels that have keys.
 pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
-    let rig = Some(session.rig());
-    let keyed = session.document().keys.tracks().map(|(channel, _)| channel);
-    let (mut first, others): (Vec<_>, Vec<_>) = keyed.partition(|channel| channel.rig() == rig);
-    first.extend(others);
-    first
+    session.document().keys.tracks().map(|(channel, _)| channel).collect()
 }
 
 impl DopeSheetRow {

@@ -91,7 +91,7 @@ enum Fault<'a> {
 
 impl Fault<'_> {
     fn sentence(&self, session: &Session) -> String {
-        let rig = session.skeleton_rig();
+        let rig = session.rig();
         match self {
             Self::Pop(pop) => words::pop(rig, pop),
             Self::Lost(span) => words::lost(rig, span.target, span.miss),

@@ -30,8 +30,8 @@ impl ValueKind {
 
     pub fn of(channel: Channel) -> Self {
         match (channel, channel.quantity()) {
-            (Channel::Stretch, _) => Self::Ratio,
-            (_, Quantity::Angle | Quantity::Angles | Quantity::Rotation) => Self::Angle,
+            (Channel::Stretch(_), _) => Self::Ratio,
+            (_, Quantity::Angle | Quantity::Rotation) => Self::Angle,
             (_, Quantity::Point | Quantity::Length) => Self::Length,
             (_, Quantity::Fraction | Quantity::Switch) => Self::Ratio,
         }

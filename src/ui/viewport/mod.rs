@@ -12,11 +12,10 @@ use super::gizmo::screen::ScreenProjection;
 use super::gizmo::{Gizmo, locked_axis};
 use super::keyboard::{self, focus};
 use super::{commands, pose_summary, status_bar};
-use crate::document::{Camera, Overlay, RigKind};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
-    Action, Actions, ArmJoint, BodyPart, CameraMotion, Drag, DragInput, Grip, JointEdit,
-    PlaybackAction, PointHandle, SelectAction, Session, TransactionAction, ViewAction,
+    Action, Actions, CameraMotion, Drag, DragInput, Grip, JointEdit, PlaybackAction, PointHandle,
+    SelectAction, Session, TransactionAction, ViewAction,
 };
 use navigation::{covers_view_axes, motion, show_cursor, view_axes, wheel};
 
@@ -60,7 +59,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     notes::why_not_reached(ui, session, &screen, actions);
     notes::follow_mouse(ui, session, rect, actions);
     notes::provisional(ui, session, rect);
-    if has_joints(session) && !session.skeleton_rig().has_bones() {
+    if has_joints(session) && !session.rig().has_bones() {
         invite(ui, rect);
     }
 
@@ -80,20 +79,15 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     if has_joints(session) && response.clicked() && !on_view_axes {
         select(ui, session, &screen, &gizmo, mouse, actions);
     }
-    let has_hand = session.shown().display.shows(Overlay::Hand);
-    if response.clicked() && lit == Some(BodyPart::Hand) && has_hand {
-        actions.push(SelectAction::ArmJoint(Some(ArmJoint::Hand)));
-    }
-    let is_beside = pointed.is_none() && held_grip.is_none();
-    if response.clicked() && is_beside && session.selection().arm_joint().is_some() {
-        actions.push(SelectAction::ArmJoint(None));
-    }
     if response.double_clicked() && !on_view_axes {
         let is_on_body = pointed.is_some() || joint_at(session, &screen, &gizmo, mouse).is_some();
-        actions.push(match session.rig() {
-            _ if is_on_body => commands::frame_selection(session),
-            RigKind::Arm if session.crowd().is_none() => ViewAction::GlideTo(Camera::default()),
-            _ => commands::frame_all(session),
+        let is_measured = session.shown().measured_limb().is_some();
+        actions.push(match is_on_body {
+            true => commands::frame_selection(session),
+            false if is_measured && session.crowd().is_none() => {
+                ViewAction::GlideTo(session.shown().framing_camera())
+            }
+            false => commands::frame_all(session),
         });
     }
     show_cursor(ui, session, pointed.or(held_grip));
@@ -104,21 +98,20 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     rect
 }
 
-/// Tooltip of a handle or part of the arm that shows more when it is clicked; `None` for others,
+/// Tooltip of a handle or part of a limb that shows more when it is clicked; `None` for others,
 /// while its joint is selected, and during a drag.
 fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
-    let selected = session.selection().arm_joint();
+    let (rig, selected) = (session.rig(), session.selection().active());
+    rig.sole_limb()?;
     match grip {
         _ if session.history().is_editing() => None,
-        Grip::Root(_) if selected != Some(ArmJoint::Root) => {
-            Some("Move the Root; click to show its arrows")
+        Grip::Tip(joint, _) if rig.skeleton.joint(joint)?.is_root_point() => {
+            (selected != Some(joint)).then_some("Move the Root; click to show its arrows")
         }
-        Grip::Twist | Grip::Limb if selected != Some(ArmJoint::Elbow) => {
+        Grip::LimbTwist(joint) if selected != Some(joint) => {
             Some("Turn the elbow about the Pointer (Socket twist)")
         }
-        Grip::Hand(PointHandle::Free)
-            if selected != Some(ArmJoint::Hand) && session.shown().display.shows(Overlay::Hand) =>
-        {
+        Grip::Target(joint, PointHandle::Free) if selected != rig.end_of_target(joint) => {
             Some("Move the hand; click to show the rings that turn it")
         }
         _ => None,
@@ -126,7 +119,7 @@ fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
 }
 
 fn has_joints(session: &Session) -> bool {
-    session.rig() == RigKind::Skeleton && session.crowd().is_none()
+    session.crowd().is_none()
 }
 
 /// Shows how to add joints, for a skeleton without bones.
@@ -137,50 +130,51 @@ fn invite(ui: &mut Ui, rect: Rect) {
     ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
-/// Things under the mouse: the grip that a press would drag, and the part of a body that lights up.
+/// Things under the mouse: the grip that a press would drag, and the joint that lights up.
 #[derive(Clone, Copy, Default)]
 struct Pointed {
     grip: Option<Grip>,
-    lit: Option<BodyPart>,
+    lit: Option<JointId>,
 }
 
-/// The handle at the mouse, or else the part of a body there that can be dragged.
+/// The handle at the mouse, or else the bone or skin there that can be dragged.
 fn pointed_at(session: &Session, screen: &ScreenProjection, gizmo: &Gizmo, mouse: Pos2) -> Pointed {
     let can_drag = |grip: &Grip| match grip {
         Grip::Tip(joint, _) => Grip::can_drag_tip(session.posed(), *joint),
         _ => true,
     };
     if let Some(grip) = gizmo.at(mouse).filter(can_drag) {
-        return Pointed { grip: Some(grip), lit: part_of(grip) };
+        return Pointed { grip: Some(grip), lit: part_of(session, grip) };
     }
-    let part = match session.rig() {
-        _ if session.crowd().is_some() => None,
-        RigKind::Arm => BodyPart::of_arm_at(session.posed(), screen.ray(mouse)),
-        RigKind::Skeleton => joint_at(session, screen, gizmo, mouse).map(BodyPart::Joint),
-    };
-    let grip = part.and_then(|part| Grip::of_part(session.posed(), part));
-    Pointed { grip, lit: part.filter(|_| grip.is_some()) }
+    let joint = joint_at(session, screen, gizmo, mouse).filter(|_| session.crowd().is_none());
+    let grip = joint.and_then(|joint| Grip::of_part(session.posed(), joint));
+    Pointed { grip, lit: joint.filter(|_| grip.is_some()) }
 }
 
-/// The part of a body that a handle stands for; `None` for a handle beside it.
-fn part_of(grip: Grip) -> Option<BodyPart> {
+/// The joint that a handle stands for; `None` for a handle beside it.
+fn part_of(session: &Session, grip: Grip) -> Option<JointId> {
     match grip {
-        Grip::Hand(PointHandle::Free) => Some(BodyPart::Hand),
-        Grip::Root(PointHandle::Free) => Some(BodyPart::Root),
-        Grip::Tip(joint, PointHandle::Free) => Some(BodyPart::Joint(joint)),
+        Grip::Target(joint, PointHandle::Free) if session.rig().sole_limb().is_some() => {
+            session.rig().end_of_target(joint)
+        }
+        Grip::Tip(joint, PointHandle::Free) => Some(joint),
         _ => None,
     }
 }
 
-/// The joint at the mouse: that of the bone there if bones are shown, or else of the skin.
+/// The joint at the mouse: that of the cylinder there, else of the bone if bones are shown, or else
+/// of the skin.
 fn joint_at(
     session: &Session,
     screen: &ScreenProjection,
     gizmo: &Gizmo,
     mouse: Pos2,
 ) -> Option<JointId> {
-    let of_bone = gizmo.joint_at(mouse).filter(|_| !session.shown().hides_bones());
-    of_bone.or_else(|| session.evaluated().joint_on_skin(session.posed(), screen.ray(mouse)))
+    let on_cylinders = Grip::joint_on_cylinders(session.posed(), screen.ray(mouse));
+    let of_bone = || gizmo.joint_at(mouse).filter(|_| !session.shown().hides_bones());
+    on_cylinders
+        .or_else(of_bone)
+        .or_else(|| session.evaluated().joint_on_skin(session.posed(), screen.ray(mouse)))
 }
 
 /// Lets the angle swing whose ring is at the mouse while Alt is held and no button is.
@@ -197,10 +191,10 @@ fn wiggle(ui: &Ui, session: &Session, pointed: Option<Grip>, actions: &mut Actio
 
 /// Lights up the part at the mouse. Away from all parts, puts out only the light of the viewport:
 /// the outliner lights up joints, too.
-fn light_up(ui: &Ui, session: &Session, lit: Option<BodyPart>, actions: &mut Actions) {
+fn light_up(ui: &Ui, session: &Session, lit: Option<JointId>, actions: &mut Actions) {
     let id = Id::unique("part lit in the viewport");
-    let hovered = session.selection().hovered_part();
-    let before = ui.data(|data| data.get_temp::<Option<BodyPart>>(id)).flatten();
+    let hovered = session.selection().hovered();
+    let before = ui.data(|data| data.get_temp::<Option<JointId>>(id)).flatten();
     let own = lit.or(before.filter(|before| hovered == Some(*before)));
     if own.is_some() && hovered != lit {
         actions.push(SelectAction::Hover(lit));
@@ -221,11 +215,15 @@ fn select(
 ) {
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match gizmo.at(mouse) {
+        Some(Grip::Target(joint, PointHandle::Free)) => {
+            session.rig().end_of_target(joint).or(Some(joint))
+        }
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
-        Some(Grip::Ring(..) | Grip::Orientation(..) | Grip::LimbTwist(_)) => return,
+        Some(Grip::LimbTwist(joint)) => Some(joint),
+        Some(Grip::Ring(..) | Grip::Orientation(..)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
-    let is_first = joint.is_none() && !session.skeleton_rig().has_bones();
+    let is_first = joint.is_none() && !session.rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
         let base = JointEdit::next_base(session);
         let at = screen.ray(mouse).meets_plane(base, screen.projection.forward);
@@ -318,7 +316,7 @@ fn press(
         let on_view_axes = covers_view_axes(screen.rect, pos);
         let can_take = button == PointerButton::Primary && !modifiers.alt && !on_view_axes;
         // Ctrl and Shift clicks select and add joints.
-        let is_click = session.rig() == RigKind::Skeleton && (modifiers.command || modifiers.shift);
+        let is_click = modifiers.command || modifiers.shift;
         let grip = pointed_at(session, screen, gizmo, pos).grip.filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
             None if on_view_axes && button == PointerButton::Primary => Some(CameraMotion::Orbit),

@@ -6,7 +6,7 @@ use egui::{
     pos2, vec2,
 };
 
-use crate::document::RigKind;
+use crate::rig::LimbPart;
 use crate::session::{Actions, Session, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
 use crate::ui::{pose_summary, style, widgets};
@@ -26,7 +26,7 @@ pub(in crate::ui) fn why_not_reached(
     screen: &ScreenProjection,
     actions: &mut Actions,
 ) {
-    let is_shown = session.rig() == RigKind::Skeleton
+    let is_shown = session.rig().sole_limb().is_none()
         && session.crowd().is_none()
         && session.solvers().runs().next().is_none();
     let Some(found) = pose_summary::found(ui, session).first().filter(|_| is_shown) else { return };
@@ -72,14 +72,12 @@ const TEXT: &str = "Drag the hand";
 const OFFSET: Vec2 = vec2(44.0, -78.0);
 
 pub(in crate::ui) fn drag_the_hand(ui: &Ui, session: &Session, screen: &ScreenProjection) {
-    let (arm, preferences) = (session.arm(), session.preferences());
-    let is_arm = session.rig() == RigKind::Arm && session.crowd().is_none();
-    let is_needed =
-        session.tour().is_none() && is_arm && arm.uses_ik() && !preferences.has_dragged_hand;
-    if !is_needed || session.history().drag().is_some() {
-        return;
-    }
-    if let Some(hand) = screen.place(arm.cursor_in_world()).filter(|at| screen.rect.contains(*at)) {
+    let is_alone = session.rig().sole_limb().is_some() && session.crowd().is_none();
+    let is_needed = session.tour().is_none() && !session.preferences().has_dragged_hand;
+    let limb = session.limb().filter(|limb| is_alone && is_needed && limb.frames.uses_ik());
+    let Some(limb) = limb.filter(|_| session.history().drag().is_none()) else { return };
+    let cursor = screen.place(limb.frames.origin(LimbPart::Cursor));
+    if let Some(hand) = cursor.filter(|at| screen.rect.contains(*at)) {
         paint(ui, screen.rect, hand);
     }
 }
@@ -128,7 +126,7 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
 
 /// Says that the pose is not that of the motion yet, because a thread computes that.
 pub(super) fn provisional(ui: &Ui, session: &Session, viewport: Rect) {
-    if !session.posed().is_provisional() || session.rig() != RigKind::Skeleton {
+    if !session.posed().is_provisional() {
         return;
     }
     let area = Area::new(Id::unique("provisional pose")).order(Order::Middle);

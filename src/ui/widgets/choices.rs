@@ -196,7 +196,7 @@ pub(in crate::ui) fn check_boxes(
 ) {
     ui.columns(count, |columns| {
         for (index, overlay) in overlays.iter().enumerate() {
-            let (name, tooltip) = labels::overlay(session.rig(), *overlay);
+            let (name, tooltip) = labels::overlay(*overlay);
             let column = &mut columns[index % count];
             overlay_check_box(column, session, *overlay, name, tooltip, disabled, actions);
         }

@@ -72,6 +72,17 @@ pub(in crate::ui) fn folded_section(ui: &mut Ui, title: &str, contents: impl FnO
     show_section(ui, title, title, false, contents);
 }
 
+/// Shows a section that is folded at first and identified by `id`, because another section has its
+/// title.
+pub(in crate::ui) fn named_folded_section(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    contents: impl FnOnce(&mut Ui),
+) {
+    show_section(ui, id, title, false, contents);
+}
+
 /// Shows a section that is identified by `id`, because its title changes.
 pub(in crate::ui) fn named_section(
     ui: &mut Ui,

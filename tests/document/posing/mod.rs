@@ -5,10 +5,11 @@ mod cases;
 mod keyed;
 mod plants;
 
+use crate::common::arm::Step;
 use glam::Vec3;
 use ik_arm::document::TwistReferenceKind;
 use ik_arm::kinematics::two_bone::TwoBonePose;
-use ik_arm::session::{Action, Session};
+use ik_arm::session::Session;
 use proptest::prelude::*;
 
 /// Any kind of twist reference.
@@ -17,10 +18,10 @@ pub fn references() -> impl Strategy<Value = TwistReferenceKind> {
 }
 
 /// New session with actions applied.
-pub fn session(actions: impl IntoIterator<Item = impl Into<Action>>) -> Session {
+pub fn session(actions: impl IntoIterator<Item = impl Into<Step>>) -> Session {
     let mut session = Session::default();
     for action in actions {
-        session.apply(action);
+        action.into().apply(&mut session);
     }
     session
 }
@@ -28,12 +29,6 @@ pub fn session(actions: impl IntoIterator<Item = impl Into<Action>>) -> Session 
 /// Bits of the components, for exact comparisons.
 pub fn bits(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
-}
-
-/// Angle in f64, exact for small angles, unlike the arc cosine.
-pub fn angle(a: Vec3, b: Vec3) -> f64 {
-    let [a, b] = [a, b].map(Vec3::as_dvec3);
-    a.cross(b).length().atan2(a.dot(b))
 }
 
 /// Largest distance between elbows and hands of two poses, in units of the default arm's length.

@@ -1,8 +1,9 @@
 //! A hand that is planted, lifted and planted again by keys of the pin.
 
+use crate::common::arm::{Arm, ArmDocument, ArmEdit, ArmSession, Step, channels};
 use glam::Vec3;
-use ik_arm::document::{Arm, Channel, Document};
-use ik_arm::session::{Action, ArmEdit, KeysEdit, PlaybackAction, Session, TransactionAction};
+use ik_arm::document::{Channel, Document};
+use ik_arm::session::{KeysEdit, PlaybackAction, Session, TransactionAction};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -46,13 +47,13 @@ impl Animator {
         }
     }
 
-    fn apply(&mut self, edit: impl Into<Action>) {
-        self.session.apply(edit);
+    fn apply(&mut self, edit: impl Into<Step>) {
+        edit.into().apply(&mut self.session);
         self.documents.push(self.session.document().clone());
     }
 
     fn arm(&self, time: f64) -> Arm {
-        self.session.document().at(time).into_document().arm
+        self.session.document().at(time).into_document().arm()
     }
 
     fn track(&self, channel: Channel) -> Vec<(f64, Vec3)> {
@@ -90,9 +91,9 @@ impl Plant {
         animator.go_to(Self::start(index));
         let start =
             [ArmEdit::SetRoot(self.root), ArmEdit::SetHand(self.hand), ArmEdit::PinHand(true)];
-        animator.edit(&start, &[Channel::Root]);
+        animator.edit(&start, &[channels::ROOT_OFFSET]);
         animator.go_to(Self::start(index) + 1.0);
-        animator.edit(&[ArmEdit::SetRoot(self.root + self.lean)], &[Channel::Root]);
+        animator.edit(&[ArmEdit::SetRoot(self.root + self.lean)], &[channels::ROOT_OFFSET]);
         animator.edit(&[ArmEdit::PinHand(false)], &[]);
     }
 }
@@ -193,17 +194,17 @@ proptest! {
                 animator.go_to(index as f64);
                 animator.edit(&[ArmEdit::SetHand(*hand)], &[]);
             }
-            let keys = animator.track(Channel::Hand);
+            let keys = animator.track(channels::HAND);
             animator.go_to(time);
             let before = animator.session.arm().cursor_in_world();
             animator.edit(&[ArmEdit::PinHand(true)], &[]);
             prop_assert_eq!(animator.session.arm().cursor_in_world(), before);
-            prop_assert_eq!(animator.track(Channel::Hand), keys.clone());
+            prop_assert_eq!(animator.track(channels::HAND), keys.clone());
             // Without K or auto-key, neither does unpinning.
             animator.session.apply(PlaybackAction::SetAutoKey(false));
-            animator.session.apply(ArmEdit::PinHand(false));
+            animator.session.edit_arm(ArmEdit::PinHand(false));
             prop_assert!(animator.session.arm().cursor_in_world().distance(before) < 1e-3);
-            prop_assert_eq!(animator.track(Channel::Hand), keys);
+            prop_assert_eq!(animator.track(channels::HAND), keys);
         }
     }
 
@@ -220,14 +221,14 @@ proptest! {
             }
             for time in [0.0, 1.0] {
                 animator.go_to(time);
-                animator.edit(&[ArmEdit::SetRoot(Vec3::ZERO)], &[Channel::Root, Channel::Pinned]);
-                animator.session.apply(KeysEdit::Key(vec![Channel::Root]));
+                animator.edit(&[ArmEdit::SetRoot(Vec3::ZERO)], &[channels::ROOT_OFFSET, channels::PINNED]);
+                animator.session.apply(KeysEdit::Key(vec![channels::ROOT_OFFSET]));
             }
             animator.go_to(1.0);
             let arrived = hand(animator.arm(1.0));
             animator.edit(&[ArmEdit::PinHand(true)], &[]);
             animator.go_to(2.0);
-            animator.edit(&[ArmEdit::SetRoot(root)], &[Channel::Root]);
+            animator.edit(&[ArmEdit::SetRoot(root)], &[channels::ROOT_OFFSET]);
             animator.edit(&[ArmEdit::PinHand(false)], &[]);
             animator.go_to(3.0);
             animator.edit(&[ArmEdit::SetHand(Vec3::Y * 250.0 + hands[2])], &[]);
@@ -252,7 +253,7 @@ fn auto_key_keys_a_first_pin_only_from_the_playhead_on() {
     animator.edit(&[ArmEdit::SetRoot(Vec3::X * 50.0), ArmEdit::PinHand(false)], &[]);
     animator.edit(&[ArmEdit::SetHand(Vec3::X * 200.0)], &[]);
     let switched = [(0.0, Vec3::ZERO), (1.0, Vec3::X), (2.0, Vec3::ZERO)];
-    assert_eq!(animator.track(Channel::Pinned), switched);
+    assert_eq!(animator.track(channels::PINNED), switched);
     for time in [0.0, 0.7, 0.99] {
         let arm = animator.arm(time);
         let place = arm.cursor_in_root();
@@ -271,9 +272,9 @@ fn pinning_without_auto_key_is_undone_when_the_time_changes() {
     );
     let document = animator.session.document().clone();
     animator.go_to(1.5);
-    animator.session.apply(ArmEdit::PinHand(true));
+    animator.session.edit_arm(ArmEdit::PinHand(true));
     assert!(
-        animator.session.history().is_overridden(Channel::Pinned)
+        animator.session.history().is_overridden(channels::PINNED)
             && animator.session.arm().is_pinned()
     );
     assert_eq!(animator.session.document(), &document);

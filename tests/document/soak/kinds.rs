@@ -1,14 +1,14 @@
 //! All kinds of actions. A new action does not compile without its line here.
 
-use ik_arm::document::{HandSpace, RigKind, Theme, TwistReferenceKind};
+use ik_arm::document::Theme;
 use ik_arm::io::OpenOptions;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::Processor;
 use ik_arm::session::{
-    Action, ArmEdit, ArmJoint, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget, InsideLayer,
-    InspectAction, InspectionJob, JointEdit, KeysEdit, LimbFigure, Navigation, PanelTab, PathEdit,
-    PlaybackAction, PoseMode, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit,
-    TargetEdit, TourAction, TransactionAction, ViewAction,
+    Action, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget, InsideLayer, InspectAction,
+    InspectionJob, JointEdit, KeysEdit, LimbFigure, Navigation, PanelTab, PathEdit, PlaybackAction,
+    PoseMode, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit, TargetEdit,
+    TourAction, TransactionAction, ViewAction,
 };
 
 use crate::soak::values::Values;
@@ -88,29 +88,10 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Edit (Arm) (ArmEdit) {
-        SetHand: Arm 10, |v| ArmEdit::SetHand(v.cursor());
-        SetTwist: Arm 4, |v| ArmEdit::SetTwist(v.angle());
-        SetRoot: Arm 4, |v| { let size = v.size(); ArmEdit::SetRoot(v.point(size)) };
-        SetPin: Arm 3, |v| ArmEdit::SetPin(v.cursor());
-        PinHand: Arm 3, |v| ArmEdit::PinHand(v.coin());
-        SetTwistReference: Arm 5, |v| ArmEdit::SetTwistReference(v.one_of(&TwistReferenceKind::ALL));
-        SetPole: Arm 3, |v| { let size = v.size(); ArmEdit::SetPole(v.point(size)) };
-        SetSoftReach: Arm 3, |v| ArmEdit::SetSoftReach(v.soft_reach());
-        SetInfluence: Arm 4, |v| ArmEdit::SetInfluence(v.part());
-        SwitchPoseMode: Arm 4, |v| ArmEdit::SwitchPoseMode(v.one_of(&[PoseMode::Hand, PoseMode::Angles]));
-        SetShoulder: Arm 3, |v| ArmEdit::SetShoulder(v.angles());
-        SetBend: Arm 3, |v| ArmEdit::SetBend(v.angle());
-        SetHandOrientation: Arm 3, |v| ArmEdit::SetHandOrientation(v.angles());
-        SetHandSpace: Arm 3, |v| ArmEdit::SetHandSpace(v.one_of(&[HandSpace::LowerLimb, HandSpace::World]));
-        SetUpper: Arm 2, |v| ArmEdit::SetUpper(v.length());
-        SetLower: Arm 2, |v| ArmEdit::SetLower(v.length());
-    }
     Edit (Display) (DisplayEdit) {
         ResetPose: Arm 1, |_| DisplayEdit::ResetPose;
         ResetAll: Arm 1, |_| DisplayEdit::ResetAll;
         ShowOverlay: Edit 3, |v| DisplayEdit::ShowOverlay(v.layer(), v.coin());
-        ShowRig: Edit 3, |v| DisplayEdit::ShowRig(v.one_of(&[RigKind::Arm, RigKind::Skeleton]));
     }
     Edit (Joint) (JointEdit) {
         AddChild: Build 8, |v| JointEdit::AddChild {
@@ -130,6 +111,11 @@ kinds! {
         };
         SetRotation: Build 6, |v| JointEdit::SetRotation { joint: v.joint(), rotation: v.angles() };
         SetAxis: Build 3, |v| JointEdit::SetAxis { joint: v.joint(), axis: v.small_point() * 0.3 };
+        SetLength: Arm 4, |v| JointEdit::SetLength { joint: v.joint(), length: v.length() };
+        SetOffset: Arm 4, |v| {
+            let size = v.size();
+            JointEdit::SetOffset { joint: v.joint(), offset: v.point(size) }
+        };
         SetLimits: Build 3, |v| JointEdit::SetLimits { joint: v.joint(), limits: v.limits() };
         SetLocked: Build 2, |v| JointEdit::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
     }
@@ -150,12 +136,18 @@ kinds! {
     Edit (Target) (TargetEdit) {
         AddTarget: Solve 5, |v| TargetEdit::AddTarget(v.joint());
         RemoveTarget: Solve 2, |v| TargetEdit::RemoveTarget(v.aimed());
-        SetTarget: Solve 6, |v| TargetEdit::SetTarget(v.target());
+        SetTarget: Arm 20, |v| TargetEdit::SetTarget(v.target());
         MatchTargetToFk: Solve 2, |v| TargetEdit::MatchTargetToFk(v.aimed());
         MatchFkToPose: Solve 2, |v| TargetEdit::MatchFkToPose(v.aimed());
         SetTargetSpace: Solve 2, |v| TargetEdit::SetTargetSpace { joint: v.aimed(), space: v.space() };
         SetPoleSpace: Solve 1, |v| TargetEdit::SetPoleSpace { joint: v.aimed(), space: v.space() };
-        SetReference: Solve 2, |v| TargetEdit::SetReference { joint: v.aimed(), reference: v.elbow_reference() };
+        Pin: Arm 6, |v| TargetEdit::Pin { joint: v.aimed(), is_pinned: v.coin() };
+        KeepHand: Arm 6, |v| TargetEdit::KeepHand { joint: v.aimed(), is_kept: v.coin() };
+        SwitchPoseMode: Arm 8, |v| TargetEdit::SwitchPoseMode {
+            joint: v.aimed(),
+            mode: v.one_of(&[PoseMode::Hand, PoseMode::Angles]),
+        };
+        SetReference: Arm 6, |v| TargetEdit::SetReference { joint: v.aimed(), reference: v.elbow_reference() };
         ApplyRemedy: Solve 3, |v| TargetEdit::ApplyRemedy { target: v.aimed(), remedy: v.remedy() };
     }
     Edit (Solver) (SolverEdit) {
@@ -195,15 +187,10 @@ kinds! {
     }
     Select () (SelectAction) {
         Joints: Look 4, |v| SelectAction::Joints(v.some_joints());
-        Hover: Look 2, |v| SelectAction::Hover(v.body_part());
+        Hover: Look 2, |v| SelectAction::Hover(v.hovered());
         Wiggle: Look 1, |v| {
             let axis = v.rotation_axis();
             SelectAction::Wiggle(if v.coin() { None } else { Some((v.joint(), axis)) })
-        };
-        ArmJoint: Look 1, |v| {
-            let joints =
-                [None, Some(ArmJoint::Root), Some(ArmJoint::Elbow), Some(ArmJoint::Hand)];
-            SelectAction::ArmJoint(v.one_of(&joints))
         };
         Figure: Look 1, |v| {
             SelectAction::Figure(if v.coin() { None } else { Some(v.one_of(&LimbFigure::ALL)) })
@@ -222,8 +209,7 @@ kinds! {
         Cancel: Look 1, |_| ViewAction::Cancel;
         ShowExplain: Look 1, |v| ViewAction::ShowExplain(v.coin());
         ShowTab: Look 1, |v| {
-            let tabs = [RigKind::Arm, RigKind::Skeleton].map(PanelTab::of).concat();
-            ViewAction::ShowTab(v.one_of(&tabs))
+            ViewAction::ShowTab(v.one_of(&PanelTab::ALL))
         };
         ShowTimeline: Look 1, |v| ViewAction::ShowTimeline(v.coin());
         FollowSelection: Look 1, |v| ViewAction::FollowSelection(v.coin());
@@ -290,7 +276,8 @@ kinds! {
         DeclineTurn: Look 1, |_| FileAction::DeclineTurn;
         OpenExample: Files 2, |v| FileAction::OpenExample(v.example());
         New: Files 1, |_| FileAction::New;
-        NewSkeleton: Files 1, |_| FileAction::NewSkeleton;
+        NewFigure: Files 1, |_| FileAction::NewFigure;
+        NewEmpty: Files 1, |_| FileAction::NewEmpty;
         Quit: Look 2, |_| FileAction::Quit;
     }
     Shell () (ShellAction) {
@@ -317,7 +304,7 @@ kinds! {
 /// Actions that ask first if there are unsaved changes.
 pub fn leaving(values: &mut Values<'_>) -> FileAction {
     match values.random.below(6) {
-        0 => FileAction::NewSkeleton,
+        0 => FileAction::NewEmpty,
         1 => FileAction::Recover { document: Box::new(values.document()), file: values.file() },
         2 => FileAction::Opened {
             document: Box::new(values.document()),

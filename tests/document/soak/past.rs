@@ -8,26 +8,22 @@ use crate::soak::{Broken, hold};
 
 /// Equal except for the camera, which is not undone.
 pub fn is_same(a: &Document, b: &Document) -> bool {
-    a.rig == b.rig && a.display == b.display && has_same_content(a, b)
+    a.display == b.display && has_same_content(a, b)
 }
 
 /// Equal except for the cameras.
 pub fn has_same_content(a: &Document, b: &Document) -> bool {
     let Document {
-        rig: _,
-        arm,
-        skeleton_rig,
+        rig,
         keys,
         timeline,
         track_start,
         camera: _,
-        other_rig_camera: _,
         display: _,
         metres_per_unit,
         animation_name,
     } = a;
-    *arm == b.arm
-        && *skeleton_rig == b.skeleton_rig
+    *rig == b.rig
         && *keys == b.keys
         && *timeline == b.timeline
         && *track_start == b.track_start
@@ -37,19 +33,17 @@ pub fn has_same_content(a: &Document, b: &Document) -> bool {
 
 /// Names of the fields in which two documents differ.
 fn differing_fields(a: &Document, b: &Document) -> Vec<&'static str> {
-    let (one, other) = (&a.skeleton_rig, &b.skeleton_rig);
+    let (one, other) = (&a.rig, &b.rig);
     let fields = [
-        ("arm", a.arm == b.arm),
         ("skeleton", one.skeleton == other.skeleton),
         ("targets", one.targets == other.targets),
         ("posture", one.posture == other.posture),
         ("skin", one.skin == other.skin),
-        ("skeleton rig", one == other),
+        ("rig", one == other),
         ("keys", a.keys == b.keys),
         ("timeline", a.timeline == b.timeline),
         ("track start", a.track_start == b.track_start),
         ("camera", a.camera == b.camera),
-        ("other camera", a.other_rig_camera == b.other_rig_camera),
         ("document", a == b),
     ];
     fields.iter().filter(|(_, is_same)| !is_same).map(|(name, _)| *name).collect()
@@ -58,7 +52,7 @@ fn differing_fields(a: &Document, b: &Document) -> Vec<&'static str> {
 /// The document as JSON, with a default camera.
 pub fn saved(document: &Document) -> Result<String, Broken> {
     let camera = Document::default().camera;
-    let document = Document { camera, other_rig_camera: None, ..document.clone() };
+    let document = Document { camera, ..document.clone() };
     io::to_json(&document).map_err(|error| Broken(format!("a document can be saved: {error}")))
 }
 

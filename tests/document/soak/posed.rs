@@ -1,10 +1,9 @@
 //! Checks of poses in f64: lengths, reach, and references to joints and targets.
 
 use glam::{DMat3, Vec3};
-use ik_arm::document::Arm;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton, SkeletonPose};
-use ik_arm::kinematics::two_bone::{Reach, TwoBonePose};
-use ik_arm::rig::SkeletonRig;
+use ik_arm::kinematics::two_bone::Reach;
+use ik_arm::rig::{LimbFrames, SkeletonRig};
 use ik_arm::session::{Drag, Playback, PointDrag, Session, SolverRun, TurnDrag};
 
 use crate::soak::{Broken, hold};
@@ -13,31 +12,35 @@ use crate::soak::{Broken, hold};
 const U: f64 = f32::EPSILON as f64 / 2.0;
 
 pub fn all(session: &Session) -> Result<(), Broken> {
-    arm(session.arm(), session.pose())?;
+    for target in &session.rig().targets {
+        session.posed().limb_frames(target.joint).as_ref().map_or(Ok(()), limb)?;
+    }
     joints(session.posed().skeleton(), session.skeleton_pose())?;
     places(session)
 }
 
-fn arm(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
+fn limb(limb: &LimbFrames) -> Result<(), Broken> {
+    let pose = limb.pose();
     let numbers = [pose.distance, pose.along, pose.out, pose.twist, pose.stretch];
     let are_finite = numbers.into_iter().all(f32::is_finite);
     hold!(
         are_finite && pose.elbow.is_finite() && pose.hand.is_finite(),
-        "the arm is finite: {pose:?}"
+        "the limb is finite: {pose:?}"
     );
     let pointer = pose.pointer;
     hold!(
         pointer.direction.is_finite() && pointer.heading.is_finite(),
-        "the arm faces: {pointer:?}"
+        "the limb faces: {pointer:?}"
     );
-    lengths(arm, pose)?;
-    reach(arm, pose)
+    lengths(limb)?;
+    reach(limb)
 }
 
 /// |elbow| = σ d₁ and |hand − elbow| = σ d₂ to 3e-7·L, unless they overflow.
-fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
+fn lengths(limb: &LimbFrames) -> Result<(), Broken> {
     const EXACT: f64 = 3e-7;
-    let bones = arm.bones.stretched(pose.stretch);
+    let pose = limb.pose();
+    let bones = limb.bones().stretched(pose.stretch);
     let [upper, lower] = [bones.upper(), bones.lower()].map(f64::from);
     let sum = upper + lower;
     if sum > f64::from(f32::MAX) * 0.4 {
@@ -46,30 +49,28 @@ fn lengths(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
     let [elbow, hand] = [pose.elbow, pose.hand].map(Vec3::as_dvec3);
     let within = EXACT * sum + f64::from(f32::MIN_POSITIVE);
     let off = (elbow.length() - upper).abs().max((elbow.distance(hand) - lower).abs());
-    hold!(off <= within, "limbs keep their lengths: off by {:e} of L: {arm:?} {pose:?}", off / sum);
+    hold!(off <= within, "limbs keep their lengths: off by {:e} of L: {limb:?}", off / sum);
     Ok(())
 }
 
 /// Checks the reported reach, with ε = 1e-6·L.
-fn reach(arm: &Arm, pose: &TwoBonePose) -> Result<(), Broken> {
-    let [upper, lower] = [arm.bones.upper(), arm.bones.lower()].map(f64::from);
+fn reach(limb: &LimbFrames) -> Result<(), Broken> {
+    let (pose, cursor) = (limb.pose(), limb.posed.cursor);
+    let [upper, lower] = [limb.bones().upper(), limb.bones().lower()].map(f64::from);
     let near = (1e-6 + 8.0 * U) * (upper + lower) + f64::from(f32::MIN_POSITIVE);
-    let cursor = arm.cursor_in_root().as_dvec3();
-    let missed = pose.hand.as_dvec3().distance(cursor);
+    let missed = pose.hand.as_dvec3().distance(cursor.as_dvec3());
     let is_reached = pose.reach == Some(Reach::Reached);
-    let rounding = 4.0 * U * cursor.length();
-    hold!(
-        !is_reached || missed <= near + rounding,
-        "reached is there: {missed:e} {arm:?} {pose:?}"
-    );
-    let is_exact = arm.influence == 1.0 && arm.soft_reach.is_hard();
-    let is_there = !is_reached || pose.hand == arm.cursor_in_root();
-    hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {arm:?} {pose:?}");
-    let (inner, outer) = ((upper - lower).abs(), upper + lower);
-    let asked = cursor.length();
+    let asked = cursor.as_dvec3().length();
+    let rounding = 4.0 * U * asked;
+    hold!(!is_reached || missed <= near + rounding, "reached is there: {missed:e} {limb:?}");
+    let is_hard = limb.posed.ik.soft_reach.is_hard();
+    let is_exact = limb.posed.influence == 1.0 && is_hard && limb.limited_by.is_none();
+    let is_there = !is_reached || pose.hand == cursor;
+    hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {limb:?}");
+    let [inner, outer] = [limb.range.inner, limb.range.outer].map(f64::from);
     let is_clear = asked > inner * (1.0 + 1e-6) && asked < outer * (1.0 - 1e-6);
     let is_possible = !is_exact || !is_clear || is_reached;
-    hold!(is_possible, "what can be reached is: {arm:?} {pose:?}");
+    hold!(is_possible, "what can be reached is: {limb:?}");
     Ok(())
 }
 

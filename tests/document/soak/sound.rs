@@ -4,9 +4,8 @@ use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
-use ik_arm::document::{Arm, Camera, Document, HandOrientation, Quantity, SkeletonRig, Target};
+use ik_arm::document::{Camera, Document, Quantity, SkeletonRig, Target};
 use ik_arm::kinematics::chain_ik::SolverOptions;
-use ik_arm::kinematics::ik::IkState;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 use ik_arm::kinematics::skin::VertexWeights;
 use ik_arm::rig::{Skin, SkinSource};
@@ -16,13 +15,10 @@ use crate::soak::{Broken, hold};
 
 /// Checks that all numbers are finite and in range.
 pub fn document(document: &Document) -> Result<(), Broken> {
-    let Document { arm, skeleton_rig, timeline, camera, other_rig_camera, metres_per_unit, .. } =
-        document;
-    self::arm(arm)?;
-    skeleton(skeleton_rig)?;
-    hold!(skeleton_rig.head_tracks.is_empty(), "the head's keys are in the document once");
+    let Document { rig, timeline, camera, metres_per_unit, .. } = document;
+    skeleton(rig)?;
+    hold!(rig.head_tracks.is_empty(), "the head's keys are in the document once");
     self::camera(camera)?;
-    other_rig_camera.as_ref().map_or(Ok(()), self::camera)?;
     hold!(timeline.is_valid(), "the timeline is valid: {timeline:?}");
     hold!(
         metres_per_unit.is_none_or(is_above_0),
@@ -34,8 +30,7 @@ pub fn document(document: &Document) -> Result<(), Broken> {
 /// Checks the same of the document at the current time.
 pub fn shown(session: &Session) -> Result<(), Broken> {
     let shown = session.shown();
-    arm(&shown.arm)?;
-    skeleton(&shown.skeleton_rig)?;
+    skeleton(&shown.rig)?;
     hold!(shown.camera == session.document().camera, "the shown camera is the document's");
     hold!(shown.keys == session.document().keys, "the shown keys are the document's");
     Ok(())
@@ -43,50 +38,6 @@ pub fn shown(session: &Session) -> Result<(), Broken> {
 
 fn is_above_0(value: f32) -> bool {
     value.is_finite() && value > 0.0
-}
-
-fn arm(arm: &Arm) -> Result<(), Broken> {
-    const UNIT: f32 = 1e-5;
-    let is_unit = |length: f32| (length - 1.0).abs() < UNIT;
-    let Arm {
-        twist,
-        root,
-        bones,
-        ik_state: IkState { pointer, transported },
-        pole,
-        soft_reach: _,
-        influence,
-        fk,
-        hand_orientation,
-        ..
-    } = arm;
-    hold!(
-        arm.cursor_in_root().is_finite() && arm.cursor_in_world().is_finite(),
-        "the cursor is finite"
-    );
-    hold!(twist.is_finite(), "the twist is finite: {twist}");
-    hold!(root.is_finite() && pole.is_finite(), "shoulder and pole are finite: {root} {pole}");
-    hold!(is_above_0(bones.upper()) && is_above_0(bones.lower()), "limbs have lengths: {bones:?}");
-    hold!(is_unit(pointer.direction.length()), "the arm faces somewhere: {pointer:?}");
-    hold!(is_unit(pointer.heading.length()), "the arm heads somewhere: {pointer:?}");
-    if let Some(it) = transported {
-        let are_units = is_unit(it.direction.length()) && is_unit(it.outward.length());
-        hold!(are_units, "the transported frame has unit vectors: {it:?}");
-        let across = it.direction.dot(it.outward);
-        hold!(
-            across.abs() < UNIT,
-            "the transported direction is perpendicular to the Pointer: {it:?}"
-        );
-    }
-    hold!((0.0..=1.0).contains(influence), "the influence is from 0 to 1: {influence}");
-    hold!(fk.shoulder.is_finite() && fk.bend.is_finite(), "the arm's angles are finite: {fk:?}");
-    hold!(is_above_0(fk.stretch), "limbs are stretched by a factor: {fk:?}");
-    let HandOrientation { angles, roll, .. } = hand_orientation;
-    hold!(
-        angles.is_finite() && roll.is_finite(),
-        "the angles of the hand are finite: {hand_orientation:?}"
-    );
-    Ok(())
 }
 
 fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
@@ -220,13 +171,12 @@ fn keys(document: &Document) -> Result<(), Broken> {
             Quantity::Length => value.x > 0.0,
             Quantity::Fraction => (0.0..=1.0).contains(&value.x),
             Quantity::Switch => value.x == 0.0 || value.x == 1.0,
-            Quantity::Point | Quantity::Angle | Quantity::Angles | Quantity::Rotation => true,
+            Quantity::Point | Quantity::Angle | Quantity::Rotation => true,
         };
         let values = knots.iter().map(|knot| knot.value);
         hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");
         // A target without, for instance, an orientation of its own keeps the keys of one.
-        let is_of_target =
-            channel.target().is_some_and(|it| document.skeleton_rig.target(it).is_some());
+        let is_of_target = channel.target().is_some_and(|it| document.rig.target(it).is_some());
         let is_of_something = is_of_target || channel.value(document).is_some();
         hold!(is_of_something, "{channel:?} is of something");
     }

@@ -155,7 +155,8 @@ impl Watch {
             Action::File(FileAction::Opened { .. })
                 | Action::File(FileAction::OpenExample(_))
                 | Action::File(FileAction::New)
-                | Action::File(FileAction::NewSkeleton)
+                | Action::File(FileAction::NewFigure)
+                | Action::File(FileAction::NewEmpty)
                 | Action::File(FileAction::Recover { .. })
                 | Action::File(FileAction::Discard(_))
                 | Action::File(FileAction::Saved(_))
@@ -193,7 +194,7 @@ impl Watch {
             || matches!(KINDS[kind(action)].sort, Sort::Look | Sort::Time);
         hold!(!is_view || is_left || before.follows_mouse, "it leaves the document alone");
         if *action == Action::Edit(SolverEdit::ApplyPose.into()) {
-            posed::locked(&before.document.skeleton_rig, document.skeleton())?;
+            posed::locked(&before.document.rig, document.skeleton())?;
         }
         let takes_back = matches!(
             action,

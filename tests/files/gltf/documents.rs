@@ -1,7 +1,8 @@
 //! Documents to export: every example, with and without keys.
 
+use crate::common::arm::{Arm, channels};
 use glam::Vec3;
-use ik_arm::document::{Arm, Channel, Document, RigKind, Timeline, TwistReferenceKind};
+use ik_arm::document::{Channel, Document, SkeletonRig, Timeline, TwistReferenceKind};
 use ik_arm::io::{self, Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
@@ -21,7 +22,7 @@ pub fn all() -> Vec<(String, Document)> {
     all.push(("led".to_owned(), led_arm(&mut random)));
     for Example { name, .. } in Example::ALL {
         let document = example(name);
-        if document.rig == RigKind::Skeleton {
+        if document.rig.sole_limb().is_none() {
             for variant in 0..4 {
                 let mut keyed = keyed_skeleton(document.clone(), &mut random);
                 let transform = transform(&mut random);
@@ -42,12 +43,12 @@ pub fn keyed_arm(random: &mut Random) -> Document {
     let mut document = Document { timeline: short(), ..Document::default() };
     for time in times() {
         let mut key = |channel, value| document.keys.insert(channel, time, value);
-        key(Channel::Hand, random.vector(450.0));
-        key(Channel::Root, random.vector(100.0));
+        key(channels::HAND, random.vector(450.0));
+        key(channels::ROOT_OFFSET, random.vector(100.0));
         for (channel, low, high) in [
-            (Channel::Twist, -9.0, 9.0),
-            (Channel::Upper, 50.0, 400.0),
-            (Channel::Lower, 50.0, 400.0),
+            (channels::TWIST, -9.0, 9.0),
+            (channels::UPPER_LENGTH, 50.0, 400.0),
+            (channels::LOWER_LENGTH, 50.0, 400.0),
         ] {
             key(channel, Vec3::X * random.within(low..high));
         }
@@ -60,21 +61,21 @@ fn led_arm(random: &mut Random) -> Document {
     let soft_reach = SoftReach::new(0.3, 2.0, 0.5).expect("a softening");
     let arm =
         Arm { twist_reference: TwistReferenceKind::Stereographic, soft_reach, ..Arm::default() };
-    let mut document = Document { arm, timeline: short(), ..Document::default() };
+    let mut document = Document { timeline: short(), ..arm.document() };
     for time in times() {
         let mut key = |channel, value| document.keys.insert(channel, time, value);
-        key(Channel::Hand, random.vector(700.0));
-        key(Channel::Twist, Vec3::X * random.within(-9.0..9.0));
-        key(Channel::Influence, Vec3::X * random.within(0.0..1.0));
-        key(Channel::Shoulder, random.vector(3.0));
-        key(Channel::Bend, Vec3::X * random.within(-3.0..3.0));
+        key(channels::HAND, random.vector(700.0));
+        key(channels::TWIST, Vec3::X * random.within(-9.0..9.0));
+        key(channels::INFLUENCE, Vec3::X * random.within(0.0..1.0));
+        key(channels::SHOULDER, random.vector(3.0));
+        key(channels::BEND, Vec3::Z * random.within(-3.0..3.0));
     }
     document
 }
 
 fn keyed_skeleton(mut document: Document, random: &mut Random) -> Document {
     document.timeline = short();
-    let size = document.skeleton_rig.reach();
+    let size = document.rig.reach();
     for joint in 0..document.skeleton().joints().len() {
         let offset = document.skeleton().joints()[joint].offset;
         let (turns, moves) = (random.chance(0.7), random.chance(0.2));
@@ -103,7 +104,7 @@ fn flat(mut document: Document) -> Document {
 
 /// Joints without length, all at one point.
 fn points() -> Document {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     let joint = |name, parent| Joint::new(name, parent, Vec3::ZERO);
     let joints =
         vec![joint("one", None), joint("two", Some(JointId::new(0))), joint("three", None)];
@@ -113,7 +114,7 @@ fn points() -> Document {
 
 /// Names that the file has already, and that tips would have.
 fn names() -> Document {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     let joint = |name, parent| Joint::new(name, parent, Vec3::Y);
     let joints = vec![
         joint("Armature", None),

@@ -1,10 +1,11 @@
 //! Rules for every exported file.
 
+use crate::common::arm::{ArmDocument, LOWER, UPPER};
 use std::collections::HashSet;
 use std::path::Path;
 
 use glam::{Mat4, Vec3};
-use ik_arm::document::{Channel, Document, RigKind, Theme, Timeline};
+use ik_arm::document::{Channel, Document, SkeletonRig, Theme, Timeline};
 use ik_arm::io::{self, GlbError, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Palette;
@@ -24,7 +25,7 @@ fn each(check: impl Fn(&str, &Document, &Glb)) {
 /// The documents with their skins removed, which have the mesh of cones around the bones.
 fn each_without_skin(check: impl Fn(&str, &Document, &Glb)) {
     for (name, mut document) in all() {
-        document.skeleton_rig.skin = None;
+        document.rig.skin = None;
         check(&name, &document, &Glb::new(&glb(&document)));
     }
 }
@@ -144,24 +145,27 @@ fn duplicate_names_get_numbers() {
 }
 
 #[test]
-fn an_arm_has_two_joints_and_its_hand() {
+fn an_arm_has_its_four_joints_and_tips_where_lengths_change() {
     let glb = exported(&Document::default());
     let names: Vec<&str> = glb.joints().iter().map(|joint| glb.name(*joint)).collect();
-    assert_eq!(names, ["upper", "lower", "lower_tip"]);
+    assert_eq!(names, ["root", "upper", "lower", "hand"]);
     let keyed = exported(&keyed_arm(&mut Random(3)));
     let names: Vec<&str> = keyed.joints().iter().map(|joint| keyed.name(*joint)).collect();
-    assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
+    assert_eq!(names, ["root", "upper", "lower", "hand", "upper_tip", "lower_tip"]);
 }
 
 #[test]
 fn the_rest_pose_of_an_arm_is_straight_along_x_in_metres_with_y_along_its_bones() {
     let mut document = Document::default();
-    document.arm.root = Vec3::new(10.0, 20.0, 30.0);
+    document.edit_arm(|arm| arm.root = Vec3::new(10.0, 20.0, 30.0));
     let worlds = exported(&document).worlds();
-    let root = document.arm.root * 0.001;
-    let ends = [0.0, 0.2, 0.5].map(|along| root + Vec3::X * along);
-    for (world, end) in worlds.iter().zip(ends) {
-        assert!(world.w_axis.truncate().distance(end) < 1e-6, "{world}");
+    let root = document.arm().root * 0.001;
+    let bases = [0.0, 0.0, 0.2, 0.5].map(|along| root + Vec3::X * along);
+    for (world, base) in worlds.iter().zip(bases) {
+        assert!(world.w_axis.truncate().distance(base) < 1e-6, "{world}");
+    }
+    for bone in [UPPER, LOWER] {
+        let world = worlds[bone.index()];
         assert!(world.y_axis.truncate().distance(Vec3::X) < 1e-6, "{world}");
     }
 }
@@ -265,10 +269,9 @@ fn the_mesh_is_around_the_bind_pose() {
         let ends: Vec<Vec3> = joints.iter().map(|joint| worlds[*joint].w_axis.truncate()).collect();
         let low = ends.iter().copied().reduce(Vec3::min).expect("a joint");
         let high = ends.iter().copied().reduce(Vec3::max).expect("a joint");
-        let room = match document.rig {
-            RigKind::Arm => 0.1 * document.arm.bones.outer_limit() * document.metres_per_unit(),
-            RigKind::Skeleton => 0.05 * document.skeleton_rig.reach(),
-        };
+        // The ends of a limb that is drawn as cylinders are thicker than those of bones.
+        let part = if document.measured_limb().is_some() { 0.1 } else { 0.05 };
+        let room = part * document.rig.reach() * document.metres_per_unit();
         for primitive in glb.json["meshes"][0]["primitives"].as_array().expect("primitives") {
             let accessor = index(&primitive["attributes"]["POSITION"]);
             let positions = glb.rows(&Value::from(accessor));
@@ -306,14 +309,14 @@ fn the_mesh_has_the_colours_of_the_limbs_on_screen() {
 
 #[test]
 fn a_skeleton_without_joints_is_refused() {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     *document.skeleton_mut() = Skeleton::default();
     assert!(refusal(&document).contains("at least one joint"));
 }
 
 #[test]
 fn a_joint_that_is_too_far_away_is_named() {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     let far = Joint { offset: Vec3::X * 3e38, ..Joint::new("far", Some(JointId::new(0)), Vec3::Y) };
     let joints = vec![Joint::new("root", None, Vec3::Y), far];
     *document.skeleton_mut() = Skeleton::from_joints(joints).expect("a skeleton");
@@ -329,7 +332,7 @@ fn a_joint_that_is_too_far_away_is_named() {
 #[test]
 fn huge_and_tiny_skeletons_stay_finite() {
     for size in [1e-44, 1e-30, 1e30, 1e38] {
-        let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+        let mut document = Document::new(SkeletonRig::default());
         let tip = Joint {
             offset: Vec3::Y * size,
             ..Joint::new("b", Some(JointId::new(0)), Vec3::X * size)
@@ -348,7 +351,7 @@ fn huge_and_tiny_skeletons_stay_finite() {
 fn too_many_frames_are_refused_before_they_are_computed() {
     let mut document = keyed_arm(&mut Random(8));
     document.timeline = Timeline { start: 0.0, end: 80_000.0, frame_rate: 1000.0 };
-    let expected = "a motion of 4 joints must have at most 5000000 frames, got 80000001";
+    let expected = "a motion of 6 joints must have at most 3333333 frames, got 80000001";
     assert!(refusal(&document).starts_with(expected));
 }
 

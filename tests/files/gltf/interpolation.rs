@@ -298,7 +298,7 @@ fn uneven_scales_above_a_joint_give_keys_at_every_frame_at_the_same_places() {
 /// has the curves of the angles and of the offsets.
 fn keyed(random: &mut Random, kinds: [&[Interpolation]; 2]) -> Document {
     let mut document = example("human");
-    document.skeleton_rig.targets.clear();
+    document.rig.targets.clear();
     document.keys = Default::default();
     document.timeline = ik_arm::document::Timeline { start: 0.5, end: 4.5, frame_rate: 24.0 };
     let joints = document.skeleton().joints().len();

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use glam::{Mat4, Quat, Vec3};
 use ik_arm::document::{
-    Channel, Document, FollowPath, PathKind, RigKind, SkeletonRig, Target, TargetMotion,
-    TargetPath, Theme, Timeline, Track,
+    Channel, Document, FollowPath, PathKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme,
+    Timeline, Track,
 };
 use ik_arm::io::{self, Progress};
 use ik_arm::kinematics::chain_ik::Method;
@@ -57,8 +57,7 @@ fn document(random: &mut Random) -> Document {
         let kind = random.one_of(&[PathKind::Head, PathKind::Target]);
         rig.follow_paths = vec![FollowPath { root: JointId::new(0), kind }];
     }
-    let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+    let mut document = Document::new(rig);
     document.timeline = Timeline { start: 0.0, end: 1.0, frame_rate: f64::from(FRAMES) };
     key(random, &mut document, reach);
     document
@@ -86,7 +85,7 @@ fn target(random: &mut Random, rig: &SkeletonRig, joint: JointId, reach: f32) ->
 }
 
 fn key(random: &mut Random, document: &mut Document, reach: f32) {
-    let rig = document.skeleton_rig.clone();
+    let rig = document.rig.clone();
     let of_joints = rig.skeleton.ids().map(Channel::Rotation);
     let roots = rig.skeleton.iter().filter(|(_, joint): &(_, &Joint)| joint.parent.is_none());
     let of_roots = roots.map(|(joint, _)| Channel::Offset(joint));
@@ -95,7 +94,9 @@ fn key(random: &mut Random, document: &mut Document, reach: f32) {
         let Some(now) = channel.value(document).filter(|_| random.chance(0.3)) else { continue };
         for time in [0.0, 0.3, 0.8] {
             let value = match channel {
-                Channel::Enabled(_) => Vec3::X * f32::from(u8::from(random.chance(0.8))),
+                Channel::Enabled(_) | Channel::Pinned(_) => {
+                    Vec3::X * f32::from(u8::from(random.chance(0.8)))
+                }
                 Channel::TargetInfluence(_) => Vec3::X * random.within(0.0..1.0),
                 Channel::TargetTwist(_) => Vec3::X * random.within(-2.0..2.0),
                 Channel::Target(_) | Channel::TargetPole(_) => now + random.vector(0.2) * reach,
@@ -215,7 +216,7 @@ fn by_pose(document: &Document, time: f64) -> Bases {
 fn farthest_from_balls(document: &Document, time: f64, bases: &Bases) -> f32 {
     let track = Track::new(document);
     let mut shown = track.at(time).into_document();
-    shown.skeleton_rig.skin = None;
+    shown.rig.skin = None;
     let posed = track.pose(shown, time);
     let scene = Scene::new(&posed, &Overlays::new(&track, &posed), Theme::Dark);
     let nearest = |base: &Vec3| {
@@ -237,7 +238,7 @@ fn expected(document: &Document, time: f64) -> Bases {
 }
 
 fn check(name: &str, document: &Document, poses: usize) {
-    let reach = document.skeleton_rig.reach();
+    let reach = document.rig.reach();
     let (csv, glb) = (by_csv(document), by_glb(document));
     let frames = document.timeline.frames();
     assert_eq!((csv.len(), glb.len()), (frames, frames), "{name}");

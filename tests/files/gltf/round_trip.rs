@@ -1,10 +1,9 @@
 //! Export and import keep positions.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, RigKind, Timeline};
+use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::rig::LimbPart;
 
 use crate::common::Random;
 use crate::common::documents::example;
@@ -16,41 +15,22 @@ fn reopened(document: &Document) -> Opened {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Bases of bones, and the arm's hand, in metres.
+/// Bases of bones in metres.
 fn bases(document: &Document, time: f64) -> Vec<(String, Vec3)> {
     let posed = document.at(time);
-    let named = match document.rig {
-        RigKind::Skeleton => {
-            let skeleton = posed.skeleton();
-            let pose = skeleton.pose();
-            let joints = skeleton.joints().iter().enumerate();
-            joints
-                .map(|(index, joint)| (joint.name.clone(), pose.base(JointId::new(index))))
-                .collect()
-        }
-        RigKind::Arm => {
-            let rig = posed.arm_frames();
-            let parts =
-                [("upper", LimbPart::Root), ("lower", LimbPart::Elbow), ("hand", LimbPart::Hand)];
-            parts.map(|(name, part)| (name.to_owned(), rig.origin(part))).to_vec()
-        }
-    };
+    let (skeleton, pose) = (posed.skeleton(), posed.skeleton().pose());
+    let joints = skeleton.joints().iter().enumerate();
+    let named = joints.map(|(index, joint)| (joint.name.clone(), pose.base(JointId::new(index))));
     let metres = document.metres_per_unit();
-    named.into_iter().map(|(name, point): (String, Vec3)| (name, point * metres)).collect()
+    named.map(|(name, point): (String, Vec3)| (name, point * metres)).collect()
 }
 
-/// The same of an imported document, in which an arm's hand is a joint only where the length of
-/// its bone has keys.
+/// The same of an imported document.
 fn imported(document: &Document, time: f64, name: &str) -> Option<Vec3> {
     let document = document.at(time).into_document();
     let skeleton = document.skeleton();
     let pose = skeleton.pose();
-    let base = |name| skeleton.find(name).map(|joint| pose.base(joint));
-    let arm_hand = || {
-        let end_of_lower = || skeleton.find("lower").map(|lower| pose.tip(lower));
-        base("lower_tip").or_else(end_of_lower).filter(|_| name == "hand")
-    };
-    base(name).or_else(arm_hand)
+    skeleton.find(name).map(|joint| pose.base(joint))
 }
 
 fn largest(points: &[(String, Vec3)]) -> f32 {
@@ -85,7 +65,6 @@ fn every_joint_is_where_it_was_in_every_frame() {
     for (name, document) in all().into_iter().filter(|(name, _)| name != "names") {
         let opened = reopened(&document);
         let Opened { document: read, warnings, order, skeletons, .. } = &opened;
-        assert_eq!(read.rig, RigKind::Skeleton);
         assert_eq!((warnings.len(), &skeletons[..]), (0, &["Armature".to_owned()][..]));
         assert_eq!(order.len(), read.skeleton().joints().len());
         // The solver refuses a flat skeleton, whose targets then move nothing.
@@ -140,12 +119,12 @@ fn the_hand_of_an_arm_with_keyed_lengths_is_a_joint() {
     let read = reopened(&keyed_arm(&mut Random(1))).document;
     let skeleton = read.skeleton();
     let names: Vec<&str> = skeleton.joints().iter().map(|joint| joint.name.as_str()).collect();
-    assert_eq!(names, ["upper", "lower", "upper_tip", "lower_tip"]);
+    assert_eq!(names, ["root", "upper", "lower", "hand", "upper_tip", "lower_tip"]);
 }
 
 #[test]
 fn a_chain_of_the_largest_number_of_joints_keeps_its_lengths() {
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     document.timeline = Timeline { start: 0.0, end: 0.125, frame_rate: 24.0 };
     let joint = |index: usize| {
         let parent = index.checked_sub(1);

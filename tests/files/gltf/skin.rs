@@ -21,7 +21,7 @@ fn opened(text: &Text) -> Opened {
 
 fn skin(opened: &Opened) -> &Skin {
     let warnings: Vec<String> = opened.warnings.iter().map(ToString::to_string).collect();
-    opened.document.skeleton_rig.skin.as_ref().unwrap_or_else(|| panic!("a skin; {warnings:?}"))
+    opened.document.rig.skin.as_ref().unwrap_or_else(|| panic!("a skin; {warnings:?}"))
 }
 
 fn attached(opened: &Opened) -> &AttachedMesh {
@@ -329,8 +329,7 @@ fn meshes_on_nodes_below_a_joint_follow_it_rigidly() {
     let at = Vec3::new(5.0, 0.0, 0.0);
     let corners = [at, at + Vec3::X, at - 2.0 * Vec3::Y];
     let shown = |document: &Document| {
-        let mesh =
-            &document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
+        let mesh = &document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
         mesh.posed(&mesh.pose(document.skeleton()), Skinning::Linear)
     };
     let flag = |posed: &TriangleMesh| {
@@ -343,12 +342,7 @@ fn meshes_on_nodes_below_a_joint_follow_it_rigidly() {
     let [a, b, c] = flag(&shown(&opened.document));
     assert_eq!([a, b, c], [corners[0], corners[2], corners[1]]);
     let turn = Vec3::new(0.0, 0.0, std::f32::consts::FRAC_PI_2);
-    opened
-        .document
-        .skeleton_rig
-        .skeleton_mut()
-        .set_rotation(JointId::new(0), turn)
-        .expect("a joint");
+    opened.document.rig.skeleton_mut().set_rotation(JointId::new(0), turn).expect("a joint");
     for (found, rest) in flag(&shown(&opened.document)).iter().zip([a, b, c]) {
         let expected = Quat::from_rotation_z(turn.z) * rest;
         assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
@@ -562,7 +556,7 @@ fn a_mesh_that_cannot_be_read_is_left_out_with_the_reason() {
         change(&mut text);
         let opened = opened(&text);
         assert_eq!(opened.document.skeleton().joints().len(), 3);
-        assert!(opened.document.skeleton_rig.skin.is_none());
+        assert!(opened.document.rig.skin.is_none());
         warnings(&opened).remove(0)
     };
     let indices = refusal(&|text| {
@@ -608,7 +602,7 @@ fn a_mesh_that_cannot_be_read_is_left_out_with_the_reason() {
 /// The posed vertices of the corners of all triangles, in order.
 fn corners(document: &Document, time: f64) -> Vec<Vec3> {
     let document = document.at(time).into_document();
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let mesh = &rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
     let posed = mesh.posed(&mesh.pose(&rig.skeleton_at(time)), Skinning::Linear);
     posed.triangles.as_flattened().iter().map(|corner| posed.positions[*corner as usize]).collect()
@@ -616,9 +610,7 @@ fn corners(document: &Document, time: f64) -> Vec<Vec3> {
 
 #[test]
 fn an_exported_skin_has_the_same_vertices_at_every_key_when_it_is_opened() {
-    let with_skin = all().into_iter().filter(|(_, document)| {
-        document.rig == ik_arm::document::RigKind::Skeleton && document.skeleton_rig.skin.is_some()
-    });
+    let with_skin = all().into_iter().filter(|(_, document)| document.rig.skin.is_some());
     let mut count = 0;
     let mut random = Random(0x1a57);
     for (name, mut document) in with_skin {
@@ -631,7 +623,7 @@ fn an_exported_skin_has_the_same_vertices_at_every_key_when_it_is_opened() {
         let read = io::read("x.glb", &glb(&document)[..], &io::OpenOptions::default())
             .expect("it opens")
             .document;
-        let size = document.skeleton_rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+        let size = document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
         let scale = transform.matrix3.determinant().abs().cbrt() * document.metres_per_unit();
         let size = size.mesh.mesh().size() * scale;
         let frames = if document.is_animated() { document.timeline.frames() } else { 1 };

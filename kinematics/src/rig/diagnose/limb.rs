@@ -87,7 +87,8 @@ impl RigCase<'_> {
         // The last part of the way to the boundary, where the elbow races.
         const INSIDE: f32 = 1e-4;
         let &LimbSpan { base, shortest, longest, distance, .. } = span;
-        let nearest = distance.clamp(shortest, longest);
+        // Both can be NaN, with which `clamp` panics.
+        let nearest = distance.max(shortest).min(longest);
         let missing = (distance - nearest).abs();
         if missing.is_nan() || missing <= self.tolerance {
             return None;

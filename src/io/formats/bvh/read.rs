@@ -2,7 +2,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::hierarchy::{self, BvhChannel, BvhNode, Scanner, TextError, Token};
 use super::rig::distinct;
-use crate::document::{self, Document, Keys, RigKind, SkeletonRig, Timeline};
+use crate::document::{self, Document, Keys, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointTree};
 use crate::io::error::{OpenError, Remark};
 use crate::io::exported::BvhUnit;
@@ -94,12 +94,10 @@ fn document(nodes: &[BvhNode], motion: &MotionData) -> Result<Document, TextErro
         Skeleton::from_joints(joints).map_err(|error| TextError::new(at, "", error.to_string()))?;
     let rig = SkeletonRig::new(skeleton);
     let document = Document {
-        rig: RigKind::Skeleton,
-        skeleton_rig: rig,
         keys,
         timeline: timeline(motion),
         metres_per_unit: Some(BvhUnit::METRES),
-        ..Document::default()
+        ..Document::new(rig)
     };
     Ok(Document { camera: document.framing_camera(), ..document })
 }

@@ -1,23 +1,17 @@
 use std::collections::{HashMap, HashSet};
 
-use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DMat3, DVec3, Mat3};
 use nalgebra::Matrix3;
 
-use crate::document::{Document, Posed, RigKind};
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton, exact_angles};
+use crate::document::{Document, Posed};
+use crate::kinematics::skeleton::{Joint, JointId, exact_angles};
 
 /// The nodes of a hierarchy in the order of the file: each node is followed by its descendants.
 pub struct BvhRig {
     pub names: Vec<String>,
     pub parents: Vec<Option<usize>>,
-    /// The joints of a skeleton or the limbs of the arm that the nodes stand for.
-    kind: BvhRigKind,
-}
-
-enum BvhRigKind {
-    Arm,
     /// The joint of each node; `None` for the root added above several roots.
-    Skeleton(Vec<Option<usize>>),
+    joints: Vec<Option<usize>>,
 }
 
 /// The pose of a rig in one frame, in units of the scene.
@@ -33,19 +27,9 @@ pub struct BvhPose {
 }
 
 impl BvhRig {
-    /// The hierarchy of the shown rig; `None` for a skeleton without joints.
+    /// The hierarchy of the rig; `None` for a skeleton without joints.
     pub fn new(document: &Document) -> Option<Self> {
-        match document.rig {
-            RigKind::Arm => Some(Self {
-                names: ["upper", "lower"].map(str::to_owned).into(),
-                parents: vec![None, Some(0)],
-                kind: BvhRigKind::Arm,
-            }),
-            RigKind::Skeleton => Self::of_skeleton(document.skeleton()),
-        }
-    }
-
-    fn of_skeleton(skeleton: &Skeleton) -> Option<Self> {
+        let skeleton = document.skeleton();
         let joints = skeleton.joints();
         let mut children = vec![Vec::new(); joints.len()];
         let mut roots = Vec::new();
@@ -71,7 +55,7 @@ impl BvhRig {
             next.extend(children[joint].iter().rev().map(|child| (*child, Some(node))));
         }
         let names = distinct(&names);
-        (!nodes.is_empty()).then_some(Self { names, parents, kind: BvhRigKind::Skeleton(nodes) })
+        (!nodes.is_empty()).then_some(Self { names, parents, joints: nodes })
     }
 
     /// The longest distance from the root along the bones of a pose.
@@ -89,18 +73,7 @@ impl BvhRig {
 
     /// The pose of the rig in a frame.
     pub fn pose(&self, posed: &Posed, transform: &SkeletonTransform) -> BvhPose {
-        match &self.kind {
-            BvhRigKind::Arm => arm(posed),
-            BvhRigKind::Skeleton(nodes) => self.skeleton(nodes, posed.skeleton(), transform),
-        }
-    }
-
-    fn skeleton(
-        &self,
-        nodes: &[Option<usize>],
-        skeleton: &Skeleton,
-        transform: &SkeletonTransform,
-    ) -> BvhPose {
+        let (nodes, skeleton) = (&self.joints, posed.skeleton());
         let joint =
             |node: &Option<usize>| node.and_then(|joint| skeleton.joint(JointId::new(joint)));
         let local = |node| joint(node).map_or(DMat3::IDENTITY, local_rotation);
@@ -136,26 +109,6 @@ fn local_rotation(joint: &Joint) -> DMat3 {
     }
     let frame = joint.frame.as_dmat3();
     frame * rotation * frame.transpose()
-}
-
-/// The pose of the arm as two bones along +x, with the elbow as a hinge about z.
-fn arm(posed: &Posed) -> BvhPose {
-    let (arm, pose) = (posed.arm(), posed.arm_pose());
-    let (along, out) = (f64::from(pose.along), f64::from(pose.out));
-    let upper = out.atan2(along);
-    let lower = (-out).atan2(f64::from(pose.distance) - along);
-    let limb = pose.pointer.limb_frame().as_dmat3();
-    let socket = DMat3::from_rotation_x(f64::from(pose.twist));
-    let bones = arm.bones.stretched(pose.stretch);
-    let bone = |length: f32| Vec3::new(length, 0.0, 0.0).as_dvec3();
-    BvhPose {
-        offsets: vec![arm.root.as_dvec3(), bone(bones.upper())],
-        ends: vec![None, Some(bone(bones.lower()))],
-        rotations: vec![
-            limb * socket * DMat3::from_rotation_z(upper),
-            DMat3::from_rotation_z(lower - upper),
-        ],
-    }
 }
 
 /// Makes names unique: of equal names, the first stays, and the others get a number as suffix.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use super::rig::{BvhPose, BvhRig, SkeletonTransform};
-use crate::document::{Document, RigKind, Track};
+use crate::document::{Document, Track};
 use crate::io::exported::{BvhUnit, ExportFrames, Exported, MotionError, Progress};
 use crate::kinematics::skeleton::exact_angles;
 
@@ -33,7 +33,7 @@ pub fn to_bvh(
         progress.step(frame, frames.count())?;
         let posed = track.at(frames.time(frame));
         let transform = SkeletonTransform::new(posed.document().skeleton().transform());
-        motion.is_uneven |= document.rig == RigKind::Skeleton && !transform.is_even();
+        motion.is_uneven |= !transform.is_even();
         motion.add(rig.pose(&posed, &transform))?;
     }
     let text = motion.text(&frames)?;

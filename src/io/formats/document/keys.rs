@@ -21,11 +21,11 @@ use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 /// One channel and its keys.
 #[derive(Serialize, Deserialize)]
 pub struct ChannelFields {
-    channel: String,
+    pub channel: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    overlay: Option<Overlay>,
+    pub overlay: Option<Overlay>,
     keys: Vec<KeyFields>,
 }
 
@@ -83,11 +83,17 @@ impl ChannelFields {
         }
         let channel = named(joint, self.overlay)?;
         match channel.target() {
-            Some(joint) if document.skeleton_rig.target(joint).is_none() => {
+            Some(joint) if document.rig.target(joint).is_none() => {
                 Err(format!("must be a joint with a target, got {joint}")).at("joint")
             }
             _ => Ok(channel),
         }
+    }
+
+    /// The keys, for values of a kind.
+    pub fn knots(&self, quantity: Quantity) -> Result<Vec<Knot<Vec3>>, FieldError> {
+        let keys = self.keys.iter().enumerate();
+        keys.map(|(index, key)| key.key(quantity).at(index).at("keys")).collect()
     }
 
     fn joint(&self, document: &Document) -> Result<JointId, FieldError> {
@@ -107,10 +113,8 @@ pub fn keys(
         if keys.has(channel) {
             return Err("channel must have one entry, got a second").at(index);
         }
-        for (key_index, key) in fields.keys.iter().enumerate() {
-            let key = key.key(channel.quantity()).at(key_index).at("keys").at(index)?;
-            keys.insert_key(channel, key);
-        }
+        let knots = fields.knots(channel.quantity()).at(index)?;
+        knots.into_iter().for_each(|knot| keys.insert_key(channel, knot));
     }
     Ok(keys)
 }

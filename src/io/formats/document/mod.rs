@@ -6,30 +6,29 @@
 //! [tell the path](AtField) of an error. Saving converts the document to fields, and serde writes
 //! the fields as text.
 
-mod arm;
 mod follow_path;
 mod keys;
 mod posture;
 mod skeleton;
 mod skin;
 mod targets;
+mod version_2;
 
 use core::f32::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Arm, Camera, Document, Keys, Overlay, RigKind, SkeletonRig, Skin};
+use crate::document::{Camera, Document, Overlay, SkeletonRig, Skin};
 use crate::io::error::{OpenError, SaveError};
 use crate::io::json::{
-    Above0, AtField, FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPath, JsonPoint,
-    JsonSeconds, Whole, to_styled_json, value_or,
+    Above0, AtField, FieldError, FieldWarnings, JsonNumber, JsonObject, JsonPoint, JsonSeconds,
+    Whole, to_styled_json, value_or,
 };
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::io::write::write;
 use crate::rig::{SkinFile, SkinSource};
-use arm::ArmFields;
 use follow_path::FollowPathList;
 pub use keys::KeyFields;
 use keys::{ChannelFields, TimelineFields, keys};
@@ -37,6 +36,7 @@ use posture::PostureFields;
 use skeleton::SkeletonFields;
 use skin::SkinFields;
 use targets::{SolverFields, TargetFields, add_targets};
+use version_2::{ArmFields, RigFields, RigName};
 
 /// The key by which a file is recognized.
 pub const KEY: &str = "format";
@@ -55,9 +55,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let JsonObject(fields) = source.parse::<JsonObject<DocumentFields>>(|field| {
         warnings.push(field, "unknown field, ignored");
     })?;
-    let has_camera = fields.camera.is_some();
+    // In version 2, the default camera shows an arm whose file has none.
+    let has_camera = fields.camera.is_some() || fields.rig == Some(RigName::Arm);
     let mut document = fields.document(&mut warnings).map_err(|error| source.error(&error))?;
-    if !has_camera && !options.without_camera && document.rig == RigKind::Skeleton {
+    if !has_camera && !options.without_camera {
         document.camera = document.framing_camera();
     }
     Ok(Opened {
@@ -101,7 +102,7 @@ pub fn save(document: &Document, path: &Path) -> Result<(), SaveError> {
 /// possible; otherwise absolute.
 fn with_relative_skin(document: &Document, folder: &Path) -> Document {
     let mut document = document.clone();
-    if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.skeleton_rig.skin {
+    if let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &mut document.rig.skin {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         // Without links and `..`, whose folders would be others from the document's own folder.
         let relative = |file: &SkinFile| -> Option<PathBuf> {
@@ -150,7 +151,11 @@ impl Header {
 struct DocumentFields {
     format: String,
     version: Whole,
-    rig: RigKind,
+    /// In version 2, the rig that is shown.
+    #[serde(skip_serializing)]
+    rig: Option<RigName>,
+    /// In version 2, the arm.
+    #[serde(skip_serializing)]
     arm: Option<JsonObject<ArmFields>>,
     skeleton: Option<JsonObject<SkeletonFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -170,26 +175,27 @@ struct DocumentFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     animation_name: Option<String>,
     camera: Option<JsonObject<CameraFields>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    other_camera: Option<JsonObject<CameraFields>>,
+    /// In version 2, the camera of the rig that is not shown.
+    #[serde(skip_serializing)]
+    #[expect(dead_code, reason = "later versions have one rig, with one camera")]
+    other_camera: Option<serde::de::IgnoredAny>,
     overlays: Option<Vec<Overlay>>,
 }
 
 impl DocumentFields {
     fn new(document: &Document) -> Self {
-        let SkeletonRig { skeleton, skin, targets, follow_paths, posture, .. } =
-            &document.skeleton_rig;
+        let SkeletonRig { skeleton, skin, targets, follow_paths, posture, .. } = &document.rig;
         let posture = posture.as_ref().map(|posture| PostureFields::new(posture));
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
             format: FORMAT.to_owned(),
             version: Whole(VERSION),
-            rig: document.rig,
-            arm: Some(JsonObject(ArmFields::new(&document.arm))),
+            rig: None,
+            arm: None,
             skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
             skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
             targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
-            solver: Some(JsonObject(SolverFields::new(&document.skeleton_rig))),
+            solver: Some(JsonObject(SolverFields::new(&document.rig))),
             posture: posture.map(JsonObject),
             track_start: document.track_start.map(JsonSeconds::from),
             follow_path: Some(FollowPathList::new(follow_paths)),
@@ -198,13 +204,14 @@ impl DocumentFields {
             metres_per_unit: document.metres_per_unit.map(Above0::from),
             animation_name: document.animation_name.clone(),
             camera: Some(JsonObject(CameraFields::new(&document.camera))),
-            other_camera: document.other_rig_camera.as_ref().map(CameraFields::new).map(JsonObject),
+            other_camera: None,
             overlays: Some(document.display.overlays().collect()),
         }
     }
 
     fn document(self, warnings: &mut FieldWarnings) -> Result<Document, FieldError> {
-        let arm = self.arm.map(|JsonObject(fields)| fields.arm().at("arm")).transpose()?;
+        let is_of_version_2 = self.version == Whole(2);
+        let fields = RigFields { shown: self.rig, arm: self.arm };
         let mut rig = SkeletonRig::default();
         if let Some(JsonObject(fields)) = self.skeleton {
             rig.skeleton = fields.skeleton(warnings).at("skeleton")?.into();
@@ -223,30 +230,23 @@ impl DocumentFields {
         if let Some(paths) = self.follow_path {
             paths.add_to(&mut rig).at("follow_path")?;
         }
-        let camera = |file: Option<JsonObject<CameraFields>>, key| {
-            file.map(|JsonObject(fields)| fields.camera().at(key)).transpose()
-        };
+        let camera = self.camera.map(|JsonObject(fields)| fields.camera().at("camera"));
         let timeline = self.timeline.map(|JsonObject(fields)| fields.timeline().at("timeline"));
         let mut document = Document {
-            rig: self.rig,
-            arm: arm.unwrap_or_else(Arm::default),
-            skeleton_rig: rig,
-            keys: Keys::default(),
             timeline: timeline.transpose()?.unwrap_or_default(),
             track_start: self.track_start.map(f64::from),
-            camera: camera(self.camera, "camera")?.unwrap_or_default(),
-            other_rig_camera: camera(self.other_camera, "other_camera")?,
-            display: self.overlays.map(FromIterator::from_iter).unwrap_or_default(),
+            camera: camera.transpose()?.unwrap_or_default(),
             metres_per_unit: self.metres_per_unit.map(f32::from),
             animation_name: self.animation_name,
+            ..Document::new(rig)
         };
-        document.keys = keys(self.channels.unwrap_or_default(), &document).at("channels")?;
-        if self.version == Whole(2) && document.is_tracked() && document.is_animated() {
-            let remark = "is 2: a figure now moves from frame to frame, so that it may be posed \
-                          otherwise than before; `track: false` of the solver poses each frame by \
-                          itself";
-            warnings.push(JsonPath::root().key("version"), remark);
+        let overlays = self.overlays.map(FromIterator::from_iter);
+        let channels = self.channels.unwrap_or_default();
+        if is_of_version_2 || fields.shown.is_some() {
+            return fields.document(document, overlays, channels, is_of_version_2, warnings);
         }
+        document.display = overlays.unwrap_or_default();
+        document.keys = keys(channels, &document).at("channels")?;
         Ok(document)
     }
 }

@@ -7,15 +7,13 @@
 //!
 //! ```text
 //! Armature             identity transform; the skin's `skeleton`
-//!  └ joints…           as in the document, or the arm's `upper` and `lower`: at the bone's base,
-//!                      +y along the bone, x as near to the joint's own x as possible, or
+//!  └ joints…           as in the document: at the bone's base, +y along the bone, x as near to the joint's own x as possible, or
 //!                      for a bone along that to its z
 //!     └ NAME_tip       at the tip of a bone that has no children or whose length changes
 //! Limbs                the mesh: the skin, or without one a cone for each bone and balls at joints
 //! ```
 //!
-//! Nodes are in the bind pose: the skeleton before any rotation, the arm straight along the Root's
-//! +x. The document's pose is in the animation, with a key in every frame. Mirroring, stretching
+//! Nodes are in the bind pose: the skeleton before any rotation. The document's pose is in the animation, with a key in every frame. Mirroring, stretching
 //! and shear of a skeleton's transform become rotations and translations in the animation.
 //!
 //! # Import

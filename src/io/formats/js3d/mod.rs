@@ -27,7 +27,7 @@ use file::{Js3dAnimator, Js3dFile, Js3dHandle, Js3dScene, Js3dSkeleton};
 use glam::{DAffine3, Vec3};
 use serde_json::Value;
 
-use crate::document::{Channel, Document, RigKind, SkeletonRig, Target, Timeline};
+use crate::document::{Channel, Document, SkeletonRig, Target, Timeline};
 use crate::io::error::OpenError;
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath, Whole};
 use crate::io::opened::{OpenOptions, Opened, attach_skin};
@@ -62,8 +62,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let mut warnings = FieldWarnings::default();
     let Js3dRig { rig, order, handles, transform } =
         rig(scene, chosen, skeleton, &mut warnings).map_err(|error| source.error(&error))?;
-    let mut document =
-        Document { rig: RigKind::Skeleton, skeleton_rig: rig, ..Document::default() };
+    let mut document = Document::new(rig);
     if let Some(JsonObject(animator)) = &file.animator {
         let animated = AnimatedSkeleton::new(chosen, skeleton, &order, &handles, transform);
         add_keys(&mut document, animator, &animated, &mut warnings);

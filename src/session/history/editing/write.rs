@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::Editing;
-use crate::document::{Arm, Channel, Document, Keys, PathKind, Track, TwistReferenceKind};
+use crate::document::{Channel, Document, Keys, PathKind, Track};
+use crate::rig::Target;
 use crate::session::history::steps::TreeChange;
 use crate::session::playback::Playback;
 
@@ -39,13 +40,10 @@ impl Editing {
             outcome = self.key_or_override(&mut after, playback);
             self.keep_unkeyed_values(&mut after);
         }
-        self.overrides.retain(|channel, _| {
-            let is_transported = *channel == Channel::Twist && is_transported(&after);
-            is_transported || after.keys.has(*channel)
-        });
-        after.skeleton_rig.head_tracks.clear();
+        self.overrides.retain(|channel, _| after.keys.has(*channel));
+        after.rig.head_tracks.clear();
         if !self.is_editing() {
-            after.skeleton_rig.refresh_skin();
+            after.rig.refresh_skin();
         }
         self.update_posture(&mut after, change, resets_posture);
         self.document = after;
@@ -57,21 +55,30 @@ impl Editing {
     /// Sets the posture of an edited document, so that its motion continues from the present one,
     /// and the time at which the motion begins.
     fn update_posture(&self, after: &mut Document, change: TreeChange, is_reset: bool) {
+        let before = &self.document;
+        if !is_reset
+            && after.rig == before.rig
+            && after.keys == before.keys
+            && after.timeline == before.timeline
+        {
+            // Overlays and units have no motion.
+            return;
+        }
         let is_drag = self.is_editing();
         let is_same_tree = change == TreeChange::Kept
             && after.skeleton().joints().len() == self.document.skeleton().joints().len();
-        let posture = after.skeleton_rig.posture.take();
-        after.skeleton_rig.posture = if is_reset {
+        let posture = after.rig.posture.take();
+        after.rig.posture = if is_reset {
             None
         } else if !is_same_tree {
             posture.and_then(|posture| Track::posture_near(after, &posture))
-        } else if !is_drag && posture != self.document.skeleton_rig.posture {
+        } else if !is_drag && posture != self.document.rig.posture {
             // The edit has chosen it.
             posture
         } else {
             self.track.posture_after(after, !is_drag)
         };
-        if after.track_start.is_none() && after.is_tracked() {
+        if after.track_start.is_none() && after.is_tracked() && !is_reset {
             let began = self.document.is_tracked();
             let of = if began { &self.document } else { &*after };
             after.track_start = Some(of.motion_start());
@@ -111,16 +118,6 @@ impl Editing {
         } else {
             after.keys.tracks().map(|(channel, _)| channel).filter(changed).collect()
         };
-        if !playback.is_auto_key() && is_transported(after) {
-            if after.arm.cursor_in_root() != self.shown().arm.cursor_in_root() {
-                // The transported twist is an unkeyed edit, too, discarded together with that of
-                // the hand.
-                let twist = Channel::Twist.value(after).unwrap_or_default();
-                self.overrides.insert(Channel::Twist, twist);
-            } else if changed(&Channel::Twist) {
-                self.overrides.remove(&Channel::Twist);
-            }
-        }
         let mut outcome = WriteOutcome::default();
         for channel in channels {
             if playback.is_auto_key() {
@@ -137,22 +134,31 @@ impl Editing {
     }
 
     /// Channels that auto-key keys for a change of the shown document to `after`: changed channels
-    /// that shape the rig before or after it, and changed switches that have keys. A switch between
-    /// FK and IK keys the channels of both; a switch of the pin keys the point that comes into use.
+    /// that shape the rig before or after it, and changed switches that have keys. A change of a
+    /// limb's influence keys the channels of FK and IK; a switch of the pin keys the point that
+    /// comes into use.
     fn channels_to_auto_key(&self, after: &Document) -> Vec<Channel> {
         let changed = |channel: &Channel| channel.value(after) != channel.value(self.shown());
-        let (has_mode, has_pinned) = (changed(&Channel::Influence), changed(&Channel::Pinned));
-        let comes_into_use = |channel: &Channel| {
-            let is_posing = Channel::IK.contains(channel) || Channel::FK.contains(channel);
-            has_mode && is_posing || has_pinned && *channel == Channel::of_cursor(&after.arm)
+        let come_into_use = |target: &Target| {
+            let joint = target.joint;
+            let has_mode = target.limb().is_some() && changed(&Channel::TargetInfluence(joint));
+            let of_ik = Channel::of_ik(target).into_iter().filter(|it| it.shapes(target));
+            let of_both = of_ik.chain(Channel::of_fk(&after.rig, target)).filter(|_| has_mode);
+            let point = changed(&Channel::Pinned(joint)).then(|| Channel::of_point(target));
+            of_both.chain(point).collect::<Vec<_>>()
         };
+        let switched = after.rig.targets.iter().flat_map(come_into_use);
         let switches = after.keys.tracks().map(|(channel, _)| channel).filter(|it| it.is_switch());
         let all: BTreeSet<Channel> = [after, self.shown()]
             .into_iter()
-            .flat_map(Channel::of_rig)
+            .flat_map(|document| {
+                Channel::of_rig(document).into_iter().chain(Channel::lengths(document))
+            })
             .chain(switches)
-            .filter(|channel| changed(channel) || comes_into_use(channel))
+            .filter(changed)
             .filter(|channel| !is_start_of_body(after, *channel))
+            .chain(switched)
+            .filter(|channel| channel.value(after).is_some())
             .collect();
         all.into_iter().collect()
     }
@@ -161,49 +167,31 @@ impl Editing {
     /// playhead are not saved.
     fn keep_unkeyed_values(&self, after: &mut Document) {
         let is_keyed = |channel: &Channel| self.document.keys.has(*channel);
-        let skeleton = &mut after.skeleton_rig.skeleton;
+        let skeleton = &mut after.rig.skeleton;
         let mut keyed_before = self.document.keys.tracks().map(|(channel, _)| channel);
-        if skeleton.is_same(&self.shown().skeleton_rig.skeleton)
+        if skeleton.is_same(&self.shown().rig.skeleton)
             && keyed_before.all(|channel| after.keys.has(channel))
         {
-            *skeleton = self.document.skeleton_rig.skeleton.clone();
+            *skeleton = self.document.rig.skeleton.clone();
         }
         let keyed = after.keys.tracks().map(|(channel, _)| channel).filter(is_keyed);
         for channel in keyed.collect::<Vec<_>>() {
-            if let Some(value) = channel.value(&self.document) {
+            if let Channel::Length(joint) = channel
+                && let Some(axis) = self.document.skeleton().joint(joint).map(|joint| joint.axis)
+            {
+                // Bit for bit, which a length alone does not give.
+                let _ = after.skeleton_mut().set_axis(joint, axis);
+            } else if let Some(value) = channel.value(&self.document) {
                 channel.set(after, value);
             }
-            if matches!(channel, Channel::Hand | Channel::Pin) {
-                after.arm.ik_state.pointer = self.document.arm.ik_state.pointer;
-            }
-        }
-        let is_overridden = is_transported(after) && self.overrides.contains_key(&Channel::Twist);
-        if is_overridden || is_keyed(&Channel::Twist) {
-            let unkeyed = self.document.arm.with_twist_reference(after.arm.twist_reference);
-            after.arm.twist = unkeyed.twist;
-            after.arm.ik_state.transported = unkeyed.ik_state.transported;
-        }
-        if is_keyed(&Channel::HandOrientation) {
-            let Arm { hand_orientation, .. } = self.document.arm;
-            let space = after.arm.hand_orientation.space;
-            after.arm.hand_orientation.angles =
-                hand_orientation.in_space(space, &self.document.arm.pose()).angles;
         }
     }
-}
-
-/// True if the twist is transported along a keyed hand and has no keys of its own.
-fn is_transported(document: &Document) -> bool {
-    let Document { arm, keys, .. } = document;
-    arm.twist_reference == TwistReferenceKind::Transport
-        && keys.has(Channel::of_cursor(arm))
-        && !keys.has(Channel::Twist)
 }
 
 /// True if a channel has an angle of the body that a head with keys has at its first key: such an
 /// angle is not keyed automatically.
 fn is_start_of_body(document: &Document, channel: Channel) -> bool {
-    let rig = &document.skeleton_rig;
+    let rig = &document.rig;
     let Channel::Rotation(joint) = channel else { return false };
     let heads = rig.follow_paths.iter().filter(|path| path.kind == PathKind::Head);
     !document.keys.has(channel)

@@ -37,7 +37,7 @@ fn pops(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
     if peaks.is_empty() {
         ui.label("No pops: joints move as smoothly as their targets.");
     }
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let line = |FramePop { time, pop }: &FramePop| (*time, pop.joint, words::pop(rig, pop));
     lines(ui, peaks.iter().map(line), actions);
     let mut offered: Vec<Target> = Vec::new();
@@ -50,7 +50,7 @@ fn pops(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
             }
         }
     }
-    if !session.skeleton_rig().is_tracked && !peaks.is_empty() {
+    if !session.rig().is_tracked && !peaks.is_empty() {
         let tooltip = "Switch off Each frame by itself in the Solver page";
         if widgets::button(ui, "Continue from frame to frame", tooltip, None) {
             actions.push(SolverEdit::SetTracked(true));
@@ -101,7 +101,7 @@ fn lost(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Action
         return;
     }
     widgets::section(ui, "Lost targets", |ui| {
-        let rig = session.skeleton_rig();
+        let rig = session.rig();
         let line = |LostSpan { target, from, to, miss }: &LostSpan| {
             let until = if to > from { format!(", until {to:.2} s") } else { String::new() };
             (*from, *target, format!("{}{until}", words::lost(rig, *target, *miss)))
@@ -121,7 +121,7 @@ fn slides(ui: &mut Ui, session: &Session, found: &Inspection, actions: &mut Acti
         return;
     }
     widgets::section(ui, "Slides", |ui| {
-        let rig = session.skeleton_rig();
+        let rig = session.rig();
         let line = |Slide { target, from, to, by }: &Slide| {
             let end = rig.end_of_target(*target).unwrap_or(*target);
             let name = rig.skeleton.joint(end).map_or("", |joint| joint.name.as_str());

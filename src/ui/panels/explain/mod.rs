@@ -11,7 +11,7 @@ mod twist_references;
 
 use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
-use crate::document::{Overlay, RigKind};
+use crate::document::Overlay;
 use crate::rig::LimbPart;
 use crate::session::{Actions, LimbFigure, LimbWords, Session, ShownLimb, TourState};
 use crate::ui::{pose_summary, widgets};
@@ -57,9 +57,11 @@ pub(super) fn reach(ui: &mut Ui, session: &Session) {
 
 /// The pops of a limb in the latest drag, and those along the motion of a figure.
 pub(super) fn pops(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if session.rig() == RigKind::Arm {
-        if let Some(limb) = session.limb() {
-            pops::ui(ui, session, limb, actions);
+    let moves = session.document().is_posed_over_time();
+    if let Some(limb) = session.limb().filter(|_| session.rig().sole_limb().is_some()) {
+        pops::ui(ui, session, limb, actions);
+        if moves {
+            widgets::section(ui, "Along the motion", |ui| figure_pops::ui(ui, session, actions));
         }
         return;
     }
@@ -77,7 +79,7 @@ pub(super) fn pops(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn titled_limb<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a ShownLimb> {
     let limb = session.limb();
     match limb {
-        Some(limb) if limb.target.is_some() => {
+        Some(limb) if session.rig().sole_limb().is_none() => {
             ui.label(RichText::new(format!("Limb of {}", name(session, limb))).strong());
             ui.add_space(2.0);
         }
@@ -93,12 +95,12 @@ fn titled_limb<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a ShownLimb> {
 
 /// The name of what a limb's target moves.
 fn name(session: &Session, limb: &ShownLimb) -> String {
-    let rig = session.skeleton_rig();
-    let end = limb.target.and_then(|target| rig.end_of_target(target));
-    end.and_then(|end| rig.skeleton.joint(end)).map_or("the arm".to_owned(), |it| it.name.clone())
+    let rig = session.rig();
+    let end = rig.end_of_target(limb.target).and_then(|end| rig.skeleton.joint(end));
+    end.map_or_else(String::new, |joint| joint.name.clone())
 }
 
-/// A text on why the arm has no solver that iterates.
+/// A text on why a limb needs no solver that iterates.
 pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
     let Some(limb) = session.limb() else { return };
     let (bones, lengths) = (limb.frames.bones(), limb.lengths());
@@ -111,7 +113,7 @@ pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
     ui.add_space(4.0);
     ui.label(
         "A longer chain has many poses with its tip at the target. A solver finds one of them step by \
-         step: show a skeleton to watch that.",
+         step. The solvers below do so for these two limbs, too.",
     );
 }
 

@@ -77,7 +77,7 @@ fn list(
             offered.push(pop_fix);
             let (label, tooltip) = wording(pop_fix, now.ik.soft_reach);
             if widgets::button(ui, label, &tooltip, None) {
-                actions.extend(pop_fix.edit(session.skeleton_rig(), limb));
+                actions.extend(pop_fix.edit(session.rig(), limb));
             }
         }
         Some(_) => {}

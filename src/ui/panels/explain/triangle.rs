@@ -174,7 +174,9 @@ impl TriangleDrawing {
         let (shoulder, elbow, hand, foot) = (self.shoulder, self.elbow, self.hand, self.foot);
         labels.write_always("Upper d_1", self.upper, LimbFigure::Upper, &beside(shoulder, elbow));
         labels.write_always("Lower d_2", self.lower, LimbFigure::Lower, &beside(elbow, hand));
-        labels.write_always("Distance D", self.text, LimbFigure::Distance, &beside(hand, shoulder));
+        // Near the hand, since the angle at the shoulder is written beneath the shoulder.
+        let along = beside(hand, shoulder + 0.28 * (hand - shoulder));
+        labels.write_always("Distance D", self.text, LimbFigure::Distance, &along);
         let angle = self.angle.min(TAU / 4.0);
         let in_angle = [38.0, 46.0, 56.0].into_iter().flat_map(|radius| {
             [0.5, 0.65, 0.8, 0.35].map(|part| Place {

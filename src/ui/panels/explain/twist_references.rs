@@ -19,7 +19,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, action
     transport_path(ui, path, limb.words, actions);
     let (ghosts, globe) = (Overlay::TwistReferences, Overlay::SingularityGlobe);
     let told = "Show the limb with the other twist references";
-    let (globe_name, globe_told) = labels::overlay(session.rig(), globe);
+    let (globe_name, globe_told) = labels::overlay(globe);
     ui.horizontal(|ui| {
         widgets::overlay_check_box(ui, session, ghosts, "Ghosts", told, None, actions);
         widgets::overlay_check_box(ui, session, globe, globe_name, globe_told, None, actions);

@@ -36,8 +36,8 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
         Some(_) => session.posed().evaluated_skeleton().fk[index].rotation,
         None => joint.rotation,
     };
-    if let Some(target) = session.skeleton_rig().target_that_turns(index)
-        && let Some((_, end)) = targets::end(session.skeleton_rig(), target)
+    if let Some(target) = session.rig().target_that_turns(index)
+        && let Some((_, end)) = targets::end(session.rig(), target)
     {
         let how = if target.influence < 1.0 { "Blended with" } else { "Posed by" };
         ui.weak(format!("{how} the target of {end}; below are the FK angles."));

@@ -11,7 +11,7 @@ use core::mem::discriminant;
 use egui::Ui;
 use glam::Vec3;
 
-use crate::document::{Channel, PathKind, RigKind, Target, WavyRing};
+use crate::document::{Channel, PathKind, Target, WavyRing};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, JointEdit, PathEdit, Session};
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
@@ -19,16 +19,39 @@ use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 pub(super) use skin::areas as skin_areas;
 pub(super) use targets::{note, note_height};
 
-/// The target of the selected joint, of which the panel has a note; `None` without one.
+/// The target of the selected joint, of which the panel has a note; `None` without one, and for a
+/// figure that is one limb.
 pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
-    let selected = session.selection().active().filter(|_| session.rig() == RigKind::Skeleton)?;
-    let rig = session.skeleton_rig();
+    let selected = session.selection().active()?;
+    let rig = session.rig();
+    if rig.sole_limb().is_some() {
+        return None;
+    }
     rig.target_of_end(selected).map(|index| rig.targets[index])
 }
 
+/// Shows the joints of a figure that is one limb, whose other settings stand elsewhere.
+pub(in crate::ui) fn folded(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    widgets::named_folded_section(ui, "joints of a limb", "Joints and skin", |ui| {
+        outliner::ui(ui, session, actions);
+        ui.separator();
+        skin::ui(ui, session, actions);
+    });
+    selected(ui, session, actions);
+}
+
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
     widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
+    selected(ui, session, actions);
+    widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
+    widgets::section(ui, "Translation", |ui| place(ui, session, actions));
+    widgets::section(ui, "Path", |ui| path(ui, session, actions));
+}
+
+/// Shows the settings of the selected joint and of its target.
+fn selected(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let rig = session.rig();
     if let Some(selected) = session.selection().active()
         && let Some(joint) = rig.skeleton.joint(selected)
     {
@@ -43,14 +66,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             });
         }
     }
-    widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
-    widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
-    widgets::section(ui, "Translation", |ui| place(ui, session, actions));
-    widgets::section(ui, "Path", |ui| path(ui, session, actions));
 }
 
 fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let place = PointSliders {
         name: "Skeleton",
         labels: AXES,
@@ -67,7 +86,7 @@ fn place(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Shows the path that the chain of a root follows.
 fn path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let Some(root) = shown_root(session) else { return };
     choice(ui, session, root, actions);
     match rig.path_kind(root) {
@@ -83,14 +102,14 @@ fn path(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 /// The root above the selected joint; without a selection the first with a path, else the first
 /// root.
 fn shown_root(session: &Session) -> Option<JointId> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let selected = session.selection().active().and_then(|joint| rig.root_of(joint));
     let with_path = rig.follow_paths.first().map(|path| path.root);
     selected.or(with_path).or_else(|| rig.skeleton.ids().next())
 }
 
 fn choice(ui: &mut Ui, session: &Session, root: JointId, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let ring = PathKind::Ring(default_ring(rig.reach()));
     let choices = [
         (None, "None", "Pose all joints by their own angles"),
@@ -113,7 +132,7 @@ fn default_ring(reach: f32) -> WavyRing {
 }
 
 fn head(ui: &mut Ui, session: &Session, head: JointId, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let place = PointSliders {
         name: "Head",
         labels: AXES,
@@ -132,7 +151,7 @@ fn head(ui: &mut Ui, session: &Session, head: JointId, actions: &mut Actions) {
 }
 
 fn sliders(ui: &mut Ui, session: &Session, root: JointId, ring: WavyRing, actions: &mut Actions) {
-    let reach = session.skeleton_rig().reach();
+    let reach = session.rig().reach();
     let default = default_ring(reach);
     let step = session.shown().grid_cell() * 0.1;
     let set = |ring| PathEdit::SetFollowPath { root, kind: Some(PathKind::Ring(ring)) };

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use crate::kinematics::skeleton::JointId;
-use crate::session::{Actions, BodyPart, JointEdit, SelectAction, Session};
+use crate::session::{Actions, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
 use crate::ui::{commands, style, widgets};
 
@@ -58,7 +58,7 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let said = ui.make_persistent_id("pointed in the tree");
     let was = ui.data(|data| data.get_temp::<bool>(said)).unwrap_or(false);
     if pointed.is_some() && pointed != session.selection().hovered() || was && pointed.is_none() {
-        actions.push(SelectAction::Hover(pointed.map(BodyPart::Joint)));
+        actions.push(SelectAction::Hover(pointed));
     }
     ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
     if rows.is_empty() {
@@ -79,7 +79,7 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
             None => open.push((joint, 0)),
         }
     }
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let influences = rig.influences();
     let mut targets = vec![None; children.len()];
     for target in &rig.targets {
@@ -95,7 +95,7 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
 }
 
 fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let joint = &rig.skeleton[row.joint];
     let selected = session.selection().joints().contains(&row.joint);
     let indent = INDENT * row.depth.min(12) as f32;
@@ -283,8 +283,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    let has_target =
-        selected.is_some_and(|joint| session.skeleton_rig().target_of_end(joint).is_some());
+    let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
     let (name, tooltip) = if has_target {
         ("Remove target", "Remove the target of the selected joint (T)")
     } else {

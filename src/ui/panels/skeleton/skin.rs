@@ -16,8 +16,8 @@ use crate::ui::style;
 use crate::ui::widgets::{self, Choice, Slider, plot};
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let Some(skin) = &session.skeleton_rig().skin else {
-        let why_not = (!session.skeleton_rig().has_bones()).then_some("Add a bone first");
+    let Some(skin) = &session.rig().skin else {
+        let why_not = (!session.rig().has_bones()).then_some("Add a bone first");
         let tooltip = "Give the skeleton a smooth skin around its bones";
         if widgets::button(ui, "Add skin", tooltip, why_not) {
             actions.push(SkinEdit::AddSkin);
@@ -58,11 +58,7 @@ fn details(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let why_not = (!is_shown).then_some("Show the skin first");
     widgets::check_boxes(ui, session, 2, &all, why_not, actions);
     if is_shown && session.shown().display.shows(Overlay::SkinWeights) {
-        match session
-            .selection()
-            .active()
-            .and_then(|joint| session.skeleton_rig().skeleton.joint(joint))
-        {
+        match session.selection().active().and_then(|joint| session.rig().skeleton.joint(joint)) {
             Some(joint) => legend(ui, &joint.name),
             None => {
                 ui.weak("Select a joint to see its weights.");
@@ -180,7 +176,7 @@ fn colour(ui: &mut Ui, session: &Session, skin: &Skin, actions: &mut Actions) {
 
 /// True if the open transaction, if any, changes the skin.
 fn is_change_open(session: &Session) -> bool {
-    let label = SkinEdit::SetSkin(session.skeleton_rig().skin.clone()).label();
+    let label = SkinEdit::SetSkin(session.rig().skin.clone()).label();
     session.history().is_editing() && session.history().undo_label() == Some(label)
 }
 
@@ -213,7 +209,7 @@ pub(in crate::ui) fn areas(ui: &mut Ui, session: &Session) {
         ui.weak("Select a joint inside the skin to see its cross-section.");
         return;
     };
-    let name = session.skeleton_rig().skeleton.joint(areas.joint).map_or("–", |it| &it.name);
+    let name = session.rig().skeleton.joint(areas.joint).map_or("–", |it| &it.name);
     ui.weak(format!(
         "Up: cross-section of the skin at the base of {name}, against the bind pose · across: time"
     ));

@@ -92,7 +92,7 @@ fn buttons(ui: &mut Ui, session: &Session, run: &SolverRun, actions: &mut Action
 
 /// The damping λ, whose effect on the ellipsoid is seen at once.
 fn damping(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let options = session.skeleton_rig().solver;
+    let options = session.rig().solver;
     let slider = widgets::Slider {
         name: "Damping of this iteration",
         label: "λ",

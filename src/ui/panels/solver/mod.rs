@@ -51,7 +51,7 @@ fn iterations(ui: &mut Ui, session: &Session, empty: &str, actions: &mut Actions
 }
 
 fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let options = session.skeleton_rig().solver;
+    let options = session.rig().solver;
     let combo = ComboBox::from_id_salt("method")
         .selected_text(options.method.title())
         .width(ui.available_width() - 12.0)
@@ -69,7 +69,7 @@ fn method(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let options = rig.solver;
     let set = |options| SolverEdit::SetSolver(options);
     let field = |name, value, step, digits, tooltip| NumberField {
@@ -113,7 +113,7 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 /// Settings of motions: whether frames continue from each other, and the posture of the first.
 fn motion(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let tooltip = "Solve each frame from its joint angles, not from the frame before. Off by default: \
                    neighbouring frames then find different poses, and joints jump";
     let is_alone = !rig.is_tracked;
@@ -152,9 +152,9 @@ fn roots(ui: &mut Ui, options: SolverOptions, actions: &mut Actions) {
 }
 
 fn tolerance(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let options = session.skeleton_rig().solver;
+    let options = session.rig().solver;
     widgets::term_pair(ui, "Tolerance", "Tolerance", actions, |ui, actions| {
-        let auto = session.skeleton_rig().tolerance();
+        let auto = session.rig().tolerance();
         widgets::at_right(ui, |ui| {
             let set = |tolerance| SolverEdit::SetSolver(SolverOptions { tolerance, ..options });
             let tooltip = "Use 1/10,000 of the chain length";

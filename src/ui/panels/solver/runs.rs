@@ -24,8 +24,8 @@ const HEIGHT: f32 = 132.0;
 const LEAST: f32 = 1e-8;
 
 pub(in crate::ui) fn convergence(ui: &mut Ui, session: &Session) {
-    let least = f64::from(LEAST * session.skeleton_rig().reach());
-    let tolerance = f64::from(session.skeleton_rig().tolerance());
+    let least = f64::from(LEAST * session.rig().reach());
+    let tolerance = f64::from(session.rig().tolerance());
     let curves: Vec<Curve> = session.solvers().runs().map(|run| Curve::new(run, least)).collect();
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let last = all().map(|point| point[0]).fold(10.0, f64::max);
@@ -277,7 +277,7 @@ fn duration(time: Duration) -> String {
 
 /// The reason why solvers are disabled; `None` if they can run.
 pub(in crate::ui) fn why_not(session: &Session) -> Option<&'static str> {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let enabled = rig.targets.iter().filter(|target| target.enabled);
     if let Some(reason) = enabled.filter_map(|it| labels::why_on_path(session, it.joint)).next() {
         Some(reason)

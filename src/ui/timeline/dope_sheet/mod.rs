@@ -124,12 +124,8 @@ impl DopeSheet<'_> {
         });
         rows::paint_state(ui, rect, selected, &response);
         let visuals = ui.visuals();
-        let is_of_rig = channel.rig().is_none_or(|rig| rig == session.rig());
-        let colour = match (selected || response.hovered(), is_of_rig) {
-            (true, _) => visuals.strong_text_color(),
-            (false, true) => visuals.text_color(),
-            (false, false) => visuals.weak_text_color(),
-        };
+        let is_lit = selected || response.hovered();
+        let colour = if is_lit { visuals.strong_text_color() } else { visuals.text_color() };
         rows::line(ui, rect, &shown, colour);
         if response.clicked() {
             self.ruler.request_focus();

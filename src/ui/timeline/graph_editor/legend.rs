@@ -61,7 +61,7 @@ fn joint_name(
     ruler: &Response,
     actions: &mut Actions,
 ) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let name = rig.skeleton.joint(joint).map_or("–", |joint| &joint.name);
     let selected = session.selection().joints();
     let said = format!("Curves of joint {name}");
@@ -104,7 +104,7 @@ fn channel_name(
         (false, true) => ui.visuals().text_color(),
         (false, false) => ui.visuals().weak_text_color(),
     };
-    rows::line(ui, beside, &labels::channel_of_joint(session, *channel), colour);
+    rows::line(ui, beside, &labels::channel_of_joint(*channel), colour);
     if response.clicked() {
         ruler.request_focus();
         let channels = rows::after_click(ui, session.selection().channels(), *channel);

@@ -11,7 +11,7 @@ use super::rows::{self, TimelineAreas, VALUES, take_keyboard};
 use super::time_scale::TimeScale;
 use super::value_scale::{self, AxisSides, ChannelCurve, ValueKind, ValueScales};
 use super::{context_menu, ruler};
-use crate::document::{Channel, RigKind};
+use crate::document::Channel;
 use crate::session::{Actions, Session};
 use crate::ui::widgets::plot;
 use crate::ui::{labels, style};
@@ -88,14 +88,14 @@ pub(super) fn width_at_right(session: &Session) -> f32 {
     }
 }
 
-/// The channels with keys that can be shown: of the arm all, of a figure those of the selected
-/// joints or, if none is selected, all.
+/// The channels with keys that can be shown: those of the selected joints or, if none is selected,
+/// all.
 fn listed(session: &Session) -> Vec<Channel> {
     let selected = session.selection().joints();
     let is_listed = |channel: &Channel| {
         let own = channel.joint().into_iter().chain(labels::joint_of_channel(session, *channel));
         let is_selected = selected.is_empty() || own.into_iter().any(|it| selected.contains(&it));
-        channel.rig() == Some(session.rig()) && (session.rig() == RigKind::Arm || is_selected)
+        channel.is_of_rig() && is_selected
     };
     let mut listed: Vec<Channel> = rows::channels(session).into_iter().filter(is_listed).collect();
     // Channels of one joint stand together.
@@ -114,11 +114,10 @@ fn drawn(session: &Session, listed: &[Channel]) -> Vec<Channel> {
 }
 
 fn hint(session: &Session) -> &'static str {
-    match session.rig() {
-        RigKind::Skeleton if !session.selection().joints().is_empty() => {
-            "No curves of the selected joints. Press K to key them, or select no joint to see all"
-        }
-        RigKind::Skeleton | RigKind::Arm => "No curves. Pose the rig and press K to add keys",
+    if session.selection().joints().is_empty() {
+        "No curves. Pose the rig and press K to add keys"
+    } else {
+        "No curves of the selected joints. Press K to key them, or select no joint to see all"
     }
 }
 
@@ -149,8 +148,7 @@ fn scales(
 }
 
 /// Colours, one for each component, and line style of a channel's curves. A channel with three
-/// components has the axis colours, a limb's length has the limb's colour, and any other channel
-/// has a colour chosen by `index`.
+/// components has the axis colours, any other channel a colour chosen by `index`.
 fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
     let palette = style::palette(ui);
     let style = match index % 4 {
@@ -160,8 +158,6 @@ fn look(ui: &Ui, channel: Channel, index: usize) -> (Vec<Color32>, LineStyle) {
         _ => LineStyle::dotted_dense(),
     };
     let colours = match channel {
-        Channel::Upper => vec![palette.upper],
-        Channel::Lower => vec![palette.lower],
         _ if channel.quantity().width() == 3 => palette.axes.to_vec(),
         _ => vec![palette.series(index)],
     };

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use ik_arm::document::{Bake, Baked, Document, Inspection, RigKind, SkeletonRig, Timeline};
+use ik_arm::document::{Bake, Baked, Document, Inspection, SkeletonRig, Timeline};
 use ik_arm::io::{Example, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::rig::{Posture, PosturedJoint};
@@ -142,8 +142,8 @@ impl Values<'_> {
 }
 
 fn skeleton(skeleton: Skeleton) -> Document {
-    let skeleton_rig = SkeletonRig::new(skeleton);
-    let document = Document { rig: RigKind::Skeleton, skeleton_rig, ..Document::default() };
+    let rig = SkeletonRig::new(skeleton);
+    let document = Document::new(rig);
     Document { camera: document.framing_camera(), ..document }
 }
 

@@ -35,7 +35,7 @@ impl Values<'_> {
 
     /// Mostly a joint with a target, if there is one.
     pub fn aimed(&mut self) -> JointId {
-        let targets = &self.session.skeleton_rig().targets;
+        let targets = &self.session.rig().targets;
         if targets.is_empty() || self.chance(0.1) {
             return self.joint();
         }
@@ -47,7 +47,7 @@ impl Values<'_> {
         if self.chance(0.2) {
             return None;
         }
-        let rig = self.session.skeleton_rig();
+        let rig = self.session.rig();
         let mut skin = rig.skin.clone().unwrap_or_else(|| Skin::from_bones(&rig.skeleton));
         skin.skinning = self.one_of(&Skinning::ALL);
         skin.colour = [(); 3].map(|()| self.part());
@@ -72,7 +72,7 @@ impl Values<'_> {
     /// A few triangles on the joints of the skeleton, in the document or from a file that is
     /// missing.
     pub fn mesh_skin(&mut self) -> MeshSkin {
-        let skeleton = self.session.skeleton_rig().skeleton.clone();
+        let skeleton = self.session.rig().skeleton.clone();
         let count = skeleton.joints().len();
         let joints: Vec<_> =
             skeleton.ids().map(|it| Some(it).filter(|_| self.chance(0.9))).collect();
@@ -106,7 +106,7 @@ impl Values<'_> {
 
     /// The file of the skin, if it has one.
     pub fn skin_file(&mut self) -> Option<SkinFile> {
-        match &self.session.skeleton_rig().skin.as_ref()?.source {
+        match &self.session.rig().skin.as_ref()?.source {
             SkinSource::Mesh(mesh) => mesh.file().cloned(),
             SkinSource::Bones(_) => None,
         }
@@ -175,7 +175,7 @@ impl Values<'_> {
 
     pub fn target(&mut self) -> Target {
         let joint = self.aimed();
-        let size = self.session.skeleton_rig().reach();
+        let size = self.session.rig().reach();
         let path = self.one_of(&[
             TargetPath::Still,
             TargetPath::Still,
@@ -198,9 +198,16 @@ impl Values<'_> {
         let orientation = self.chance(0.5).then(|| self.small_point());
         let (twist, pole_space) = (self.number(4.0), self.space());
         let pole = self.chance(0.7).then(|| self.small_point());
-        let settings =
-            LimbSettings { reference, pole, twist, orientation, pole_space, ..Default::default() };
-        TargetKind::Limb(settings)
+        let soft_reach = self.soft_reach();
+        TargetKind::Limb(LimbSettings {
+            reference,
+            pole,
+            twist,
+            orientation,
+            pole_space,
+            soft_reach,
+            ..Default::default()
+        })
     }
 
     pub fn elbow_reference(&mut self) -> TwistReferenceKind {

@@ -8,7 +8,6 @@ mod view;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec3;
-use ik_arm::document::RigKind;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::Session;
 
@@ -94,9 +93,11 @@ impl Values<'_> {
     }
 
     pub fn length(&mut self) -> f32 {
-        let arm = self.session.arm().bones;
         if self.chance(0.2) {
-            return self.one_of(&[arm.upper(), arm.lower(), 200.0, 300.0, 1e-2, 0.0, -1.0]);
+            let joints = self.session.skeleton().joints();
+            let lengths: Vec<f32> = joints.iter().map(|joint| joint.axis.length()).collect();
+            let own = self.one_of(&lengths);
+            return self.one_of(&[own, own, 200.0, 300.0, 1e-2, 0.0, -1.0]);
         }
         self.number(400.0).abs()
     }
@@ -110,12 +111,9 @@ impl Values<'_> {
 
     // Points
 
-    /// Size of the shown rig.
+    /// Size of the rig.
     pub fn size(&self) -> f32 {
-        let size = match self.session.rig() {
-            RigKind::Arm => self.session.arm().bones.outer_limit(),
-            RigKind::Skeleton => self.session.skeleton_rig().reach(),
-        };
+        let size = self.session.rig().reach();
         if size.is_normal() { size } else { 1.0 }
     }
 
@@ -124,29 +122,8 @@ impl Values<'_> {
     }
 
     pub fn small_point(&mut self) -> Vec3 {
-        let size = self.session.skeleton_rig().reach();
+        let size = self.session.rig().reach();
         self.point(1.5 * if size.is_normal() { size } else { 1.0 })
-    }
-
-    /// A Cursor in reach, on a limit, at the shoulder, on an axis, on the line to the pole, or far
-    /// away.
-    pub fn cursor(&mut self) -> Vec3 {
-        let arm = *self.session.arm();
-        let (inner, outer) = (arm.bones.inner_limit(), arm.bones.outer_limit());
-        let direction = match self.random.below(6) {
-            0 => self.one_of(&[Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z]),
-            1 => arm.pole.normalize_or(Vec3::Y),
-            _ => self.random.direction(),
-        };
-        match self.random.below(12) {
-            0 => Vec3::ZERO,
-            1 => direction * inner,
-            2 => direction * outer,
-            3 => direction * outer * self.random.within(1.0..4.0),
-            4 => arm.cursor_in_root() + direction * outer * 0.01,
-            5 => self.point(outer),
-            _ => direction * self.random.within(inner..outer.max(inner)),
-        }
     }
 
     pub fn soft_reach(&mut self) -> SoftReach {

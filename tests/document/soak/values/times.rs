@@ -1,5 +1,6 @@
 //! Times, channels and keys.
 
+use crate::common::arm::channels;
 use ik_arm::document::{Channel, Timeline};
 use ik_arm::session::{Key, KeysEdit};
 
@@ -47,7 +48,7 @@ impl Values<'_> {
             }
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
-            _ => self.one_of(&Channel::ARM),
+            _ => self.one_of(&channels::ALL),
         }
     }
 

@@ -1,12 +1,12 @@
 //! Cameras, and drags by rays.
 
+use crate::common::arm::{LOWER, ROOT, UPPER, WRIST};
+use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
 use ik_arm::document::{AxisView, Camera, Overlay, Ray};
-use ik_arm::session::{
-    BodyPart, CameraMotion, Constraint, DragInput, Grip, PointDrag, PointHandle,
-};
+use ik_arm::session::{CameraMotion, Constraint, DragInput, Grip, PointDrag, PointHandle};
 
 use super::Values;
 
@@ -63,26 +63,25 @@ impl Values<'_> {
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
         match self.random.below(15) {
-            0 | 1 => Grip::Hand(self.handle()),
-            2 => Grip::Pole(self.handle()),
-            3 => Grip::Shoulder(self.rotation_axis()),
-            4 => Grip::Bend,
+            0 | 1 => Grip::Target(LOWER, self.handle()),
+            2 => Grip::LimbPole(LOWER, self.handle()),
+            3 => Grip::Ring(UPPER, self.rotation_axis()),
+            4 => Grip::Ring(LOWER, RotationAxis::Z),
             5 => Grip::Target(self.aimed(), self.handle()),
             6 => Grip::Tip(joint, self.handle()),
-            7 => Grip::Root(self.handle()),
-            8 => Grip::Twist,
+            7 => Grip::Tip(ROOT, self.handle()),
+            8 => Grip::LimbTwist(LOWER),
             9 => Grip::Head(joint, self.handle()),
-            10 => Grip::Limb,
-            11 => Grip::UpperLimb,
-            12 => Grip::HandRing(self.rotation_axis()),
+            10 => Grip::Tip(UPPER, PointHandle::Free),
+            11 => Grip::Tip(UPPER, PointHandle::Free),
+            12 => Grip::Ring(WRIST, self.rotation_axis()),
             13 => Grip::Orientation(self.aimed(), self.rotation_axis()),
             _ => Grip::Ring(joint, self.rotation_axis()),
         }
     }
 
-    pub fn body_part(&mut self) -> Option<BodyPart> {
-        let joint = BodyPart::Joint(self.joint());
-        self.one_of(&[None, Some(BodyPart::Root), Some(BodyPart::LowerLimb), Some(joint)])
+    pub fn hovered(&mut self) -> Option<JointId> {
+        if self.coin() { None } else { Some(self.joint()) }
     }
 
     fn handle(&mut self) -> PointHandle {

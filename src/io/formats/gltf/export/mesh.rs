@@ -6,7 +6,7 @@ use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2};
 use super::GlbError;
 use super::nodes::JointNodes;
 use super::rig::{GltfRig, joint_spaces};
-use crate::document::{Document, RigKind, Skin};
+use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
@@ -41,13 +41,12 @@ pub struct MeshPart {
 }
 
 impl RigMesh {
-    /// The skin of the shown skeleton; `None` without one that has triangles.
+    /// The skin of the skeleton; `None` without one that has triangles.
     ///
     /// The mesh keeps its own space. Inverse bind matrices bring it to the joints, so that a viewer
     /// gets the vertices that linear blending gives in the program.
     pub fn of_skin(document: &Document) -> Option<Self> {
-        let skin = document.skeleton_rig.skin.as_ref();
-        let skin = skin.filter(|_| document.rig == RigKind::Skeleton)?;
+        let skin = document.rig.skin.as_ref()?;
         let mesh = skin.mesh().ok().filter(|mesh| !mesh.mesh.mesh().triangles.is_empty())?;
         let metres = f64::from(document.metres_per_unit());
         Some(Self {

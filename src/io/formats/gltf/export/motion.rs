@@ -15,7 +15,7 @@ use super::GlbError;
 use super::nodes::{ClipTimes, JointNodes, JointTrack, same_side};
 use super::quaternion_spline::{self, NodeRotation, QuaternionKey};
 use super::rig::GltfRig;
-use crate::document::{Channel, Document, RigKind, Target, Timeline};
+use crate::document::{Channel, Document, Target, Timeline};
 use crate::io::exported::Progress;
 use crate::io::formats::gltf::file::KeyCurve;
 use crate::kinematics::skeleton::{Joint, JointId};
@@ -39,9 +39,8 @@ impl JointAnimation {
     /// scaled unevenly or mirrored.
     pub fn keep_tracks(&mut self, document: &Document, rig: &GltfRig) {
         let skeleton = document.skeleton();
-        let is_posed_by_keys = document.rig == RigKind::Skeleton
-            && !document.follows_path()
-            && !document.skeleton_rig.targets.iter().any(Target::is_posing)
+        let is_posed_by_keys = !document.follows_path()
+            && !document.rig.targets.iter().any(Target::is_posing)
             && !document.keys.tracks().any(|(channel, _)| channel.target().is_some());
         let transform = skeleton.transform().matrix3.as_dmat3();
         if !(is_posed_by_keys && is_even(transform)) {

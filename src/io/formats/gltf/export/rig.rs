@@ -1,14 +1,13 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::GlbError;
-use crate::document::{Arm, Channel, Document, Posed, RigKind, Track};
+use crate::document::{Channel, Document, Overlay, Track};
 use crate::io::formats::gltf::frame;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
-use crate::kinematics::two_bone::TwoBone;
-use crate::rig::{LimbPart, TaperedCylinder};
+use crate::rig::{LimbSettings, TaperedCylinder};
 
-/// The shown rig, arm or skeleton, as bones in the world, in metres.
+/// The rig as bones in the world, in metres.
 ///
 /// Computed in f64, so that a skeleton far from the origin is exact.
 pub struct GltfRig {
@@ -18,6 +17,8 @@ pub struct GltfRig {
     /// joints. Nodes keep these directions where bones follow connected joints: the skin follows
     /// the nodes.
     axes: Vec<DVec3>,
+    /// For each bone, true if its length changes over time.
+    are_changing: Vec<bool>,
     /// The bones, parents before their children.
     pub bones: Vec<RigBone>,
     /// Placements of the bones in the bind pose.
@@ -70,30 +71,19 @@ impl GltfRig {
             track: Track::new(document),
             metres_per_unit,
             axes: document.skeleton().joints().iter().map(|joint| joint.axis.as_dvec3()).collect(),
+            are_changing: changing_lengths(document),
             bones: Vec::new(),
             bind_pose: Vec::new(),
         };
-        match document.rig {
-            RigKind::Arm => {
-                rig.bind_pose = rig.metric(straight_arm(document));
-                rig.bones = rig.limbs();
-            }
-            RigKind::Skeleton => {
-                let skeleton = document.skeleton();
-                rig.bind_pose = rig.metric(placements(skeleton, &rig.axes, |_| DMat3::IDENTITY));
-                rig.bones = rig.joints(skeleton.joints());
-            }
-        }
+        rig.bind_pose = rig.metric(rig.placements(document.skeleton(), |_| DMat3::IDENTITY));
+        rig.bones = rig.joints(document.skeleton().joints());
         if rig.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(rig) }
     }
 
     /// Placements of all bones at `time`, in seconds.
     pub fn at(&self, time: f64) -> Vec<BonePlacement> {
         let posed = self.track.at(time);
-        self.metric(match posed.document().rig {
-            RigKind::Arm => posed_arm(&posed),
-            RigKind::Skeleton => placements(posed.skeleton(), &self.axes, local_rotation),
-        })
+        self.metric(self.placements(posed.skeleton(), local_rotation))
     }
 
     /// Returns whether the pose changes over time.
@@ -110,40 +100,55 @@ impl GltfRig {
         placements
     }
 
-    fn limbs(&self) -> Vec<RigBone> {
+    /// Placements of the bones of a skeleton, along their axes in the bind pose, or along their own
+    /// where lengths change.
+    fn placements(
+        &self,
+        skeleton: &Skeleton,
+        rotation: impl Fn(&Joint) -> DMat3,
+    ) -> Vec<BonePlacement> {
+        let spaces = joint_spaces(skeleton, rotation);
+        let bones = skeleton.joints().iter().zip(&self.axes).zip(&self.are_changing).zip(spaces);
+        let placement = |(((joint, axis), is_changing), full): (_, DAffine3)| {
+            let (joint, axis, is_changing): (&Shared<Joint>, &DVec3, &bool) =
+                (joint, axis, is_changing);
+            let axis = if *is_changing { joint.axis.as_dvec3() } else { *axis };
+            BonePlacement {
+                base: full.translation,
+                along: full.matrix3 * axis,
+                across: full.matrix3 * across(axis),
+                y: full.matrix3.y_axis,
+            }
+        };
+        bones.map(placement).collect()
+    }
+
+    /// By joint, the radii of the bones that are drawn as cylinders, in metres.
+    fn cylinders(&self) -> Vec<Option<[f64; 2]>> {
         let document = self.track.document();
-        let Document { arm, keys, .. } = document;
-        let rig = self.track.pose(document.clone(), document.timeline.start).arm_frames();
-        let stretches = arm.is_stretching() || keys.has(Channel::Stretch);
+        let mut cylinders = vec![None; document.skeleton().joints().len()];
+        if !document.display.shows(Overlay::Cylinders) {
+            return cylinders;
+        }
+        let posed = self.track.pose(document.clone(), document.timeline.start);
         let radii = |limb: TaperedCylinder| {
             [limb.base_radius, limb.tip_radius].map(|r| f64::from(r) * self.metres_per_unit)
         };
-        vec![
-            RigBone {
-                name: "upper".to_owned(),
-                parent: None,
-                has_tip: keys.has(Channel::Upper) || stretches,
-                is_leaf: false,
-                connected: None,
-                radii: radii(rig.upper()),
-                shade: 0,
-            },
-            RigBone {
-                name: "lower".to_owned(),
-                parent: Some(0),
-                has_tip: true,
-                is_leaf: true,
-                connected: None,
-                radii: radii(rig.lower()),
-                shade: 1,
-            },
-        ]
+        for target in &document.rig.targets {
+            let joints = document.rig.limb_joints(target.joint);
+            if let Some(limb) = posed.limb_frames(target.joint) {
+                for (joint, shape) in joints.zip([limb.upper(), limb.lower()]) {
+                    cylinders[joint.index()] = Some(radii(shape));
+                }
+            }
+        }
+        cylinders
     }
 
     fn joints(&self, joints: &[Shared<Joint>]) -> Vec<RigBone> {
         let scale = self.track.document().skeleton().transform().as_daffine3().matrix3;
         let metres = scale.determinant().abs().cbrt() * self.metres_per_unit;
-        let reach = f64::from(self.track.document().skeleton_rig.reach()) * self.metres_per_unit;
+        let reach = f64::from(self.track.document().rig.reach()) * self.metres_per_unit;
         let mut depths = vec![0_usize; joints.len()];
         let mut are_leaves = vec![true; joints.len()];
         let mut connected = vec![None; joints.len()];
@@ -156,17 +161,17 @@ impl GltfRig {
                     joint.connected.then_some(index).or(connected[parent.index()]);
             }
         }
+        let cylinders = self.cylinders();
         let bone = |(index, joint): (usize, &Shared<Joint>)| RigBone {
             name: joint.name.clone(),
             parent: joint.parent.map(JointId::index),
-            has_tip: are_leaves[index] && joint.axis != Vec3::ZERO,
+            has_tip: (are_leaves[index] || self.are_changing[index]) && joint.axis != Vec3::ZERO,
             is_leaf: are_leaves[index],
             connected: connected[index],
-            radii: radii(
-                f64::from(joint.radius) * metres,
-                self.bind_pose[index].along.length(),
-                reach,
-            ),
+            radii: cylinders[index].unwrap_or_else(|| {
+                let length = self.bind_pose[index].along.length();
+                radii(f64::from(joint.radius) * metres, length, reach)
+            }),
             shade: depths[index] % 2,
         };
         joints.iter().enumerate().map(bone).collect()
@@ -196,19 +201,19 @@ fn local_rotation(joint: &Joint) -> DMat3 {
     DMat3::from_quat(DQuat::from_mat3(&rotation).normalize())
 }
 
-/// Placements of the bones of a skeleton, which are the `axes` in the spaces of their joints.
-fn placements(
-    skeleton: &Skeleton,
-    axes: &[DVec3],
-    rotation: impl Fn(&Joint) -> DMat3,
-) -> Vec<BonePlacement> {
-    let placement = |(axis, full): (&DVec3, DAffine3)| BonePlacement {
-        base: full.translation,
-        along: full.matrix3 * axis,
-        across: full.matrix3 * across(*axis),
-        y: full.matrix3.y_axis,
-    };
-    axes.iter().zip(joint_spaces(skeleton, rotation)).map(placement).collect()
+/// For each joint of a document, true if the length of its bone has keys, or a limb can stretch it.
+fn changing_lengths(document: &Document) -> Vec<bool> {
+    let mut are_changing: Vec<bool> =
+        document.skeleton().ids().map(|it| document.keys.has(Channel::Length(it))).collect();
+    for target in &document.rig.targets {
+        let stretches = target.limb().is_some_and(LimbSettings::is_stretching);
+        if stretches || document.keys.has(Channel::Stretch(target.joint)) {
+            for joint in document.rig.limb_joints(target.joint) {
+                are_changing[joint.index()] = true;
+            }
+        }
+    }
+    are_changing
 }
 
 /// The axis of a joint that is not along its bone, in its own space: x, or z for a bone along x,
@@ -230,32 +235,4 @@ pub fn joint_spaces(skeleton: &Skeleton, rotation: impl Fn(&Joint) -> DMat3) -> 
         );
     }
     full
-}
-
-/// The bind pose of the arm: straight along the Root's +x, bending about z.
-fn straight_arm(document: &Document) -> Vec<BonePlacement> {
-    limbs(&document.arm, document.arm.bones, [DMat3::IDENTITY; 2])
-}
-
-fn posed_arm(posed: &Posed) -> Vec<BonePlacement> {
-    let (arm, pose) = (posed.arm(), posed.arm_pose());
-    let rig = posed.arm_frames();
-    let socket = rig.local(LimbPart::Limb) * rig.local(LimbPart::Socket);
-    let rotation = |limb| (socket * rig.local(limb)).matrix3.as_dmat3();
-    let bones = arm.bones.stretched(pose.stretch);
-    limbs(arm, bones, [rotation(LimbPart::UpperLimb), rotation(LimbPart::LowerLimb)])
-}
-
-/// Placements of the limbs, which have these rotations in the world. A limb is along the x axis of
-/// its rotation and bends about the z axis.
-fn limbs(arm: &Arm, bones: TwoBone, rotations: [DMat3; 2]) -> Vec<BonePlacement> {
-    let lengths = [bones.upper(), bones.lower()].map(f64::from);
-    let mut base = arm.root.as_dvec3();
-    let limb = |(rotation, length): (DMat3, f64)| {
-        let along = rotation.x_axis.normalize_or(DVec3::X) * length;
-        let limb = BonePlacement { base, along, across: rotation.z_axis, y: rotation.x_axis };
-        base += along;
-        limb
-    };
-    rotations.into_iter().zip(lengths).map(limb).collect()
 }

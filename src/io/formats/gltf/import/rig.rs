@@ -4,7 +4,7 @@ use glam::{DVec3, Mat3, Vec3};
 
 use super::joint_tracks::{JointPlacement, JointTracks};
 use super::nodes::{NodeTree, SkinJoints};
-use crate::document::{Channel, Document, RigKind, SkeletonRig, Timeline};
+use crate::document::{Channel, Document, SkeletonRig, Timeline};
 use crate::io::bones::{self, JointBone, JointTree};
 use crate::io::formats::gltf::UniqueNames;
 use crate::io::formats::gltf::file::{GltfFile, GltfNode};
@@ -124,7 +124,7 @@ pub fn build(
         kept.push((!is_tip).then_some(next));
         next += usize::from(!is_tip);
     }
-    let mut document = Document { rig: RigKind::Skeleton, ..Document::default() };
+    let mut document = Document::new(SkeletonRig::default());
     if let Some(timeline) = timeline {
         document.timeline = timeline;
         add_keys(&mut document, motions, &moves, &kept);
@@ -134,7 +134,7 @@ pub fn build(
         joint.parent = joint.parent.and_then(|parent| kept[parent.index()].map(JointId::new));
         kept_joints.extend((!is_tip).then_some(joint));
     }
-    document.skeleton_rig = SkeletonRig::new(Skeleton::from_joints(kept_joints)?);
+    document.rig = SkeletonRig::new(Skeleton::from_joints(kept_joints)?);
     Ok(ImportedRig { document, kept })
 }
 

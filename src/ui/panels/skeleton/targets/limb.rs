@@ -91,7 +91,7 @@ fn reference(ui: &mut Ui, target: &Target, settings: LimbSettings, actions: &mut
 
 /// A pole in front of the elbow as it is posed, in the pole's space.
 fn new_pole(session: &Session, target: &Target) -> Vec3 {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     let index = rig.target(target.joint);
     let pole = index.and_then(|it| rig.new_pole(session.posed().evaluated_skeleton(), it));
     pole.unwrap_or(target.present_home())
@@ -111,7 +111,7 @@ fn pole(
         labels: ["Pole x", "Pole y", "Pole z"],
         value: pole,
         default: new_pole(session, target),
-        range: 1.5 * session.skeleton_rig().reach(),
+        range: 1.5 * session.rig().reach(),
         step: session.shown().grid_cell() * 0.1,
         tooltip: "Move the pole",
         disabled: None,
@@ -136,17 +136,13 @@ fn hand(
         ui.horizontal(|ui| {
             let now = settings.orientation;
             let tooltip = "Turn the hand or foot with the bone above it";
+            let joint = target.joint;
             if ui.radio(now.is_none(), "Follow bone").on_hover_text(tooltip).clicked() {
-                actions.push(set(LimbSettings { orientation: None, ..settings }));
+                actions.push(TargetEdit::KeepHand { joint, is_kept: false });
             }
             let tooltip = "Keep the orientation of the hand or foot in the target's space";
-            if ui.radio(now.is_some(), "Keep orientation").on_hover_text(tooltip).clicked()
-                && now.is_none()
-                && let Some(hand) = hand
-            {
-                let rotation = pose.rotation_in_world(hand).as_quat();
-                let angles = target.hand_angles(pose, rotation, Vec3::ZERO);
-                actions.push(set(LimbSettings { orientation: Some(angles), ..settings }));
+            if ui.radio(now.is_some(), "Keep orientation").on_hover_text(tooltip).clicked() {
+                actions.push(TargetEdit::KeepHand { joint, is_kept: true });
             }
         });
     });
@@ -176,7 +172,7 @@ pub(super) fn of_target(ui: &mut Ui, session: &Session, target: &Target, actions
         label: "Moves with",
         name: "Target space",
         tooltip: "Fix the target to the world or to a joint; it stays where it is",
-        shown: name(session.skeleton_rig(), target.space),
+        shown: name(session.rig(), target.space),
     };
     let put = |target: &mut Target, space| target.space = space;
     spaces(ui, session, target, target.space, &choice, put, |space| {
@@ -196,7 +192,7 @@ pub(super) fn of_pole(
         label: "Pole moves with",
         name: "Pole space",
         tooltip: "Fix the pole to the world or to a joint; it stays where it is",
-        shown: name(session.skeleton_rig(), now),
+        shown: name(session.rig(), now),
     };
     let put = |target: &mut Target, space| {
         if let Some(limb) = target.limb_mut() {
@@ -224,13 +220,13 @@ fn spaces(
     mut choose: impl FnMut(TargetSpace),
 ) {
     choice.show(ui, |list| {
-        let mut rig = session.skeleton_rig().clone();
+        let mut rig = session.rig().clone();
         let Some(index) = rig.target(target.joint) else { return };
         let joints = session.skeleton().ids().map(TargetSpace::Joint);
         for space in std::iter::once(TargetSpace::World).chain(joints) {
             put(&mut rig.targets[index], space);
             let refused = rig.check_target_spaces().err().map(|error| error.reason());
-            let name = name(session.skeleton_rig(), space);
+            let name = name(session.rig(), space);
             let tooltip = match space {
                 TargetSpace::World => "Stay in the world",
                 TargetSpace::Joint(_) => "Move and turn with this joint",

@@ -12,14 +12,14 @@ use crate::kinematics::limb_ik::LimbReach;
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetKind, TargetOutcome, TargetReport};
 use crate::session::{Actions, PlaybackAction, SelectAction, Session, TargetEdit};
-use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, Slider, text};
+use crate::ui::widgets::{self, AXES, Choice, KeyButton, NumberField, PointSliders, Slider, text};
 use crate::ui::{labels, pose_summary, style};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
 /// Shows the list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rig = session.skeleton_rig();
+    let rig = session.rig();
     if rig.targets.is_empty() {
         ui.weak("No targets. Select a joint and press T.");
     }
@@ -35,9 +35,9 @@ fn row(
     report: &TargetReport,
     actions: &mut Actions,
 ) {
-    let Some((end, end_name)) = end(session.skeleton_rig(), target) else { return };
+    let Some((end, end_name)) = end(session.rig(), target) else { return };
     widgets::pair(ui, "", |ui| {
-        what_is_missing(ui, report, session.skeleton_rig().tolerance());
+        what_is_missing(ui, report, session.rig().tolerance());
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let mut enabled = target.enabled;
             let name = format!("Target of {end_name}");
@@ -90,6 +90,7 @@ pub(in crate::ui) fn selected(
     influence(ui, session, target, actions);
     limb::kind(ui, session, target, actions);
     place(ui, session, target, step, actions);
+    pin(ui, session, &target, actions);
     limb::of_target(ui, session, &target, actions);
     match target.kind {
         TargetKind::Limb(settings) => limb::settings(ui, session, target, settings, actions),
@@ -128,16 +129,30 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         labels: AXES,
         value: target.present_home(),
         default: target.placed(pose, session.playback().time(), tip).present_home(),
-        range: 1.5 * session.skeleton_rig().reach(),
+        range: 1.5 * session.rig().reach(),
         step,
         tooltip: match target.present_space().joint() {
             None => "Move the target in world space",
             Some(_) => "Move the target in the space of the joint that it is on",
         },
         disabled: None,
-        channel: Some(Channel::Target(target.joint)),
+        channel: Some(Channel::of_point(&target)),
     };
     place.show(ui, session, actions, |home| TargetEdit::SetTarget(target.with_home(home)));
+}
+
+/// Shows the switch of the pin with its diamond, which also keys the point that the target has.
+fn pin(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+    const PINNED: &str = "Pinned to world";
+    ui.horizontal(|ui| {
+        let tooltip = "Keep the target in place when the joint that it is on moves";
+        let changed = widgets::check_box(ui, PINNED, tooltip, target.is_pinned, None);
+        let joint = target.joint;
+        actions.extend(changed.map(|is_pinned| TargetEdit::Pin { joint, is_pinned }));
+        let others = vec![Channel::of_point(target)];
+        let key = KeyButton { channel: Channel::Pinned(joint), others };
+        key.show(ui, session, PINNED, actions);
+    });
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
@@ -160,7 +175,7 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
         range: (0.0, 0.9),
         default: 0.0,
         step: 0.1,
-        disabled: (session.skeleton_rig().solver.root == Root::Free)
+        disabled: (session.rig().solver.root == Root::Free)
             .then_some("A root that moves freely is never too far away"),
         ..Slider::default()
     };
@@ -245,7 +260,7 @@ pub(in crate::ui) fn note_height(panel: f32) -> f32 {
 pub(in crate::ui) fn note(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
     let Some(report) = session.posed().target_report(target.joint) else { return };
     let (rig, is_held) =
-        (session.skeleton_rig(), pose_summary::is_held(ui) || session.history().is_editing());
+        (session.rig(), pose_summary::is_held(ui) || session.history().is_editing());
     let index = rig.target(target.joint);
     let why = index.map_or(&[][..], |index| session.why_target(index, !is_held));
     ui.separator();
@@ -284,7 +299,7 @@ fn explain(
     actions: &mut Actions,
 ) {
     let text = match missing_rotation(report) {
-        Some(missing) if report.error <= session.skeleton_rig().tolerance() => missing,
+        Some(missing) if report.error <= session.rig().tolerance() => missing,
         _ => format!("{} away", text::short(report.error)),
     };
     let heading = RichText::new(format!("{end} not reached: {text}"));
