@@ -143,6 +143,12 @@ impl Limb {
     pub fn joints(self) -> impl Iterator<Item = JointId> {
         [self.upper, self.lower].into_iter().chain(self.hand)
     }
+
+    /// The joints from the lower one up to the upper one, with the locked ones between them.
+    pub fn bones(self, skeleton: &Skeleton) -> impl Iterator<Item = JointId> {
+        let above = skeleton[self.upper].parent;
+        skeleton.ancestors(self.lower).take_while(move |joint| Some(*joint) != above)
+    }
 }
 
 /// The only child at the tip of a joint's bone.

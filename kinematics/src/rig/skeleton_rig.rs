@@ -122,8 +122,7 @@ impl SkeletonRig {
     /// The joint that a target is named after: the hand of its limb, or the joint whose tip it
     /// brings to the target.
     pub fn end_of(&self, target: &Target) -> JointId {
-        let limb = target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
-        limb.and_then(|limb| limb.hand).unwrap_or(target.joint)
+        target.limb_in(&self.skeleton).and_then(|limb| limb.hand).unwrap_or(target.joint)
     }
 
     /// [`Self::end_of`] the target of a joint; `None` if the joint has none.
@@ -142,8 +141,7 @@ impl SkeletonRig {
     /// another target.
     pub fn limb_joints(&self, target: JointId) -> impl Iterator<Item = JointId> + use<> {
         let target = self.target(target).map(|index| &self.targets[index]);
-        let target = target.filter(|target| target.limb().is_some());
-        let limb = target.and_then(|it| Limb::ending_at(&self.skeleton, it.joint).ok());
+        let limb = target.and_then(|target| target.limb_in(&self.skeleton));
         limb.into_iter().flat_map(Limb::joints)
     }
 
@@ -151,13 +149,8 @@ impl SkeletonRig {
     /// bone, the lower one's, one between them, or the end.
     pub fn limb_target_of(&self, joint: JointId) -> Option<usize> {
         let has = |target: &Target| {
-            let limb =
-                target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok());
-            limb.is_some_and(|limb| {
-                let bones = self.skeleton.ancestors(limb.hand.unwrap_or(limb.lower));
-                bones
-                    .take_while(|it| Some(*it) != self.skeleton[limb.upper].parent)
-                    .any(|it| it == joint)
+            target.limb_in(&self.skeleton).is_some_and(|limb| {
+                limb.bones(&self.skeleton).chain(limb.hand).any(|it| it == joint)
             })
         };
         self.targets.iter().position(has)
@@ -167,8 +160,7 @@ impl SkeletonRig {
     /// one of the limb's or above them. `None` for any other figure.
     pub fn sole_limb(&self) -> Option<&Target> {
         let [target] = &self.targets[..] else { return None };
-        let limb =
-            target.limb().and_then(|_| Limb::ending_at(&self.skeleton, target.joint).ok())?;
+        let limb = target.limb_in(&self.skeleton)?;
         let chain = self.skeleton.ancestors(limb.hand.unwrap_or(limb.lower));
         (chain.count() == self.skeleton.joints().len()).then_some(target)
     }

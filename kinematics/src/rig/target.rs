@@ -69,7 +69,7 @@ impl Target {
     }
 
     /// The limb that the target poses; `None` for a whole-body target and a joint that ends none.
-    pub(super) fn limb_in(&self, skeleton: &Skeleton) -> Option<Limb> {
+    pub fn limb_in(&self, skeleton: &Skeleton) -> Option<Limb> {
         self.limb().and_then(|_| Limb::ending_at(skeleton, self.joint).ok())
     }
 

@@ -46,9 +46,8 @@ impl<'a> CylinderLimb<'a> {
     pub fn mark(&self, skeleton: &Skeleton, marked: &mut [bool]) {
         let hand = self.limb.hand.filter(|hand| skeleton[*hand].axis == Vec3::ZERO);
         let ends = self.root.into_iter().chain(hand);
-        let bones = skeleton.ancestors(self.limb.lower);
-        let bones = bones.take_while(|it| Some(*it) != skeleton[self.limb.upper].parent);
-        bones.chain(ends).for_each(|joint| marked[joint.index()] = true);
+        let joints = self.limb.bones(skeleton).chain(ends);
+        joints.for_each(|joint| marked[joint.index()] = true);
     }
 
     /// Adds the limb with its hand, its target, names and shadows, as the display shows them. The

@@ -153,8 +153,7 @@ fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
     }
     match rig.target_that_turns(joint) {
         Some(target) => {
-            let limb =
-                target.limb().and_then(|_| Limb::ending_at(&rig.skeleton, target.joint).ok());
+            let limb = target.limb_in(&rig.skeleton);
             let upper =
                 limb.map(|limb| limb.upper).filter(|upper| Grip::turns_elbow(posed, *upper));
             Some(upper.map_or(Role::Led(target.joint), Role::Elbow))

@@ -63,16 +63,14 @@ pub(in crate::session) fn grab(
 
 /// The origin of the coordinates that panels show of a dragged point.
 fn snapped_from(session: &Session, grip: Grip) -> Vec3 {
-    let space = |joint| match grip {
-        Grip::LimbPole(..) => Some(target(session, joint)?.limb()?.pole_space),
-        _ => target(session, joint).filter(|it| !it.is_pinned).map(|it| it.space),
-    };
-    let joint = match grip {
-        Grip::Target(joint, _) | Grip::LimbPole(joint, _) => {
-            space(joint).and_then(TargetSpace::joint)
+    let space = match grip {
+        Grip::Target(joint, _) => target(session, joint).map(|it| it.present_space()),
+        Grip::LimbPole(joint, _) => {
+            target(session, joint).and_then(|it| Some(it.limb()?.pole_space))
         }
         _ => None,
     };
+    let joint = space.and_then(TargetSpace::joint);
     joint.map_or(Vec3::ZERO, |joint| session.skeleton_pose().base(joint))
 }
 
