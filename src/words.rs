@@ -1,14 +1,108 @@
-//! Diagnoses and their remedies as English sentences, without a full stop.
+//! Diagnoses and their remedies as English sentences, without a full stop, and words for the joints
+//! of limbs.
 
 use crate::kinematics::chain_ik::Root;
 use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::rig::{RigPop, RigPopCause, SkeletonRig};
 
+/// Words for the joints of a limb, in lower case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LimbWords {
+    /// The upper joint.
+    pub base: &'static str,
+    /// The lower joint.
+    pub middle: &'static str,
+    /// What the target moves.
+    pub end: &'static str,
+}
+
+impl LimbWords {
+    /// Words for an arm.
+    pub const ARM: Self = Self { base: "shoulder", middle: "elbow", end: "hand" };
+    /// Words for a leg.
+    pub const LEG: Self = Self { base: "hip", middle: "knee", end: "foot" };
+
+    /// Words for the limb of a joint's target.
+    pub fn of_target(rig: &SkeletonRig, target: JointId) -> Self {
+        let joints = rig.limb_joints(target);
+        Self::of(joints.filter_map(|it| Some(rig.skeleton.joint(it)?.name.as_str())))
+    }
+
+    /// Words for a limb with these names of its joints.
+    fn of<'a>(names: impl IntoIterator<Item = &'a str>) -> Self {
+        const OF_LEGS: [&str; 9] =
+            ["leg", "thigh", "hip", "knee", "shin", "calf", "foot", "ankle", "toe"];
+        let is_of_leg = |name: &str| {
+            let name = name.to_lowercase();
+            OF_LEGS.into_iter().any(|part| name.contains(part))
+        };
+        if names.into_iter().any(is_of_leg) { Self::LEG } else { Self::ARM }
+    }
+}
+
 /// The cause of a diagnosis, such as "The limits of elbow keep hand away from its target". A limb's
 /// target is named after its hand.
 pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
-    with_names(rig, |names| cause_with(found, names))
+    with_names(rig, |names| {
+        let target = (names.tip)(found.target);
+        match found.cause {
+            Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
+                let base = (names.base)(found.target, base);
+                out_of_reach([&target, &base], distance, [shortest, longest], boundary)
+            }
+            Cause::Limits if found.joints == [found.target] => {
+                format!("The limits of {target} itself keep its tip away from the target")
+            }
+            Cause::Limits => {
+                format!(
+                    "The limits of {} keep {target} away from its target",
+                    listed(&found.joints, names)
+                )
+            }
+            Cause::RotationLimits { missing, axes } => {
+                let (degrees, limits) = (significant(missing.to_degrees()), limits_about(axes));
+                format!(
+                    "{target} is {degrees}° short of its target's rotation: {limits} in the way"
+                )
+            }
+            Cause::Locked => {
+                let verb = if found.joints.len() == 1 { "is" } else { "are" };
+                format!(
+                    "{} {verb} locked, and {target} needs to turn there",
+                    listed(&found.joints, names)
+                )
+            }
+            Cause::Conflict { with } => {
+                let other = (names.tip)(with);
+                format!("{target} and {other} reach their targets one at a time, not together")
+            }
+            Cause::Stalled => {
+                format!(
+                    "The solver stopped where no small turn helps, though {target} can get nearer"
+                )
+            }
+            Cause::Lost => format!(
+                "{target} can reach its target from another pose, but not from the one to which the motion came"
+            ),
+            Cause::Singular { .. } => {
+                format!("No joint can move {target} in the direction of its target")
+            }
+            Cause::OutOfIterations { iterations } => {
+                let s = if iterations == 1 { "" } else { "s" };
+                format!(
+                    "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
+                )
+            }
+            Cause::Influence { influence: 0.0 } => {
+                format!("The target of {target} has no influence: the joint angles alone pose it")
+            }
+            Cause::Influence { influence } => {
+                let percent = significant(100.0 * influence);
+                format!("{target} is only {percent} % of the way from its FK pose to its target")
+            }
+        }
+    })
 }
 
 /// A remedy as an imperative, such as "Unlock elbow".
@@ -31,73 +125,25 @@ fn with_names(rig: &SkeletonRig, say: impl FnOnce(Names<'_>) -> String) -> Strin
     let joint =
         |joint: JointId| rig.skeleton.joint(joint).map_or_else(String::new, |it| it.name.clone());
     let tip = |of: JointId| joint(rig.end_of_target(of).unwrap_or(of));
-    say(Names { joint: &joint, tip: &tip })
+    let base = |of: JointId, first: JointId| match rig.target(of) {
+        Some(index) if rig.targets[index].limb().is_some() => {
+            format!("the {}", LimbWords::of_target(rig, of).base)
+        }
+        _ => joint(first),
+    };
+    say(Names { joint: &joint, tip: &tip, base: &base })
 }
 
 /// Names for sentences.
 #[derive(Clone, Copy)]
-pub struct Names<'a> {
+struct Names<'a> {
     /// The name of a joint.
-    pub joint: &'a dyn Fn(JointId) -> String,
+    joint: &'a dyn Fn(JointId) -> String,
     /// The name of what the target of a joint moves: the hand of an arm's lower bone, or the joint.
-    pub tip: &'a dyn Fn(JointId) -> String,
-}
-
-/// [`cause`] with other names.
-pub fn cause_with(found: &Diagnosis, names: Names<'_>) -> String {
-    let target = (names.tip)(found.target);
-    match found.cause {
-        Cause::OutOfReach { base, distance, shortest, longest, boundary } => {
-            let base = (names.joint)(base);
-            out_of_reach([&target, &base], distance, [shortest, longest], boundary)
-        }
-        Cause::Limits if found.joints == [found.target] => {
-            format!("The limits of {target} itself keep its tip away from the target")
-        }
-        Cause::Limits => {
-            format!(
-                "The limits of {} keep {target} away from its target",
-                listed(&found.joints, names)
-            )
-        }
-        Cause::RotationLimits { missing, axes } => {
-            let (degrees, limits) = (significant(missing.to_degrees()), limits_about(axes));
-            format!("{target} is {degrees}° short of its target's rotation: {limits} in the way")
-        }
-        Cause::Locked => {
-            let verb = if found.joints.len() == 1 { "is" } else { "are" };
-            format!(
-                "{} {verb} locked, and {target} needs to turn there",
-                listed(&found.joints, names)
-            )
-        }
-        Cause::Conflict { with } => {
-            let other = (names.tip)(with);
-            format!("{target} and {other} reach their targets one at a time, not together")
-        }
-        Cause::Stalled => {
-            format!("The solver stopped where no small turn helps, though {target} can get nearer")
-        }
-        Cause::Lost => format!(
-            "{target} can reach its target from another pose, but not from the one to which the motion came"
-        ),
-        Cause::Singular { .. } => {
-            format!("No joint can move {target} in the direction of its target")
-        }
-        Cause::OutOfIterations { iterations } => {
-            let s = if iterations == 1 { "" } else { "s" };
-            format!(
-                "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
-            )
-        }
-        Cause::Influence { influence: 0.0 } => {
-            format!("The target of {target} has no influence: the joint angles alone pose it")
-        }
-        Cause::Influence { influence } => {
-            let percent = significant(100.0 * influence);
-            format!("{target} is only {percent} % of the way from its FK pose to its target")
-        }
-    }
+    tip: &'a dyn Fn(JointId) -> String,
+    /// What the chain of a joint's target begins with: "the shoulder" or "the hip" of a limb, else
+    /// the name of the first joint.
+    base: &'a dyn Fn(JointId, JointId) -> String,
 }
 
 /// The cause of a pop, such as "elbow jumps: its limit is met".
@@ -346,7 +392,7 @@ mod tests {
         let found = &rig.diagnose(0.0, &Carried::default())[0];
         assert_eq!(
             cause(&rig, found),
-            "hand cannot reach that far: the target is 3.4 from upper, the bones are 1.7 long"
+            "hand cannot reach that far: the target is 3.4 from the shoulder, the bones are 1.7 long"
         );
         let remedies: Vec<_> =
             found.remedies.iter().map(|tried| remedy(&rig, &tried.remedy)).collect();
@@ -364,5 +410,15 @@ mod tests {
         assert_eq!(about([0, 1, 0]), "its limit about y is");
         assert_eq!(about([1, 0, 1]), "its limits about x and z are");
         assert_eq!(about([1, 1, 1]), "its limits about x, y and z are");
+    }
+
+    #[test]
+    fn legs_are_told_from_arms_by_the_names_of_their_joints() {
+        for leg in [["left_thigh", "left_shin"], ["LeftUpLeg", "LeftLeg"], ["a", "R.Foot"]] {
+            assert_eq!(LimbWords::of(leg), LimbWords::LEG, "{leg:?}");
+        }
+        for arm in [["left_upper_arm", "left_forearm"], ["bone 1", "bone 2"]] {
+            assert_eq!(LimbWords::of(arm), LimbWords::ARM, "{arm:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 use crate::document::{Document, LengthFormat, Posed};
 use crate::kinematics::skeleton::JointId;
-use crate::rig::{LimbFrames, SkeletonRig};
+use crate::rig::LimbFrames;
+use crate::words::LimbWords;
 
 /// The limb that pages and guides are about: that of the selected joint, else the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,35 +14,6 @@ pub struct ShownLimb {
     pub words: LimbWords,
 }
 
-/// Words for the joints of a limb, in lower case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LimbWords {
-    /// The upper joint.
-    pub base: &'static str,
-    /// The lower joint.
-    pub middle: &'static str,
-    /// What the target moves.
-    pub end: &'static str,
-}
-
-impl LimbWords {
-    /// Words for an arm.
-    pub const ARM: Self = Self { base: "shoulder", middle: "elbow", end: "hand" };
-    /// Words for a leg.
-    pub const LEG: Self = Self { base: "hip", middle: "knee", end: "foot" };
-
-    /// Words for a limb with these names of its joints.
-    pub fn of<'a>(names: impl IntoIterator<Item = &'a str>) -> Self {
-        const OF_LEGS: [&str; 9] =
-            ["leg", "thigh", "hip", "knee", "shin", "calf", "foot", "ankle", "toe"];
-        let is_of_leg = |name: &str| {
-            let name = name.to_lowercase();
-            OF_LEGS.into_iter().any(|part| name.contains(part))
-        };
-        if names.into_iter().any(is_of_leg) { Self::LEG } else { Self::ARM }
-    }
-}
-
 impl ShownLimb {
     /// The limb of a posed document that is shown while `selected` is the active joint; `None`
     /// without a limb.
@@ -49,7 +21,7 @@ impl ShownLimb {
         let document = posed.document();
         let target = Self::target(document, selected)?;
         let frames = posed.limb_frames(target)?;
-        Some(Self { target, frames, words: words_of(&document.rig, target) })
+        Some(Self { target, frames, words: LimbWords::of_target(&document.rig, target) })
     }
 
     /// [`ShownLimb::new`] without its words, which take memory.
@@ -69,25 +41,5 @@ impl ShownLimb {
     /// The format of the limb's lengths.
     pub fn lengths(&self) -> LengthFormat {
         LengthFormat::of_limb(self.frames.bones())
-    }
-}
-
-fn words_of(rig: &SkeletonRig, target: JointId) -> LimbWords {
-    let joints = rig.limb_joints(target);
-    LimbWords::of(joints.filter_map(|it| Some(rig.skeleton.joint(it)?.name.as_str())))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn legs_are_told_from_arms_by_the_names_of_their_joints() {
-        for leg in [["left_thigh", "left_shin"], ["LeftUpLeg", "LeftLeg"], ["a", "R.Foot"]] {
-            assert_eq!(LimbWords::of(leg), LimbWords::LEG, "{leg:?}");
-        }
-        for arm in [["left_upper_arm", "left_forearm"], ["bone 1", "bone 2"]] {
-            assert_eq!(LimbWords::of(arm), LimbWords::ARM, "{arm:?}");
-        }
     }
 }

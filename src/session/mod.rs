@@ -46,7 +46,7 @@ pub use history::transaction::TransactionAction;
 pub use inspections::{InspectAction, InspectionJob};
 pub use keys::BakeAction;
 pub use keys::KeysEdit;
-pub use limb::{LimbWords, ShownLimb};
+pub use limb::ShownLimb;
 pub use outcome::Effect;
 pub use overlays::OnionSkin;
 pub use overlays::{InsideView, Overlays, SolverGhost, TwistReferencePoses};

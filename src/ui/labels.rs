@@ -15,7 +15,10 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
         Grip::Tip(joint, _) if Grip::turns_elbow(session.posed(), joint) => {
             format!("the limb of {}", end(rig.target_that_turns(joint)))
         }
-        Grip::Tip(joint, _) | Grip::Ring(joint, _) => name(joint).to_owned(),
+        Grip::Bone(joint) if let Some(target) = Grip::turned_limb(session.posed(), joint) => {
+            format!("the limb of {}", end(Some(target)))
+        }
+        Grip::Tip(joint, _) | Grip::Bone(joint) | Grip::Ring(joint, _) => name(joint).to_owned(),
         Grip::Target(joint, _) => format!("the target of {}", of_joint(joint)),
         Grip::Orientation(joint, _) => of_joint(joint).to_owned(),
         Grip::LimbTwist(joint) => format!("the limb of {}", of_joint(joint)),

@@ -150,7 +150,7 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
         {
             format!("Move {name}")
         }
-        Grip::Tip(..) => format!("Pose {name}"),
+        Grip::Tip(..) | Grip::Bone(_) => format!("Pose {name}"),
         Grip::Target(..) => "Target".to_owned(),
         Grip::Head(..) => "Head".to_owned(),
         Grip::LimbPole(..) => "Pole".to_owned(),
@@ -187,7 +187,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let limit = if (turned - drag.turned()).abs() > AT_LIMIT { ", at its limit" } else { "" };
     let verb = match grip {
         Grip::Ring(_, axis) | Grip::Orientation(_, axis) => format!("Rotate about {axis}"),
-        Grip::LimbTwist(_) => "Socket twist".to_owned(),
+        Grip::LimbTwist(_) | Grip::Bone(_) => "Socket twist".to_owned(),
         _ => "Bend".to_owned(),
     };
     format!(
@@ -276,7 +276,7 @@ fn drag_of(grip: Grip, name: &str) -> Cow<'static, str> {
         Grip::LimbPole(..) => "drag the Pole",
         Grip::Ring(..) | Grip::Orientation(..) => return format!("rotate {name}").into(),
         Grip::LimbTwist(_) => return format!("turn {name} about its Pointer").into(),
-        Grip::Tip(..) | Grip::Target(..) => return format!("drag {name}").into(),
+        Grip::Tip(..) | Grip::Bone(_) | Grip::Target(..) => return format!("drag {name}").into(),
         Grip::Head(..) => "drag the head",
     };
     effect.into()

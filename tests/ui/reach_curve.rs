@@ -95,7 +95,7 @@ fn a_hand_at_the_minimum_elbow_angle_says_so() {
     let soft_reach = SoftReach::new(0.0, 1.0, core::f32::consts::FRAC_PI_2).expect("soft limits");
     let bench =
         Bench::after([ArmEdit::SetHand(Vec3::X * 300.0), ArmEdit::SetSoftReach(soft_reach)]);
-    let said = "The smallest elbow angle keeps hand away from its target, 300 from upper.";
+    let said = "The smallest elbow angle keeps hand away from its target, 300 from the shoulder.";
     assert!(bench.says(said));
 }
 

@@ -20,9 +20,9 @@ impl Grip {
     /// | head of a chain on a path | the head, or the target that leads it |
     /// | root without a bone, such as a pelvis | the root |
     /// | end of a target, such as a hand or foot | the target |
-    /// | bone of a target's limb | the elbow; the target of a straight limb |
+    /// | bone of a target's limb | the limb, about its Pointer; the target of a straight limb |
     /// | other bone that a target turns | the target |
-    /// | other bone | the tip, by FK angles |
+    /// | other bone | the pressed point, by FK angles |
     pub fn of_part(posed: &Posed, joint: JointId) -> Option<Self> {
         let (rig, free) = (&posed.document().rig, PointHandle::Free);
         if rig.is_joint_on_path(joint, posed.time()) {
@@ -37,8 +37,7 @@ impl Grip {
         }
         Some(match role_of(posed, joint)? {
             Role::End(target) | Role::Led(target) => Self::Target(target, free),
-            Role::Elbow(upper) => Self::Tip(upper, free),
-            Role::Free => Self::Tip(joint, free),
+            Role::OfLimb | Role::Free => Self::Bone(joint),
             Role::WithoutBone(parent) => Self::of_part(posed, parent)?,
         })
     }
@@ -110,19 +109,25 @@ impl Grip {
         above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
     }
 
-    /// True if a drag of the tip of `joint` turns the elbow of a limb that is bent.
-    pub fn turns_elbow(posed: &Posed, joint: JointId) -> bool {
+    /// The target whose limb a drag of the bone of `joint` turns about its Pointer; `None` if the
+    /// bone is of no limb that a target alone poses, or if the limb is straight.
+    pub fn turned_limb(posed: &Posed, joint: JointId) -> Option<&Target> {
         // Distance of the elbow from the line to the tip, as a fraction of the limb's length.
         const LEAST: f32 = 0.02;
         let (rig, pose) = (&posed.document().rig, posed.skeleton());
-        let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
-        let Some(target) = posing.filter(|it| is_elbow(&rig.skeleton, it, joint)) else {
-            return false;
-        };
-        let [base, elbow] = [joint, target.joint].map(|joint| pose.base(joint));
-        let tip = pose.tip(target.joint);
+        let target = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0)?;
+        let limb = target.limb_in(&rig.skeleton)?;
+        let [base, elbow] = [limb.upper, limb.lower].map(|joint| pose.base(joint));
+        let tip = pose.tip(limb.lower);
         let out = (elbow - base).reject_from((tip - base).normalize_or_zero()).length();
-        out > LEAST * (base.distance(elbow) + elbow.distance(tip))
+        let is_bent = out > LEAST * (base.distance(elbow) + elbow.distance(tip));
+        is_bent.then_some(target)
+    }
+
+    /// True if a drag of the tip of `joint` turns the elbow of a limb that is bent.
+    pub fn turns_elbow(posed: &Posed, joint: JointId) -> bool {
+        let skeleton = &posed.document().rig.skeleton;
+        Self::turned_limb(posed, joint).is_some_and(|target| is_elbow(skeleton, target, joint))
     }
 }
 
@@ -131,8 +136,8 @@ impl Grip {
 enum Role {
     /// The end of the target of a joint, such as a hand or foot.
     End(JointId),
-    /// A bone of a limb that a target alone poses, by the limb's upper joint.
-    Elbow(JointId),
+    /// A bone of a bent limb that a target alone poses.
+    OfLimb,
     /// Turned by the target of a joint.
     Led(JointId),
     /// Posed by its own angles.
@@ -152,12 +157,8 @@ fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
         return own.parent.map(Role::WithoutBone);
     }
     match rig.target_that_turns(joint) {
-        Some(target) => {
-            let limb = target.limb_in(&rig.skeleton);
-            let upper =
-                limb.map(|limb| limb.upper).filter(|upper| Grip::turns_elbow(posed, *upper));
-            Some(upper.map_or(Role::Led(target.joint), Role::Elbow))
-        }
+        Some(_) if Grip::turned_limb(posed, joint).is_some() => Some(Role::OfLimb),
+        Some(target) => Some(Role::Led(target.joint)),
         None => Grip::can_drag_tip(posed, joint).then_some(Role::Free),
     }
 }
@@ -177,12 +178,23 @@ impl GripRing {
     /// `None` where FK alone poses the limb or limits turn the elbow aside.
     pub fn of_twist(limb: &LimbFrames) -> Option<Self> {
         let is_on_circle = limb.uses_ik() && limb.limited_by.is_none();
+        Self::about_pointer(limb).filter(|_| is_on_circle)
+    }
+
+    /// The ring around the Pointer of a limb through a point, in world space; `None` for a limb
+    /// without a direction.
+    pub fn of_limb(limb: &LimbFrames, through: Vec3) -> Option<Self> {
+        let Self { centre, axis } = Self::about_pointer(limb)?;
+        Some(Self { centre: centre + axis * (through - centre).dot(axis), axis })
+    }
+
+    fn about_pointer(limb: &LimbFrames) -> Option<Self> {
         let pose = limb.pose();
         // A mirrored Root space reverses every rotation.
         let sign = limb.root.matrix3.determinant().signum();
         let axis = Vec3::from(limb.root.matrix3 * Vec3A::from(pose.pointer.direction)) * sign;
         let centre = limb.in_world(pose.pointer.direction * pose.along);
-        Some(Self { centre, axis: axis.try_normalize().filter(|_| is_on_circle)? })
+        Some(Self { centre, axis: axis.try_normalize()? })
     }
 
     /// The ring, in world space, of a joint's FK angle about x, y or z. `None` if a limit fixes the

@@ -17,6 +17,8 @@ pub enum Grip {
     Head(JointId, PointHandle),
     /// The tip of a joint's bone.
     Tip(JointId, PointHandle),
+    /// The point of a joint's bone that the mouse pressed.
+    Bone(JointId),
     /// The ring of a joint's angle about x, y or z.
     Ring(JointId, RotationAxis),
     /// The ring of the angle about x, y or z of the orientation that the target of a
@@ -32,7 +34,7 @@ impl Grip {
             | Self::LimbPole(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
-            Self::Ring(..) | Self::Orientation(..) | Self::LimbTwist(_) => true,
+            Self::Bone(_) | Self::Ring(..) | Self::Orientation(..) | Self::LimbTwist(_) => true,
         }
     }
 
@@ -43,7 +45,7 @@ impl Grip {
             Self::Target(..) => "Move target",
             Self::LimbPole(..) => "Move pole",
             Self::Head(..) => "Move head",
-            Self::Tip(..) => "Pose joints",
+            Self::Tip(..) | Self::Bone(_) => "Pose joints",
             Self::Ring(..) => "Turn joint",
             Self::Orientation(..) => "Turn target",
         }
@@ -69,7 +71,7 @@ enum DragKind {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::session) enum Dragged {
     Point {
-        /// The point, relative to the origin of the drag.
+        /// The point, in world space.
         to: Vec3,
         /// Offset since the press.
         moved: Vec3,

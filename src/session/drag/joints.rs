@@ -31,6 +31,16 @@ pub(in crate::session) fn grab(
         Grip::Target(joint, handle) => (handle, grabbed_target(session, joint, handle, ray)?),
         Grip::LimbPole(joint, handle) => (handle, report(joint)?.pole?),
         Grip::Tip(joint, handle) => (handle, free_tip(session, joint)?),
+        Grip::Bone(joint) => {
+            let point = point_on_bone(session.posed().skeleton(), joint, ray)?;
+            if let Some(target) = Grip::turned_limb(session.posed(), joint) {
+                let frames = session.posed().limb_frames(target.joint)?;
+                let ring = GripRing::of_limb(&frames, point)?;
+                let drag = TurnDrag::new(ring, target.limb()?.twist, ray);
+                return Some(Drag::of_ring(grip, drag));
+            }
+            (PointHandle::Free, point)
+        }
         Grip::Head(joint, handle) => (handle, head(session, joint)?),
         Grip::Ring(joint, axis) => {
             let start = session.skeleton().joint(joint)?.rotation[axis.index()];
@@ -50,8 +60,8 @@ pub(in crate::session) fn grab(
         }
     };
     let step = session.shown().grid_cell() * PointDrag::SNAP_CELLS;
-    let point = PointDrag::new(handle, at, Vec3::ZERO, forward, ray)
-        .with_steps(step, snapped_from(session, grip));
+    let point =
+        PointDrag::new(handle, at, forward, ray).with_steps(step, snapped_from(session, grip));
     let mut drag = Drag::of_point(grip, point);
     let is_head = matches!(grip, Grip::Head(..));
     if is_head && handle == PointHandle::Free && forward.y.abs() > EDGE_ON {
@@ -98,6 +108,17 @@ fn free_tip(session: &Session, joint: JointId) -> Option<Vec3> {
     (is_there && !is_on_path()).then(|| session.skeleton_pose().tip(joint))
 }
 
+/// Smallest distance from a bone's base of a point by which the bone is dragged, as a fraction of its
+/// length: nearer to the base, a small way of the mouse would be a large turn.
+const NEAREST: f32 = 0.1;
+
+/// The point of a joint's bone that is nearest to a ray.
+fn point_on_bone(pose: &Skeleton, joint: JointId, ray: Ray) -> Option<Vec3> {
+    pose.joint(joint)?;
+    let ends = [pose.base(joint), pose.tip(joint)];
+    Some(ends[0].lerp(ends[1], ray.nearest_on_segment(ends).max(NEAREST)))
+}
+
 /// The base of a root that is dragged as the head of its chain.
 fn head(session: &Session, joint: JointId) -> Option<Vec3> {
     let is_head = session.rig().path_kind(joint) == Some(PathKind::Head);
@@ -116,6 +137,10 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
             drag_orientation(session, joint, axis, angle)
         }
         (Grip::LimbTwist(joint), Dragged::Angle(angle)) => drag_twist(session, joint, angle),
+        (Grip::Bone(joint), Dragged::Angle(angle)) => {
+            let target = session.rig().target_that_turns(joint).map(|target| target.joint);
+            target.map_or_else(Outcome::default, |target| drag_twist(session, target, angle))
+        }
         (Grip::Head(root, _), Dragged::Point { .. }) => drag_head(session, root),
         (_, Dragged::Point { has_moved: false, .. }) => {
             let camera = session.shown().camera;
@@ -125,6 +150,9 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         (Grip::LimbPole(joint, _), Dragged::Point { to, .. }) => drag_limb_pole(session, joint, to),
         (Grip::Tip(joint, _), Dragged::Point { to, moved, .. }) => {
             drag_tip(session, joint, to, moved)
+        }
+        (Grip::Bone(joint), Dragged::Point { to, moved, .. }) => {
+            drag_bone(session, joint, to - moved, moved)
         }
         _ => Outcome::default(),
     }
@@ -225,8 +253,19 @@ fn drag_tip(session: &Session, joint: JointId, to: Vec3, moved: Vec3) -> Outcome
         Some(target) if is_elbow(&before.skeleton, &target, joint) => {
             drag_elbow(session, &start, target, moved)
         }
-        _ => drag_fk(session, &start, joint, moved),
+        _ => drag_fk(session, &start, joint, 1.0, moved),
     }
+}
+
+/// Moves a point of the bone of `joint` by `moved` since the press, when it was at `pressed`, both
+/// in the world.
+fn drag_bone(session: &Session, joint: JointId, pressed: Vec3, moved: Vec3) -> Outcome {
+    let start = session.history().posed_before();
+    let pose = start.skeleton();
+    let [base, tip] = [pose.base(joint), pose.tip(joint)];
+    let part = (pressed - base).length() / (tip - base).length();
+    let part = if part.is_finite() { part.clamp(NEAREST, 1.0) } else { 1.0 };
+    drag_fk(session, &start, joint, part, moved)
 }
 
 /// Turns a limb about the line from its base to its tip, as far as the elbow moves around it.
@@ -255,9 +294,11 @@ fn drag_elbow(session: &Session, before: &Posed, mut target: Target, moved: Vec3
     targets::set_target(session, target)
 }
 
-/// Solves for the tip of `joint` and writes the angles of the joints that no target poses alone.
-fn drag_fk(session: &Session, posed: &Posed, joint: JointId, moved: Vec3) -> Outcome {
-    let start = fk_start(session.history().track(), posed);
+/// Solves for the point at a `part` of the bone of `joint`, from 0 at its base to 1 at its tip, and
+/// writes the angles of the joints that no target poses alone.
+fn drag_fk(session: &Session, posed: &Posed, joint: JointId, part: f32, moved: Vec3) -> Outcome {
+    let mut start = fk_start(session.history().track(), posed);
+    start.write_local(joint, |joint| joint.axis *= part);
     let before = &posed.document().rig;
     let chain = before.skeleton.ancestors(joint);
     if chain.into_iter().all(|joint| start[joint].locked) {

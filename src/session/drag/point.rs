@@ -59,13 +59,11 @@ pub struct DragInput {
 pub struct PointDrag {
     handle: PointHandle,
     constraint: Option<Constraint>,
-    /// The point at the press, relative to `origin`.
+    /// The point at the press, in world space.
     start: Vec3,
-    /// Origin of `start` and `last`, in world space.
-    origin: Vec3,
     /// Step of snapping, in world units.
     step: f32,
-    /// Point from which whole steps are counted, relative to `origin`.
+    /// Point from which whole steps are counted, in world space.
     snapped_from: Vec3,
     /// Normal of the picture, in the direction in which the camera looks.
     forward: Vec3,
@@ -92,12 +90,10 @@ impl PointDrag {
     /// Step of snapping, in cells of the grid.
     pub(in crate::session) const SNAP_CELLS: f32 = 0.1;
 
-    /// Begins a drag of the point at `start`, relative to `origin` in world space. `forward` is the
-    /// normal of the picture.
+    /// Begins a drag of the point at `start` in world space. `forward` is the normal of the picture.
     pub(in crate::session) fn new(
         handle: PointHandle,
         start: Vec3,
-        origin: Vec3,
         forward: Vec3,
         ray: Ray,
     ) -> Self {
@@ -106,7 +102,6 @@ impl PointDrag {
             handle,
             constraint: None,
             start,
-            origin,
             step: Self::SNAP,
             snapped_from: Vec3::ZERO,
             forward,
@@ -149,7 +144,7 @@ impl PointDrag {
 
     /// The point in world space; always finite.
     pub fn at(&self) -> Vec3 {
-        (self.origin + self.last).clamp(Vec3::MIN, Vec3::MAX)
+        self.last.clamp(Vec3::MIN, Vec3::MAX)
     }
 
     /// Offset of the point from its position at the press; always finite.
@@ -174,8 +169,8 @@ impl PointDrag {
         self.now = input;
     }
 
-    /// Computes the dragged point, relative to the origin. Coordinates that the drag does not move
-    /// are unchanged, bit for bit.
+    /// Computes the dragged point in world space. Coordinates that the drag does not move are
+    /// unchanged, bit for bit.
     pub(in crate::session) fn point(&mut self) -> Vec3 {
         let offset = if self.typed.is_empty() {
             self.pointed()
@@ -217,7 +212,7 @@ impl PointDrag {
     /// Offset of the point when the mouse moves from one ray to another; `None` if a ray does not
     /// meet the line or plane of the drag.
     fn between(&self, from: Ray, to: Ray) -> Option<Vec3> {
-        let at_press = self.origin + self.start;
+        let at_press = self.start;
         let offset = match self.constraint() {
             Some(Constraint::Axis(axis)) => {
                 let axis = Vec3::AXES[axis];
@@ -279,14 +274,13 @@ mod tests {
     use super::*;
     use crate::document::Camera;
 
-    const START: Vec3 = Vec3::new(250.0, 120.0, 60.0);
-    const ROOT: Vec3 = Vec3::new(30.0, -20.0, 10.0);
+    const START: Vec3 = Vec3::new(280.0, 100.0, 70.0);
 
     fn drag(handle: PointHandle) -> (PointDrag, crate::document::Projection) {
         let projection = Camera::default().projection(1.6);
-        let at = projection.project(ROOT + START).expect("in the picture");
+        let at = projection.project(START).expect("in the picture");
         let ray = projection.ray(at);
-        (PointDrag::new(handle, START, ROOT, projection.forward, ray), projection)
+        (PointDrag::new(handle, START, projection.forward, ray), projection)
     }
 
     fn input(ray: Ray) -> DragInput {
@@ -298,7 +292,7 @@ mod tests {
         let (mut drag, projection) = drag(PointHandle::Free);
         for at in [Vec2::new(0.1, 0.2), Vec2::new(-0.9, 0.8), Vec2::new(0.99, -0.99)] {
             drag.set_input(input(projection.ray(at)));
-            let seen = projection.project(ROOT + drag.point()).expect("in the picture");
+            let seen = projection.project(drag.point()).expect("in the picture");
             assert!(seen.distance(at) < 1e-4, "{seen} is not under {at}");
         }
     }
@@ -344,7 +338,7 @@ mod tests {
     #[test]
     fn precision_moves_a_tenth_as_far() {
         let (mut drag, projection) = drag(PointHandle::Axis(0));
-        let at = projection.project(ROOT + START).expect("in the picture");
+        let at = projection.project(START).expect("in the picture");
         let ray = |x: f32| projection.ray(at + Vec2::new(x, 0.0));
         drag.set_input(input(ray(0.2)));
         let coarse = drag.point().x;

@@ -157,7 +157,7 @@ fn part_of(session: &Session, grip: Grip) -> Option<JointId> {
         Grip::Target(joint, PointHandle::Free) if session.rig().sole_limb().is_some() => {
             session.rig().end_of_target(joint)
         }
-        Grip::Tip(joint, PointHandle::Free) => Some(joint),
+        Grip::Tip(joint, PointHandle::Free) | Grip::Bone(joint) => Some(joint),
         _ => None,
     }
 }

@@ -13,8 +13,9 @@ use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
 use crate::rig::LimbPart;
-use crate::session::{Actions, LimbFigure, LimbWords, Session, ShownLimb, TourState};
+use crate::session::{Actions, LimbFigure, Session, ShownLimb, TourState};
 use crate::ui::{pose_summary, widgets};
+use crate::words::LimbWords;
 use figures::{Lit, degrees, figure_colour, length, point};
 
 /// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure

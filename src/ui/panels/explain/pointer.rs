@@ -9,8 +9,9 @@ use glam::Vec3;
 use super::figures::{
     FigureLabels, FigureLine, FormulaRow, Lit, arc, around, beside, degrees, length, table,
 };
-use crate::session::{LimbFigure, LimbWords, ShownLimb};
+use crate::session::{LimbFigure, ShownLimb};
 use crate::ui::style;
+use crate::words::LimbWords;
 
 const HEIGHT: f32 = 140.0;
 /// Room for labels at the sides, and above and below.

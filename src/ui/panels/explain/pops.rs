@@ -10,11 +10,10 @@ use super::figures::capital;
 use crate::document::TwistReferenceKind;
 use crate::kinematics::pop::{InputChange, PopCause};
 use crate::kinematics::soft_reach::SoftReach;
-use crate::session::{
-    Actions, LimbWords, PopFix, PopSample, PopSampleKind, Pops, Session, ShownLimb, Spike,
-};
+use crate::session::{Actions, PopFix, PopSample, PopSampleKind, Pops, Session, ShownLimb, Spike};
 use crate::ui::style;
 use crate::ui::widgets::{self, plot};
+use crate::words::LimbWords;
 
 const HEIGHT: f32 = 140.0;
 /// Range of ratios on the plot; a ratio outside is clamped.

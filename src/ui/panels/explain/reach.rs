@@ -15,9 +15,10 @@ use crate::document::{LengthFormat, ShownLength};
 use crate::kinematics::soft_reach::{HandDistance, ReachLimits, SoftReach};
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::LimbFrames;
-use crate::session::{LimbWords, ShownLimb};
+use crate::session::ShownLimb;
 use crate::ui::style;
 use crate::ui::widgets::{plot, text};
+use crate::words::LimbWords;
 
 /// Draws the inner limit, the reachable range and the Cursor along a bar from the limb's base.
 pub(in crate::ui) fn meter(ui: &mut Ui, limb: &ShownLimb) {

@@ -13,8 +13,9 @@ use super::figures::{
     FigureLabels, FigureLine, FormulaRow, Lit, Place, arc, around, beside, capital, degrees,
     formula, length, pair, point, table,
 };
-use crate::session::{LimbFigure, LimbWords, ShownLimb};
+use crate::session::{LimbFigure, ShownLimb};
 use crate::ui::style;
+use crate::words::LimbWords;
 
 const HEIGHT: f32 = 184.0;
 /// Room for labels at the sides, and above and below.

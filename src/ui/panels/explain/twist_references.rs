@@ -5,8 +5,9 @@ use egui::{Align, Grid, Layout, RichText, Ui, vec2};
 
 use crate::document::{Overlay, TwistReferenceKind};
 use crate::scene::Palette;
-use crate::session::{Actions, LimbWords, Session, ShownLimb, TransportPath, ViewAction};
+use crate::session::{Actions, Session, ShownLimb, TransportPath, ViewAction};
 use crate::ui::{glossary, labels, style, widgets};
+use crate::words::LimbWords;
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
     let path = session.evaluated().transport_path().filter(|_| limb.frames.uses_ik());
