@@ -13,3 +13,4 @@ mod js3d;
 #[cfg(unix)]
 mod saving;
 mod skin_files;
+mod version_2_tables;
