@@ -14,6 +14,7 @@ mod framing;
 mod gallery;
 mod inspection;
 mod keys;
+mod leg_pops;
 mod posing;
 mod session;
 mod session_edges;

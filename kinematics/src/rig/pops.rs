@@ -103,9 +103,12 @@ impl Step<'_> {
     /// The pop of the joints that targets turn together, if there is one.
     fn pop(&self, targets: &[usize]) -> Option<RigPop> {
         let length = targets.iter().map(|it| self.length(*it)).fold(0.0, f64::max);
-        let moved = self.joints.iter().map(|joint| (*joint, self.moved(*joint)));
+        // A hand that its target turns goes as it is told.
+        let is_told = |joint: &JointId| targets.iter().any(|index| self.turns_hand(*index, *joint));
+        let joints = self.joints.iter().filter(|joint| !is_told(joint));
+        let moved = joints.map(|joint| (*joint, self.moved(*joint)));
         let (joint, moved) = moved.max_by(|one, other| one.1.total_cmp(&other.1))?;
-        let ways = targets.iter().map(|it| (*it, self.way(*it, moved)));
+        let ways = targets.iter().map(|it| (*it, self.way(*it)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ratio = moved / way.max(LEAST_WAY * length);
         if ratio <= self.bound(targets[0]) || ratio.is_nan() {
@@ -134,8 +137,15 @@ impl Step<'_> {
         after.iter().zip(taken).map(|(after, taken)| after.distance(taken)).fold(0.0, f64::max)
     }
 
-    /// Way of a target and of its other inputs, by which joints that move by `moved` may move.
-    fn way(&self, index: usize, moved: f64) -> f64 {
+    /// True if a target sets the orientation of a joint, its hand.
+    fn turns_hand(&self, index: usize, joint: JointId) -> bool {
+        let target = &self.after.rig.targets[index];
+        let orientation = target.limb().and_then(|limb| limb.orientation);
+        orientation.is_some() && joint != target.joint && self.after.rig.end_of(target) == joint
+    }
+
+    /// Way of a target and of its other inputs.
+    fn way(&self, index: usize) -> f64 {
         let [before, after] = self.both(index);
         let tip = |moment: &RigMoment<'_>| places(&moment.evaluated.solved, after.0.joint)[1];
         let place = |report: &TargetReport| report.position.as_dvec3();
@@ -145,15 +155,23 @@ impl Step<'_> {
         let of_influence = influence * self.distance_from_fk(after.0);
         let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
         let of_twist = (twist(after.0) - twist(before.0)).abs().min(2.0) * self.length(index) / 2.0;
-        let pole = |report: &TargetReport| report.pole.map(Vec3::as_dvec3);
-        let of_pole = match (pole(before.1), pole(after.1)) {
-            (Some(before), Some(after)) => (after - before).length(),
+        let of_pole = match [&self.before, &self.after].map(|moment| self.pole(moment, index)) {
+            [Some(before), Some(after)] => (after - before).length(),
             _ => 0.0,
         };
-        let orientation = |target: &Target| target.limb().and_then(|limb| limb.orientation);
-        let turns_hand = orientation(before.0) != orientation(after.0);
-        let of_hand = if turns_hand { moved.min(0.5 * self.length(index)) } else { 0.0 };
-        way.max(of_influence).max(of_twist).max(of_pole).max(of_hand)
+        way.max(of_influence).max(of_twist).max(of_pole)
+    }
+
+    /// Position of the pole of a limb's target in the space of the limb's parent, in lengths of the
+    /// world.
+    fn pole(&self, moment: &RigMoment<'_>, index: usize) -> Option<DVec3> {
+        let pose = &moment.evaluated.solved;
+        let limb = moment.rig.targets[index].limb_in(pose)?;
+        let above = pose[limb.upper].parent;
+        let above = above.map_or(pose.transform(), |above| pose.full_transform(above));
+        let pole = moment.evaluated.targets[index].pole?;
+        let scale = f64::from(above.matrix3.determinant()).abs().cbrt();
+        Some(above.as_daffine3().inverse().transform_point3(pole.as_dvec3()) * scale)
     }
 
     /// Largest distance of a joint that a target turns from its place in the FK pose, per

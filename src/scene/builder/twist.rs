@@ -128,13 +128,12 @@ pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) 
     let palette = scene.palette;
     let (guide, accent) = (palette.guide, palette.accent);
     circle.add_arc(scene, TAU, 1.0, guide);
-    circle.add_spoke(scene, circle.twist, accent, false);
-    if limb.limited_by.is_some() || !has_marks {
-        return;
+    let has_marks = has_marks && limb.limited_by.is_none();
+    if has_marks {
+        circle.add_spoke(scene, 0.0, palette.twist_reference(posed.kind), true);
     }
-    let reference = palette.twist_reference(posed.kind);
-    circle.add_spoke(scene, 0.0, reference, true);
-    if circle.twist > LEAST_TWIST {
+    circle.add_spoke(scene, circle.twist, accent, false);
+    if has_marks && circle.twist > LEAST_TWIST {
         circle.add_arc(scene, circle.twist, ARC, accent);
         let at = circle.point(circle.twist / 2.0, LABEL);
         let label = Label::new(at, 0.0, LabelSide::Above, accent);
