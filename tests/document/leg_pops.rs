@@ -176,7 +176,7 @@ fn the_legs_of_walk_do_not_jump() {
         let frames: Vec<_> = (0..frames.frames())
             .map(|frame| {
                 let limb = track.at(frames.time(frame)).limb_frames(target).expect("a limb");
-                let turn = DMat3::from(limb.pose().pointer.limb_frame().as_dmat3());
+                let turn = limb.pose().pointer.limb_frame().as_dmat3();
                 (DQuat::from_mat3(&turn), f64::from(limb.posed.twist))
             })
             .collect();

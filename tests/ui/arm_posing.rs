@@ -254,7 +254,7 @@ fn soft_limits_and_the_hands_orientation_are_folded_and_can_be_set() {
         bench.enter("Hand rotation x", degrees);
     }
     assert!(bench.says("270.0°"), "the forearm rolls on past half a turn");
-    bench.click(Role::RadioButton, "Keep in world");
+    bench.click(Role::RadioButton, "Keep orientation");
     assert_eq!(bench.session().arm().hand_orientation.space, HandSpace::World);
 }
 

@@ -2,9 +2,12 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use ik_arm::document::Theme;
+use ik_arm::document::{Target, Theme};
 use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm::session::{FileAction, PanelTab, Preferences, SelectAction, SolverEdit};
+use ik_arm::rig::TargetKind;
+use ik_arm::session::{
+    Action, FileAction, PanelTab, Preferences, SelectAction, SolverEdit, TargetEdit,
+};
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::common::documents::open_example;
@@ -54,9 +57,12 @@ fn a_term_of_the_solver_explains_itself_and_shows_its_step() {
     }
     let mut bench = Bench::first(LARGE, Preferences::default());
     bench.apply([FileAction::NewFigure]);
-    let hand = bench.joint("left_hand");
-    bench.apply([SelectAction::Joints(vec![hand])]);
-    bench.reveal(Role::Slider, "Target influence");
+    let lower = bench.joint("left_forearm");
+    let target = bench.session().rig().targets[bench.session().rig().target(lower).expect("one")];
+    let of_body = Target { kind: TargetKind::WholeBody, ..target };
+    bench.apply([Action::from(TargetEdit::SetTarget(of_body))]);
+    bench.apply([SelectAction::Joints(vec![lower])]);
+    bench.reveal(Role::Slider, "IK influence");
     show_me(&mut bench, "Influence", "Blends two poses", 10);
 }
 

@@ -130,15 +130,15 @@ fn influence_blends_from_the_joint_angles_to_the_target() {
     enter(&mut bench, "Target y", "1.4");
     let solved = bench.tip("left_forearm");
     assert!(solved.distance(fk) > 0.1);
-    enter(&mut bench, "Target influence", "0");
+    enter(&mut bench, "IK influence", "0");
     assert!(bench.tip("left_forearm").distance(fk) <= 1e-6);
     assert!(bench.says("has no influence: the joint angles alone pose it"));
     bench.reveal(Role::Button, "FK to pose");
     assert!(is_disabled(&bench, Role::Button, "FK to pose"));
-    enter(&mut bench, "Target influence", "0.5");
+    enter(&mut bench, "IK influence", "0.5");
     let between = bench.tip("left_forearm");
     assert!(between.distance(fk) > 0.02 && between.distance(solved) > 0.02);
-    enter(&mut bench, "Target influence", "1");
+    enter(&mut bench, "IK influence", "1");
     assert!(bench.tip("left_forearm").distance(solved) <= 1e-6);
 }
 
@@ -163,10 +163,10 @@ fn diamonds_key_what_a_target_has_and_the_limb_follows_over_time() {
     let middle = bench.tip("left_shin").y;
     assert!(middle > start.y + 0.05 && middle < 0.35, "{middle}");
 
-    bench.reveal(Role::Button, "Key Target influence");
-    bench.click(Role::Button, "Key Target influence");
+    bench.reveal(Role::Button, "Key IK influence");
+    bench.click(Role::Button, "Key IK influence");
     assert_eq!(keys(&bench, Channel::TargetInfluence(shin)), 1);
-    bench.click(Role::Button, "Key Target influence");
+    bench.click(Role::Button, "Key IK influence");
     assert_eq!(keys(&bench, Channel::TargetInfluence(shin)), 0, "a second press deletes the key");
 }
 
@@ -225,7 +225,7 @@ fn the_pole_of_a_limb_is_dragged_and_the_elbow_points_at_it() {
     let mut bench = with_targets();
     select(&mut bench, "left_hand");
     let before = tips(&bench);
-    choose(&mut bench, "Elbow reference", "Pole");
+    choose(&mut bench, "Twist reference", "Pole");
     let forearm = bench.joint("left_forearm");
     let pole = bench.session().posed().target_report(forearm).and_then(|report| report.pole);
     let pole = pole.expect("a pole");
@@ -244,18 +244,18 @@ fn matches_move_nothing() {
     select(&mut bench, "left_hand");
     let before = tips(&bench);
     enter(&mut bench, "Target y", "1.3");
-    enter(&mut bench, "Limb twist", "40");
+    enter(&mut bench, "Socket twist", "40");
     assert!(farthest(&before, &tips(&bench)) > 0.1);
     let before = tips(&bench);
     bench.reveal(Role::Button, "FK to pose");
     bench.click(Role::Button, "FK to pose");
     assert!(farthest(&before, &tips(&bench)) <= 2e-6);
-    enter(&mut bench, "Target influence", "0");
+    enter(&mut bench, "IK influence", "0");
     assert!(farthest(&before, &tips(&bench)) <= 2e-6, "FK has the pose");
     enter(&mut bench, "Target y", "0.9");
     bench.reveal(Role::Button, "Target to FK");
     bench.click(Role::Button, "Target to FK");
-    enter(&mut bench, "Target influence", "1");
+    enter(&mut bench, "IK influence", "1");
     assert!(farthest(&before, &tips(&bench)) <= 2e-6, "the target is at the FK tip");
 }
 
@@ -263,6 +263,7 @@ fn matches_move_nothing() {
 fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     let mut bench = with_targets();
     select(&mut bench, "left_hand");
+    bench.toggle(&["Hand orientation"]);
     bench.reveal(Role::RadioButton, "Keep orientation");
     bench.click(Role::RadioButton, "Keep orientation");
     let hand = bench.joint("left_hand");
@@ -417,6 +418,7 @@ fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     assert!((after.z - before.z).abs() > 0.05, "{after} was {before}");
     bench.apply([TransactionAction::Undo]);
 
+    bench.toggle(&["Hand orientation"]);
     bench.reveal(Role::RadioButton, "Keep orientation");
     bench.click(Role::RadioButton, "Keep orientation");
     assert_eq!(

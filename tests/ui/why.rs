@@ -141,8 +141,9 @@ fn foot_turned_by(degrees: &str) -> Bench {
     let foot = bench.joint("left_foot");
     bench.apply([SelectAction::Joints(vec![foot])]);
     bench.settle();
-    bench.reveal(Role::SpinButton, "Target rotation x value");
-    bench.enter("Target rotation x", degrees);
+    bench.toggle(&["Hand orientation"]);
+    bench.reveal(Role::SpinButton, "Hand rotation x value");
+    bench.enter("Hand rotation x", degrees);
     bench.settle();
     bench
 }

@@ -1,5 +1,5 @@
-//! Settings of a figure that is one limb: hand, Socket twist, Root, lengths, FK and IK, soft limits,
-//! hand orientation.
+//! Settings of the target of a limb: Socket twist, FK and IK, soft limits, hand orientation. Those of a
+//! figure that is one limb are hand, Root and lengths, too.
 
 use core::f32::consts::TAU;
 
@@ -11,9 +11,8 @@ use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis};
 use crate::kinematics::two_bone::TwoBone;
 use crate::rig::{LimbSettings, TargetKind};
-use crate::session::{
-    Actions, JointEdit, PoseMode, Session, ShownLimb, TargetEdit, TransactionAction,
-};
+use crate::session::{Actions, JointEdit, PoseMode, Session, TargetEdit, TransactionAction};
+use crate::ui::panels::skeleton::space;
 use crate::ui::widgets::{
     self, AXES, KeyButton, PointSliders, Slider, angle_slider, euler_sliders, soft_reach_sliders,
     with_axis,
@@ -28,23 +27,28 @@ const ROOT_RANGE: f32 = 500.0;
 const LENGTH_RANGE: (f32, f32) = (10.0, 1000.0);
 const PINNED: &str = "Pinned to world";
 
-/// The limb of a figure that is nothing else, with its target.
+/// A target that poses a limb.
 #[derive(Clone, Copy)]
-pub(in crate::ui) struct SoleLimb<'a> {
+pub(in crate::ui) struct LimbTarget<'a> {
     session: &'a Session,
     target: &'a Target,
     settings: LimbSettings,
-    shown: &'a ShownLimb,
     joints: Limb,
+    /// True if the figure is this limb and nothing else. Its values then have no diamonds.
+    is_alone: bool,
 }
 
-impl<'a> SoleLimb<'a> {
-    /// `None` for any other figure.
-    pub fn new(session: &'a Session) -> Option<Self> {
-        let target = session.rig().sole_limb()?;
-        let joints = Limb::ending_at(session.skeleton(), target.joint).ok()?;
-        let (settings, shown) = (*target.limb()?, session.limb()?);
-        Some(Self { session, target, settings, shown, joints })
+impl<'a> LimbTarget<'a> {
+    /// `None` for the target of a whole body.
+    pub fn new(session: &'a Session, target: &'a Target) -> Option<Self> {
+        let joints = target.limb_in(session.skeleton())?;
+        let is_alone = session.rig().sole_limb().is_some();
+        Some(Self { session, target, settings: *target.limb()?, joints, is_alone })
+    }
+
+    /// The limb of a figure that is nothing else.
+    pub fn sole(session: &'a Session) -> Option<Self> {
+        Self::new(session, session.rig().sole_limb()?)
     }
 
     /// The same target of the arm in the default pose, for defaults.
@@ -52,12 +56,27 @@ impl<'a> SoleLimb<'a> {
         Document::default().rig.targets[0]
     }
 
-    fn uses_ik(&self) -> bool {
-        self.target.is_posing()
+    fn why_not_ik(&self) -> Option<&'static str> {
+        (!self.target.is_posing()).then_some(ANGLES_LEAD)
     }
 
-    fn why_not_ik(&self) -> Option<&'static str> {
-        (!self.uses_ik()).then_some(ANGLES_LEAD)
+    /// The channel of a value's diamond.
+    fn keyed(&self, channel: Channel) -> Option<Channel> {
+        (!self.is_alone).then_some(channel)
+    }
+
+    /// Step of the sliders of lengths and positions.
+    fn step(&self) -> f32 {
+        if self.is_alone {
+            self.session.history().unit()
+        } else {
+            self.session.shown().grid_cell() * 0.1
+        }
+    }
+
+    fn length(&self) -> f32 {
+        let bones = [self.joints.upper, self.joints.lower];
+        bones.map(|joint| self.session.skeleton()[joint].axis.length()).iter().sum()
     }
 
     fn with(&self, settings: LimbSettings) -> TargetEdit {
@@ -72,29 +91,48 @@ impl<'a> SoleLimb<'a> {
     }
 }
 
-/// Shows what poses the limb by IK: the hand and the Socket twist.
-pub(in crate::ui) fn ui(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+/// Shows what poses the only limb of a figure by IK: the hand and the Socket twist.
+pub(in crate::ui) fn ui(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let mut aside = Actions::new();
-    let pinned = |ui: &mut Ui| pin(ui, limb, &mut aside);
+    let pinned = |ui: &mut Ui| {
+        widgets::at_right(ui, |ui| pin(ui, limb.session, limb.target, &mut aside));
+    };
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, limb, actions));
+    actions.extend(aside);
+    twist_section(ui, limb, actions);
+}
+
+/// Shows all other settings of the only limb of a figure, folded at first.
+pub(in crate::ui) fn more(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    widgets::folded_section(ui, "Root", |ui| root(ui, limb, actions));
+    widgets::folded_section(ui, "Lengths", |ui| lengths(ui, limb, actions));
+    widgets::folded_section(ui, "FK and IK", |ui| fk_ik(ui, limb, actions));
+    bounds_and_hand(ui, limb, actions);
+}
+
+/// Shows the settings that a limb has besides those of every target.
+pub(in crate::ui) fn of_figure(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    twist_section(ui, limb, actions);
+    bounds_and_hand(ui, limb, actions);
+}
+
+fn twist_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    let mut aside = Actions::new();
     let reference = |ui: &mut Ui| reference(ui, limb, &mut aside);
     widgets::section_with(ui, "Socket twist", reference, |ui| socket_twist(ui, limb, actions));
     actions.extend(aside);
 }
 
-/// Shows all other settings of the limb, folded at first.
-pub(in crate::ui) fn more(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    widgets::folded_section(ui, "Root", |ui| root(ui, limb, actions));
-    widgets::folded_section(ui, "Lengths", |ui| lengths(ui, limb, actions));
-    widgets::folded_section(ui, "FK and IK", |ui| fk_ik(ui, limb, actions));
+fn bounds_and_hand(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     widgets::folded_section(ui, "Soft limits", |ui| soft_limits(ui, limb, actions));
     widgets::folded_section(ui, "Hand orientation", |ui| hand_orientation(ui, limb, actions));
 }
 
-fn hand(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn hand(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let (session, target) = (limb.session, limb.target);
-    let (outer, unit) = (limb.shown.frames.limits.outer, session.history().unit());
-    let default = SoleLimb::default().home;
+    let Some(outer) = session.limb().map(|limb| limb.frames.limits.outer) else { return };
+    let unit = limb.step();
+    let default = LimbTarget::default().home;
     let hand = PointSliders {
         name: "Hand",
         labels: AXES,
@@ -119,25 +157,19 @@ fn hand(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
     hand.show(ui, session, actions, |home| TargetEdit::SetTarget(target.with_home(home)));
 }
 
-/// Shows the switch of the pin and its diamond, which also keys the point that the target has.
-fn pin(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    widgets::at_right(ui, |ui| {
-        let joint = limb.target.joint;
-        let mut is_pinned = limb.target.is_pinned;
-        let check = ui
-            .checkbox(&mut is_pinned, PINNED)
-            .on_hover_text("Keep the hand in place when the Root moves");
-        if check.changed() {
-            actions.push(TargetEdit::Pin { joint, is_pinned });
-        }
-        let others = vec![Channel::of_point(limb.target)];
-        let key = KeyButton { channel: Channel::Pinned(joint), others };
-        key.show(ui, limb.session, PINNED, actions);
-    });
+/// Shows the switch of a target's pin with its diamond, which also keys the point that the target
+/// has.
+pub(in crate::ui) fn pin(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
+    let tooltip = "Keep the target in place when what it is on moves";
+    let changed = widgets::check_box(ui, PINNED, tooltip, target.is_pinned, None);
+    let joint = target.joint;
+    actions.extend(changed.map(|is_pinned| TargetEdit::Pin { joint, is_pinned }));
+    let others = vec![Channel::of_point(target)];
+    KeyButton { channel: Channel::Pinned(joint), others }.show(ui, session, PINNED, actions);
 }
 
-fn root(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    let unit = limb.session.history().unit();
+fn root(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    let unit = limb.step();
     let (joint, root) = limb.root();
     let sliders = PointSliders {
         name: "Root",
@@ -153,9 +185,9 @@ fn root(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
     sliders.show(ui, limb.session, actions, |offset| JointEdit::SetOffset { joint, offset });
 }
 
-fn lengths(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn lengths(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let palette = style::palette(ui);
-    let (default, unit) = (TwoBone::default(), limb.session.history().unit());
+    let (default, unit) = (TwoBone::default(), limb.step());
     let skeleton = limb.session.skeleton();
     let bones = [
         (
@@ -194,32 +226,44 @@ pub(in crate::ui) const ANGLES_LEAD: &str = "Switch to IK to set this";
 const WIDTH: f32 = 33.0;
 
 /// Shows the switch between IK and FK and, if FK has a part in the pose, the joint angles.
-fn fk_ik(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    switch(ui, limb, actions);
+fn fk_ik(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    influence(ui, limb.session, limb.target, actions);
     if limb.target.influence < 1.0 {
         angles(ui, limb, actions);
     }
 }
 
-/// Shows buttons for IK and FK, and the slider that blends between them.
-fn switch(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    let Target { influence, joint, .. } = *limb.target;
+/// Shows the slider that blends between FK and IK; for a limb, after buttons for the two.
+pub(in crate::ui) fn influence(
+    ui: &mut Ui,
+    session: &Session,
+    target: &Target,
+    actions: &mut Actions,
+) {
+    let Target { influence, joint, .. } = *target;
     let modes = [
-        (PoseMode::Hand, "IK", 1.0, "Pose by IK (hand → joint angles)"),
-        (PoseMode::Angles, "FK", 0.0, "Pose by FK (joint angles → hand)"),
+        (PoseMode::Hand, "IK", 1.0, "Pose by IK (target → joint angles)"),
+        (PoseMode::Angles, "FK", 0.0, "Pose by FK (joint angles → target)"),
     ];
+    let is_alone = session.rig().sole_limb().is_some();
     let blend = Slider {
         name: "IK influence",
-        label: "IK influence",
+        label: "Influence",
+        term: Some("IK influence"),
         tooltip: "Blend from FK at 0 to IK at 1",
         value: influence,
         range: (0.0, 1.0),
         default: 1.0,
         step: 0.1,
+        channel: (!is_alone).then_some(Channel::TargetInfluence(joint)),
         ..Slider::default()
     };
-    let set = |influence| TargetEdit::SetTarget(Target { influence, ..*limb.target });
-    blend.show_after(ui, limb.session, actions, set, |ui, actions| {
+    let set = |influence| TargetEdit::SetTarget(Target { influence, ..*target });
+    if target.limb().is_none() {
+        blend.show(ui, session, actions, set);
+        return;
+    }
+    blend.show_after(ui, session, actions, set, |ui, actions| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (mode, name, whole, tooltip) in modes {
             let chosen = influence == whole;
@@ -299,7 +343,7 @@ fn angle_rows(joint: &Joint, part: &str) -> Vec<AngleRow> {
 
 /// Shows sliders of the angles of the upper joint and of the elbow, and a button that sets all to
 /// 0.
-fn angles(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn angles(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let skeleton = limb.session.skeleton();
     let colours = style::palette(ui).axes;
     let joints = [(limb.joints.upper, "Shoulder"), (limb.joints.lower, "Elbow")];
@@ -331,7 +375,7 @@ fn angles(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
 /// Least width of the combo box's text, in points.
 const COMBO: f32 = 36.0;
 
-fn socket_twist(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn socket_twist(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let slider = Slider {
         name: "Socket twist",
         label: "Twist",
@@ -343,6 +387,7 @@ fn socket_twist(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
         unit: "°",
         step: 1.0,
         disabled: limb.why_not_ik(),
+        channel: limb.keyed(Channel::TargetTwist(limb.target.joint)),
         ..Slider::default()
     };
     let set = |degrees: f32| {
@@ -356,7 +401,7 @@ fn socket_twist(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
 
 /// Shows the combo box of the twist references, for the title row of the section, with a label if
 /// there is room for both.
-fn reference(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn reference(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     /// Width in points of the section's title with its triangle.
     const TITLE: f32 = 104.0;
     const LABEL: &str = "reference";
@@ -380,7 +425,7 @@ fn width(ui: &Ui, text: &str) -> f32 {
     ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x
 }
 
-fn choice(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn choice(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let (chosen, joint) = (limb.settings.reference, limb.target.joint);
     let combo = ComboBox::from_id_salt("twist reference").width(60.0).selected_text(chosen.name());
     let response = combo.show_ui(ui, |ui| {
@@ -397,41 +442,52 @@ fn choice(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
     response.on_hover_text(labels::twist_reference(chosen));
 }
 
-fn pole(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    let Some((_, pole)) = limb.settings.pole() else { return };
-    let default = SoleLimb::default().limb().and_then(|limb| limb.pole);
+fn pole(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    let (session, joint) = (limb.session, limb.target.joint);
+    let Some((space, pole)) = limb.settings.pole() else { return };
+    let of_arm = || LimbTarget::default().limb()?.pole;
+    let in_front = || {
+        let rig = session.rig();
+        rig.new_pole(session.posed().evaluated_skeleton(), rig.target(joint)?)
+    };
+    let default = if limb.is_alone { of_arm() } else { in_front() };
     let sliders = PointSliders {
         name: "Pole",
         labels: ["Pole x", "Pole y", "Pole z"],
         value: pole,
         default: default.unwrap_or(pole),
-        range: limb.shown.frames.bones().outer_limit(),
-        step: limb.session.history().unit(),
+        range: limb.length(),
+        step: limb.step(),
         tooltip: "Move the Pole, the point that the elbow turns towards",
         disabled: limb.why_not_ik(),
-        channel: None,
+        channel: limb.keyed(Channel::TargetPole(joint)),
     };
-    sliders.show(ui, limb.session, actions, |pole| {
+    sliders.show(ui, session, actions, |pole| {
         limb.with(LimbSettings { pole: Some(pole), ..limb.settings })
     });
+    space::of_pole(ui, session, limb.target, space, actions);
 }
 
-fn soft_limits(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
-    soft_reach_sliders(ui, limb.session, "", limb.settings.soft_reach, actions, |soft_reach| {
+fn soft_limits(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    soft_reach_sliders(ui, limb.session, limb.settings.soft_reach, actions, |soft_reach| {
         limb.with(LimbSettings { soft_reach, ..limb.settings })
     });
 }
 
-fn hand_orientation(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
+fn hand_orientation(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let Some(hand) = limb.joints.hand else {
-        ui.weak("The limb has no hand");
+        ui.weak("There is no hand or foot: no single joint is at the tip");
         return;
     };
     let joint = limb.target.joint;
     let kept = limb.settings.orientation;
     let choices = [
-        (false, "Follow forearm", "Turn the hand with the Lower limb"),
-        (true, "Keep in world", "Let the target keep the orientation of the hand"),
+        (false, "Follow bone", "Turn the hand or foot with the bone above it"),
+        (
+            true,
+            "Keep orientation",
+            "Keep the orientation of the hand or foot in the target's space",
+        ),
     ];
     ui.horizontal(|ui| {
         for (is_kept, name, tooltip) in choices {
@@ -446,16 +502,18 @@ fn hand_orientation(ui: &mut Ui, limb: SoleLimb<'_>, actions: &mut Actions) {
     match kept {
         Some(angles) => {
             let (tooltip, angles) =
-                ("Rotate the hand in the space of its target", order.shown(angles));
-            euler_sliders(ui, limb.session, name, tooltip, angles, actions, |angles| {
+                ("Rotate the hand or foot in the target's space", order.shown(angles));
+            let channel = limb.keyed(Channel::TargetOrientation(joint));
+            euler_sliders(ui, limb.session, (name, tooltip, channel), angles, actions, |angles| {
                 let orientation = Some(order.kept(angles));
                 limb.with(LimbSettings { orientation, ..limb.settings })
             });
         }
         None => {
-            let tooltip = "Rotate the hand relative to the forearm";
+            let tooltip = "Rotate the hand or foot relative to the bone above it";
             let angles = order.shown(rig.skeleton[hand].rotation);
-            euler_sliders(ui, limb.session, name, tooltip, angles, actions, |angles| {
+            let channel = limb.keyed(Channel::Rotation(hand));
+            euler_sliders(ui, limb.session, (name, tooltip, channel), angles, actions, |angles| {
                 JointEdit::SetRotation { joint: hand, rotation: order.kept(angles) }
             });
         }

@@ -13,7 +13,7 @@ use egui::{ScrollArea, Ui};
 use super::widgets;
 use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
-use limb::SoleLimb;
+use limb::LimbTarget;
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);
@@ -22,7 +22,7 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let room = height - note.map_or(0.0, |_| skeleton::note_height(height));
     let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
     rows.show(ui, |ui| {
-        let limb = SoleLimb::new(session);
+        let limb = LimbTarget::sole(session);
         match limb {
             Some(limb) => limb::ui(ui, limb, actions),
             None => skeleton::ui(ui, session, actions),

@@ -375,13 +375,12 @@ pub(in crate::ui) fn angle_slider<'a>(name: &'a str, tooltip: &'a str, radians: 
     }
 }
 
-/// Shows three sliders for Euler angles about x, y and z. `angles` and the argument of `set` are in
-/// radians.
+/// Shows three sliders, with a name, a tooltip and the channel of their diamonds, for Euler angles
+/// about x, y and z. `angles` and the argument of `set` are in radians.
 pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
     ui: &mut Ui,
     session: &Session,
-    name: &str,
-    tooltip: &str,
+    (name, tooltip, channel): (&str, &str, Option<Channel>),
     angles: Vec3,
     actions: &mut Actions,
     set: impl Fn(Vec3) -> A,
@@ -392,6 +391,7 @@ pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
         let slider = Slider {
             label,
             colour: Some(style::colour(colours[axis])),
+            channel,
             ..angle_slider(&name, tooltip, angles[axis])
         };
         let set = |degrees: f32| set(with_axis(angles, axis, degrees.to_radians()));
@@ -402,11 +402,10 @@ pub(in crate::ui) fn euler_sliders<A: Into<Action>>(
 const MOST_SOFT: f32 = 0.99;
 const MOST_STRETCHED: f32 = 3.0;
 
-/// Shows the sliders. `prefix` is the start of their accessible names.
+/// Shows the sliders.
 pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
     ui: &mut Ui,
     session: &Session,
-    prefix: &str,
     soft_reach: SoftReach,
     actions: &mut Actions,
     set: impl Fn(SoftReach) -> A,
@@ -425,7 +424,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
         set(soft_reach.unwrap_or(default))
     };
     let softness_slider = Slider {
-        name: &format!("{prefix}Softness"),
+        name: "Softness",
         label: "Softness",
         term: Some("Softness"),
         tooltip: "Slow the hand near its limits so that the elbow does not snap",
@@ -437,7 +436,7 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
     };
     softness_slider.show(ui, session, actions, |softness| set(softness, stretch, angle));
     let stretch_slider = Slider {
-        name: &format!("{prefix}Stretch"),
+        name: "Stretch",
         label: "Stretch",
         term: Some("Stretch"),
         tooltip: "Let the limbs stretch up to this factor",
@@ -448,11 +447,10 @@ pub(in crate::ui) fn soft_reach_sliders<A: Into<Action>>(
         ..Slider::default()
     };
     stretch_slider.show(ui, session, actions, |stretch| set(softness, stretch, angle));
-    let name = format!("{prefix}Minimum elbow angle");
     let angle_slider = Slider {
         label: "Min. angle",
         range: (0.0, 179.0),
-        ..angle_slider(&name, "Keep the elbow open by at least this angle", angle)
+        ..angle_slider("Minimum elbow angle", "Keep the elbow open by at least this angle", angle)
     };
     angle_slider.show(ui, session, actions, |degrees| set(softness, stretch, degrees.to_radians()));
 }

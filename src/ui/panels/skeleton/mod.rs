@@ -14,10 +14,11 @@ use glam::Vec3;
 use crate::document::{Channel, PathKind, Target, WavyRing};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, JointEdit, PathEdit, Session};
+use crate::ui::panels::limb::{self, LimbTarget};
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
 pub(super) use skin::areas as skin_areas;
-pub(super) use targets::{note, note_height};
+pub(super) use targets::{note, note_height, space};
 
 /// The target of the selected joint, of which the panel has a note; `None` without one, and for a
 /// figure that is one limb.
@@ -64,6 +65,9 @@ fn selected(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             widgets::named_section(ui, "target", &title, |ui| {
                 targets::selected(ui, session, target, actions);
             });
+            if let Some(limb) = LimbTarget::new(session, &target) {
+                limb::of_figure(ui, limb, actions);
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The list of targets with their distances; the target of the selected joint, and a note on
 //! whether it is reached and, if not, why, with what helps.
 
-mod limb;
+pub(in crate::ui) mod space;
 
 use egui::{RichText, Role, ScrollArea, Ui, WidgetInfo};
 
@@ -10,9 +10,10 @@ use crate::kinematics::chain_ik::{Root, Status};
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::limb_ik::LimbReach;
 use crate::kinematics::skeleton::JointId;
-use crate::rig::{TargetKind, TargetOutcome, TargetReport};
+use crate::rig::{TargetOutcome, TargetReport};
 use crate::session::{Actions, PlaybackAction, SelectAction, Session, TargetEdit};
-use crate::ui::widgets::{self, AXES, Choice, KeyButton, NumberField, PointSliders, Slider, text};
+use crate::ui::panels::limb;
+use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, Slider, text};
 use crate::ui::{labels, pose_summary, style};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
@@ -87,38 +88,19 @@ pub(in crate::ui) fn selected(
     actions: &mut Actions,
 ) {
     let step = session.shown().grid_cell() * 0.1;
-    influence(ui, session, target, actions);
-    limb::kind(ui, session, target, actions);
+    limb::influence(ui, session, &target, actions);
+    space::kind(ui, session, target, actions);
     place(ui, session, target, step, actions);
-    pin(ui, session, &target, actions);
-    limb::of_target(ui, session, &target, actions);
-    match target.kind {
-        TargetKind::Limb(settings) => limb::settings(ui, session, target, settings, actions),
-        TargetKind::WholeBody => weight(ui, session, target, actions),
+    ui.horizontal(|ui| limb::pin(ui, session, &target, actions));
+    space::of_target(ui, session, &target, actions);
+    if target.limb().is_none() {
+        weight(ui, session, target, actions);
     }
     path(ui, target, actions);
     if target.motion.path != TargetPath::Still {
         motion(ui, session, target, step, actions);
     }
     matches(ui, session, &target, actions);
-}
-
-fn influence(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    let slider = Slider {
-        name: "Target influence",
-        label: "Influence",
-        term: Some("IK influence"),
-        tooltip: "Blend from the FK pose (0) to the target (1)",
-        value: target.influence,
-        range: (0.0, 1.0),
-        default: 1.0,
-        step: 0.1,
-        channel: Some(Channel::TargetInfluence(target.joint)),
-        ..Slider::default()
-    };
-    slider.show(ui, session, actions, |influence| {
-        TargetEdit::SetTarget(Target { influence, ..target })
-    });
 }
 
 fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mut Actions) {
@@ -139,20 +121,6 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         channel: Some(Channel::of_point(&target)),
     };
     place.show(ui, session, actions, |home| TargetEdit::SetTarget(target.with_home(home)));
-}
-
-/// Shows the switch of the pin with its diamond, which also keys the point that the target has.
-fn pin(ui: &mut Ui, session: &Session, target: &Target, actions: &mut Actions) {
-    const PINNED: &str = "Pinned to world";
-    ui.horizontal(|ui| {
-        let tooltip = "Keep the target in place when the joint that it is on moves";
-        let changed = widgets::check_box(ui, PINNED, tooltip, target.is_pinned, None);
-        let joint = target.joint;
-        actions.extend(changed.map(|is_pinned| TargetEdit::Pin { joint, is_pinned }));
-        let others = vec![Channel::of_point(target)];
-        let key = KeyButton { channel: Channel::Pinned(joint), others };
-        key.show(ui, session, PINNED, actions);
-    });
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
