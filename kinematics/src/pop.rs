@@ -198,16 +198,16 @@ impl ElbowStep {
         if went < f64::from(Self::LEAST) * sum {
             return None;
         }
-        let [turn, bend, swing] = parts(&before.pose, &after.pose);
+        let [turn, bend, swing] = parts(before, after);
         let moved = (after.pose.elbow.as_dvec3() - before.pose.elbow.as_dvec3()).length();
-        let (ratio, limit) = (moved / went, Self::SPIKE * calm(before, after, sum));
+        let (ratio, limit) = (moved / went, Self::SPIKE * calm(before, after));
         let pop = (ratio > limit).then(|| {
             let [turned, bent, swung] = [turn, bend, swing].map(DVec3::length);
             if swung >= turned.max(bent) {
                 PopCause::Singular { nearest: nearest_to_singular(before, after) as f32 }
             } else if turned >= bent {
                 PopCause::Shoulder
-            } else if is_far_out(before, after, sum) {
+            } else if is_far_out(before, after) {
                 PopCause::Straight
             } else {
                 PopCause::Folded
@@ -219,7 +219,8 @@ impl ElbowStep {
 }
 
 /// The parts turn, bend and swing of the elbow's displacement.
-fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
+pub(crate) fn parts(before: &PosedLimb, after: &PosedLimb) -> [DVec3; 3] {
+    let (before, after) = (&before.pose, &after.pose);
     let outward = before.outward();
     let transported = TransportedFrame { direction: before.pointer.direction, outward };
     let [w, to] = [before, after].map(|pose| pose.pointer.direction.as_dvec3());
@@ -236,8 +237,9 @@ fn parts(before: &TwoBonePose, after: &TwoBonePose) -> [DVec3; 3] {
 }
 
 /// Ratio of the elbow's expected displacement to the cursor's: max(1, σd₁ / max(D, L/5)).
-fn calm(before: &PosedLimb, after: &PosedLimb, sum: f64) -> f64 {
+pub(crate) fn calm(before: &PosedLimb, after: &PosedLimb) -> f64 {
     const NEAR_SHOULDER: f64 = 0.2;
+    let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
     let stretch = f64::from(before.pose.stretch.max(after.pose.stretch));
     let distance = f64::from(before.pose.distance.min(after.pose.distance));
     let upper = stretch * f64::from(after.ik.bones.upper());
@@ -246,14 +248,15 @@ fn calm(before: &PosedLimb, after: &PosedLimb, sum: f64) -> f64 {
 
 /// True if the hand's mean distance in both poses is nearer to the outer limit than to the inner
 /// one.
-fn is_far_out(before: &PosedLimb, after: &PosedLimb, sum: f64) -> bool {
+pub(crate) fn is_far_out(before: &PosedLimb, after: &PosedLimb) -> bool {
+    let sum = f64::from(after.ik.bones.upper()) + f64::from(after.ik.bones.lower());
     let least = f64::from(after.ik.soft_reach.least_distance(after.ik.bones));
     f64::from(before.pose.distance) + f64::from(after.pose.distance) > least + sum
 }
 
 /// Smallest angle in radians between the Pointer, on its way from one pose to the other, and a
 /// singular direction of the twist reference.
-fn nearest_to_singular(before: &PosedLimb, after: &PosedLimb) -> f64 {
+pub(crate) fn nearest_to_singular(before: &PosedLimb, after: &PosedLimb) -> f64 {
     let [from, to] = [before, after].map(|it| it.pose.pointer.direction.as_dvec3());
     let nearest = |direction: Vec3| {
         direction.as_dvec3().try_normalize().map_or(FRAC_PI_2, |it| nearest_on_arc(it, from, to))

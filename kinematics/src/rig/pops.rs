@@ -9,15 +9,16 @@
 //! joints. A step pops if the ratio of the two is above 2; of a limb, above the bound of
 //! [`pop`](crate::pop).
 
-use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::pop_cause::RigPopCause;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::limb_ik::{Limb, LimbAim};
+use crate::limb_ik::Limb;
+use crate::pop::{self, PosedLimb};
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
-use crate::twist::TwistReferenceKind;
+use crate::twist::{TwistReference, TwistReferenceKind};
 
 /// A rig at a time, with its pose.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +81,8 @@ struct Step<'a> {
     after: RigMoment<'a>,
     /// The joints that the targets turn.
     joints: Vec<JointId>,
+    /// The limb of the target before and after the step, in Root space; `None` for whole-body targets.
+    limb: Option<[PosedLimb; 2]>,
     /// Base and tip of each joint, if these joints had been taken along by FK.
     taken: Vec<[DVec3; 2]>,
     is_missed: [&'a dyn Fn(usize) -> bool; 2],
@@ -95,7 +98,11 @@ impl<'a> Step<'a> {
         let turned = |index: &usize| after.rig.moved_by(&after.rig.targets[*index]).turned;
         let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
         let taken = taken_along(before, after, &joints);
-        Self { before: *before, after: *after, joints, taken, is_missed }
+        let posed = |moment: &RigMoment<'_>| {
+            Some(moment.rig.limb_frames(moment.evaluated, *targets.first()?)?.posed)
+        };
+        let limb = posed(before).zip(posed(after)).map(<[PosedLimb; 2]>::from);
+        Self { before: *before, after: *after, joints, limb, taken, is_missed }
     }
 }
 
@@ -111,23 +118,13 @@ impl Step<'_> {
         let ways = targets.iter().map(|it| (*it, self.way(*it)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ratio = moved / way.max(LEAST_WAY * length);
-        if ratio <= self.bound(targets[0]) || ratio.is_nan() {
+        let calm = self.limb.map_or(1.0, |[before, after]| pop::calm(&before, &after));
+        if ratio <= POP * calm || ratio.is_nan() {
             return None;
         }
         let cause = self.cause(targets, farthest, joint, length);
         let target = self.after.rig.targets[farthest].joint;
         Some(RigPop { joint, ratio: ratio as f32, cause, target })
-    }
-
-    /// Ratio above which the step pops.
-    fn bound(&self, target: usize) -> f64 {
-        const NEAR_BASE: f64 = 0.2;
-        let Some((_, [base, elbow, tip])) = self.limb(&self.after, target) else { return POP };
-        let [upper, lower, distance] = [elbow - base, tip - elbow, tip - base].map(DVec3::length);
-        let before = self.limb(&self.before, target);
-        let distance =
-            before.map_or(distance, |(_, [base, _, tip])| distance.min((tip - base).length()));
-        POP * (upper / distance.max(NEAR_BASE * (upper + lower))).max(1.0)
     }
 
     /// Distance by which a joint's base or tip moves from where FK takes it.
@@ -155,23 +152,15 @@ impl Step<'_> {
         let of_influence = influence * self.distance_from_fk(after.0);
         let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
         let of_twist = (twist(after.0) - twist(before.0)).abs().min(2.0) * self.length(index) / 2.0;
-        let of_pole = match [&self.before, &self.after].map(|moment| self.pole(moment, index)) {
-            [Some(before), Some(after)] => (after - before).length(),
+        let pole = |limb: PosedLimb| match limb.ik.reference {
+            TwistReference::Pole(pole) => Some(pole.as_dvec3()),
+            _ => None,
+        };
+        let of_pole = match self.limb.map(|limb| limb.map(pole)) {
+            Some([Some(before), Some(after)]) => before.distance(after),
             _ => 0.0,
         };
         way.max(of_influence).max(of_twist).max(of_pole)
-    }
-
-    /// Position of the pole of a limb's target in the space of the limb's parent, in lengths of the
-    /// world.
-    fn pole(&self, moment: &RigMoment<'_>, index: usize) -> Option<DVec3> {
-        let pose = &moment.evaluated.solved;
-        let limb = moment.rig.targets[index].limb_in(pose)?;
-        let above = pose[limb.upper].parent;
-        let above = above.map_or(pose.transform(), |above| pose.full_transform(above));
-        let pole = moment.evaluated.targets[index].pole?;
-        let scale = f64::from(above.matrix3.determinant()).abs().cbrt();
-        Some(above.as_daffine3().inverse().transform_point3(pole.as_dvec3()) * scale)
     }
 
     /// Largest distance of a joint that a target turns from its place in the FK pose, per
@@ -193,20 +182,10 @@ impl Step<'_> {
 
     /// Length of a target's chain or limb in the world.
     fn length(&self, index: usize) -> f64 {
-        match self.limb(&self.after, index) {
-            Some((_, [base, elbow, tip])) => (elbow - base).length() + (tip - elbow).length(),
+        match self.limb {
+            Some([_, after]) => f64::from(after.ik.bones.outer_limit()),
             None => f64::from(self.after.rig.length_to(self.after.rig.targets[index].joint)),
         }
-    }
-
-    /// The limb of a target with the positions of base, elbow and tip; `None` for a whole body.
-    fn limb(&self, moment: &RigMoment<'_>, index: usize) -> Option<(Limb, [DVec3; 3])> {
-        let target = &moment.rig.targets[index];
-        target.limb()?;
-        let pose = &moment.evaluated.solved;
-        let limb = Limb::ending_at(pose, target.joint).ok()?;
-        let [elbow, tip] = places(pose, limb.lower);
-        Some((limb, [places(pose, limb.upper)[0], elbow, tip]))
     }
 }
 
@@ -301,83 +280,31 @@ impl Step<'_> {
     fn cause_of_limb(&self, index: usize) -> RigPopCause {
         /// Angle in radians from a singular direction below which the elbow swings fast.
         const NEAR: f64 = 0.35;
-        let after = self.limb(&self.after, index);
-        let Some((limb, [base, elbow, tip])) = after else { return RigPopCause::Unknown };
-        let pointer = (tip - base).normalize_or_zero();
-        let settings = self.after.rig.targets[index].limb().copied().unwrap_or_default();
-        let [upper, lower, distance] = [elbow - base, tip - elbow, tip - base].map(DVec3::length);
-        let fk = &self.after.evaluated.fk;
-        let fk_bent = |fk: &Skeleton| {
-            let [fk_elbow, fk_tip] = places(fk, limb.lower);
-            (fk_elbow - places(fk, limb.upper)[0]).angle_between(fk_tip - fk_elbow)
-        };
-        let singular = match settings.reference {
-            TwistReferenceKind::Fk => {
-                let fk_pointer = places(fk, limb.lower)[1] - places(fk, limb.upper)[0];
-                let away = std::f64::consts::PI - fk_pointer.angle_between(pointer);
-                if fk_bent(fk) < 0.1 {
-                    return RigPopCause::StraightFk;
-                }
-                away
-            }
-            TwistReferenceKind::Transport => f64::INFINITY,
+        /// Bend of the FK pose in radians below which it gives the elbow no side.
+        const STRAIGHT: f32 = 0.1;
+        let Some([before, after]) = &self.limb else { return RigPopCause::Unknown };
+        let [turned, bent, swung] = pop::parts(before, after).map(DVec3::length);
+        if swung < turned.max(bent) {
+            let is_bent = bent > turned && pop::is_far_out(before, after);
+            return if is_bent { RigPopCause::Straight } else { RigPopCause::Folded };
+        }
+        let is_near = || pop::nearest_to_singular(before, after) < NEAR;
+        match after.kind {
+            TwistReferenceKind::Fk if after.fk.bend.abs() < STRAIGHT => RigPopCause::StraightFk,
             TwistReferenceKind::Up
             | TwistReferenceKind::Pole
-            | TwistReferenceKind::Stereographic => {
-                let axis = self.reference_axis(index, limb, base);
-                let angle = axis.angle_between(pointer);
-                let is_one_sided = settings.reference == TwistReferenceKind::Stereographic;
-                if is_one_sided { angle } else { angle.min(std::f64::consts::PI - angle) }
+            | TwistReferenceKind::Stereographic
+            | TwistReferenceKind::Fk
+                if is_near() =>
+            {
+                RigPopCause::Singular
             }
-        };
-        let joints: Vec<JointId> = limb.joints().collect();
-        let [turned, bent, swung] = self.parts(index, limb);
-        let is_far_out = distance > 0.5 * ((upper - lower).abs() + upper + lower);
-        if swung >= turned.max(bent) {
-            if singular < NEAR {
-                return RigPopCause::Singular;
+            _ => {
+                let rig = self.after.rig;
+                let limb = rig.targets[index].limb_in(&rig.skeleton);
+                let joints: Vec<JointId> = limb.into_iter().flat_map(Limb::joints).collect();
+                self.cause_of_limits(&joints).unwrap_or(RigPopCause::Unknown)
             }
-            let of_limits = self.cause_of_limits(&joints);
-            return of_limits.unwrap_or(RigPopCause::Unknown);
-        }
-        if turned >= bent || !is_far_out { RigPopCause::Folded } else { RigPopCause::Straight }
-    }
-
-    /// The parts of the elbow's way, seen from the limb's base: by the rotation of the line to the
-    /// tip, in the plane of the limb, and about that line.
-    fn parts(&self, index: usize, limb: Limb) -> [f64; 3] {
-        let [base, tip] = [self.taken[limb.upper.index()][0], self.taken[limb.lower.index()][1]];
-        let elbow = self.taken[limb.lower.index()][0] - base;
-        let Some((_, [new_base, new_elbow, new_tip])) = self.limb(&self.after, index) else {
-            return [0.0; 3];
-        };
-        let new_elbow = new_elbow - new_base;
-        let [from, to] = [tip - base, new_tip - new_base].map(|way| way.normalize_or(DVec3::X));
-        let carried = DQuat::from_rotation_arc(from, to) * elbow;
-        let along =
-            |elbow: DVec3| DVec2::new(elbow.dot(to), elbow.reject_from_normalized(to).length());
-        let bent = along(carried).distance(along(new_elbow));
-        let [one, other] = [carried, new_elbow].map(|elbow| elbow.reject_from_normalized(to));
-        let swung = one.angle_between(other) * 0.5 * (one.length() + other.length());
-        [carried.distance(elbow), bent, if swung.is_finite() { swung } else { 0.0 }]
-    }
-
-    /// The direction in the world in which the twist reference of a limb is singular.
-    fn reference_axis(&self, index: usize, limb: Limb, base: DVec3) -> DVec3 {
-        let pose = &self.after.evaluated.solved;
-        let above = pose[limb.upper].parent;
-        let rotation =
-            above.map_or(DMat3::IDENTITY, |above| DMat3::from_quat(pose.rotation_in_world(above)));
-        let settings = self.after.rig.targets[index].limb().copied().unwrap_or_default();
-        let pole = self.after.evaluated.targets[index].pole;
-        match settings.reference {
-            TwistReferenceKind::Stereographic => {
-                let root =
-                    LimbAim::in_bind_pose(pose, limb).map_or(DMat3::IDENTITY, LimbAim::frame);
-                rotation * root * settings.map.singular().as_dvec3()
-            }
-            TwistReferenceKind::Pole => pole.map_or(DVec3::ZERO, |pole| pole.as_dvec3() - base),
-            _ => rotation.y_axis,
         }
     }
 

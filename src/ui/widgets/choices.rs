@@ -23,7 +23,7 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     let mut pressed = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(2.0, 0.0);
-        ui.spacing_mut().button_padding = vec2(6.0, 5.0);
+        ui.spacing_mut().button_padding = vec2(PADDING, 5.0);
         for &(value, name, tooltip) in tabs {
             let is_now = value == now;
             let colour = if is_now {
@@ -45,9 +45,12 @@ pub(in crate::ui) fn tabs<T: PartialEq + Copy>(
     pressed
 }
 
+/// Space beside the name of a tab, in points: six tabs have room in a row of the page.
+const PADDING: f32 = 3.0;
+
 fn underline(ui: &Ui, tab: Rect) {
     let y = tab.bottom() - 1.0;
-    ui.painter().hline(tab.x_range().shrink(6.0), y, Stroke::new(2.0, style::accent(ui)));
+    ui.painter().hline(tab.x_range().shrink(PADDING), y, Stroke::new(2.0, style::accent(ui)));
 }
 
 /// Shows buttons, all as wide, and returns the value of one that was pressed and is not `now`.
