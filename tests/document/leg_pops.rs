@@ -4,10 +4,10 @@
 use core::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
-use ik_arm::document::{Document, Inspection, Timeline, Track, TwistReferenceKind};
+use ik_arm::document::{Document, FramePop, Inspection, Timeline, Track, TwistReferenceKind};
 use ik_arm::io;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits};
-use ik_arm::rig::{LimbSettings, TargetSpace};
+use ik_arm::rig::{LimbSettings, RigPopCause, TargetSpace};
 
 use crate::common::Random;
 
@@ -161,6 +161,27 @@ fn pops_of_the_legs_of_walk_are_found_where_an_own_derivative_finds_them() {
         }
     }
     assert!(all > 50, "{all} pops");
+}
+
+/// With the limits of its hips, the legs cannot follow *Up*: the causes name the limits, and no leg
+/// of a walk is folded.
+#[test]
+fn pops_at_the_limits_of_the_hips_name_the_limits() {
+    let mut document = walk();
+    for target in &mut document.rig.targets {
+        target.limb_mut().expect("a limb").reference = TwistReferenceKind::Up;
+    }
+    let track = Track::new(&document);
+    let found = Inspection::new(&track, document.timeline, false, |_| true).expect("not cancelled");
+    assert!(found.pops.len() > 5, "{:?}", found.pops);
+    for FramePop { time, pop } in found.pops {
+        let is_of_limits = matches!(
+            pop.cause,
+            RigPopCause::LimitMet | RigPopCause::LimitLeft | RigPopCause::AtLimit
+        );
+        assert!(is_of_limits, "{time}: {pop:?}");
+        assert!(pop.ratio > 10.0, "{time}: {pop:?}");
+    }
 }
 
 /// A leg that walks under its hip: neither its Limb nor its twist jumps, in the example as it is.

@@ -12,11 +12,11 @@
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
+use super::limb_frames::LimbFrames;
 use super::pop_cause::RigPopCause;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::limb_ik::Limb;
-use crate::pop::{self, PosedLimb};
+use crate::pop::{self, ElbowStep, PosedLimb};
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::twist::{TwistReference, TwistReferenceKind};
 
@@ -81,8 +81,8 @@ struct Step<'a> {
     after: RigMoment<'a>,
     /// The joints that the targets turn.
     joints: Vec<JointId>,
-    /// The limb of the target before and after the step, in Root space; `None` for whole-body targets.
-    limb: Option<[PosedLimb; 2]>,
+    /// The limb of the target before and after the step; `None` for whole-body targets.
+    limb: Option<[LimbFrames; 2]>,
     /// Base and tip of each joint, if these joints had been taken along by FK.
     taken: Vec<[DVec3; 2]>,
     is_missed: [&'a dyn Fn(usize) -> bool; 2],
@@ -98,10 +98,9 @@ impl<'a> Step<'a> {
         let turned = |index: &usize| after.rig.moved_by(&after.rig.targets[*index]).turned;
         let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
         let taken = taken_along(before, after, &joints);
-        let posed = |moment: &RigMoment<'_>| {
-            Some(moment.rig.limb_frames(moment.evaluated, *targets.first()?)?.posed)
-        };
-        let limb = posed(before).zip(posed(after)).map(<[PosedLimb; 2]>::from);
+        let frames =
+            |moment: &RigMoment<'_>| moment.rig.limb_frames(moment.evaluated, *targets.first()?);
+        let limb = frames(before).zip(frames(after)).map(<[LimbFrames; 2]>::from);
         Self { before: *before, after: *after, joints, limb, taken, is_missed }
     }
 }
@@ -118,7 +117,10 @@ impl Step<'_> {
         let ways = targets.iter().map(|it| (*it, self.way(*it)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ratio = moved / way.max(LEAST_WAY * length);
-        let calm = self.limb.map_or(1.0, |[before, after]| pop::calm(&before, &after));
+        let calm = self
+            .limb
+            .as_ref()
+            .map_or(1.0, |[before, after]| pop::calm(&before.posed, &after.posed));
         if ratio <= POP * calm || ratio.is_nan() {
             return None;
         }
@@ -152,7 +154,7 @@ impl Step<'_> {
         let of_influence = influence * self.distance_from_fk(after.0);
         let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
         let of_twist = (twist(after.0) - twist(before.0)).abs().min(2.0) * self.length(index) / 2.0;
-        let pole = |limb: PosedLimb| match limb.ik.reference {
+        let pole = |limb: LimbFrames| match limb.posed.ik.reference {
             TwistReference::Pole(pole) => Some(pole.as_dvec3()),
             _ => None,
         };
@@ -183,7 +185,7 @@ impl Step<'_> {
     /// Length of a target's chain or limb in the world.
     fn length(&self, index: usize) -> f64 {
         match self.limb {
-            Some([_, after]) => f64::from(after.ik.bones.outer_limit()),
+            Some([_, after]) => f64::from(after.bones().outer_limit()),
             None => f64::from(self.after.rig.length_to(self.after.rig.targets[index].joint)),
         }
     }
@@ -282,13 +284,24 @@ impl Step<'_> {
         const NEAR: f64 = 0.35;
         /// Bend of the FK pose in radians below which it gives the elbow no side.
         const STRAIGHT: f32 = 0.1;
-        let Some([before, after]) = &self.limb else { return RigPopCause::Unknown };
-        let [turned, bent, swung] = pop::parts(before, after).map(DVec3::length);
+        let Some(limb) = &self.limb else { return RigPopCause::Unknown };
+        let is_limited = limb.iter().any(|limb| limb.limited_by.is_some());
+        // The pose without limits tells whether limits make the step.
+        let posed = |limb: LimbFrames| match is_limited {
+            true => PosedLimb { pose: limb.solution.pose, ..limb.posed },
+            false => limb.posed,
+        };
+        let [before, after] = limb.map(posed);
+        let step = ElbowStep::between(&before, &after);
+        if is_limited && step.is_none_or(|step| step.pop.is_none()) {
+            return self.limits_of_limb(index).unwrap_or(RigPopCause::AtLimit);
+        }
+        let [turned, bent, swung] = pop::parts(&before, &after).map(DVec3::length);
         if swung < turned.max(bent) {
-            let is_bent = bent > turned && pop::is_far_out(before, after);
+            let is_bent = bent > turned && pop::is_far_out(&before, &after);
             return if is_bent { RigPopCause::Straight } else { RigPopCause::Folded };
         }
-        let is_near = || pop::nearest_to_singular(before, after) < NEAR;
+        let is_near = || pop::nearest_to_singular(&before, &after) < NEAR;
         match after.kind {
             TwistReferenceKind::Fk if after.fk.bend.abs() < STRAIGHT => RigPopCause::StraightFk,
             TwistReferenceKind::Up
@@ -299,13 +312,15 @@ impl Step<'_> {
             {
                 RigPopCause::Singular
             }
-            _ => {
-                let rig = self.after.rig;
-                let limb = rig.targets[index].limb_in(&rig.skeleton);
-                let joints: Vec<JointId> = limb.into_iter().flat_map(Limb::joints).collect();
-                self.cause_of_limits(&joints).unwrap_or(RigPopCause::Unknown)
-            }
+            _ => self.limits_of_limb(index).unwrap_or(RigPopCause::Unknown),
         }
+    }
+
+    /// The limits of a limb's two bones that are met or left.
+    fn limits_of_limb(&self, index: usize) -> Option<RigPopCause> {
+        let rig = self.after.rig;
+        let limb = rig.targets[index].limb_in(&rig.skeleton)?;
+        self.cause_of_limits(&limb.joints().collect::<Vec<_>>())
     }
 
     /// True if a chain is nearly straight, before or after the step.
