@@ -155,6 +155,9 @@ fn pops_of_the_legs_of_walk_are_found_where_an_own_derivative_finds_them() {
                 if let Some(found) = pop {
                     let off = (f64::from(found.pop.ratio) / ratio - 1.0).abs();
                     assert!(off < 0.05, "{case}, {shin} at {time}: {} is {ratio}", found.pop.ratio);
+                    let is_named =
+                        matches!(found.pop.cause, RigPopCause::Singular | RigPopCause::Straight);
+                    assert!(is_named, "{case}, {shin} at {time}: {:?}", found.pop.cause);
                     all += 1;
                 }
             }

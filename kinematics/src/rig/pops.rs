@@ -209,20 +209,28 @@ impl Step<'_> {
         if any(&|it| is_solved(&self.before, it) != is_solved(&self.after, it)) {
             return RigPopCause::Switched;
         }
+        let missed = |moment: usize| any(&|index| (self.is_missed[moment])(index));
+        let lost_or_found = match [missed(0), missed(1)] {
+            [false, true] => Some(RigPopCause::Lost),
+            [true, false] => Some(RigPopCause::Found),
+            _ => None,
+        };
+        let is_limb = self.after.rig.targets[farthest].kind != TargetKind::WholeBody;
+        // A limb exceeds even a jump of its target only for one of these causes.
+        if is_limb && let Some(cause) = self.cause_of_limb(farthest) {
+            return lost_or_found.unwrap_or(cause);
+        }
         if any(&|it| self.target_way(it) > JUMP * length) {
             return RigPopCause::TargetJump;
         }
         if self.joints.iter().any(|joint| self.fk_way(*joint) > JUMP * length) {
             return RigPopCause::FkJump;
         }
-        let missed = |moment: usize| any(&|index| (self.is_missed[moment])(index));
-        match [missed(0), missed(1)] {
-            [false, true] => return RigPopCause::Lost,
-            [true, false] => return RigPopCause::Found,
-            _ => {}
+        if let Some(cause) = lost_or_found {
+            return cause;
         }
-        if self.after.rig.targets[farthest].kind != TargetKind::WholeBody {
-            return self.cause_of_limb(farthest);
+        if is_limb {
+            return RigPopCause::Unknown;
         }
         if !self.after.rig.is_tracked {
             return RigPopCause::ByItself;
@@ -279,12 +287,12 @@ impl Step<'_> {
         if met { Some(RigPopCause::LimitMet) } else { left.then_some(RigPopCause::LimitLeft) }
     }
 
-    fn cause_of_limb(&self, index: usize) -> RigPopCause {
+    fn cause_of_limb(&self, index: usize) -> Option<RigPopCause> {
         /// Angle in radians from a singular direction below which the elbow swings fast.
         const NEAR: f64 = 0.35;
         /// Bend of the FK pose in radians below which it gives the elbow no side.
         const STRAIGHT: f32 = 0.1;
-        let Some(limb) = &self.limb else { return RigPopCause::Unknown };
+        let limb = self.limb.as_ref()?;
         let is_limited = limb.iter().any(|limb| limb.limited_by.is_some());
         // The pose without limits tells whether limits make the step.
         let posed = |limb: LimbFrames| match is_limited {
@@ -294,25 +302,27 @@ impl Step<'_> {
         let [before, after] = limb.map(posed);
         let step = ElbowStep::between(&before, &after);
         if is_limited && step.is_none_or(|step| step.pop.is_none()) {
-            return self.limits_of_limb(index).unwrap_or(RigPopCause::AtLimit);
+            return Some(self.limits_of_limb(index).unwrap_or(RigPopCause::AtLimit));
         }
         let [turned, bent, swung] = pop::parts(&before, &after).map(DVec3::length);
         if swung < turned.max(bent) {
             let is_bent = bent > turned && pop::is_far_out(&before, &after);
-            return if is_bent { RigPopCause::Straight } else { RigPopCause::Folded };
+            return Some(if is_bent { RigPopCause::Straight } else { RigPopCause::Folded });
         }
         let is_near = || pop::nearest_to_singular(&before, &after) < NEAR;
         match after.kind {
-            TwistReferenceKind::Fk if after.fk.bend.abs() < STRAIGHT => RigPopCause::StraightFk,
+            TwistReferenceKind::Fk if after.fk.bend.abs() < STRAIGHT => {
+                Some(RigPopCause::StraightFk)
+            }
             TwistReferenceKind::Up
             | TwistReferenceKind::Pole
             | TwistReferenceKind::Stereographic
             | TwistReferenceKind::Fk
                 if is_near() =>
             {
-                RigPopCause::Singular
+                Some(RigPopCause::Singular)
             }
-            _ => self.limits_of_limb(index).unwrap_or(RigPopCause::Unknown),
+            _ => self.limits_of_limb(index),
         }
     }
 
