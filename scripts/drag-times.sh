@@ -23,6 +23,7 @@ figure=$target/drag-times-figure.json
 
 main() {
     set_up virtual-display
+    require_tools python3:python3
     if [[ -z ${PROGRAM-} ]]; then
         cargo build --release --locked
     fi
@@ -35,20 +36,18 @@ main() {
     done
 }
 
+# The arm with all guides.
 write_arm() {
-    cat >"$arm" <<'JSON'
-{
-  "format": "ik-arm",
-  "version": 2,
-  "rig": "arm",
-  "arm": { "cursor": [250, 120, 60], "twist": 0, "root": [0, 0, 0], "upper": 200, "lower": 300 },
-  "overlays": ["cursor", "pointer", "inner_limit", "outer_limit", "elbow_circle", "hand", "skin",
-    "grid_xy", "grid_xz", "grid_yz", "ground", "axes", "labels", "shadow"]
-}
-JSON
+    "$program" examples arm | python3 -c '
+import json, sys
+document = json.load(sys.stdin)
+document["overlays"] = sys.argv[1:]
+json.dump(document, sys.stdout)' \
+        cursor pointer inner_limit outer_limit elbow_circle cylinders hand skin \
+        grid_xy grid_xz grid_yz ground axes labels shadow >"$arm"
 }
 
-# measure BUDGET RIG FILE "X Y" "X Y": with the positions of the hand and of the background.
+# measure BUDGET NAME FILE "X Y" "X Y": with the positions of the hand and of the background.
 measure() {
     local budget=$1 rig=$2 file=$3 hand=$4 beside=$5
     initial_settings="(preferences:(frame_budget:$budget,offers_tour:false,has_dragged_hand:true))"
