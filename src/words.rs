@@ -146,10 +146,18 @@ struct Names<'a> {
     base: &'a dyn Fn(JointId, JointId) -> String,
 }
 
-/// The cause of a pop, such as "elbow jumps: its limit is met".
+/// The cause of a pop, such as "the knee of left_foot moves 4 times as far as its target: a joint of the
+/// chain meets its limit".
 pub fn pop(rig: &SkeletonRig, pop: &RigPop) -> String {
     with_names(rig, |names| {
-        let (joint, tip) = ((names.joint)(pop.joint), (names.tip)(pop.target));
+        let tip = (names.tip)(pop.target);
+        let words = LimbWords::of_target(rig, pop.target);
+        let limb = rig.target(pop.target).and_then(|it| rig.targets[it].limb_in(&rig.skeleton));
+        let joint = match limb {
+            Some(limb) if pop.joint == limb.upper => format!("the {} of {tip}", words.middle),
+            Some(limb) if pop.joint == limb.lower => tip.clone(),
+            _ => (names.joint)(pop.joint),
+        };
         let why = match pop.cause {
             RigPopCause::TargetJump => format!("the target of {tip} jumps"),
             RigPopCause::FkJump => "the joint angles jump".to_owned(),
@@ -165,11 +173,12 @@ pub fn pop(rig: &SkeletonRig, pop: &RigPop) -> String {
             RigPopCause::Straight => format!("the bones to {tip} are nearly straight"),
             RigPopCause::Folded => format!("{tip} is near the base of its chain"),
             RigPopCause::Singular => {
-                "the elbow's reference is near a direction in which it flips".to_owned()
+                format!("the {}'s reference is near a direction in which it flips", words.middle)
             }
-            RigPopCause::StraightFk => {
-                "the joint angles pose the limb straight and give the elbow no side".to_owned()
-            }
+            RigPopCause::StraightFk => format!(
+                "the joint angles pose the limb straight and give the {} no side",
+                words.middle
+            ),
             RigPopCause::TurnsOver => {
                 format!("bones are in line with the way of {tip}, and the solver turns them over")
             }

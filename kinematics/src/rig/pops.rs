@@ -47,6 +47,8 @@ const POP: f64 = 2.0;
 /// Way of the inputs, in chain lengths, below which a step is measured against this way: joints
 /// move by rounding.
 const LEAST_WAY: f64 = 1e-3;
+/// Part of the farthest way beyond which a way is as far: ways are known to rounding.
+const ALIKE: f64 = 0.999;
 /// Part of a chain's length beyond which inputs jump.
 const JUMP: f64 = 0.1;
 
@@ -112,8 +114,11 @@ impl Step<'_> {
         // A hand that its target turns goes as it is told.
         let is_told = |joint: &JointId| targets.iter().any(|index| self.turns_hand(*index, *joint));
         let joints = self.joints.iter().filter(|joint| !is_told(joint));
-        let moved = joints.map(|joint| (*joint, self.moved(*joint)));
-        let (joint, moved) = moved.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        let ways: Vec<(JointId, f64)> = joints.map(|joint| (*joint, self.moved(*joint))).collect();
+        let moved = ways.iter().map(|(_, way)| *way).max_by(f64::total_cmp)?;
+        // Two joints share a point: of those that move alike, the one nearer to the root.
+        let alike = ways.iter().filter(|(_, way)| *way >= ALIKE * moved);
+        let joint = alike.map(|(joint, _)| *joint).min_by_key(|joint| joint.index())?;
         let ways = targets.iter().map(|it| (*it, self.way(*it)));
         let (farthest, way) = ways.max_by(|one, other| one.1.total_cmp(&other.1))?;
         let ratio = moved / way.max(LEAST_WAY * length);

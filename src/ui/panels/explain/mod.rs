@@ -16,7 +16,7 @@ use crate::rig::LimbPart;
 use crate::session::{Actions, LimbFigure, Session, ShownLimb, TourState};
 use crate::ui::{pose_summary, widgets};
 use crate::words::LimbWords;
-use figures::{Lit, degrees, figure_colour, length, point};
+use figures::{Lit, capital, degrees, figure_colour, length, point};
 
 /// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure
 /// under the mouse.
@@ -31,7 +31,8 @@ pub(super) fn triangle(
     sentence(ui, session, limb);
     widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
-    widgets::section(ui, "Elbow triangle", |ui| triangle::quantities(ui, limb, lit));
+    let title = format!("{} triangle", capital(limb.words.middle));
+    widgets::named_section(ui, "triangle", &title, |ui| triangle::quantities(ui, limb, lit));
     widgets::section(ui, "Law of cosines", |ui| triangle::law_of_cosines(ui, limb, lit));
     widgets::section(ui, "Positions", |ui| triangle::positions(ui, limb, lit));
     lit.pointed()
