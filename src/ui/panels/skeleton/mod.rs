@@ -20,15 +20,16 @@ use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 pub(super) use skin::areas as skin_areas;
 pub(super) use targets::{note, note_height, space};
 
-/// The target of the selected joint, of which the panel has a note; `None` without one, and for a
-/// figure that is one limb.
+/// The target of the selected joint or of its limb, of which the panel has a note; `None` without
+/// one, and for a figure that is one limb.
 pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
     let selected = session.selection().active()?;
     let rig = session.rig();
     if rig.sole_limb().is_some() {
         return None;
     }
-    rig.target_of_end(selected).map(|index| rig.targets[index])
+    let index = rig.target_of_end(selected).or_else(|| rig.limb_target_of(selected))?;
+    Some(rig.targets[index])
 }
 
 /// Shows the joints of a figure that is one limb, whose other settings stand elsewhere.
