@@ -24,6 +24,7 @@ main() {
     step "Documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
     step "Tests without threads" test_without_threads
     step "Window" end_of_window_tests
+    step "Browser" test_web
     printf '\nEverything passed in %d s.\n' "$SECONDS"
 }
 
@@ -97,6 +98,17 @@ end_test_window() {
     # shellcheck disable=SC2046 # none or one
     kill $(jobs -p) 2>/dev/null || true
     stop_virtual_display
+}
+
+# The page in headless Chromium, where the tools that build and drive it are there.
+test_web() {
+    if ! scripts/web.sh --tools || ! command -v chromedriver python3 >/dev/null; then
+        printf 'SKIPPED: the page was not built and not tested. Besides the tools named above, the tests need chromedriver (Debian: chromium-driver) and python3.\n'
+        return
+    fi
+    scripts/web.sh
+    IK_ARM_PAGE=${CARGO_TARGET_DIR:-target}/web \
+        cargo test --locked --test web -- --ignored --test-threads=1
 }
 
 end_of_window_tests() {

@@ -13,13 +13,13 @@
 //! | `kinematics` | [`ik_arm_kinematics`], re-exported: arms, skeletons and their solvers; its floors are listed there | |
 //! | [`words`] | diagnoses and their remedies as sentences | |
 //! | [`document`] | saved state: the rig, keys, timeline, camera, display; motions, their inspections and bakes | |
-//! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve` | |
+//! | [`io`] | files: reads documents, Scotty3D's skeletons, glTF and BVH; writes documents, glTF, BVH, CSV and OBJ; reads and writes lines of `ik-arm solve`, and links | |
 //! | [`session`] | the open document and state that is not saved; actions, undo and redo; the tour | |
 //! | [`scene`] | what to draw, as plain lists | |
 //! | `render` | draws a scene with wgpu into a window, a PNG or a test image | `app` |
 //! | `export` | files for other programs: motion, tables, meshes, pictures | `app` |
 //! | `ui` | egui panels that read a session and push actions | `app` |
-//! | `app` | window, surface and frame loop (winit) | `app` |
+//! | `app` | window, surface and frame loop (winit), on a computer or in a page of a browser | `app` |
 //! | `cli` | commands: solve, pose, check, render, export, bake, skin, examples, tour, gui | `app` |
 //!
 //! # One frame
@@ -54,7 +54,7 @@
 
 #[cfg(feature = "app")]
 pub mod app;
-#[cfg(feature = "app")]
+#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
 pub mod cli;
 pub mod document;
 #[cfg(feature = "app")]

@@ -12,7 +12,9 @@
 //! gap between the two thresholds keeps the scale from swinging. A graphics card that meets the
 //! budget draws in full.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 /// Fractions of the viewport's width and height at which the scene is drawn while it moves.
 const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];

@@ -1,68 +1,19 @@
-use std::time::Instant;
-
+use web_time::Instant;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::WindowId;
 
-use super::background::{self, UserEvent};
+use super::background;
 use super::error::{AppError, GraphicsError};
-use super::recovery::{self, RecoveredFile, Recovery};
+use super::event::UserEvent;
+use super::platform::{self, RecoveredFile, Recovery};
 use super::settings::{Settings, SettingsWriter};
 use super::window::{AppWindow, Repaint};
-use crate::session::{BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
+use crate::session::{Action, BakeAction, Dialog, FileAction, Session, ShellAction, TourAction};
 
-/// Opens the window, with the document of a file if `opened` is given, and returns when the window
-/// is closed. Begins the tour at `tour_step`, counted from 0, if given.
-///
-/// # Errors
-///
-/// If there is no display or no graphics device, or the device is lost for good.
-pub fn run(opened: Option<FileAction>, tour_step: Option<usize>) -> Result<(), AppError> {
-    let started = Instant::now();
-    let event_loop =
-        EventLoop::<UserEvent>::with_user_event().build().map_err(AppError::NoDisplay)?;
-    let (settings, problem) = Settings::load();
-    let mut session = Session::new(settings.preferences);
-    session.restore_files(settings.recent.clone(), settings.export_folder.clone());
-    if let Some(opened) = opened {
-        session.apply(opened);
-    }
-    if let Some(problem) = problem {
-        session.apply(ShellAction::Fail(problem));
-    }
-    let recovery = Recovery::start();
-    let recovered = recovery.find();
-    if let Some(RecoveredFile { backup, .. }) = &recovered {
-        let (document, file) = (Box::new(backup.document.clone()), backup.file.clone());
-        session.apply(ShellAction::OpenDialog(Dialog::Recover { document, file }));
-    }
-    if let Some(step) = tour_step {
-        session.apply(TourAction::Enter(step));
-    }
-    let mut app = App {
-        started,
-        proxy: event_loop.create_proxy(),
-        session,
-        settings_writer: SettingsWriter::default(),
-        next_frame: None,
-        settings,
-        recovery,
-        recovered,
-        has_quit: false,
-        state: AppState::Suspended,
-    };
-    if let Err(source) = event_loop.run_app(&mut app) {
-        let recovery = app.keep_changes();
-        return Err(AppError::EventLoop { source, recovery });
-    }
-    match app.state {
-        AppState::Failed(error) => Err(error),
-        AppState::Suspended | AppState::Active(_) => Ok(()),
-    }
-}
-
-struct App {
+/// The program with its window.
+pub(super) struct App {
     started: Instant,
     proxy: EventLoopProxy<UserEvent>,
     session: Session,
@@ -82,10 +33,61 @@ struct App {
 enum AppState {
     Suspended,
     Active(Box<AppWindow>),
+    #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "the page tells it"))]
     Failed(AppError),
 }
 
 impl App {
+    /// The program before its window opens, after the actions `start`.
+    pub fn new(proxy: EventLoopProxy<UserEvent>, start: Vec<Action>) -> Self {
+        let started = Instant::now();
+        let (settings, problem) = Settings::load();
+        let mut session = Session::new(settings.preferences);
+        session.restore_files(settings.recent.clone(), settings.export_folder.clone());
+        let (tours, others): (Vec<_>, Vec<_>) =
+            start.into_iter().partition(|action| matches!(action, Action::Tour(_)));
+        for action in others {
+            session.apply(action);
+        }
+        if let Some(problem) = problem {
+            session.apply(ShellAction::Fail(problem));
+        }
+        let recovery = Recovery::start();
+        let recovered = recovery.find();
+        if let Some(RecoveredFile { backup, .. }) = &recovered {
+            let (document, file) = (Box::new(backup.document.clone()), backup.file.clone());
+            session.apply(ShellAction::OpenDialog(Dialog::Recover { document, file }));
+        }
+        for action in tours {
+            session.apply(action);
+        }
+        Self {
+            started,
+            proxy,
+            session,
+            settings_writer: SettingsWriter::default(),
+            next_frame: None,
+            settings,
+            recovery,
+            recovered,
+            has_quit: false,
+            state: AppState::Suspended,
+        }
+    }
+
+    /// The reason why the program has ended, unless the user has closed the window.
+    ///
+    /// # Errors
+    ///
+    /// If no window could be opened, or its graphics were lost for good.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn result(self) -> Result<(), AppError> {
+        match self.state {
+            AppState::Failed(error) => Err(error),
+            AppState::Suspended | AppState::Active(_) => Ok(()),
+        }
+    }
+
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let AppState::Active(window) = &mut self.state else {
             return;
@@ -93,6 +95,7 @@ impl App {
         let drawn = window.redraw(event_loop, &mut self.session, &self.proxy);
         if window.frames() == 1 {
             log::info!("first frame {} ms after start", self.started.elapsed().as_millis());
+            platform::on_first_frame(self.started.elapsed());
         }
         let backup = self.recovery.update(self.session.own(), &self.proxy);
         self.remove_settled_recovery();
@@ -132,7 +135,12 @@ impl App {
     fn give_up(&mut self, event_loop: &ActiveEventLoop, source: GraphicsError) {
         let recovery = self.keep_changes();
         self.close();
-        self.state = AppState::Failed(AppError::GraphicsLost { source, recovery });
+        self.fail(event_loop, AppError::GraphicsLost { source, recovery });
+    }
+
+    fn fail(&mut self, event_loop: &ActiveEventLoop, error: AppError) {
+        platform::on_failure(&error);
+        self.state = AppState::Failed(error);
         event_loop.exit();
     }
 
@@ -142,7 +150,7 @@ impl App {
     }
 
     /// Backs up unsaved changes for the next start. Returns a sentence that tells where they are.
-    fn keep_changes(&mut self) -> String {
+    pub fn keep_changes(&mut self) -> String {
         match self.recovery.leave(self.session.own()) {
             Ok(None) => "All changes are saved".to_owned(),
             Ok(Some(path)) => format!(
@@ -175,7 +183,7 @@ impl App {
 
     fn remove_recovered_if(&mut self, is_settled: bool) {
         if is_settled && let Some(RecoveredFile { path, .. }) = self.recovered.take() {
-            recovery::remove(&path);
+            platform::remove(&path);
         }
     }
 }
@@ -188,10 +196,7 @@ impl ApplicationHandler<UserEvent> for App {
         let settings = std::mem::take(&mut self.settings);
         match AppWindow::open(event_loop, settings, self.proxy.clone()) {
             Ok(window) => self.state = AppState::Active(Box::new(window)),
-            Err(error) => {
-                self.state = AppState::Failed(error);
-                event_loop.exit();
-            }
+            Err(error) => self.fail(event_loop, error),
         }
     }
 
@@ -235,8 +240,10 @@ impl ApplicationHandler<UserEvent> for App {
             return;
         };
         match event {
-            UserEvent::Accesskit(event) => window.on_accesskit(event),
-            UserEvent::BackedUp | UserEvent::GraphicsFailed => {}
+            UserEvent::Platform(event) => {
+                window.on_platform_event(event, &mut self.session, &self.proxy);
+            }
+            UserEvent::Changed => {}
             UserEvent::Report(message) => {
                 self.session.apply(match message {
                     Ok(message) => ShellAction::Report(message),

@@ -1,12 +1,15 @@
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::{FullOutput, RawInput, Rect, ViewportId};
+use web_time::Instant;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 
-use super::background::{self, UserEvent};
+use super::background;
 use super::dynamic_resolution::lap_timer;
 use super::error::GraphicsError;
+use super::event::UserEvent;
 use super::graphics::{Graphics, guarded};
+use super::platform;
 use super::present::Presented;
 use super::window::{AppWindow, Repaint};
 use crate::scene::Scene;
@@ -44,8 +47,9 @@ impl AppWindow {
             background::inspect(job, proxy.clone());
         }
         self.update_title(session);
-        let platform = std::mem::take(&mut output.platform_output);
-        self.egui.handle_platform_output(&self.window, platform);
+        let system = std::mem::take(&mut output.platform_output);
+        platform::copy(&system.commands);
+        self.egui.handle_platform_output(&self.window, system);
         let delay = output.viewport_output.get(&ViewportId::ROOT).map(|root| root.repaint_delay);
         let delay = match self.draw(session, output, &mut frame) {
             Ok(Presented::Shown { has_changed }) => {

@@ -3,10 +3,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::Context;
-use winit::event_loop::{EventLoopProxy, OwnedDisplayHandle};
+use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::background::UserEvent;
 use super::error::GraphicsError;
 use super::panel_painter::PanelPainter;
 use crate::render::{Canvas, Counts, CrowdError, Gpu, GpuTimer, Renderer, TimedPass};
@@ -43,24 +42,25 @@ pub(super) struct ScenePicture {
 
 impl Graphics {
     /// Creates the graphics of a window and uploads the panels' whole font atlas. Earlier graphics
-    /// of the window must be dropped first, because a window has one surface at a time.
-    pub fn new(
+    /// of the window must be dropped first, because a window has one surface at a time. `watch` is
+    /// called with the device before it is used.
+    pub async fn new(
         display: OwnedDisplayHandle,
         window: &Arc<Window>,
         panels: &Context,
-        proxy: EventLoopProxy<UserEvent>,
+        watch: impl FnOnce(&Gpu),
     ) -> Result<Self, GraphicsError> {
-        let (gpu, surface) = Gpu::with_gl_as_fallback(|backends| {
+        let (gpu, surface) = Gpu::with_gl_as_fallback(async |backends| {
             let display = Box::new(display.clone());
             let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
             let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };
             let instance = wgpu::Instance::new(descriptor);
             let surface = instance.create_surface(Arc::clone(window))?;
-            let gpu = Gpu::new(instance, Some(&surface))?;
+            let gpu = Gpu::new(instance, Some(&surface)).await?;
             Ok::<_, GraphicsError>((gpu, surface))
-        })?;
-        // Sending fails only after the window is closed.
-        gpu.on_failure(move || drop(proxy.send_event(UserEvent::GraphicsFailed)));
+        })
+        .await?;
+        watch(&gpu);
         let config = configuration(&gpu, &surface, window)?;
         let canvas = Canvas::new(&gpu, 1, 1);
         let format = composed_format(&config);

@@ -1,9 +1,10 @@
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::Rect;
 use egui::epaint::ClippedPrimitive;
 use egui_wgpu::ScreenDescriptor;
+use web_time::Instant;
 use winit::dpi::PhysicalSize;
 use winit::window::Window;
 

@@ -2,15 +2,16 @@
 
 use std::env;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::util::IdTypeMap;
 use egui_winit::WindowSettings;
 use serde::{Deserialize, Serialize};
+use web_time::Instant;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{KeyCode, PhysicalKey};
 
-use crate::io;
+use super::platform;
 use crate::session::Preferences;
 
 /// Everything that is kept from one start of the program to the next: preferences, recent files,
@@ -31,14 +32,15 @@ impl Settings {
     /// Loads the settings. If they cannot be read, returns the defaults and the reason, which names
     /// the file.
     pub fn load() -> (Self, Option<String>) {
-        let Some(path) = path().filter(|path| path.exists()) else {
-            return (Self::default(), None);
-        };
-        let read = io::read_text(&path).map_err(|error| error.to_string());
-        match read.and_then(|text| ron::from_str(&text).map_err(|error| error.to_string())) {
+        let read = platform::saved_settings().and_then(|text| {
+            let Some(text) = text else { return Ok(Self::default()) };
+            let place = platform::settings_place();
+            ron::from_str(&text)
+                .map_err(|error| format!("the settings in {place} cannot be read: {error}"))
+        });
+        match read {
             Ok(settings) => (settings, None),
-            Err(error) => {
-                let reason = format!("the settings in {} cannot be read: {error}", path.display());
+            Err(reason) => {
                 log::warn!("{reason}");
                 (Self::default(), Some(format!("{reason}; defaults are used")))
             }
@@ -47,23 +49,14 @@ impl Settings {
 
     /// Saves the settings, or logs the reason why they cannot be saved.
     pub fn save(&self) {
-        if let (Some(path), Err(error)) = (path(), self.try_save()) {
-            log::warn!("cannot write {}: {error}", path.display());
+        if let Err(error) = self.try_save() {
+            log::warn!("cannot write {}: {error}", platform::settings_place());
         }
     }
 
     fn try_save(&self) -> Result<(), Box<dyn std::error::Error>> {
-        write(&ron::to_string(self)?)
+        platform::save_settings(&ron::to_string(self)?)
     }
-}
-
-fn write(text: &str) -> Result<(), Box<dyn std::error::Error>> {
-    let Some(path) = path() else {
-        return Ok(());
-    };
-    let folder = path.parent().ok_or("it has no folder")?;
-    std::fs::create_dir_all(folder)?;
-    Ok(io::write(&path, text.as_bytes())?)
 }
 
 /// Writes the settings soon after they change, so that a program that is killed loses none.
@@ -98,16 +91,11 @@ impl SettingsWriter {
             Ok(_) => return,
             Err(error) => return log::warn!("the settings cannot be written: {error}"),
         };
-        if let Err(error) = write(&text) {
+        if let Err(error) = platform::save_settings(&text) {
             log::warn!("the settings cannot be written: {error}");
         }
         self.written = text;
     }
-}
-
-fn path() -> Option<PathBuf> {
-    let folders = directories::ProjectDirs::from("", "", "ik-arm")?;
-    Some(folders.config_dir().join("settings.ron"))
 }
 
 /// Options from the environment variable `IK_ARM_DEBUG`, for the program's own tests. With any

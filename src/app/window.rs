@@ -1,19 +1,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::JoinHandle;
-use std::time::Instant;
 
 use egui::{Event, Rect, ViewportId};
 use egui_winit::WindowSettings;
+use web_time::Instant;
 use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{Icon, Window, WindowAttributes};
 
-use super::background::{self, UserEvent, ViewportPicture};
+use super::background::{self, ViewportPicture};
 use super::dynamic_resolution::DynamicResolution;
 use super::error::{AppError, GraphicsError};
+use super::event::UserEvent;
 use super::graphics::{DeviceRetries, Graphics, guarded};
+use super::platform::{self, Task};
 use super::settings::{DebugOptions, Settings};
 use crate::io;
 use crate::scene::{Scene, SceneBuilder};
@@ -22,7 +23,6 @@ use crate::ui::{Machine, style};
 
 /// Name of the program, as in the window's title.
 const TITLE: &str = "ik-arm";
-const APP_ID: &str = "ik-arm";
 const SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
 const MIN_SIZE: LogicalSize<f64> = LogicalSize::new(640.0, 400.0);
 const ICON: &[u8] = include_bytes!("../../assets/icon-64.png");
@@ -62,7 +62,9 @@ pub(super) struct AppWindow {
     pub(super) viewport: Rect,
     /// True if the program ends at the next frame.
     pub(super) ends: bool,
-    pub(super) exporting: Option<JoinHandle<()>>,
+    pub(super) exporting: Option<Task>,
+    /// True if graphics are being created, which arrive by an event.
+    pub(super) awaits_graphics: bool,
     pub(super) dynamic_resolution: DynamicResolution,
     /// True if counts of earlier frames will arrive from the device.
     pub(super) awaits_counts: bool,
@@ -82,33 +84,19 @@ impl AppWindow {
             // A start must not open scrolled away.
             data.remove_by_type::<egui::containers::scroll_area::State>();
         });
-        let display = event_loop.owned_display_handle();
-        let graphics = Graphics::new(display, &window, &ctx, proxy.clone())?;
-        let mut egui = egui_winit::State::new(
-            ctx,
-            ViewportId::ROOT,
-            event_loop,
-            Some(window.scale_factor() as f32),
-            None,
-            Some(graphics.gpu.longest_side() as usize),
-        );
-        egui.init_accesskit(event_loop, &window, proxy);
-        window.set_visible(true);
-        window.request_redraw();
-        let debug = DebugOptions::from_env();
-        let machine = Machine {
-            adapter: graphics.gpu.name(),
-            has_clock: graphics.has_clock(),
-            ..Machine::default()
-        };
-        Ok(Self {
-            graphics: Some(graphics),
+        let graphics = platform::graphics(event_loop, &window, &ctx, proxy.clone()).transpose()?;
+        let longest = graphics.as_ref().map(|graphics| graphics.gpu.longest_side() as usize);
+        let scale = Some(window.scale_factor() as f32);
+        let egui = egui_winit::State::new(ctx, ViewportId::ROOT, event_loop, scale, None, longest);
+        let mut opened = Self {
+            awaits_graphics: graphics.is_none(),
+            graphics: None,
             retries: DeviceRetries::default(),
             retry_at: Instant::now(),
-            debug,
+            debug: DebugOptions::from_env(),
             window,
             egui,
-            machine,
+            machine: Machine::default(),
             overlays: Overlays::default(),
             builder: SceneBuilder::default(),
             scene: None,
@@ -121,7 +109,23 @@ impl AppWindow {
             exporting: None,
             dynamic_resolution: DynamicResolution::default(),
             awaits_counts: false,
-        })
+        };
+        opened.connect(event_loop, proxy);
+        if let Some(graphics) = graphics {
+            opened.set_graphics(graphics);
+        }
+        opened.window.set_visible(true);
+        opened.window.request_redraw();
+        Ok(opened)
+    }
+
+    /// Draws with these graphics from now on.
+    pub(super) fn set_graphics(&mut self, graphics: Graphics) {
+        self.awaits_graphics = false;
+        self.machine.adapter = graphics.gpu.name();
+        self.machine.has_clock = graphics.has_clock();
+        self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
+        self.graphics = Some(graphics);
     }
 
     pub fn request_redraw(&self) {
@@ -141,15 +145,6 @@ impl AppWindow {
             graphics.gpu.device.destroy();
         }
         self.egui.on_window_event(&self.window, event).repaint
-    }
-
-    pub fn on_accesskit(&mut self, event: egui_winit::accesskit_winit::Event) {
-        use egui_winit::accesskit_winit::WindowEvent;
-        match event.window_event {
-            WindowEvent::InitialTreeRequested => self.egui.egui_ctx().enable_accesskit(),
-            WindowEvent::ActionRequested(request) => self.egui.on_accesskit_action_request(request),
-            WindowEvent::AccessibilityDeactivated => self.egui.egui_ctx().disable_accesskit(),
-        }
     }
 
     pub fn resize(&mut self, size: PhysicalSize<u32>) {
@@ -188,24 +183,27 @@ impl AppWindow {
         if let Some(graphics) = &self.graphics {
             return graphics.check().err().map(|error| self.lose(error));
         }
+        if self.awaits_graphics {
+            return Some(Repaint::OnInput);
+        }
         if Instant::now() < self.retry_at {
             return Some(Repaint::At(self.retry_at));
         }
-        let display = event_loop.owned_display_handle();
         let created = guarded(|| {
             if self.debug.fails_device() {
-                Err(GraphicsError::Requested)
-            } else {
-                Graphics::new(display, &self.window, self.egui.egui_ctx(), proxy.clone())
+                return Err(GraphicsError::Requested);
             }
+            let panels = self.egui.egui_ctx();
+            platform::graphics(event_loop, &self.window, panels, proxy.clone()).transpose()
         });
-        let graphics = match created {
-            Ok(graphics) => self.graphics.insert(graphics),
+        match created {
+            Ok(Some(graphics)) => self.set_graphics(graphics),
+            Ok(None) => {
+                self.awaits_graphics = true;
+                return Some(Repaint::OnInput);
+            }
             Err(error) => return Some(self.lose(error)),
-        };
-        self.machine.adapter = graphics.gpu.name();
-        self.machine.has_clock = graphics.has_clock();
-        self.egui.set_max_texture_side(graphics.gpu.longest_side() as usize);
+        }
         session.apply(ShellAction::Report(
             "The graphics device was lost and created again; the document is unchanged".to_owned(),
         ));
@@ -289,6 +287,9 @@ impl AppWindow {
     ) -> bool {
         match effect {
             Effect::CopyText(text) => self.egui.egui_ctx().copy_text(text),
+            Effect::CopyLink(parts) => {
+                self.egui.egui_ctx().copy_text(format!("{}#{parts}", platform::address()));
+            }
             Effect::SavePicture(path) => {
                 let picture = self.viewport_picture(session);
                 background::save_picture(picture, PathBuf::from(path), proxy.clone());
@@ -306,7 +307,7 @@ impl AppWindow {
             }
             Effect::ChoosePath(dialog) => {
                 let path = session.files().full_path(&dialog, dialog.path());
-                background::choose_path(dialog, &path, proxy.clone());
+                platform::choose_path(dialog, &path, proxy.clone());
             }
             Effect::Open { path, options } => background::open(path, options, proxy.clone()),
             Effect::LocateSkin(path) => {
@@ -341,7 +342,7 @@ fn attributes(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> Win
         .with_window_icon(icon())
         // Shown after AccessKit is initialized, which needs a hidden window.
         .with_visible(false);
-    named(attributes)
+    platform::attributes(attributes)
 }
 
 /// Size of the window in the previous run, limited to the screens; `SIZE` if it is unknown.
@@ -360,18 +361,6 @@ fn size(event_loop: &ActiveEventLoop, last: Option<WindowSettings>) -> LogicalSi
         f64::from(points.x).max(MIN_SIZE.width),
         f64::from(points.y).max(MIN_SIZE.height),
     )
-}
-
-#[cfg(target_os = "linux")]
-fn named(attributes: WindowAttributes) -> WindowAttributes {
-    use winit::platform::{wayland, x11};
-    let attributes = x11::WindowAttributesExtX11::with_name(attributes, APP_ID, APP_ID);
-    wayland::WindowAttributesExtWayland::with_name(attributes, APP_ID, APP_ID)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn named(attributes: WindowAttributes) -> WindowAttributes {
-    attributes
 }
 
 fn icon() -> Option<Icon> {

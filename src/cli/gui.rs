@@ -1,18 +1,19 @@
 //! `ik-arm gui`: opens the window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::value_parser;
 
 use super::open::{self, OpenArgs};
 use super::report::CommandError;
 use crate::app;
-use crate::io::FileFormat;
-use crate::session::{FileAction, TourStep};
+use crate::io::{FileFormat, Link};
+use crate::session::{FileAction, TourAction, TourStep, link_actions};
 
 #[derive(clap::Args)]
 pub struct GuiArgs {
-    #[arg(help = format!("File to open: {}", FileFormat::inputs()), value_name = "FILE")]
+    #[arg(help = format!("File to open: {}, or a link, of which nothing is fetched", FileFormat::inputs()),
+        value_name = "FILE")]
     file: Option<PathBuf>,
     #[command(flatten)]
     open: OpenArgs,
@@ -32,6 +33,17 @@ pub fn run(args: &GuiArgs) -> Result<(), CommandError> {
         let opened = open::open_to_draw(path, &options)?;
         Ok(FileAction::opened(path.clone(), options, opened))
     };
-    let document = args.file.as_ref().map(open).transpose()?;
-    Ok(app::run(document, args.tour.map(|step| usize::from(step) - 1))?)
+    let link = args.file.as_deref().and_then(Path::to_str).filter(|file| is_link(file));
+    let mut start = match (link, &args.file) {
+        (Some(link), _) => link_actions(Ok(Link::parse(link)?)),
+        (None, Some(file)) => vec![open(file)?.into()],
+        (None, None) => Vec::new(),
+    };
+    start.extend(args.tour.map(|step| TourAction::Enter(usize::from(step) - 1).into()));
+    Ok(app::run(start)?)
+}
+
+/// True for a link instead of a file.
+fn is_link(file: &str) -> bool {
+    ["ik-arm:", "http://", "https://", "file://"].iter().any(|scheme| file.starts_with(scheme))
 }

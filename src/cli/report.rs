@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::app::AppError;
 use crate::export::ExportError;
-use crate::io::{OpenError, SaveError, WriteError, system_reason};
+use crate::io::{LinkError, OpenError, SaveError, WriteError, system_reason};
 use crate::kinematics::two_bone::LengthError;
 use crate::render::{CrowdError, DrawError, GpuError, SavePictureError};
 
@@ -23,6 +23,8 @@ pub const USAGE: u8 = 2;
 pub enum CommandError {
     #[error(transparent)]
     Open(#[from] OpenError),
+    #[error(transparent)]
+    Link(#[from] LinkError),
     #[error(transparent)]
     Save(#[from] SaveError),
     #[error(transparent)]

@@ -11,6 +11,8 @@
 //! other code writes documents or exports.
 
 mod bones;
+#[cfg(not(target_arch = "wasm32"))]
+mod disk;
 mod error;
 mod examples;
 mod exported;
@@ -18,15 +20,25 @@ mod foreign;
 mod formats;
 mod frame_rate;
 mod json;
+mod link;
 mod open;
 mod opened;
 mod packed;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod solve_line;
 mod source;
 mod texture;
+#[cfg(not(target_arch = "wasm32"))]
 mod write;
 
-#[cfg(feature = "app")]
+#[cfg(target_arch = "wasm32")]
+use page as disk;
+#[cfg(target_arch = "wasm32")]
+use page as write;
+
+pub use disk::FileStamp;
+#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
 pub(crate) use error::system_reason;
 pub use error::{OpenError, Remark, SaveError, WriteError};
 pub use examples::{Example, ExampleGroup};
@@ -40,11 +52,13 @@ pub use formats::obj::{ObjError, to_obj};
 pub use formats::{ContentError, FileFormat, WriteContent, Writer};
 #[cfg(feature = "app")]
 pub(crate) use formats::{dotted, enumerated};
+pub use link::{Link, LinkError, LinkScene};
 pub use open::{open, parse, read, relocated_skin};
 pub use opened::{FileAnimation, OpenOptions, Opened, Upwards};
+#[cfg(target_arch = "wasm32")]
+pub use page::keep;
 pub use solve_line::{Answer, LineError, PreviousLine, solve_line};
-pub use source::FileStamp;
-#[cfg(feature = "app")]
+#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
 pub(crate) use source::read_text;
 pub use texture::{texture_pixels, undrawn_textures};
 pub use write::{FileBatch, write, write_with};

@@ -1,12 +1,11 @@
-//! The content of a file that is opened, and regular files.
+//! The content of a file that is opened.
 
-use std::fs::{self, File, FileType};
-use std::io::{self, Read, Seek, Take};
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use serde::Deserialize;
 
+use super::disk;
 use super::error::{OpenError, Remark, shortened, without_position};
 use super::foreign::ForeignFormat;
 use super::json::{FieldError, FieldWarnings, JsonPath, byte_at, line_and_column};
@@ -29,7 +28,7 @@ pub struct Source {
 impl Source {
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         let name = path.display().to_string();
-        let opened = open_regular(path).and_then(|file| {
+        let opened = disk::open_regular(path).and_then(|file| {
             let length = file.limit();
             let mut file = file.into_inner();
             Ok((exceeded_limit(&mut file, length)?, file.take(length)))
@@ -37,7 +36,7 @@ impl Source {
         match opened {
             Ok((Some(most), _)) => Err(too_large(&name, most)),
             Ok((None, file)) => {
-                let path = std::path::absolute(path).ok();
+                let path = disk::absolute(path);
                 Ok(Self { path, ..Self::read(&name, file)? })
             }
             Err(source) => Err(OpenError::Read { file: name, source }),
@@ -197,7 +196,7 @@ impl Source {
 
 /// The limit that a file exceeds, judged by its length and its first bytes; `None` if it is to be
 /// read.
-fn exceeded_limit(file: &mut File, length: u64) -> io::Result<Option<u64>> {
+fn exceeded_limit(file: &mut (impl Read + Seek), length: u64) -> io::Result<Option<u64>> {
     if length <= OpenError::MAX_BYTES {
         return Ok(None);
     }
@@ -248,75 +247,14 @@ fn not_utf8(file: String, bytes: &[u8]) -> OpenError {
     OpenError::Content { file, remark: Remark { line, column, field: String::new(), reason } }
 }
 
-/// Opens a file for reading, up to its present length. Reading a pipe or a device may never end,
-/// and neither may reading a file of the system that has no length, like `/proc/kmsg`.
-///
-/// # Errors
-///
-/// Fails if there is no such file, it is no regular file, or the system refuses to open it.
-pub fn open_regular(path: &Path) -> io::Result<Take<fs::File>> {
-    // Before it is opened, because opening a pipe waits for a writer.
-    check_regular(fs::metadata(path)?.file_type())?;
-    let file = fs::File::open(path)?;
-    let metadata = file.metadata()?;
-    check_regular(metadata.file_type())?;
-    Ok(file.take(metadata.len()))
-}
-
 /// Reads the text of a regular file.
 ///
 /// # Errors
 ///
-/// As for [`open_regular`], and if the text is not UTF-8.
-#[cfg(feature = "app")]
+/// As for [`open_regular`](disk::open_regular), and if the text is not UTF-8.
+#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
 pub fn read_text(path: &Path) -> io::Result<String> {
     let mut text = String::new();
-    open_regular(path)?.read_to_string(&mut text)?;
+    disk::open_regular(path)?.read_to_string(&mut text)?;
     Ok(text)
-}
-
-fn check_regular(kind: FileType) -> io::Result<()> {
-    if kind.is_file() {
-        return Ok(());
-    }
-    let reason = format!("it must be a regular file, got {}", kind_name(kind));
-    Err(io::Error::new(io::ErrorKind::InvalidInput, reason))
-}
-
-/// Name of a kind of file that is not regular.
-fn kind_name(kind: FileType) -> &'static str {
-    if kind.is_dir() {
-        return "a folder";
-    }
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt as _;
-        if kind.is_fifo() {
-            return "a pipe (standard input is read with -)";
-        }
-        if kind.is_char_device() || kind.is_block_device() {
-            return "a device";
-        }
-        if kind.is_socket() {
-            return "a socket";
-        }
-    }
-    "something else"
-}
-
-/// The size of a file and the time of its last change, by which a change of its content by another
-/// program is recognized.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FileStamp {
-    length: u64,
-    /// `None` if the system does not know it.
-    modified: Option<SystemTime>,
-}
-
-impl FileStamp {
-    /// The stamp of a file as it is now; `None` if there is no such file.
-    pub fn of(path: &Path) -> Option<Self> {
-        let file = fs::metadata(path).ok()?;
-        Some(Self { length: file.len(), modified: file.modified().ok() })
-    }
 }

@@ -1,6 +1,7 @@
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
+use web_time::Instant;
 
 use super::Gpu;
 use super::pipeline::{self, BindingKind};

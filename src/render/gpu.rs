@@ -65,11 +65,11 @@ impl Gpu {
     ///
     /// If there is no adapter, or it provides no device.
     pub fn headless() -> Result<Self, GpuError> {
-        Self::with_gl_as_fallback(|backends| {
+        pollster::block_on(Self::with_gl_as_fallback(async |backends| {
             let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };
-            Self::new(wgpu::Instance::new(descriptor), None)
-        })
+            Self::new(wgpu::Instance::new(descriptor), None).await
+        }))
     }
 
     /// Calls `make` with all backends except OpenGL and, if that fails, with all backends: OpenGL
@@ -79,15 +79,18 @@ impl Gpu {
     /// # Errors
     ///
     /// The error of the last call of `make`.
-    pub(crate) fn with_gl_as_fallback<T, E>(
-        mut make: impl FnMut(wgpu::Backends) -> Result<T, E>,
+    pub(crate) async fn with_gl_as_fallback<T, E>(
+        mut make: impl AsyncFnMut(wgpu::Backends) -> Result<T, E>,
     ) -> Result<T, E> {
         let all = wgpu::Backends::from_env().unwrap_or_default();
         let without_gl = all - wgpu::Backends::GL;
         if without_gl.is_empty() || without_gl == all {
-            return make(all);
+            return make(all).await;
         }
-        make(without_gl).or_else(|_| make(all))
+        match make(without_gl).await {
+            Err(_) => make(all).await,
+            made => made,
+        }
     }
 
     /// Creates a device that can present to `surface`, if one is given.
@@ -95,11 +98,11 @@ impl Gpu {
     /// # Errors
     ///
     /// If no adapter can present to the surface, or the adapter provides no device.
-    pub fn new(
+    pub async fn new(
         instance: wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<Self, GpuError> {
-        let adapter = adapter(&instance, surface)?;
+        let adapter = adapter(&instance, surface).await?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ik-arm"),
             // `GpuTimer` requires timestamp queries.
@@ -107,7 +110,9 @@ impl Gpu {
             required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|source| GpuError::NoDevice { adapter: adapter.get_info().name, source })?;
         let gpu = Self { instance, adapter, device, queue, failure: Arc::default() };
         gpu.on_failure(|| {});
@@ -231,15 +236,15 @@ impl Gpu {
 
 /// The adapter whose name contains `WGPU_ADAPTER_NAME`, or the best adapter if that variable is not
 /// set. The function of `wgpu::util` for this purpose panics if no adapter has the name.
-fn adapter(
+async fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
 ) -> Result<wgpu::Adapter, GpuError> {
     let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME") else {
         let best = wgpu::util::initialize_adapter_from_env_or_default(instance, surface);
-        return Ok(pollster::block_on(best)?);
+        return Ok(best.await?);
     };
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.retain(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)));
     let name = |adapter: &wgpu::Adapter| adapter.get_info().name;
     let is_wanted = |name: String| name.to_lowercase().contains(&wanted.to_lowercase());

@@ -28,6 +28,7 @@ mod skin_deform;
 mod skin_material;
 mod solid;
 mod spheres;
+#[cfg_attr(target_arch = "wasm32", path = "page_fonts.rs")]
 mod system_fonts;
 mod texture;
 mod triangle;

@@ -1,9 +1,10 @@
 use std::io::Cursor;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::RgbaImage;
 use thiserror::Error;
+use web_time::Instant;
 
 use super::gpu::DeviceError;
 use super::readback::ReadError;

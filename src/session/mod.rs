@@ -41,6 +41,7 @@ pub use evaluated::Evaluated;
 pub use evaluated::SkinAreas;
 pub use files::action::{Export, ExportJob, FileAction, FileContents, PathDialog};
 pub use files::files::Files;
+pub use files::link::link_actions;
 pub use history::editing::Editing;
 pub use history::transaction::TransactionAction;
 pub use inspections::{InspectAction, InspectionJob};

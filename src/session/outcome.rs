@@ -16,6 +16,8 @@ use crate::session::dialog::{Dialog, Message};
 pub enum Effect {
     /// Copies a text to the clipboard.
     CopyText(String),
+    /// Copies a link with these parts to the clipboard.
+    CopyLink(String),
     /// Draws the viewport and saves the picture to a path.
     SavePicture(String),
     /// Starts a bake of the document.

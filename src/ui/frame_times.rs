@@ -3,6 +3,7 @@
 use core::fmt;
 use core::time::Duration;
 
+use super::parts::Parts;
 use crate::render::Counts;
 use crate::rig::CrowdTimes;
 
@@ -157,6 +158,8 @@ pub struct Machine {
     pub counts: Option<Counts>,
     /// Time taken to solve the shown crowd; `None` without a crowd.
     pub crowd: Option<CrowdTimes>,
+    /// The parts that are shown in another page; `None` for the whole program.
+    pub parts: Option<Parts>,
 }
 
 #[cfg(test)]

@@ -135,6 +135,11 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if explained_item(ui, copy, "", why_no_copy) {
         actions.push(ShellAction::CopyPose);
     }
+    let tooltip =
+        "Copy a link that carries this document: the page in a browser and ik-arm open it";
+    if explained_item(ui, Button::new("Copy link"), tooltip, None) {
+        actions.push(FileAction::CopyLink);
+    }
     ui.separator();
     ui.menu_button("Navigation", |ui| {
         for navigation in Navigation::ALL {

@@ -2,6 +2,7 @@
 
 mod commands;
 mod dialogs;
+mod embedded;
 mod frame_times;
 mod gizmo;
 mod glossary;
@@ -9,6 +10,7 @@ mod keyboard;
 mod labels;
 mod menu_bar;
 mod panels;
+mod parts;
 mod pose_summary;
 mod status_bar;
 pub mod style;
@@ -19,6 +21,7 @@ mod widgets;
 
 pub use frame_times::{FrameTime, FrameTimes, Machine, TimeSpread};
 pub use keyboard::{hold_typed, strokes};
+pub use parts::Parts;
 
 use egui::{CentralPanel, Panel, Rect, Ui, UiBuilder};
 
@@ -28,9 +31,12 @@ use panels::crowd;
 /// Least height of the view beside an open timeline, in points.
 const VIEW_HEIGHT: f32 = 360.0;
 
-/// Shows all panels and returns the rectangle of the viewport in points. The viewport is left
-/// empty: the scene is drawn there before the panels.
+/// Shows all panels, or those of a part of another page, and returns the rectangle of the viewport in
+/// points. The viewport is left empty: the scene is drawn there before the panels.
 pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Actions) -> Rect {
+    if let Some(parts) = machine.parts {
+        return embedded::show(ui, session, parts, actions);
+    }
     keyboard::focus::begin(ui);
     keyboard::global(ui, session, actions);
     tour::open_section(ui, session);

@@ -2,10 +2,10 @@
 
 use core::f32::consts::{PI, TAU};
 use core::time::Duration;
-use std::time::Instant;
 
 use glam::Vec3;
 use multiversion::multiversion;
+use web_time::Instant;
 
 use crate::batch::{
     ArmBatch, BatchBones, BatchError, BatchPositions, BatchTwist, Points, PointsMut,

@@ -81,6 +81,8 @@ pub enum FileAction {
     DeclineTurn,
     /// Opens an example.
     OpenExample(Example),
+    /// Copies a link that carries the document to the clipboard.
+    CopyLink,
     /// Opens a new document with the arm.
     New,
     /// Opens a new document with a figure: two legs and two arms, each with a target.

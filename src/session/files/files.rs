@@ -334,6 +334,7 @@ impl Files {
             FileAction::Quit => Effect::Quit.into(),
             action @ (FileAction::SkinLocated { .. }
             | FileAction::OpenExample(_)
+            | FileAction::CopyLink
             | FileAction::NewFigure
             | FileAction::NewEmpty) => return Err(action),
         })

@@ -3,3 +3,4 @@
 pub mod action;
 #[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 pub mod files;
+pub mod link;

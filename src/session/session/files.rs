@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::Session;
 use crate::document::{Document, SkeletonRig};
-use crate::io::{Example, ExampleGroup};
+use crate::io::{Example, ExampleGroup, Link};
 use crate::kinematics::skeleton::JointId;
 use crate::session::dialog::Dialog;
 use crate::session::files::action::{FileAction, PathDialog};
@@ -41,6 +41,7 @@ impl Session {
                 }
             }
             Err(FileAction::OpenExample(example)) => open_example(example),
+            Err(FileAction::CopyLink) => copy_link(self.document()),
             Err(FileAction::NewFigure) => new_figure(),
             Err(_) => new_empty(),
         };
@@ -113,6 +114,15 @@ fn open_example(example: Example) -> Outcome {
         .and(plays.then_some(Consequence::Play))
         .and(looks_inside.then_some(Consequence::LookInside))
         .and(Outcome::say(example.sentence))
+}
+
+fn copy_link(document: &Document) -> Outcome {
+    match Link::to(document) {
+        Ok(parts) => {
+            Outcome::say("Link copied: it carries the whole document").and(Effect::CopyLink(parts))
+        }
+        Err(error) => Outcome::fail(format!("No link: {error}")),
+    }
 }
 
 /// Opens the figure of the example "Human" as a new document.

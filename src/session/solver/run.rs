@@ -1,4 +1,4 @@
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::document::Posed;
 use crate::kinematics::Shared;
@@ -7,6 +7,7 @@ use crate::kinematics::chain_ik::{
 };
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::session::solver::iterates::{Inside, Iterate, Iterates};
+use web_time::Instant;
 
 /// Inputs of a solver run: the FK pose, the start, the targets and the options of a document at a
 /// time.

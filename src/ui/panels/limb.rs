@@ -93,13 +93,18 @@ impl<'a> LimbTarget<'a> {
 
 /// Shows what poses the only limb of a figure by IK: the hand and the Socket twist.
 pub(in crate::ui) fn ui(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+    hand_section(ui, limb, actions);
+    twist_section(ui, limb, actions);
+}
+
+/// Shows the position of the only limb's hand.
+pub(in crate::ui) fn hand_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let mut aside = Actions::new();
     let pinned = |ui: &mut Ui| {
         widgets::at_right(ui, |ui| pin(ui, limb.session, limb.target, &mut aside));
     };
     widgets::section_with(ui, "Hand", pinned, |ui| hand(ui, limb, actions));
     actions.extend(aside);
-    twist_section(ui, limb, actions);
 }
 
 /// Shows all other settings of the only limb of a figure, folded at first.
@@ -116,7 +121,8 @@ pub(in crate::ui) fn of_figure(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut 
     bounds_and_hand(ui, limb, actions);
 }
 
-fn twist_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
+/// Shows the Socket twist of a limb.
+pub(in crate::ui) fn twist_section(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let mut aside = Actions::new();
     let reference = |ui: &mut Ui| reference(ui, limb, &mut aside);
     widgets::section_with(ui, "Socket twist", reference, |ui| socket_twist(ui, limb, actions));

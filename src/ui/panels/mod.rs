@@ -10,6 +10,7 @@ pub(in crate::ui) mod statistics;
 
 use egui::{ScrollArea, Ui};
 
+use super::parts::Parts;
 use super::widgets;
 use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
@@ -27,10 +28,7 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             Some(limb) => limb::ui(ui, limb, actions),
             None => skeleton::ui(ui, session, actions),
         }
-        widgets::section(ui, "Guides", |ui| {
-            let guides: &[Overlay] = if limb.is_some() { &Overlay::GUIDES } else { &FIGURE_GUIDES };
-            widgets::check_boxes(ui, session, 2, guides, None, actions);
-        });
+        guides(ui, session, limb.is_some(), actions);
         if let Some(limb) = limb {
             limb::more(ui, limb, actions);
             skeleton::folded(ui, session, actions);
@@ -46,6 +44,36 @@ pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if let Some(target) = note {
         skeleton::note(ui, session, &target, actions);
     }
+}
+
+/// Shows the controls of a part of another page.
+pub(super) fn of_parts(ui: &mut Ui, session: &Session, parts: Parts, actions: &mut Actions) {
+    let limb = LimbTarget::sole(session);
+    if let Some(limb) = limb.filter(|_| parts.hand) {
+        limb::hand_section(ui, limb, actions);
+    }
+    if let Some(limb) = limb.filter(|_| parts.twist) {
+        limb::twist_section(ui, limb, actions);
+    }
+    if parts.guides {
+        guides(ui, session, limb.is_some(), actions);
+    }
+}
+
+/// Shows the triangle of the shown limb, and returns the figure under the mouse.
+pub(super) fn triangle(
+    ui: &mut Ui,
+    session: &Session,
+    actions: &mut Actions,
+) -> Option<LimbFigure> {
+    explain::triangle(ui, session, actions)
+}
+
+fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) {
+    widgets::section(ui, "Guides", |ui| {
+        let guides: &[Overlay] = if is_limb { &Overlay::GUIDES } else { &FIGURE_GUIDES };
+        widgets::check_boxes(ui, session, 2, guides, None, actions);
+    });
 }
 
 /// Guides of a figure.

@@ -251,6 +251,7 @@ kinds! {
     }
     File () (FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());
+        CopyLink: Look 1, |_| FileAction::CopyLink;
         Export: Look 1, |v| FileAction::Export(v.export());
         ExportStarted: Look 1, |v| FileAction::ExportStarted(v.job());
         CancelExport: Look 1, |_| FileAction::CancelExport;

@@ -1,15 +1,15 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::fs;
 use std::io::Read;
 use std::path::{Component, Path};
 
+use crate::io::disk::{self, open_regular};
 use crate::io::error::{OpenError, system_reason};
 use crate::io::formats::gltf::file::{GltfBuffer, GltfFile, index_rule};
 use crate::io::formats::gltf::material::Uri;
 use crate::io::json::{FieldError, JsonPath};
 use crate::io::packed;
-use crate::io::source::{Source, open_regular};
+use crate::io::source::Source;
 
 /// The bytes of the buffers that the import reads; `None` for all other buffers.
 pub struct GltfBuffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
@@ -120,8 +120,8 @@ fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, Strin
     }
     let path = folder.join(name);
     let failed = |error| format!("{} cannot be read: {}", path.display(), system_reason(&error));
-    let target = fs::canonicalize(&path).map_err(failed)?;
-    if !target.starts_with(fs::canonicalize(folder).map_err(failed)?) {
+    let target = disk::end_of_links(&path).map_err(failed)?;
+    if !target.starts_with(disk::end_of_links(folder).map_err(failed)?) {
         let (link, target) = (path.display(), target.display());
         return Err(format!("must be in the file's own folder, got {link}, a link to {target}"));
     }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use winit::event_loop::EventLoopProxy;
 
-use super::background::UserEvent;
+use crate::app::event::UserEvent;
 use crate::document::Document;
 use crate::io as files;
 use crate::io::{OpenOptions, SaveError};
@@ -24,7 +24,7 @@ const INTERVAL: Duration = Duration::from_secs(5);
 
 /// A document and its file.
 #[derive(Clone)]
-pub(super) struct Backup {
+pub(in crate::app) struct Backup {
     pub document: Document,
     pub file: Option<PathBuf>,
 }
@@ -38,7 +38,7 @@ struct BackupFile {
 }
 
 /// The backup of a run that did not end cleanly.
-pub(super) struct RecoveredFile {
+pub(in crate::app) struct RecoveredFile {
     pub backup: Backup,
     /// Path of the backup file.
     pub path: PathBuf,
@@ -48,7 +48,7 @@ pub(super) struct RecoveredFile {
 
 /// Reasons why a backup cannot be written.
 #[derive(Debug, Error)]
-pub(super) enum BackupError {
+pub(in crate::app) enum BackupError {
     #[error("there is no folder for backups")]
     NoFolder,
     #[error(transparent)]
@@ -63,7 +63,7 @@ struct BackupSlot {
 }
 
 /// Backs up the document of this run.
-pub(super) struct Recovery {
+pub(in crate::app) struct Recovery {
     slot: Option<Arc<BackupSlot>>,
     /// Backup to write at a crash; `None` if there are no unsaved changes, or they are written.
     newest: Arc<Mutex<Option<Backup>>>,
@@ -169,7 +169,7 @@ impl Recovery {
             let is_written = written.is_ok();
             // Sending fails only after the window is closed.
             let _ = proxy.send_event(match written {
-                Ok(()) => UserEvent::BackedUp,
+                Ok(()) => UserEvent::Changed,
                 Err(error) => UserEvent::Report(Err(format!("Not backed up: {error}"))),
             });
             is_written
@@ -299,7 +299,7 @@ fn remove_stale_lock(lock: &Path) {
 }
 
 /// Removes the backup of another run, with its lock file.
-pub(super) fn remove(path: &Path) {
+pub(in crate::app) fn remove(path: &Path) {
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(path.with_extension("lock"));
 }

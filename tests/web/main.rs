@@ -1,0 +1,111 @@
+//! The page in a real browser: headless Chromium with a software adapter.
+//!
+//! `scripts/test.sh` builds the page and runs these tests where the tools for it are there. By hand:
+//! `scripts/web.sh && IK_ARM_PAGE=target/web cargo test --test web -- --ignored`.
+#![cfg(all(feature = "app", target_os = "linux"))]
+
+mod browser;
+
+use std::fs;
+
+use ik_arm::document::Document;
+use ik_arm::io::{self, Example, Link, OpenOptions, Progress};
+
+use browser::Browser;
+
+/// Where the hand of the arm is in the page, in a window of 1280 points in width: its distance from the
+/// middle of the view grows with the height of the view.
+fn hand_on_screen(browser: &Browser) -> [i32; 2] {
+    const MENU: f64 = 26.0;
+    const BELOW: f64 = 62.0;
+    let height = browser.run("return innerHeight").as_f64().expect("a height");
+    let view = height - MENU - BELOW;
+    [634.0 + 0.1336 * view, MENU + (0.5 - 0.0088) * view].map(|it| it.round() as i32)
+}
+
+fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn the_hand_is_dragged_with_the_mouse() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let browser = Browser::open("", folder.path());
+    let before = browser.hand();
+    assert_eq!(before, [250.0, 120.0, 60.0]);
+    let hand = hand_on_screen(&browser);
+    browser.drag(hand, [hand[0] - 90, hand[1] - 80]);
+    let after = browser.hand();
+    assert!(distance(before, after) > 40.0, "{after:?}, {}", browser.failure());
+    assert_eq!(browser.failure(), "");
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn links_open_examples_steps_of_the_tour_and_documents() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::open("#tour=1", folder.path());
+    assert_eq!(browser.hand(), [180.0, 320.0, 0.0], "the scene of the first step");
+
+    let mut document = Document::default();
+    document.rig.targets[0].home = glam::Vec3::new(-100.0, 250.0, 90.0);
+    browser.go(&format!("#{}", Link::to(&document).expect("it fits")));
+    let off = distance(browser.hand(), [-100.0, 250.0, 90.0]);
+    assert!(off < 1e-3, "{off}");
+
+    browser.go("#example=walk&time=0.6");
+    assert!(browser.pose()["elbow_angle_deg"].as_f64().expect("a knee") < 179.0);
+    for broken in ["#example=nothing", "#document=AAAA", "#time=soon", "#%00&&=&example", "#a=b"] {
+        browser.go(broken);
+        assert_eq!(browser.failure(), "", "{broken}");
+        assert_eq!(browser.hand(), [250.0, 120.0, 60.0], "{broken} opens the arm");
+    }
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn a_figure_is_opened_from_a_file_and_a_document_is_downloaded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let figure = folder.path().join("human.glb");
+    let human = Example::find("human").expect("an example").open().expect("valid").document;
+    let glb = io::glb(&human, None, &Progress::default()).expect("a figure");
+    fs::write(&figure, glb).expect("written");
+
+    let browser = Browser::open("", folder.path());
+    let [x, y] = hand_on_screen(&browser);
+    browser.click([x - 250, y - 120]);
+    browser.press_with_ctrl("o");
+    browser.choose_file(&figure);
+    let pose = browser.eventually("the figure", |browser| {
+        let pose = browser.pose();
+        (pose["hand"] != serde_json::json!([250.0, 120.0, 60.0])).then_some(pose)
+    });
+    // Joints of a file have no targets.
+    assert!(pose.is_null(), "{pose}");
+    assert_eq!(browser.failure(), "");
+
+    browser.press_with_ctrl("s");
+    let saved = browser.eventually("the download", |_| {
+        let files = fs::read_dir(folder.path()).expect("a folder");
+        let mut paths = files.map(|file| file.expect("a file").path());
+        let saved = paths.find(|path| path.extension().is_some_and(|it| it == "json"))?;
+        io::open(&saved, &OpenOptions::default()).ok()
+    });
+    assert_eq!(saved.document.skeleton().joints().len(), human.skeleton().joints().len());
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn an_embedded_page_shows_the_view_and_its_controls_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let browser = Browser::open("?embed=view", folder.path());
+    assert_eq!(browser.hand(), [250.0, 120.0, 60.0]);
+    // Where the whole program has the slider of x.
+    browser.drag([160, 74], [110, 74]);
+    assert_eq!(browser.hand(), [250.0, 120.0, 60.0], "there is no slider");
+    browser.run("postMessage({ open: '#example=keyframes&time=1' })");
+    browser.eventually("the example", |browser| {
+        (browser.hand() != [250.0, 120.0, 60.0]).then_some(())
+    });
+}
