@@ -5,6 +5,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
 /// Longest time that anything in the page may take, on a slow machine without a graphics card.
@@ -134,15 +136,14 @@ impl Browser {
         self.act(&json!({ "type": "key", "id": "keyboard", "actions": steps }));
     }
 
-    /// Gives a file to the browser's file dialog that the page has opened.
-    pub fn choose_file(&self, path: &Path) {
-        let element = self.eventually("a file dialog", |browser| {
-            let by = json!({ "using": "css selector", "value": "input[type=file]" });
-            let found = browser.try_post("/element", &by)?;
-            Some(found.as_object()?.values().next()?.as_str()?.to_owned())
-        });
-        let text = path.to_str().expect("a plain path");
-        self.post(&format!("/element/{element}/value"), &json!({ "text": text }));
+    /// Drops a file on the page. Without a screen, the browser's file dialog cancels itself.
+    pub fn drop_file(&self, name: &str, bytes: &[u8]) {
+        let script = "const bytes = Uint8Array.from(atob(arguments[1]), it => it.charCodeAt(0));
+            const files = new DataTransfer();
+            files.items.add(new File([bytes], arguments[0]));
+            document.dispatchEvent(new DragEvent('drop', { dataTransfer: files }));";
+        let bytes = BASE64_STANDARD.encode(bytes);
+        self.post("/execute/sync", &json!({ "script": script, "args": [name, bytes] }));
     }
 
     /// Waits until `look` finds something.
