@@ -20,6 +20,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, parts: Parts, actions: &mut A
     let is_narrow = size.x < NARROW;
     let controls = |ui: &mut Ui, actions: &mut Actions| {
         ScrollArea::vertical().auto_shrink([false, true]).show(ui, |ui| {
+            ui.add_space(4.0);
             panels::of_parts(ui, session, parts, actions);
         });
     };
@@ -36,6 +37,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, parts: Parts, actions: &mut A
     if parts.triangle && !is_narrow {
         Panel::right("triangle of the part").exact_size(TRIANGLE).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.add_space(4.0);
                 figure = panels::triangle(ui, session, actions);
             });
         });

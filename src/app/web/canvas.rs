@@ -9,6 +9,7 @@ use winit::platform::web::WindowAttributesExtWebSys as _;
 use winit::window::{Window, WindowAttributes};
 
 use super::event::PlatformEvent;
+use super::link;
 use super::page::show_failure;
 use crate::app::error::GraphicsError;
 use crate::app::event::{UserEvent, send};
@@ -40,6 +41,8 @@ pub(in crate::app) fn graphics(
 /// Attributes of the window that is the page's canvas, as large as the page makes it.
 pub(in crate::app) fn attributes(mut attributes: WindowAttributes) -> WindowAttributes {
     (attributes.inner_size, attributes.min_inner_size) = (None, None);
+    // A part of another page takes the keyboard when it is clicked: the other page would scroll to it.
+    attributes.active = link::parts().is_none();
     let document = web_sys::window().and_then(|window| window.document());
     let canvas = document.and_then(|document| document.get_element_by_id(CANVAS));
     attributes.with_canvas(canvas.and_then(|it| it.dyn_into::<HtmlCanvasElement>().ok()))

@@ -23,8 +23,10 @@ pub fn take_sent(proxy: &EventLoopProxy<UserEvent>) {
             send(&proxy, UserEvent::Platform(PlatformEvent::Linked(actions)));
         }
         if field("read").is_some_and(|read| read.is_truthy())
-            && let Some(asker) = event.source().and_then(|it| it.dyn_into::<Window>().ok())
+            && let Some(asker) = event.source()
         {
+            // Not checked: the window of another page is none of this page's class.
+            let asker = asker.unchecked_into::<Window>();
             send(&proxy, UserEvent::Platform(PlatformEvent::Asked(asker)));
         }
     });
