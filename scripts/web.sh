@@ -23,12 +23,25 @@ main() {
         --target web --no-typescript --remove-name-section --remove-producers-section \
         --out-dir "$page" --out-name ik-arm
     cp assets/web/index.html assets/icon-64.png docs/pictures/start.png "$page"
+    make_kinematics_page
     printf 'The page is %s: %s, %s compressed.\n' "$page" "$(size <"$page/ik-arm_bg.wasm")" \
         "$(gzip -9 <"$page/ik-arm_bg.wasm" | size)"
     if [[ ${1-} == --serve ]]; then
         printf 'Open http://127.0.0.1:8080\n'
         exec python3 -m http.server --bind 127.0.0.1 --directory "$page" 8080
     fi
+}
+
+# The kinematics of docs, with a live figure at each thing to try.
+make_kinematics_page() {
+    if ! command -v cmark-gfm python3 >/dev/null; then
+        printf 'Left out: kinematics.html, which needs cmark-gfm and python3 (Debian: cmark-gfm).\n'
+        return
+    fi
+    cmark-gfm --unsafe -e table docs/kinematics.md | python3 scripts/live-page.py \
+        >"$page/kinematics.html"
+    mkdir -p "$page/pictures"
+    cp docs/pictures/{circle,limits,globe}.png "$page/pictures"
 }
 
 # Says what is to be installed, and how.

@@ -2,10 +2,16 @@
 
 use web_sys::Storage;
 
+use super::link;
+
 const SETTINGS: &str = "ik-arm settings";
 
-/// The storage; `None` if the browser has none for this page, as in a private window.
+/// The storage; `None` if the browser has none for this page, as in a private window, and for a part of
+/// another page, which begins anew with each visit.
 pub fn storage() -> Option<Storage> {
+    if link::parts().is_some() {
+        return None;
+    }
     web_sys::window()?.local_storage().ok().flatten()
 }
 
