@@ -40,6 +40,9 @@ pub enum GpuError {
         /// Names of all adapters.
         found: Vec<String>,
     },
+    /// A page in a browser cannot wait until a picture is drawn.
+    #[error("a page in a browser draws no pictures for files yet; the program on a computer does")]
+    CannotWait,
     /// The adapter's driver refused to create a device.
     #[error("the graphics adapter {adapter} provides no device: {source}")]
     NoDevice {
@@ -63,8 +66,11 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// If there is no adapter, or it provides no device.
+    /// If there is no adapter, or it provides no device; always in a browser.
     pub fn headless() -> Result<Self, GpuError> {
+        if cfg!(target_arch = "wasm32") {
+            return Err(GpuError::CannotWait);
+        }
         pollster::block_on(Self::with_gl_as_fallback(async |backends| {
             let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };

@@ -300,9 +300,9 @@ impl Step<'_> {
         let limb = self.limb.as_ref()?;
         let is_limited = limb.iter().any(|limb| limb.limited_by.is_some());
         // The pose without limits tells whether limits make the step.
-        let posed = |limb: LimbFrames| match is_limited {
-            true => PosedLimb { pose: limb.solution.pose, ..limb.posed },
-            false => limb.posed,
+        let posed = |limb: LimbFrames| {
+            let pose = if is_limited { limb.solution.pose } else { limb.posed.pose };
+            PosedLimb { pose, ..limb.posed }
         };
         let [before, after] = limb.map(posed);
         let step = ElbowStep::between(&before, &after);

@@ -26,9 +26,11 @@ pub(in crate::app) fn choose_path(
         system = system.set_directory(folder);
     }
     let start = Instant::now();
-    let is_open = matches!(dialog, PathDialog::Open { .. } | PathDialog::LocateSkin { .. });
-    let (open, save) =
-        if is_open { (Some(system.pick_file()), None) } else { (None, Some(system.save_file())) };
+    let (open, save) = if dialog.reads_file() {
+        (Some(system.pick_file()), None)
+    } else {
+        (None, Some(system.save_file()))
+    };
     thread::spawn(move || {
         let file = match (open, save) {
             (Some(open), _) => pollster::block_on(open),

@@ -10,7 +10,7 @@ use winit::window::{Window, WindowAttributes};
 
 use super::event::PlatformEvent;
 use super::link;
-use super::page::show_failure;
+use super::page::{document, show_failure};
 use crate::app::error::GraphicsError;
 use crate::app::event::{UserEvent, send};
 use crate::app::graphics::Graphics;
@@ -43,7 +43,6 @@ pub(in crate::app) fn attributes(mut attributes: WindowAttributes) -> WindowAttr
     (attributes.inner_size, attributes.min_inner_size) = (None, None);
     // A part of another page takes the keyboard when it is clicked: the other page would scroll to it.
     attributes.active = link::parts().is_none();
-    let document = web_sys::window().and_then(|window| window.document());
-    let canvas = document.and_then(|document| document.get_element_by_id(CANVAS));
+    let canvas = document().and_then(|document| document.get_element_by_id(CANVAS));
     attributes.with_canvas(canvas.and_then(|it| it.dyn_into::<HtmlCanvasElement>().ok()))
 }

@@ -6,6 +6,7 @@ use web_sys::ClipboardEvent;
 use winit::event_loop::EventLoopProxy;
 
 use super::event::PlatformEvent;
+use super::page::document;
 use crate::app::event::{UserEvent, send};
 
 /// Sends pasted text to the window.
@@ -18,8 +19,7 @@ pub fn take_pasted(proxy: &EventLoopProxy<UserEvent>) {
             event.prevent_default();
         }
     });
-    let document = web_sys::window().and_then(|window| window.document());
-    if let Some(document) = document {
+    if let Some(document) = document() {
         let _ =
             document.add_event_listener_with_callback("paste", on_paste.as_ref().unchecked_ref());
     }

@@ -9,6 +9,7 @@ use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{DragEvent, FileList, HtmlInputElement};
 use winit::event_loop::EventLoopProxy;
 
+use super::page::document;
 use crate::app::background;
 use crate::app::event::{PathChoice, UserEvent, send};
 use crate::io::{self, FileFormat, OpenOptions};
@@ -17,8 +18,7 @@ use crate::session::PathDialog;
 /// Opens the browser's file dialog in place of `dialog`; for a file that is written, takes the name
 /// that it has already, because the browser asks for the place itself.
 pub fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy<UserEvent>) {
-    let is_open = matches!(dialog, PathDialog::Open { .. } | PathDialog::LocateSkin { .. });
-    if !is_open {
+    if !dialog.reads_file() {
         let name = match &dialog {
             PathDialog::SaveAs { .. } => "untitled.json",
             _ => "arm.png",
@@ -44,16 +44,14 @@ pub fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy<UserEv
 }
 
 /// Opens the browser's file dialog, and calls `chosen` with the files.
-fn pick(accept: &str, chosen: impl FnMut(Option<FileList>) + 'static) -> Result<(), JsValue> {
-    let document = web_sys::window().and_then(|window| window.document());
-    let document = document.ok_or("there is no page")?;
+fn pick(accept: &str, mut chosen: impl FnMut(Option<FileList>) + 'static) -> Result<(), JsValue> {
+    let document = document().ok_or("there is no page")?;
     let input: HtmlInputElement = document.create_element("input")?.unchecked_into();
     input.set_type("file");
     input.set_multiple(true);
     input.set_accept(accept);
     input.set_hidden(true);
     document.body().ok_or("the page is empty")?.append_child(&input)?;
-    let mut chosen = chosen;
     let of_input = input.clone();
     let on_change = Closure::<dyn FnMut()>::new(move || {
         chosen(of_input.files());
@@ -102,8 +100,7 @@ pub fn take_dropped(proxy: &EventLoopProxy<UserEvent>) {
         });
     });
     let on_drag = Closure::<dyn FnMut(_)>::new(|event: DragEvent| event.prevent_default());
-    let document = web_sys::window().and_then(|window| window.document());
-    if let Some(document) = document {
+    if let Some(document) = document() {
         for (event, closure) in [("drop", &on_drop), ("dragover", &on_drag)] {
             let callback = closure.as_ref().unchecked_ref();
             let _ = document.add_event_listener_with_callback(event, callback);

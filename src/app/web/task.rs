@@ -1,5 +1,3 @@
-use std::cell::RefCell;
-
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 
@@ -15,28 +13,17 @@ impl Task {
 
 /// Runs a job after the present frame. A page has no threads: the job holds it up.
 pub(in crate::app) fn spawn(job: impl FnOnce() + 'static) -> Task {
-    after_frame(job);
-    Task
-}
-
-/// Runs a closure once the browser has drawn the present frame.
-fn after_frame(run: impl FnOnce() + 'static) {
     /// Longer than a frame takes, so that the browser draws before.
     const MILLISECONDS: i32 = 30;
-    let run = RefCell::new(Some(run));
-    let closure = Closure::once_into_js(move || {
-        if let Some(run) = run.take() {
-            run();
-        }
-    });
-    let window = web_sys::window();
-    let asked = window.map(|window| {
+    let job = Closure::once_into_js(job);
+    let asked = web_sys::window().map(|window| {
         window.set_timeout_with_callback_and_timeout_and_arguments_0(
-            closure.unchecked_ref(),
+            job.unchecked_ref(),
             MILLISECONDS,
         )
     });
     if asked.is_none_or(|asked| asked.is_err()) {
         log::error!("the browser runs no timer");
     }
+    Task
 }

@@ -260,6 +260,11 @@ impl PathDialog {
         Self::Open { path: String::new(), problem: None }
     }
 
+    /// True if the dialog asks for a file to read; false for one to write.
+    pub fn reads_file(&self) -> bool {
+        matches!(self, Self::Open { .. } | Self::LocateSkin { .. })
+    }
+
     /// The path as typed so far.
     pub fn path(&self) -> &Path {
         match self {

@@ -14,6 +14,7 @@ use super::parts::Parts;
 use super::widgets;
 use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
+pub(super) use explain::triangle;
 use limb::LimbTarget;
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -58,15 +59,6 @@ pub(super) fn of_parts(ui: &mut Ui, session: &Session, parts: Parts, actions: &m
     if parts.guides {
         guides(ui, session, limb.is_some(), actions);
     }
-}
-
-/// Shows the triangle of the shown limb, and returns the figure under the mouse.
-pub(super) fn triangle(
-    ui: &mut Ui,
-    session: &Session,
-    actions: &mut Actions,
-) -> Option<LimbFigure> {
-    explain::triangle(ui, session, actions)
 }
 
 fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) {

@@ -20,7 +20,7 @@ use figures::{Lit, capital, degrees, figure_colour, length, point};
 
 /// The triangle of a limb, a sentence on its pose, and its angles and lengths. Returns the figure
 /// under the mouse.
-pub(super) fn triangle(
+pub(in crate::ui) fn triangle(
     ui: &mut Ui,
     session: &Session,
     actions: &mut Actions,
