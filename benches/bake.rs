@@ -8,6 +8,7 @@ use ik_arm::document::{Bake, Document, TargetMotion, TargetPath, Timeline};
 use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::Limb;
 use ik_arm::rig::{LimbSettings, TargetKind};
+use pollster::block_on;
 
 const FRAMES: Timeline = Timeline { start: 0.0, end: 239.0 / 30.0, frame_rate: 30.0 };
 
@@ -36,7 +37,8 @@ fn bakes(criterion: &mut Criterion) {
     for (name, document) in [("human", human()), ("snake", example("snake"))] {
         let settings = Bake { frames: FRAMES, ..Bake::of_timeline(&document) };
         group.bench_function(name, |bencher| {
-            bencher.iter(|| settings.run(black_box(&document), |_, _| true).is_ok());
+            bencher
+                .iter(|| block_on(settings.run(black_box(&document), async |_, _| true)).is_ok());
         });
     }
     group.finish();

@@ -5,6 +5,7 @@ use ik_arm::document::Document;
 use ik_arm::io::{self, Example, Progress};
 use ik_arm::kinematics::skin::{SkinShape, SkinnedMesh, Skinning};
 use ik_arm::rig::SkinSource;
+use pollster::block_on;
 
 fn example(name: &str) -> Document {
     Example::find(name).expect("an example").open().expect("it opens").document
@@ -57,7 +58,7 @@ fn opened(criterion: &mut Criterion) {
     let rig = &mut document.rig;
     let source = ik_arm::rig::BoneSkin::new(rig.skeleton.clone(), shape);
     rig.skin.as_mut().expect("a skin").source = SkinSource::Bones(source);
-    let bytes = io::glb(&document, None, &Progress::default()).expect("an export");
+    let bytes = block_on(io::glb(&document, None, &Progress::default())).expect("an export");
     group.throughput(Throughput::Bytes(bytes.len() as u64));
     group.bench_function("glb", |bench| {
         bench.iter(|| {

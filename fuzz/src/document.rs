@@ -1,5 +1,6 @@
 use ik_arm::document::{Document, Timeline};
 use ik_arm::io::{self, BvhUnit, OpenOptions, Progress};
+use pollster::block_on;
 
 use super::opened::{is_readable, opened};
 
@@ -21,19 +22,19 @@ fn short(document: Document) -> Document {
 
 fn export(document: &Document) {
     let progress = &Progress::default();
-    match io::glb(document, None, progress) {
+    match block_on(io::glb(document, None, progress)) {
         Ok(bytes) => drop(opened(&bytes, &OpenOptions::default()).expect("glTF of ours is read")),
         Err(error) => is_readable(&error.to_string()),
     }
     for unit in [BvhUnit::Centimetres, BvhUnit::Scene] {
-        match io::to_bvh(document, None, unit, progress) {
+        match block_on(io::to_bvh(document, None, unit, progress)) {
             Ok(bvh) => {
                 drop(opened(&bvh.bytes, &OpenOptions::default()).expect("BVH of ours is read"));
             }
             Err(error) => is_readable(&error.to_string()),
         }
     }
-    match io::to_csv(document, None, progress) {
+    match block_on(io::to_csv(document, None, progress)) {
         Ok(table) => assert!(!String::from_utf8(table.bytes).expect("text").contains("NaN")),
         Err(error) => is_readable(&error.to_string()),
     }

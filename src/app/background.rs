@@ -1,7 +1,11 @@
 //! Jobs in the background, and the events by which they report to the window when they end.
 
+use std::future::poll_fn;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::pin::pin;
 use std::sync::Arc;
+use std::task::Poll;
 
 use winit::event_loop::EventLoopProxy;
 
@@ -18,15 +22,25 @@ use crate::session::{
     ShellAction,
 };
 
+/// The result of a job; `None` if it panicked.
+async fn caught<T>(job: impl Future<Output = T>) -> Option<T> {
+    let mut job = pin!(job);
+    poll_fn(|context| {
+        let polled = catch_unwind(AssertUnwindSafe(|| job.as_mut().poll(context)));
+        polled.map_or(Poll::Ready(None), |polled| polled.map(Some))
+    })
+    .await
+}
+
 /// Saves a picture of the viewport, drawn on a graphics device of its own.
 pub(super) fn save_picture(
     picture: ViewportPicture,
     path: PathBuf,
     proxy: EventLoopProxy<UserEvent>,
 ) {
-    platform::spawn(move || {
+    platform::spawn(async move || {
         let picture = ViewportPicture { posed: picture.posed.into_known(), ..picture };
-        let result = match draw(&picture, &path) {
+        let result = match draw(&picture, &path).await {
             Ok(()) => Ok(format!("Saved {}", path.display())),
             Err(error) => Err(format!("Not saved: {error}")),
         };
@@ -34,11 +48,12 @@ pub(super) fn save_picture(
     });
 }
 
-fn draw(picture: &ViewportPicture, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
-    let gpu = Gpu::headless()?;
+async fn draw(picture: &ViewportPicture, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Gpu::headless().await?;
     let scene = Scene::new(&picture.posed, &picture.overlays, picture.theme);
     let (width, height) = picture.size;
-    let image = PictureRenderer::new(&gpu, width, height, picture.scale).draw(&scene)?;
+    let mut renderer = PictureRenderer::new(&gpu, width, height, picture.scale);
+    let image = renderer.draw(&scene).await?;
     Ok(render::save(&image, path)?)
 }
 
@@ -50,13 +65,12 @@ pub(super) fn bake(
 ) -> BakeJob {
     let job = BakeJob { progress: Arc::new(Progress::default()) };
     let started = job.clone();
-    platform::spawn(move || {
-        let go_on = |done, total| job.progress.step(done, total).is_ok();
-        let bake = || settings.run(&document, go_on);
+    platform::spawn(async move || {
+        let go_on = async |done, total| job.progress.step(done, total).await.is_ok();
         // Sent even after a panic, because the dialog waits for this event.
-        let result = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(bake)) {
-            Ok(baked) => baked.map(Box::new).map_err(|error| error.to_string()),
-            Err(_) => Err("the program failed (this is a bug)".to_owned()),
+        let result = match caught(settings.run(&document, go_on)).await {
+            Some(baked) => baked.map(Box::new).map_err(|error| error.to_string()),
+            None => Err("the program failed (this is a bug)".to_owned()),
         };
         send(&proxy, UserEvent::Baked(job, result));
     });
@@ -65,11 +79,11 @@ pub(super) fn bake(
 
 /// Starts an inspection of the motion.
 pub(super) fn inspect(job: InspectionJob, proxy: EventLoopProxy<UserEvent>) {
-    platform::spawn(move || {
+    platform::spawn(async move || {
         // After a panic, what is known of the motion stays unknown.
-        match std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| job.run())) {
-            Ok(ended) => send(&proxy, UserEvent::Inspected(Box::new(ended))),
-            Err(_) => log::error!("the inspection of a motion panicked"),
+        match caught(job.run()).await {
+            Some(ended) => send(&proxy, UserEvent::Inspected(Box::new(ended))),
+            None => log::error!("the inspection of a motion panicked"),
         }
     });
 }
@@ -90,12 +104,12 @@ pub(super) fn export(
         time: Some(picture.posed.time()),
         ..ExportOptions::default()
     };
-    let thread = platform::spawn(move || {
-        let write = || export::export(&document, &export.path, &options, &progress);
+    let thread = platform::spawn(async move || {
+        let written = export::export(&document, &export.path, &options, &progress);
         // Sent even after a panic, because the window allows no other export before this event.
-        let result = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(write)) {
-            Ok(exported) => export_message(&export.path, exported),
-            Err(_) => Err("Not exported: the program failed (this is a bug)".to_owned()),
+        let result = match caught(written).await {
+            Some(exported) => export_message(&export.path, exported),
+            None => Err("Not exported: the program failed (this is a bug)".to_owned()),
         };
         send(&proxy, UserEvent::Exported(result));
     });
@@ -121,7 +135,7 @@ fn export_message(
 
 /// Reads a file in the background, because the file may be large.
 pub(super) fn open(path: PathBuf, options: OpenOptions, proxy: EventLoopProxy<UserEvent>) {
-    platform::spawn(move || {
+    platform::spawn(async move || {
         let read = io::open(&path, &options).map(|mut opened| {
             opened.warnings.extend(io::undrawn_textures(&opened.document));
             opened
@@ -135,7 +149,7 @@ pub(super) fn open(path: PathBuf, options: OpenOptions, proxy: EventLoopProxy<Us
 pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProxy<UserEvent>) {
     let Some(Skin { source: SkinSource::Mesh(skin), .. }) = &rig.skin else { return };
     let (skin, skeleton) = (skin.clone(), rig.skeleton.clone());
-    platform::spawn(move || {
+    platform::spawn(async move || {
         let before = skin.file().cloned();
         let name = before.as_ref().map_or("", |file| &file.skeleton);
         let read = Box::new(io::relocated_skin(&path, name, skin.joints(), &skeleton));

@@ -43,8 +43,9 @@ pub fn run(args: &BakeArgs) -> Result<(), CommandError> {
     let limit = args.time_limit.start_long(&input.file);
     let document = input.open()?.document;
     let settings = args.settings(&document);
-    let bake = |progress: &Progress| {
-        settings.run(&document, |done, total| progress.step(done, total).is_ok())
+    let bake = async |progress: &Progress| {
+        let step = async |done, total| progress.step(done, total).await.is_ok();
+        settings.run(&document, step).await
     };
     let baked = limit.run(bake)?.map_err(|error| match error {
         BakeError::Cancelled => CommandError::Cancelled { output: output.clone() },

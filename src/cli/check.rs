@@ -76,9 +76,10 @@ pub fn run(args: &CheckArgs) -> Result<(), CommandError> {
         frames.end = frames.start;
     }
     let track = Track::new(&document);
-    let inspect = |progress: &Progress| {
+    let inspect = async |progress: &Progress| {
         let total = frames.frames();
-        Inspection::new(&track, frames, args.loops, |done| progress.step(done, total).is_ok())
+        let go_on = async |done| progress.step(done, total).await.is_ok();
+        Inspection::new(&track, frames, args.loops, go_on).await
     };
     let Some(found) = limit.run(inspect)? else {
         return Err(CommandError::Stopped(file));

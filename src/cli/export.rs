@@ -106,7 +106,7 @@ pub fn write(
     limit: &Arc<TimeLimit>,
 ) -> Result<(), CommandError> {
     let name = input.name();
-    match limit.run(|progress| export(document, output, options, progress))? {
+    match limit.run(async |progress| export(document, output, options, progress).await)? {
         Ok(notes) => {
             notes.iter().for_each(|note| say(&format_args!("{name}: {note}")));
             Ok(())

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::ValueEnum;
 use glam::Vec3;
 use indicatif::ProgressBar;
+use pollster::block_on;
 use serde::Serialize;
 
 use super::argument::{ShownGuides, ViewName, guides, length, number, point, size, time};
@@ -116,14 +117,14 @@ pub fn run(args: &RenderArgs) -> Result<(), CommandError> {
     }
     let (track, posed) = posed(args)?;
     let overlays = Overlays::new(&track, &posed);
-    let gpu = Gpu::headless()?;
-    let mut picture = PictureRenderer::of_size(&gpu, args.size.0, args.size.1)?;
+    let gpu = block_on(Gpu::headless())?;
+    let mut picture = block_on(PictureRenderer::of_size(&gpu, args.size.0, args.size.1))?;
     let scene = || Scene::new(&posed, &overlays, args.theme);
     if let Some(path) = &args.output {
-        render::save(&picture.draw(&scene())?, path)?;
+        render::save(&block_on(picture.draw(&scene()))?, path)?;
     }
     if args.timings {
-        let timings = picture.time(args.frames, |_| scene())?;
+        let timings = block_on(picture.time(args.frames, |_| scene()))?;
         print_json(&TimingsLine {
             frames: timings.frames,
             cpu_ms_median: milliseconds(timings.cpu),
@@ -190,20 +191,20 @@ fn draw_crowd(args: &RenderArgs, arms: u32) -> Result<(), CommandError> {
         let (upper, lower) = (args.upper, args.lower);
         return Err(CommandError::CrowdLength { min, max, upper, lower });
     }
-    let gpu = Gpu::headless()?;
-    let mut picture = PictureRenderer::of_size(&gpu, args.size.0, args.size.1)?;
+    let gpu = block_on(Gpu::headless())?;
+    let mut picture = block_on(PictureRenderer::of_size(&gpu, args.size.0, args.size.1))?;
     if let Some(path) = &args.output {
-        let image = picture.draw(&scene(crowd))?;
+        let image = block_on(picture.draw(&scene(crowd)))?;
         picture.crowd_times()?;
         render::save(&image, path)?;
     }
     if args.timings {
         let progress = FrameProgress::new(args.frames);
-        let timings = picture.time(args.frames, |frame| {
+        let timings = block_on(picture.time(args.frames, |frame| {
             progress.show(frame);
             let time = crowd.time + frame as f32 * STEP;
             scene(Crowd { time, ..crowd })
-        })?;
+        }))?;
         progress.finish();
         picture.crowd_times()?;
         print_json(&CrowdTimingsLine {

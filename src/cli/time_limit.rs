@@ -84,7 +84,7 @@ impl TimeLimit {
     /// If Ctrl+C cannot be handled; the job is then not run.
     pub fn run<T: Send>(
         self: &Arc<Self>,
-        job: impl FnOnce(&Progress) -> T + Send,
+        job: impl AsyncFnOnce(&Progress) -> T + Send,
     ) -> Result<T, ctrlc::Error> {
         const STEPS: u64 = 1000;
         const UPDATE_INTERVAL: Duration = Duration::from_millis(50);
@@ -93,7 +93,7 @@ impl TimeLimit {
         let progress = &self.progress;
         let bar = ProgressBar::new(STEPS);
         let done = thread::scope(|scope| {
-            let job = scope.spawn(|| job(progress));
+            let job = scope.spawn(|| pollster::block_on(job(progress)));
             while !job.is_finished() {
                 bar.set_position((progress.part() * STEPS as f32) as u64);
                 thread::park_timeout(UPDATE_INTERVAL);

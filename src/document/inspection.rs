@@ -117,11 +117,11 @@ impl Inspection {
     /// the document's. With `loops`, also looks at the step from the last frame to the first.
     /// `go_on` is called after each frame with the number of frames so far; `None` once it returns
     /// false.
-    pub fn new(
+    pub async fn new(
         track: &Track,
         frames: Timeline,
         loops: bool,
-        mut go_on: impl FnMut(usize) -> bool,
+        mut go_on: impl AsyncFnMut(usize) -> bool,
     ) -> Option<Self> {
         let mut inspector = Inspector::new(track.document());
         let at = |frame: usize| Frame::new(&track.at(frames.time(frame)));
@@ -133,7 +133,7 @@ impl Inspection {
             inspector.look_at(&after);
             inspector.look_at_step(&before, &after);
             before = after;
-            if !go_on(frame) {
+            if !go_on(frame).await {
                 return None;
             }
         }
@@ -173,11 +173,11 @@ impl Inspection {
     /// If targets are lost, looks for a posture with which the motion loses none: the motion is
     /// tracked backwards from a solve of a frame that is lost, and then inspected from there. Ends
     /// without one if `go_on` returns false.
-    pub fn find_better_posture(
+    pub async fn find_better_posture(
         &mut self,
         track: &Track,
         frames: Timeline,
-        mut go_on: impl FnMut(usize) -> bool,
+        mut go_on: impl AsyncFnMut(usize) -> bool,
     ) {
         /// Most spans from which a posture is sought.
         const MOST: usize = 3;
@@ -188,7 +188,8 @@ impl Inspection {
                 let Some(posture) = track.posture_reaching(time) else { continue };
                 let mut document = track.document().clone();
                 document.rig.posture = Some(posture.clone());
-                let again = Self::new(&Track::new(&document), frames, false, &mut go_on);
+                let track = Track::new(&document);
+                let again = Self::new(&track, frames, false, &mut go_on).await;
                 let Some(again) = again else { return };
                 if again.lost.is_empty() {
                     self.better_posture = Some(posture);

@@ -153,6 +153,7 @@ pub fn existing(path: &Path) -> Option<PathBuf> {
 const DIGIT: char = '#';
 
 /// A file name with a placeholder for a number: the last run of `#` in the name.
+#[derive(Clone)]
 pub(super) struct NumberedName {
     before: String,
     digits: usize,

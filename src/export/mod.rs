@@ -1,8 +1,8 @@
 //! Files for other programs, made from a document: motions, tables, meshes, pictures.
 //!
-//! An export may take long. [`export`] is meant for a thread of its own: it works on its own
-//! document and graphics device, reports its progress, and can be cancelled. A file or sequence of
-//! files is written completely or not at all.
+//! An export may take long. [`export`] works on its own document and graphics device, reports its
+//! progress, gives way between steps, and can be cancelled. A file or sequence of files is written
+//! completely or not at all.
 
 mod format;
 mod pictures;
@@ -23,25 +23,25 @@ use format::{ExportContent, NumberedName};
 ///
 /// Fails if the export is cancelled, the format is unknown or cannot hold the document, or the file
 /// cannot be written. At `path` there is then no file, or the file that was there before.
-pub fn export(
+pub async fn export(
     document: &Document,
     path: &Path,
     options: &ExportOptions,
     progress: &Progress,
 ) -> Result<Vec<String>, ExportError> {
     let ExportFormat { content, .. } = ExportFormat::of(path)?;
-    progress.step(0, 1)?;
+    progress.step(0, 1).await?;
     let Exported { bytes, notes } = match (content, NumberedName::new(path)) {
         (ExportContent::PictureSequence, Some(name)) => {
-            return pictures::sequence(document, path, &name, options, progress);
+            return pictures::sequence(document, path, &name, options, progress).await;
         }
         (ExportContent::AnimatedPicture, _) => {
-            return pictures::animation(document, path, options, progress);
+            return pictures::animation(document, path, options, progress).await;
         }
         (ExportContent::Picture | ExportContent::PictureSequence, _) => {
-            pictures::still(document, options, progress)?
+            pictures::still(document, options, progress).await?
         }
-        (ExportContent::Written(write), _) => write(document, options, progress)?,
+        (ExportContent::Written(write), _) => write(document, options, progress).await?,
     };
     io::write(path, &bytes)?;
     Ok(notes)

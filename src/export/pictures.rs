@@ -2,10 +2,11 @@
 
 use std::io::Write;
 use std::num::NonZero;
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, Scope, ScopedJoinHandle};
+use std::thread::{self, JoinHandle};
 
 use super::format::{ExportError, NumberedName};
 use crate::document::{Document, Theme, Track};
@@ -15,7 +16,7 @@ use crate::scene::SceneBuilder;
 use crate::session::Overlays;
 
 /// Draws one picture and encodes it as PNG.
-pub fn still(
+pub async fn still(
     document: &Document,
     options: &ExportOptions,
     progress: &Progress,
@@ -24,16 +25,16 @@ pub fn still(
     if !time.is_finite() {
         return Err(ExportError::Time(time));
     }
-    let gpu = Gpu::headless()?;
-    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
-    progress.step(0, 1)?;
-    let bytes = png(options.size, &renderer.pixels(time)?)?;
-    progress.step(1, 1)?;
+    let gpu = Gpu::headless().await?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu).await?;
+    progress.step(0, 1).await?;
+    let bytes = png(options.size, &renderer.pixels(time).await?)?;
+    progress.step(1, 1).await?;
     Ok(Exported { bytes, notes: Vec::new() })
 }
 
 /// Writes one picture file per frame, either all files or none.
-pub fn sequence(
+pub async fn sequence(
     document: &Document,
     path: &Path,
     name: &NumberedName,
@@ -42,28 +43,30 @@ pub fn sequence(
 ) -> Result<Vec<String>, ExportError> {
     let frames = ExportFrames::of_picture(document, options.fps)?;
     let batch = FileBatch::beside(path)?;
-    let gpu = Gpu::headless()?;
-    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
-    let write = |(number, pixels): Frame| {
-        Ok(batch.add(&name.with_number(number), &png(options.size, &pixels)?)?)
-    };
-    thread::scope(|scope| {
-        let writers = FrameWriters::new(scope, &write);
-        for frame in 0..frames.count() {
-            progress.step(frame, frames.count())?;
-            if !writers.add((frame, renderer.pixels(frames.time(frame))?)) {
-                break;
-            }
+    let gpu = Gpu::headless().await?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu).await?;
+    let batch = Arc::new(batch);
+    let write = {
+        let (batch, name, size) = (Arc::clone(&batch), name.clone(), options.size);
+        move |(number, pixels): Frame| {
+            Ok(batch.add(&name.with_number(number), &png(size, &pixels)?)?)
         }
-        writers.finish()
-    })?;
-    progress.step(frames.count(), frames.count())?;
+    };
+    let writers = FrameWriters::new(write);
+    for frame in 0..frames.count() {
+        progress.step(frame, frames.count()).await?;
+        if !writers.add((frame, renderer.pixels(frames.time(frame)).await?))? {
+            break;
+        }
+    }
+    writers.finish()?;
+    progress.step(frames.count(), frames.count()).await?;
     batch.finish()?;
     Ok(Vec::new())
 }
 
 /// Writes all frames to one animated PNG that loops for ever.
-pub fn animation(
+pub async fn animation(
     document: &Document,
     path: &Path,
     options: &ExportOptions,
@@ -72,22 +75,21 @@ pub fn animation(
     const LOOP_FOR_EVER: u32 = 0;
     let frames = ExportFrames::of_picture(document, options.fps)?;
     let count = u32::try_from(frames.count()).map_err(|_| ExportError::Frames(frames.count()))?;
-    let gpu = Gpu::headless()?;
-    let mut renderer = FrameRenderer::new(document, options, &gpu)?;
-    io::write_with(path, |file| {
-        let mut encoder = encoder(file, options.size);
-        encoder.set_animated(count, LOOP_FOR_EVER)?;
-        let (seconds, frames_in_them) = frame_delay(frames.rate());
-        encoder.set_frame_delay(seconds, frames_in_them)?;
-        let mut writer = encoder.write_header()?;
-        for frame in 0..frames.count() {
-            progress.step(frame, frames.count())?;
-            writer.write_image_data(&renderer.pixels(frames.time(frame))?)?;
-        }
-        progress.step(frames.count(), frames.count())?;
-        Ok::<(), ExportError>(writer.finish()?)
-    })?;
-    Ok(Vec::new())
+    let gpu = Gpu::headless().await?;
+    let mut renderer = FrameRenderer::new(document, options, &gpu).await?;
+    let mut file = io::NewFile::at(path)?;
+    let mut encoder = encoder(&mut file, options.size);
+    encoder.set_animated(count, LOOP_FOR_EVER)?;
+    let (seconds, frames_in_them) = frame_delay(frames.rate());
+    encoder.set_frame_delay(seconds, frames_in_them)?;
+    let mut writer = encoder.write_header()?;
+    for frame in 0..frames.count() {
+        progress.step(frame, frames.count()).await?;
+        writer.write_image_data(&renderer.pixels(frames.time(frame)).await?)?;
+    }
+    progress.step(frames.count(), frames.count()).await?;
+    writer.finish()?;
+    Ok(file.finish().map(|()| Vec::new())?)
 }
 
 /// Draws a document at successive times.
@@ -100,7 +102,7 @@ struct FrameRenderer<'a> {
 }
 
 impl<'a> FrameRenderer<'a> {
-    fn new(
+    async fn new(
         document: &Document,
         options: &ExportOptions,
         gpu: &'a Gpu,
@@ -111,17 +113,17 @@ impl<'a> FrameRenderer<'a> {
             overlays: Overlays::new(&track, &track.at(document.timeline.start)),
             track,
             builder: SceneBuilder::default(),
-            picture: PictureRenderer::of_size(gpu, width, height)?,
+            picture: PictureRenderer::of_size(gpu, width, height).await?,
             theme: options.theme,
         })
     }
 
     /// Draws the document at `time`, in seconds. Returns the RGBA pixels in rows from the top.
-    fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
+    async fn pixels(&mut self, time: f64) -> Result<Vec<u8>, ExportError> {
         let posed = self.track.at(time);
         self.overlays.follow(&self.track, &posed);
         let scene = self.builder.build(&posed, &self.overlays, self.theme);
-        Ok(self.picture.draw(&scene)?.into_raw())
+        Ok(self.picture.draw(&scene).await?.into_raw())
     }
 }
 
@@ -158,40 +160,54 @@ fn frame_delay(rate: f64) -> (u16, u16) {
 /// The pixels of a frame, with its number.
 type Frame = (usize, Vec<u8>);
 
-/// Threads that encode and write frames while the next ones are drawn, one on each core.
-struct FrameWriters<'scope> {
-    frames: SyncSender<Frame>,
-    writers: Vec<ScopedJoinHandle<'scope, Result<(), ExportError>>>,
+/// Encodes and writes a frame.
+type WriteFrame = dyn Fn(Frame) -> Result<(), ExportError> + Send + Sync;
+
+/// Threads that encode and write frames while the next ones are drawn, one on each core. They have
+/// ended when this is dropped.
+struct FrameWriters {
+    write: Arc<WriteFrame>,
+    /// `None` once there are no more.
+    frames: Option<SyncSender<Frame>>,
+    /// None in a browser, where each frame is written before the next one is drawn.
+    writers: Vec<JoinHandle<Result<(), ExportError>>>,
 }
 
-impl<'scope> FrameWriters<'scope> {
+impl FrameWriters {
     /// Starts the threads. Each calls `write` with the next frame until there are no more, or until
     /// it fails.
-    fn new<'env>(
-        scope: &'scope Scope<'scope, 'env>,
-        write: &'env (impl Fn(Frame) -> Result<(), ExportError> + Sync),
-    ) -> Self {
+    fn new(write: impl Fn(Frame) -> Result<(), ExportError> + Send + Sync + 'static) -> Self {
+        let write: Arc<WriteFrame> = Arc::new(write);
         let cores = thread::available_parallelism().map_or(1, NonZero::get);
         // As many frames wait as are written, so that memory stays small.
         let (frames, receiver) = sync_channel(cores);
         let waiting = Arc::new(Mutex::new(Some(receiver)));
-        let work = || {
-            let waiting = waiting.clone();
-            scope.spawn(move || {
+        let start = |_| {
+            let (waiting, write) = (Arc::clone(&waiting), Arc::clone(&write));
+            let work = move || {
                 while let Some(frame) = next(&waiting) {
                     // After an error nobody receives any more, so that drawing stops, too.
                     write(frame).inspect_err(|_| drop(lock(&waiting).take()))?;
                 }
                 Ok(())
-            })
+            };
+            thread::Builder::new().spawn(work).ok()
         };
-        Self { frames, writers: (0..cores).map(|_| work()).collect() }
+        let writers = (0..cores).map_while(start).collect();
+        Self { write, frames: Some(frames), writers }
     }
 
     /// Hands a frame over; waits while too many wait. Returns whether it will be written: not if
     /// another one has failed.
-    fn add(&self, frame: Frame) -> bool {
-        self.frames.send(frame).is_ok()
+    ///
+    /// # Errors
+    ///
+    /// The error of writing it, without threads.
+    fn add(&self, frame: Frame) -> Result<bool, ExportError> {
+        match &self.frames {
+            Some(frames) if !self.writers.is_empty() => Ok(frames.send(frame).is_ok()),
+            _ => (self.write)(frame).map(|()| true),
+        }
     }
 
     /// Waits until all frames are written.
@@ -199,15 +215,22 @@ impl<'scope> FrameWriters<'scope> {
     /// # Errors
     ///
     /// The first error of a thread.
-    fn finish(self) -> Result<(), ExportError> {
-        let Self { frames, writers } = self;
-        drop(frames);
-        let end = |writer: ScopedJoinHandle<'_, _>| {
-            writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        };
-        // All are joined, also after an error.
-        let ends: Vec<Result<(), ExportError>> = writers.into_iter().map(end).collect();
-        ends.into_iter().collect()
+    fn finish(mut self) -> Result<(), ExportError> {
+        let ends = self.join();
+        let ends = ends.into_iter().map(|end| end.unwrap_or_else(|panic| resume_unwind(panic)));
+        ends.collect()
+    }
+
+    /// Lets the threads end, and waits for all of them, also after an error.
+    fn join(&mut self) -> Vec<thread::Result<Result<(), ExportError>>> {
+        self.frames = None;
+        self.writers.drain(..).map(JoinHandle::join).collect()
+    }
+}
+
+impl Drop for FrameWriters {
+    fn drop(&mut self) {
+        self.join();
     }
 }
 

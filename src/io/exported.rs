@@ -1,6 +1,9 @@
 //! Options, frames and results of exports, with their progress and the errors that formats share.
 
+use std::future::poll_fn;
+use std::mem::replace;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::task::Poll;
 
 use thiserror::Error;
 
@@ -198,15 +201,16 @@ pub struct Progress {
 pub struct Cancelled;
 
 impl Progress {
-    /// Reports that `done` of `total` steps are done. The job calls this method often, so that it
-    /// stops soon when it is cancelled.
+    /// Reports that `done` of `total` steps are done, and gives way once to what else waits. The job
+    /// calls this method often, so that it stops soon when it is cancelled, and holds up no page.
     ///
     /// # Errors
     ///
     /// Fails if the job was cancelled.
-    pub fn step(&self, done: usize, total: usize) -> Result<(), Cancelled> {
+    pub async fn step(&self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.done.store(done, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
+        give_way().await;
         if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
@@ -225,6 +229,20 @@ impl Progress {
         let (done, total) = (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed));
         if total == 0 { 0.0 } else { (done as f32 / total as f32).min(1.0) }
     }
+}
+
+/// Ends at the second poll. On a thread of its own that is at once; a page polls a job as long as a
+/// frame has time.
+async fn give_way() {
+    let mut has_given_way = false;
+    poll_fn(|context| {
+        if replace(&mut has_given_way, true) {
+            return Poll::Ready(());
+        }
+        context.waker().wake_by_ref();
+        Poll::Pending
+    })
+    .await;
 }
 
 /// The reason why a motion cannot be exported.

@@ -7,7 +7,7 @@
 //! file that can be opened all the same are [`Remark`]s in [`Opened`]. Content that an export
 //! cannot hold is listed in the notes of [`Exported`].
 //!
-//! Files are written whole or not at all, by [`write()`], [`write_with`] and [`FileBatch`]. No
+//! Files are written whole or not at all, by [`write()`], [`NewFile`] and [`FileBatch`]. No
 //! other code writes documents or exports.
 
 mod bones;
@@ -49,7 +49,7 @@ pub use formats::csv::to_csv;
 pub use formats::document::{save, to_json};
 pub use formats::gltf::{GlbError, glb};
 pub use formats::obj::{ObjError, to_obj};
-pub use formats::{ContentError, FileFormat, WriteContent, Writer};
+pub use formats::{ContentError, ContentJob, FileFormat, WriteContent, Writer};
 #[cfg(feature = "app")]
 pub(crate) use formats::{dotted, enumerated};
 pub use link::{Link, LinkError, LinkScene};
@@ -61,4 +61,4 @@ pub use solve_line::{Answer, LineError, PreviousLine, solve_line};
 #[cfg(all(feature = "app", not(target_arch = "wasm32")))]
 pub(crate) use source::read_text;
 pub use texture::{texture_pixels, undrawn_textures};
-pub use write::{FileBatch, write, write_with};
+pub use write::{FileBatch, NewFile, write};

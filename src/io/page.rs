@@ -88,19 +88,41 @@ fn download(name: &str, bytes: &[u8]) -> Result<(), wasm_bindgen::JsValue> {
     Url::revoke_object_url(&address)
 }
 
-/// Like [`write()`], for content that the closure `write` writes piece by piece. If the closure
-/// fails, nothing is downloaded.
-///
-/// # Errors
-///
-/// Fails if `write` fails, or the browser refuses the download.
-pub fn write_with<E: From<WriteError>>(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut bytes = Vec::new();
-    write(&mut bytes)?;
-    Ok(self::write(path, &bytes)?)
+/// A file that is written piece by piece: until it is finished, nothing is downloaded.
+#[derive(Debug)]
+pub struct NewFile {
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl NewFile {
+    /// Begins a file.
+    ///
+    /// # Errors
+    ///
+    /// Never; a disk may refuse it.
+    pub fn at(path: &Path) -> Result<Self, WriteError> {
+        Ok(Self { path: path.to_owned(), bytes: Vec::new() })
+    }
+
+    /// Downloads the file.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the browser refuses the download.
+    pub fn finish(self) -> Result<(), WriteError> {
+        write(&self.path, &self.bytes)
+    }
+}
+
+impl Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// Files that are downloaded all together or not at all.
@@ -137,8 +159,8 @@ impl FileBatch {
     /// # Errors
     ///
     /// Fails if the browser refuses a download.
-    pub fn finish(self) -> Result<(), WriteError> {
-        let files = self.files.into_inner().unwrap_or_else(PoisonError::into_inner);
+    pub fn finish(&self) -> Result<(), WriteError> {
+        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         files.iter().try_for_each(|(name, bytes)| write(&self.folder.join(name), bytes))
     }
 }

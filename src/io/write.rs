@@ -23,43 +23,88 @@ use super::error::WriteError;
 /// Fails if the folder or the file cannot be written, the file is write-protected, or its owner
 /// cannot be kept.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write_with(path, |file| file.write_all(bytes).map_err(|source| failed(path, source)))
+    let mut file = NewFile::at(path)?;
+    file.write_all(bytes).map_err(|source| failed(path, source))?;
+    file.finish()
 }
 
-/// Like [`write()`], for content that the closure `write` writes piece by piece. If the closure
-/// fails, no file is created or replaced.
-///
-/// # Errors
-///
-/// Fails if the folder or the file cannot be written, or `write` fails.
-pub fn write_with<E: From<WriteError>>(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
-) -> Result<(), E> {
-    let failed = |source| failed(path, source);
-    let existing = fs::metadata(path).ok();
-    match &existing {
-        Some(existing) if existing.is_dir() => {
-            return Err(failed(io::ErrorKind::IsADirectory.into()).into());
+/// A file that is written piece by piece, whole or not at all like that of [`write()`]: until it is
+/// finished, no file is created or replaced.
+#[derive(Debug)]
+pub struct NewFile {
+    /// Where it is written, at the end of links.
+    path: PathBuf,
+    /// The file that it replaces.
+    existing: Option<fs::Metadata>,
+    output: Output,
+}
+
+#[derive(Debug)]
+enum Output {
+    Temporary(BufWriter<NamedTempFile>),
+    /// A pipe or a device.
+    Direct(File),
+}
+
+impl NewFile {
+    /// Begins a file, which becomes the one at `path`.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the folder cannot be written to, or the file is write-protected.
+    pub fn at(path: &Path) -> Result<Self, WriteError> {
+        let failed = |source| failed(path, source);
+        let existing = fs::metadata(path).ok();
+        match &existing {
+            Some(existing) if existing.is_dir() => {
+                return Err(failed(io::ErrorKind::IsADirectory.into()));
+            }
+            Some(special) if !special.is_file() => {
+                let file = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
+                let (path, output) = (path.to_owned(), Output::Direct(file));
+                return Ok(Self { path, existing, output });
+            }
+            Some(existing) => check_writable(path, existing).map_err(failed)?,
+            None => {}
         }
-        Some(existing) if !existing.is_file() => {
-            let mut file = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
-            return write(&mut file);
+        // Replaces the file that a link points to, so that the link stays a link.
+        let path = end_of_links(path);
+        let file = temporary_file(&folder_of(&path)?).map_err(failed)?;
+        Ok(Self { path, existing, output: Output::Temporary(BufWriter::new(file)) })
+    }
+
+    /// Moves the file to its path.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the rest cannot be written, or the owner of the file before cannot be kept.
+    pub fn finish(self) -> Result<(), WriteError> {
+        let Self { path, existing, output } = self;
+        let persisted = match output {
+            Output::Temporary(file) => file
+                .into_inner()
+                .map_err(io::IntoInnerError::into_error)
+                .and_then(|file| persist(file, &path, existing.as_ref())),
+            Output::Direct(mut file) => file.flush(),
+        };
+        persisted.map_err(|source| failed(&path, source))
+    }
+}
+
+impl Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.output {
+            Output::Temporary(file) => file.write(bytes),
+            Output::Direct(file) => file.write(bytes),
         }
-        _ => {}
     }
-    if let Some(existing) = &existing {
-        check_writable(path, existing).map_err(failed)?;
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.output {
+            Output::Temporary(file) => file.flush(),
+            Output::Direct(file) => file.flush(),
+        }
     }
-    // Replaces the file that a link points to, so that the link stays a link.
-    let path = &end_of_links(path);
-    let mut file = temporary_file(&folder_of(path)?).map_err(failed)?;
-    let mut buffered = BufWriter::new(&mut file);
-    write(&mut buffered)?;
-    buffered.flush().map_err(failed)?;
-    drop(buffered);
-    persist(file, path, existing.as_ref()).map_err(failed)?;
-    Ok(())
 }
 
 /// Files of one folder that are written all together or not at all. They are first written to a
@@ -108,7 +153,7 @@ impl FileBatch {
     /// # Errors
     ///
     /// Fails if a file cannot be moved. The final folder is then restored as far as possible.
-    pub fn finish(self) -> Result<(), WriteError> {
+    pub fn finish(&self) -> Result<(), WriteError> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         for (index, name) in names.iter().enumerate() {
             if let Err(source) = self.install(name) {

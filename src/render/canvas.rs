@@ -105,7 +105,7 @@ impl Canvas {
     /// # Errors
     ///
     /// If the device fails.
-    pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, ReadError> {
+    pub async fn read(&self, gpu: &Gpu) -> Result<RgbaImage, ReadError> {
         const PIXEL: u32 = 4;
         let row = self.width * PIXEL;
         let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -126,7 +126,7 @@ impl Canvas {
         );
         gpu.queue.submit([encoder.finish()]);
 
-        let mapped = fetch(gpu, &buffer)?;
+        let mapped = fetch(gpu, &buffer).await?;
         let pixels = mapped
             .chunks_exact(padded_row as usize)
             .flat_map(|padded| &padded[..row as usize])

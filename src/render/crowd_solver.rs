@@ -168,14 +168,14 @@ impl CrowdSolver {
     /// # Errors
     ///
     /// If the device fails.
-    pub fn read(&self, gpu: &Gpu) -> Result<[[Vec<f32>; 3]; 2], ReadError> {
+    pub async fn read(&self, gpu: &Gpu) -> Result<[[Vec<f32>; 3]; 2], ReadError> {
         let size = POSE_ARRAYS * u64::from(self.buffers.stride) * FLOAT;
         let usage = wgpu::BufferUsages::MAP_READ;
         let copy = gpu.buffer("crowd poses, read back", size, usage);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.buffers.poses, 0, &copy, 0, size);
         gpu.queue.submit([encoder.finish()]);
-        let mapped = fetch(gpu, &copy)?;
+        let mapped = fetch(gpu, &copy).await?;
         let floats: &[f32] = bytemuck::cast_slice(&mapped);
         let array = |index: usize| {
             let first = index * self.buffers.stride as usize;

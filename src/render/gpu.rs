@@ -40,9 +40,6 @@ pub enum GpuError {
         /// Names of all adapters.
         found: Vec<String>,
     },
-    /// A page in a browser cannot wait until a picture is drawn.
-    #[error("a page in a browser draws no pictures for files yet; the program on a computer does")]
-    CannotWait,
     /// The adapter's driver refused to create a device.
     #[error("the graphics adapter {adapter} provides no device: {source}")]
     NoDevice {
@@ -66,16 +63,14 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// If there is no adapter, or it provides no device; always in a browser.
-    pub fn headless() -> Result<Self, GpuError> {
-        if cfg!(target_arch = "wasm32") {
-            return Err(GpuError::CannotWait);
-        }
-        pollster::block_on(Self::with_gl_as_fallback(async |backends| {
+    /// If there is no adapter, or it provides no device.
+    pub async fn headless() -> Result<Self, GpuError> {
+        Self::with_gl_as_fallback(async |backends| {
             let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             let descriptor = wgpu::InstanceDescriptor { backends, ..descriptor };
             Self::new(wgpu::Instance::new(descriptor), None).await
-        }))
+        })
+        .await
     }
 
     /// Calls `make` with all backends except OpenGL and, if that fails, with all backends: OpenGL
@@ -223,17 +218,21 @@ impl Gpu {
     /// # Errors
     ///
     /// If the device rejects a command, is lost or out of memory.
-    pub fn watched<T>(&self, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
+    pub async fn watched<T>(&self, work: impl AsyncFnOnce() -> T) -> Result<T, DeviceError> {
         let scopes = [
             wgpu::ErrorFilter::Internal,
             wgpu::ErrorFilter::Validation,
             wgpu::ErrorFilter::OutOfMemory,
         ]
         .map(|filter| self.device.push_error_scope(filter));
-        let result = work();
+        let result = work().await;
+        let mut caught = None;
         // Pops every scope, even after one that has caught an error.
-        let caught = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
-        match caught.collect::<Vec<_>>().first() {
+        for scope in scopes.into_iter().rev() {
+            let error = scope.pop().await;
+            caught = caught.or(error);
+        }
+        match caught {
             Some(error) => Err(DeviceError(error.to_string())),
             None => self.check().map(|()| result),
         }

@@ -92,14 +92,14 @@ impl<'a> PictureRenderer<'a> {
     /// # Errors
     ///
     /// If the picture is too large for the device, or the device fails.
-    pub fn of_size(gpu: &'a Gpu, width: u32, height: u32) -> Result<Self, DrawError> {
+    pub async fn of_size(gpu: &'a Gpu, width: u32, height: u32) -> Result<Self, DrawError> {
         const WINDOW_HEIGHT: f32 = 800.0;
         let longest = gpu.longest_side();
         if width.max(height) > longest {
             return Err(DrawError::TooLarge { width, height, longest });
         }
         let scale = (width.min(height) as f32 / WINDOW_HEIGHT).max(1.0);
-        Ok(gpu.watched(|| Self::new(gpu, width, height, scale))?)
+        Ok(gpu.watched(async || Self::new(gpu, width, height, scale)).await?)
     }
 
     /// Draws a scene and reads the image back.
@@ -107,13 +107,13 @@ impl<'a> PictureRenderer<'a> {
     /// # Errors
     ///
     /// If the device fails.
-    pub fn draw(&mut self, scene: &Scene) -> Result<RgbaImage, DrawError> {
+    pub async fn draw(&mut self, scene: &Scene) -> Result<RgbaImage, DrawError> {
         let (gpu, renderer, canvas) = (self.gpu, &mut self.renderer, &self.canvas);
-        let image = gpu.watched(|| {
+        let drawn = gpu.watched(async || {
             renderer.draw(gpu, scene, canvas, self.scale);
-            canvas.read(gpu)
-        })?;
-        Ok(image?)
+            canvas.read(gpu).await
+        });
+        Ok(drawn.await??)
     }
 
     /// Number of arms and solver time of the crowd in the last scene; `None` without a crowd.
@@ -131,7 +131,7 @@ impl<'a> PictureRenderer<'a> {
     /// # Errors
     ///
     /// If the device fails.
-    pub fn time(
+    pub async fn time(
         &mut self,
         frames: u32,
         mut scene: impl FnMut(u32) -> Scene,
@@ -141,7 +141,7 @@ impl<'a> PictureRenderer<'a> {
             let start = Instant::now();
             let scene = scene(number);
             let (gpu, renderer, canvas) = (self.gpu, &mut self.renderer, &self.canvas);
-            gpu.watched(|| renderer.draw(gpu, &scene, canvas, self.scale))?;
+            gpu.watched(async || renderer.draw(gpu, &scene, canvas, self.scale)).await?;
             cpu.push(start.elapsed());
             self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
             frame.push(start.elapsed());

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
+use futures_channel::oneshot;
 use thiserror::Error;
 
 use super::Gpu;
@@ -78,14 +79,15 @@ impl Readback {
 }
 
 /// Waits until the device has executed all commands, then maps a buffer and returns its contents.
-pub(super) fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
-    let (sender, receiver) = std::sync::mpsc::channel();
+pub(super) async fn fetch(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, ReadError> {
+    let (sender, receiver) = oneshot::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
         // Sending fails only if the poll below has failed, which drops the receiver.
         let _ = sender.send(result);
     });
+    // In a browser, this returns at once, and the buffer is mapped later.
     gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
-    receiver.recv().unwrap_or(Err(wgpu::BufferAsyncError))?;
+    receiver.await.unwrap_or(Err(wgpu::BufferAsyncError))?;
     Ok(buffer.get_mapped_range(..)?)
 }
 

@@ -113,7 +113,7 @@ impl SkinDeformer {
     /// # Errors
     ///
     /// If the device fails.
-    pub fn deform(
+    pub async fn deform(
         &self,
         gpu: &Gpu,
         mesh: &SkinnedMesh,
@@ -130,7 +130,7 @@ impl SkinDeformer {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&deformed.vertices, 0, &copy, 0, size);
         gpu.queue.submit([encoder.finish()]);
-        let mapped = fetch(gpu, &copy)?;
+        let mapped = fetch(gpu, &copy).await?;
         let all: Vec<DeformedVertex> = bytemuck::pod_collect_to_vec(&mapped[..size as usize]);
         Ok(all.iter().map(|vertex| (vertex.position.truncate(), vertex.normal.truncate())).unzip())
     }

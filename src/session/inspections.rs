@@ -6,8 +6,7 @@ use crate::kinematics::Shared;
 use crate::session::history::editing::Editing;
 use crate::session::outcome::{Consequence, Outcome};
 
-/// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs on a thread of
-/// its own.
+/// Inspections of the skeleton's motion: pops, lost targets and slides. Each runs in the background.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inspections {
     /// The findings of the latest inspection, with the revision of the document.
@@ -43,14 +42,14 @@ impl InspectionJob {
 
     /// Inspects the motion and returns the action that ends the inspection.
     #[must_use]
-    pub fn run(self) -> InspectAction {
+    pub async fn run(self) -> InspectAction {
         let frames = self.track.document().timeline;
         let total = frames.frames();
-        let go_on = |done| self.progress.step(done, total).is_ok();
-        let found = Inspection::new(&self.track, frames, false, go_on).map(|mut found| {
-            found.find_better_posture(&self.track, frames, go_on);
-            found
-        });
+        let go_on = async |done| self.progress.step(done, total).await.is_ok();
+        let mut found = Inspection::new(&self.track, frames, false, go_on).await;
+        if let Some(found) = &mut found {
+            found.find_better_posture(&self.track, frames, go_on).await;
+        }
         InspectAction::Ended(self, found.map(Box::new))
     }
 }

@@ -9,6 +9,7 @@ use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::render::{Canvas, Gpu, Renderer};
 use ik_arm::scene::{Ball, Line, Scene, SphereShell};
 use ik_arm::session::Overlays;
+use pollster::block_on;
 
 const SIZE: (u32, u32) = (480, 300);
 
@@ -35,7 +36,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let gpu = Gpu::headless().expect("a graphics adapter");
+        let gpu = block_on(Gpu::headless()).expect("a graphics adapter");
         let canvas = Canvas::new(&gpu, SIZE.0, SIZE.1);
         let renderer = Renderer::new(&gpu);
         Self { gpu, canvas, renderer }

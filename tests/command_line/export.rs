@@ -10,6 +10,7 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Document, Timeline};
 use ik_arm::export::{ExportError, ExportOptions, export};
 use ik_arm::io::{self, Example, FileBatch, Progress};
+use pollster::block_on;
 use tempfile::TempDir;
 
 use crate::{program, stderr};
@@ -261,7 +262,7 @@ fn a_cancelled_export_leaves_no_file() {
     for name in ["a.bvh", "a.csv", "a.png", "a_##.png", "a.apng"] {
         let progress = Progress::default();
         progress.cancel();
-        let stopped = export(&moving(), &desk.out(name), &options, &progress);
+        let stopped = block_on(export(&moving(), &desk.out(name), &options, &progress));
         assert!(matches!(stopped, Err(ExportError::Cancelled(_))), "{name} {stopped:?}");
     }
     assert_eq!(desk.names(), ["file"]);
@@ -276,7 +277,8 @@ fn an_export_cancelled_midway_leaves_no_file() {
     for name in ["a_##.png", "a.apng"] {
         let progress = Progress::default();
         let stopped = std::thread::scope(|scope| {
-            let job = scope.spawn(|| export(&document, &desk.out(name), &options, &progress));
+            let job =
+                scope.spawn(|| block_on(export(&document, &desk.out(name), &options, &progress)));
             while progress.part() == 0.0 && !job.is_finished() {
                 std::thread::yield_now();
             }

@@ -12,6 +12,7 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::spline::Spline;
 use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind};
+use pollster::block_on;
 
 use crate::common::skeletons::{forest, transform};
 use crate::common::{Random, documents};
@@ -100,7 +101,7 @@ fn shown(rig: SkeletonRig) -> Document {
 }
 
 fn bake(document: &Document, settings: &Bake) -> Baked {
-    settings.run(document, |_, _| true).expect("it can be baked")
+    block_on(settings.run(document, async |_, _| true)).expect("it can be baked")
 }
 
 fn pose_at(document: &Document, time: f64) -> SkeletonPose {
@@ -184,7 +185,7 @@ fn baked_documents_move_as_before() {
         let document = random_document(&mut random);
         let tolerance = random.one_of(&[1e-4, 1e-3, 1e-2]);
         let settings = Bake { frames: random.one_of(&[WHOLE, PART]), tolerance };
-        match settings.run(&document, |_, _| true) {
+        match block_on(settings.run(&document, async |_, _| true)) {
             Ok(baked) => {
                 assert_moves_as_before(&case.to_string(), &document, &settings, &baked);
                 tried += 1;
@@ -203,7 +204,7 @@ fn documents_with_any_numbers_are_baked_or_refused() {
         let start = document.timeline.start;
         document.timeline = Timeline { start, end: start + 0.5, frame_rate: 20.0 };
         document.rig.solver.iterations = Some(20);
-        let _ = Bake::of_timeline(&document).run(&document, |_, _| true);
+        let _ = block_on(Bake::of_timeline(&document).run(&document, async |_, _| true));
     }
 }
 
@@ -328,10 +329,10 @@ fn a_path_is_replaced_by_keys() {
 fn a_cancelled_bake_ends_at_its_next_step() {
     let document = waving();
     let mut steps = Vec::new();
-    let result = Bake::of_timeline(&document).run(&document, |done, total| {
+    let result = block_on(Bake::of_timeline(&document).run(&document, async |done, total| {
         steps.push((done, total));
         steps.len() < 200
-    });
+    }));
     assert_eq!(result, Err(BakeError::Cancelled));
     assert_eq!(steps.len(), 200);
     assert!(steps.is_sorted(), "{steps:?}");
@@ -343,7 +344,7 @@ fn what_cannot_be_baked_is_refused_with_a_reason() {
     let document = waving();
     let settings = Bake::of_timeline(&document);
     let refused = |document: &Document, settings: Bake, why: &str| {
-        let error = settings.run(document, |_, _| true).expect_err("it is refused");
+        let error = block_on(settings.run(document, async |_, _| true)).expect_err("it is refused");
         assert_eq!(error.to_string(), why);
     };
     let nothing = "nothing to bake: no target and no path poses the skeleton in this range";

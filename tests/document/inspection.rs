@@ -9,11 +9,12 @@ use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::rig::RigPopCause;
 use ik_arm::session::{Session, SolverEdit, TransactionAction};
+use pollster::block_on;
 
 use crate::common::Random;
 
 fn inspected(document: &Document) -> Inspection {
-    Inspection::new(&Track::new(document), document.timeline, false, |_| true)
+    block_on(Inspection::new(&Track::new(document), document.timeline, false, async |_| true))
         .expect("not cancelled")
 }
 
@@ -35,7 +36,7 @@ fn a_target_that_another_pose_reaches_is_lost_and_another_start_finds_it() {
         let error = posed.targets()[0].error;
         assert!(error > posed.document().rig.tolerance(), "missed at {time}: {error}");
     }
-    found.find_better_posture(&Track::new(&document), document.timeline, |_| true);
+    block_on(found.find_better_posture(&Track::new(&document), document.timeline, async |_| true));
     let posture = found.better_posture.expect("a posture from which nothing is lost");
     let mut session = Session::with_document(Default::default(), document);
     session.apply(SolverEdit::SetPosture(posture));

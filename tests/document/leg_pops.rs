@@ -8,6 +8,7 @@ use ik_arm::document::{Document, FramePop, Inspection, Timeline, Track, TwistRef
 use ik_arm::io;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits};
 use ik_arm::rig::{LimbSettings, RigPopCause, TargetSpace};
+use pollster::block_on;
 
 use crate::common::Random;
 
@@ -133,7 +134,9 @@ fn pops_of_the_legs_of_walk_are_found_where_an_own_derivative_finds_them() {
         let frame_rate = random.one_of(&[24.0, 60.0]);
         let frames = Timeline { frame_rate, ..document.timeline };
         let track = Track::new(&document);
-        let found = Inspection::new(&track, frames, false, |_| true).expect("not cancelled").pops;
+        let found = block_on(Inspection::new(&track, frames, false, async |_| true))
+            .expect("not cancelled")
+            .pops;
         for (side, [_, shin]) in LEGS.into_iter().enumerate() {
             let target = joint(&document, shin);
             let legs: Vec<Leg> =
@@ -175,7 +178,8 @@ fn pops_at_the_limits_of_the_hips_name_the_limits() {
         target.limb_mut().expect("a limb").reference = TwistReferenceKind::Up;
     }
     let track = Track::new(&document);
-    let found = Inspection::new(&track, document.timeline, false, |_| true).expect("not cancelled");
+    let found = block_on(Inspection::new(&track, document.timeline, false, async |_| true))
+        .expect("not cancelled");
     assert!(found.pops.len() > 5, "{:?}", found.pops);
     for FramePop { time, pop } in found.pops {
         let is_of_limits = matches!(
@@ -193,7 +197,8 @@ fn the_legs_of_walk_do_not_jump() {
     let document = walk();
     let track = Track::new(&document);
     let frames = Timeline { frame_rate: 240.0, ..document.timeline };
-    let found = Inspection::new(&track, document.timeline, false, |_| true).expect("not cancelled");
+    let found = block_on(Inspection::new(&track, document.timeline, false, async |_| true))
+        .expect("not cancelled");
     assert_eq!(found.pops, vec![]);
     for [_, shin] in LEGS {
         let target = joint(&document, shin);

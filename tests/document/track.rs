@@ -14,6 +14,7 @@ use ik_arm::rig::{LimbSettings, TargetKind};
 use ik_arm::session::{
     InspectAction, JointEdit, KeysEdit, PlaybackAction, Session, TargetEdit, TransactionAction,
 };
+use pollster::block_on;
 
 use crate::common::Random;
 
@@ -442,7 +443,7 @@ fn a_motion_that_takes_long_is_shown_provisionally_until_a_thread_has_computed_i
     session.apply(PlaybackAction::SetTime(50.0));
     assert!(session.posed().is_provisional());
     let known = bits(&Track::new(&document), 50.0);
-    session.apply(job.run());
+    session.apply(block_on(job.run()));
     assert!(!session.posed().is_provisional());
     assert_eq!(bits_of(session.posed()), known);
 

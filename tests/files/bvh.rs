@@ -9,6 +9,7 @@ use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use pollster::block_on;
 
 use crate::common::damage::{message, mutations};
 use crate::common::documents::example;
@@ -19,7 +20,7 @@ fn export(document: &Document) -> Exported {
 }
 
 fn export_in(document: &Document, unit: BvhUnit) -> Exported {
-    io::to_bvh(document, None, unit, &Progress::default()).expect("it is written")
+    block_on(io::to_bvh(document, None, unit, &Progress::default())).expect("it is written")
 }
 
 fn text(exported: &Exported) -> &str {
@@ -251,7 +252,7 @@ fn the_unit_can_be_chosen() {
 fn the_frame_rate_can_be_chosen_and_a_still_document_has_one_frame() {
     let mut document = shown(skeletons::chain(&mut Random(6), 2, 1.0));
     let frames = |document: &Document, fps| {
-        let exported = io::to_bvh(document, fps, BvhUnit::Metres, &Progress::default());
+        let exported = block_on(io::to_bvh(document, fps, BvhUnit::Metres, &Progress::default()));
         let exported = exported.expect("it is written");
         let said = text(&exported).lines().find_map(|line| line.strip_prefix("Frames: "));
         said.and_then(|said| said.parse::<usize>().ok()).expect("a number")
@@ -260,7 +261,8 @@ fn the_frame_rate_can_be_chosen_and_a_still_document_has_one_frame() {
     document.keys.insert(Channel::Rotation(JointId::new(1)), 0.0, Vec3::X);
     assert_eq!((frames(&document, None), frames(&document, Some(7.0))), (241, 57));
     for fps in [0.0, 0.001, 1001.0, f64::NAN, f64::INFINITY] {
-        let refused = io::to_bvh(&document, Some(fps), BvhUnit::Metres, &Progress::default());
+        let refused =
+            block_on(io::to_bvh(&document, Some(fps), BvhUnit::Metres, &Progress::default()));
         assert!(matches!(refused, Err(MotionError::FrameRate(_))));
     }
 }
@@ -403,7 +405,7 @@ fn a_non_uniform_or_singular_transform_is_noted_and_keeps_the_positions_of_joint
 #[test]
 fn documents_that_no_file_can_hold_are_refused() {
     let refused = |document: &Document| {
-        io::to_bvh(document, None, BvhUnit::default(), &Progress::default())
+        block_on(io::to_bvh(document, None, BvhUnit::default(), &Progress::default()))
             .expect_err("refused")
             .to_string()
     };
@@ -422,7 +424,7 @@ fn a_cancelled_export_stops() {
     let progress = Progress::default();
     progress.cancel();
     let document = example("snake");
-    let stopped = io::to_bvh(&document, None, BvhUnit::default(), &progress);
+    let stopped = block_on(io::to_bvh(&document, None, BvhUnit::default(), &progress));
     assert!(matches!(stopped, Err(MotionError::Cancelled(_))));
 }
 

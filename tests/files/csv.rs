@@ -5,9 +5,11 @@ use glam::Vec3;
 use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, MotionError, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use pollster::block_on;
 
 fn table(document: &Document, fps: Option<f64>) -> String {
-    let exported = io::to_csv(document, fps, &Progress::default()).expect("it is written");
+    let exported =
+        block_on(io::to_csv(document, fps, &Progress::default())).expect("it is written");
     assert_eq!(exported.notes, Vec::<String>::new());
     String::from_utf8(exported.bytes).expect("UTF-8")
 }
@@ -87,11 +89,11 @@ fn an_empty_skeleton_gives_one_row_and_a_cancelled_table_none() {
     assert_eq!(table(&document, None), "frame,time\n0,0\n");
     let progress = Progress::default();
     progress.cancel();
-    let stopped = io::to_csv(&document, None, &progress);
+    let stopped = block_on(io::to_csv(&document, None, &progress));
     assert!(matches!(stopped, Err(MotionError::Cancelled(_))));
     let mut far = Joint::new("far", None, Vec3::splat(3e38));
     far.offset = Vec3::splat(3e38);
     document.skeleton_mut().add(far).expect("joint");
-    let refused = io::to_csv(&document, None, &Progress::default()).expect_err("refused");
+    let refused = block_on(io::to_csv(&document, None, &Progress::default())).expect_err("refused");
     assert_eq!(refused.to_string(), "the position of \"far_tip\" must be within ±3.4028235e38");
 }

@@ -4,6 +4,7 @@ use glam::{Affine3A, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, ExportFrames, OpenOptions, Progress};
 use ik_arm::kinematics::skeleton::JointId;
+use pollster::block_on;
 
 use crate::common::{Random, skeletons};
 
@@ -56,13 +57,14 @@ fn assert_same(before: &Document, after: &Document, what: &str) {
 }
 
 fn through_glb(document: &Document) -> Document {
-    let bytes = io::glb(document, None, &Progress::default()).expect("written");
+    let bytes = block_on(io::glb(document, None, &Progress::default())).expect("written");
     io::read("x.glb", &bytes[..], &OpenOptions::default()).expect("read").document
 }
 
 fn through_bvh(document: &Document) -> Document {
     let unit = BvhUnit::Centimetres;
-    let exported = io::to_bvh(document, None, unit, &Progress::default()).expect("written");
+    let exported =
+        block_on(io::to_bvh(document, None, unit, &Progress::default())).expect("written");
     io::read("x.bvh", &exported.bytes[..], &OpenOptions::default()).expect("read").document
 }
 

@@ -2,6 +2,7 @@
 
 use crate::common::arm::{ArmEdit, ArmSession};
 use std::fs;
+use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -262,13 +263,11 @@ fn temporary_files_of_killed_programs_are_removed_by_the_next_write_and_those_of
     let of_batch = hidden();
     assert_eq!(of_batch.len(), 1, "only the folder of the running batch is left: {of_batch:?}");
     assert_eq!(fs::read(folder.path().join("a.png")).expect("put back"), b"the only copy");
-    io::write_with(&others, |file| {
-        io::write(&path, b"another").expect("written");
-        assert_eq!(hidden().len(), 2, "files that are being written stay: {:?}", hidden());
-        file.write_all(b"other").expect("written");
-        Ok::<(), io::WriteError>(())
-    })
-    .expect("written");
+    let mut file = io::NewFile::at(&others).expect("a folder");
+    io::write(&path, b"another").expect("written");
+    assert_eq!(hidden().len(), 2, "files that are being written stay: {:?}", hidden());
+    file.write_all(b"other").expect("written");
+    file.finish().expect("written");
     batch.add(std::ffi::OsStr::new("b.png"), b"picture").expect("added");
     batch.finish().expect("written");
     assert_eq!(hidden(), [""; 0]);

@@ -11,6 +11,7 @@ use ik_arm::kinematics::skin::{SkinnedMesh, Skinning, TriangleMesh, VertexWeight
 use ik_arm::rig::{
     AttachedMesh, FileMesh, MeshSkin, SkeletonRig, SkinFileError, SkinPart, SkinSource, SkinTexture,
 };
+use pollster::block_on;
 
 use crate::common::Random;
 
@@ -61,7 +62,7 @@ fn texture() -> SkinTexture {
 }
 
 fn write_glb(document: &Document, path: &Path) {
-    let bytes = io::glb(document, None, &Progress::default()).expect("an export");
+    let bytes = block_on(io::glb(document, None, &Progress::default())).expect("an export");
     fs::write(path, bytes).expect("a file");
 }
 

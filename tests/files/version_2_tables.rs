@@ -5,6 +5,7 @@ use std::fs;
 
 use glam::DVec3;
 use ik_arm::io::{self, Progress};
+use pollster::block_on;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/version-2/motions");
 
@@ -60,7 +61,8 @@ fn documents_of_version_2_move_as_in_the_program_that_wrote_them() {
         let before = Table::read(&fs::read(path.with_extension("csv")).expect("text"));
         let opened = io::open(&path, &io::OpenOptions::default());
         let document = opened.unwrap_or_else(|error| panic!("{error}")).document;
-        let table = io::to_csv(&document, None, &Progress::default()).expect("it is written");
+        let table =
+            block_on(io::to_csv(&document, None, &Progress::default())).expect("it is written");
         let after = Table::read(&table.bytes);
         assert_eq!(after.rows.len(), before.rows.len(), "{name}");
 

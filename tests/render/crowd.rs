@@ -8,6 +8,7 @@ use ik_arm::rig::{Crowd, CrowdArrays, Processor};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Session, ViewAction};
 use image::RgbaImage;
+use pollster::block_on;
 
 use crate::common::Random;
 use crate::common::pictures::difference;
@@ -39,7 +40,7 @@ fn agree(gpu: &Gpu, bones: TwoBone, arrays: &mut CrowdArrays) {
     let mut solver = CrowdSolver::new(gpu).expect("compute shaders");
     solver.reserve(gpu, arrays.len() as u32);
     solver.solve(gpu, bones, arrays).expect("a device");
-    let [elbows, hands] = solver.read(gpu).expect("poses");
+    let [elbows, hands] = block_on(solver.read(gpu)).expect("poses");
     arrays.solve(bones).expect("a batch");
     let length = f64::from(bones.outer_limit());
     for arm in 0..arrays.len() {
@@ -60,7 +61,7 @@ fn agree(gpu: &Gpu, bones: TwoBone, arrays: &mut CrowdArrays) {
 
 #[test]
 fn device_and_batch_agree_on_a_hundred_thousand_random_arms() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let mut random = Random(11);
     for (upper, lower, arms) in [(200.0, 300.0, 100_000), (1.0, 1.0, 10_000), (0.3, 9.0, 10_000)] {
         let bones = TwoBone::new(upper, lower).expect("lengths");
@@ -79,7 +80,7 @@ fn device_and_batch_agree_on_a_hundred_thousand_random_arms() {
 
 #[test]
 fn device_and_batch_agree_where_a_cursor_has_no_direction_and_on_the_limits() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     for (upper, lower) in [(200.0, 300.0), (250.0, 250.0), (300.0, 200.0)] {
         let bones = TwoBone::new(upper, lower).expect("lengths");
         let axes = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
@@ -137,7 +138,7 @@ fn adding_arms_does_not_move_the_existing_ones() {
 
 #[test]
 fn a_crowd_made_smaller_is_drawn_like_a_new_one() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let (mut used, mut new) = (picture(&gpu), picture(&gpu));
     for arms in [30, 3_000] {
         draw(&mut used, &crowd(arms), near());
@@ -148,7 +149,7 @@ fn a_crowd_made_smaller_is_drawn_like_a_new_one() {
 
 #[test]
 fn a_crowd_looks_the_same_solved_on_the_cpu_or_the_gpu() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let mut picture = picture(&gpu);
     let here = draw(&mut picture, &crowd(500), near());
     let there = Crowd { processor: Processor::Gpu, ..crowd(500) };
@@ -165,7 +166,7 @@ fn a_crowd_looks_the_same_solved_on_the_cpu_or_the_gpu() {
 
 #[test]
 fn arms_near_and_far_have_the_colours_of_their_limbs() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     for radius in [600.0, 5_000.0, 30_000.0] {
         let camera = Camera::default().framing(Vec3::ZERO, radius, 1.0);
         let image = draw(&mut picture(&gpu), &crowd(1_000), camera);
@@ -185,7 +186,7 @@ fn above(radius: f32) -> Camera {
 
 #[test]
 fn a_crowd_covers_as_much_of_the_picture_with_points_as_with_lines() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let mut picture = picture(&gpu);
     let mut covered = |radius: f32| {
         let crowd = draw(&mut picture, &crowd(20_000), above(radius));
@@ -197,7 +198,7 @@ fn a_crowd_covers_as_much_of_the_picture_with_points_as_with_lines() {
 
 #[test]
 fn arms_behind_the_camera_are_not_drawn() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let with = draw(&mut picture(&gpu), &crowd(1), behind());
     assert!(with == draw_without(&mut picture(&gpu), behind()));
 }
@@ -233,7 +234,7 @@ fn a_session_shows_and_moves_a_crowd_without_changing_the_document() {
 }
 
 fn picture(gpu: &Gpu) -> PictureRenderer<'_> {
-    PictureRenderer::of_size(gpu, 320, 200).expect("a canvas")
+    block_on(PictureRenderer::of_size(gpu, 320, 200)).expect("a canvas")
 }
 
 fn near() -> Camera {
@@ -248,14 +249,14 @@ fn behind() -> Camera {
 }
 
 fn draw(picture: &mut PictureRenderer<'_>, crowd: &Crowd, camera: Camera) -> RgbaImage {
-    picture.draw(&scene(crowd, camera)).expect("a picture")
+    block_on(picture.draw(&scene(crowd, camera))).expect("a picture")
 }
 
 /// Draws what is around a crowd.
 fn draw_without(picture: &mut PictureRenderer<'_>, camera: Camera) -> RgbaImage {
     let mut scene = scene(&crowd(1), camera);
     scene.crowd = None;
-    picture.draw(&scene).expect("a picture")
+    block_on(picture.draw(&scene)).expect("a picture")
 }
 
 fn scene(crowd: &Crowd, camera: Camera) -> Scene {

@@ -13,6 +13,7 @@ use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Colour, Scene};
 use ik_arm::session::{Overlays, SolverGhost};
+use pollster::block_on;
 
 use crate::pictures::{self, GPU, SIZE, compare, draw, kept};
 
@@ -253,8 +254,8 @@ fn a_limb_of_another_colour_is_noticed() {
 fn a_large_picture_is_the_same_picture() {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let scene = scene(&Document::default(), Theme::Dark);
-    let large =
-        PictureRenderer::new(&gpu, SIZE.0 * 2, SIZE.1 * 2, 2.0).draw(&scene).expect("drawn");
+    let large = block_on(PictureRenderer::new(&gpu, SIZE.0 * 2, SIZE.1 * 2, 2.0).draw(&scene))
+        .expect("drawn");
     let shrunk =
         image::imageops::resize(&large, SIZE.0, SIZE.1, image::imageops::FilterType::Triangle);
     let small = kept("default");

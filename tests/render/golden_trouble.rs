@@ -14,6 +14,7 @@ use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
+use pollster::block_on;
 
 use crate::pictures::{GPU, check, compare, draw, kept};
 
@@ -86,7 +87,7 @@ fn bare(globe: Globe, theme: Theme, camera: Camera) -> Scene {
 
 fn picture(scene: &Scene, side: u32) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    PictureRenderer::new(&gpu, side, side, 1.0).draw(scene).expect("drawn")
+    block_on(PictureRenderer::new(&gpu, side, side, 1.0).draw(scene)).expect("drawn")
 }
 
 /// Expected colours of a pixel of the globe, if they are smooth there: the

@@ -9,6 +9,7 @@ use ik_arm::document::{Document, Theme};
 use ik_arm::render::{Canvas, Gpu, GpuTimer, Renderer, TimedPass};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
+use pollster::block_on;
 
 const SIZE: (u32, u32) = (640, 400);
 
@@ -36,7 +37,7 @@ fn timed(
 }
 
 fn gpu_and_timer() -> (Gpu, GpuTimer) {
-    let gpu = Gpu::headless().expect("a graphics adapter");
+    let gpu = block_on(Gpu::headless()).expect("a graphics adapter");
     let name = gpu.name();
     let has_clock = gpu.adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
     assert!(has_clock, "{name} has no clock: choose another adapter with WGPU_ADAPTER_NAME");

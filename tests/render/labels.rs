@@ -8,6 +8,7 @@ use ik_arm::render::{Canvas, Gpu, PictureRenderer, Renderer};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 use image::RgbaImage;
+use pollster::block_on;
 
 use crate::common::Random;
 use crate::pictures::{GPU, draw};
@@ -106,7 +107,8 @@ fn a_thousand_different_letters_are_drawn_at_any_scale() {
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         let scene = named(&names);
         for (side, scale) in [(600, 1.0), (1200, 3.0), (300, 20.0)] {
-            let drawn = PictureRenderer::new(&gpu, side, side, scale).draw(&scene).expect("drawn");
+            let drawn = block_on(PictureRenderer::new(&gpu, side, side, scale).draw(&scene))
+                .expect("drawn");
             assert!(lit(&drawn) > 1000, "{} lit at {scale}", lit(&drawn));
         }
     }
@@ -114,7 +116,7 @@ fn a_thousand_different_letters_are_drawn_at_any_scale() {
 
 #[test]
 fn a_picture_does_not_depend_on_what_was_drawn_before() {
-    let gpu = Gpu::headless().expect("a graphics adapter");
+    let gpu = block_on(Gpu::headless()).expect("a graphics adapter");
     let canvas = Canvas::new(&gpu, 480, 300);
     let mut renderer = Renderer::new(&gpu);
     let many = rows(('\u{a1}'..).filter(|letter| letter.is_alphabetic()).take(500));
@@ -122,7 +124,7 @@ fn a_picture_does_not_depend_on_what_was_drawn_before() {
     let scenes = [named(&["Hüfte", "左手"]), named(&many), named(&["Рука"]), named(&[])];
     for scene in scenes.iter().chain(&scenes) {
         renderer.draw(&gpu, scene, &canvas, 1.0);
-        assert!(canvas.read(&gpu).expect("read") == draw(scene));
+        assert!(block_on(canvas.read(&gpu)).expect("read") == draw(scene));
     }
 }
 

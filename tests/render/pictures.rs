@@ -7,6 +7,7 @@ use std::sync::{LazyLock, Mutex};
 use ik_arm::render::{Gpu, PictureRenderer};
 use ik_arm::scene::Scene;
 use image::RgbaImage;
+use pollster::block_on;
 
 pub const SIZE: (u32, u32) = (480, 300);
 
@@ -16,11 +17,11 @@ const MOST_NOTICED: f64 = 0.002;
 const MOST_MEAN: f64 = 1.0;
 
 pub static GPU: LazyLock<Mutex<Gpu>> =
-    LazyLock::new(|| Mutex::new(Gpu::headless().expect("a graphics adapter")));
+    LazyLock::new(|| Mutex::new(block_on(Gpu::headless()).expect("a graphics adapter")));
 
 pub fn draw(scene: &Scene) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    PictureRenderer::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene).expect("drawn")
+    block_on(PictureRenderer::new(&gpu, SIZE.0, SIZE.1, 1.0).draw(scene)).expect("drawn")
 }
 
 fn path(name: &str) -> PathBuf {

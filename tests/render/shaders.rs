@@ -1,6 +1,7 @@
 //! Validation of every shader without a GPU, and of their colour functions on the device.
 
 use ik_arm::render::Gpu;
+use pollster::block_on;
 use wgpu::naga::front::wgsl;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -86,7 +87,7 @@ fn on_device(gpu: &Gpu, function: &str, values: &[f32]) -> Vec<f32> {
 
 #[test]
 fn colours_are_decoded_and_encoded_as_srgb() {
-    let gpu = Gpu::headless().expect("a device");
+    let gpu = block_on(Gpu::headless()).expect("a device");
     let colours: Vec<f32> = (0..=2_000).map(|step| step as f32 / 2_000.0).collect();
     let lights: Vec<f32> = colours.iter().map(|colour| 1.4 * colour * colour).collect();
     let decode = |c: f64| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };

@@ -7,6 +7,7 @@ use ik_arm::render::PictureRenderer;
 use ik_arm::scene::{Ball, Colour, Globe, Scene, SphereShell};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
+use pollster::block_on;
 
 use crate::pictures::{GPU, SIZE, check, compare, draw};
 
@@ -114,7 +115,7 @@ const SIDE: u32 = 240;
 
 fn square(scene: &Scene) -> RgbaImage {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    PictureRenderer::new(&gpu, SIDE, SIDE, 1.0).draw(scene).expect("drawn")
+    block_on(PictureRenderer::new(&gpu, SIDE, SIDE, 1.0).draw(scene)).expect("drawn")
 }
 
 /// Colour at a pixel, from the sides of the shells that its ray meets, from the farthest to the

@@ -10,6 +10,7 @@ use ik_arm::render::SkinDeformer;
 use ik_arm::rig::{FileMesh, MeshSkin, SkeletonRig, SkinPart, SkinSource, SkinTexture};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
+use pollster::block_on;
 
 use crate::common::Random;
 use crate::common::skeletons::{shake, transform, tree};
@@ -21,7 +22,8 @@ fn assert_agrees(skeleton: &Skeleton, mesh: &SkinnedMesh, case: &str) {
     let pose = mesh.pose(skeleton);
     for skinning in Skinning::ALL {
         let expected = mesh.posed(&pose, skinning);
-        let (positions, normals) = deformer.deform(&gpu, mesh, &pose, skinning).expect("deformed");
+        let (positions, normals) =
+            block_on(deformer.deform(&gpu, mesh, &pose, skinning)).expect("deformed");
         assert_eq!(positions.len(), expected.positions.len());
         let size = expected.size();
         for (vertex, at) in positions.iter().enumerate() {

@@ -8,6 +8,7 @@ use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 use image::RgbaImage;
 use image::imageops::thumbnail;
+use pollster::block_on;
 
 use crate::common::pictures::difference;
 
@@ -22,7 +23,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let gpu = Gpu::headless().expect("a graphics adapter");
+        let gpu = block_on(Gpu::headless()).expect("a graphics adapter");
         let renderer = Renderer::new(&gpu);
         let canvas = Canvas::new(&gpu, SIZE.0, SIZE.1);
         Self { gpu, renderer, canvas }
@@ -31,7 +32,7 @@ impl Bench {
     fn draw(&mut self, scene: &Scene, scale: f32) -> RgbaImage {
         self.canvas.set_resolution_scale(&self.gpu, scale);
         self.renderer.draw(&self.gpu, scene, &self.canvas, 1.0);
-        self.canvas.read(&self.gpu).expect("a picture")
+        block_on(self.canvas.read(&self.gpu)).expect("a picture")
     }
 }
 

@@ -8,6 +8,7 @@ use egui_kittest::kittest::NodeT as _;
 use ik_arm::document::{Bake, Channel, Timeline};
 use ik_arm::io::{Cancelled, Progress};
 use ik_arm::session::{BakeAction, BakeJob, Dialog, Effect, FileAction};
+use pollster::block_on;
 
 use crate::bench::Bench;
 
@@ -74,12 +75,12 @@ fn a_running_bake_shows_its_progress_and_its_keys_are_one_undo_step() {
     enter(&mut bench, "End", "1");
     bench.settle();
     let (settings, job) = started(&mut bench);
-    assert_eq!(job.progress.step(30, 120), Ok(()));
+    assert_eq!(block_on(job.progress.step(30, 120)), Ok(()));
     bench.frame([]);
     assert!(bench.says("25 %"));
 
     let before = bench.session().document().clone();
-    let baked = settings.run(&before, |_, _| true).expect("it is baked");
+    let baked = block_on(settings.run(&before, async |_, _| true)).expect("it is baked");
     let message = format!("Baked: {} of {} keys left", baked.keys, baked.keys_at_frames);
     bench.tell(BakeAction::Ended(job, Ok(Box::new(baked))));
     bench.settle();
@@ -107,9 +108,9 @@ fn a_cancelled_bake_changes_nothing_even_if_it_ends_later() {
             let cancel = bench.rect(Role::Button, "Cancel").center();
             bench.click_at(cancel);
         }
-        assert_eq!(job.progress.step(31, 120), Err(Cancelled));
+        assert_eq!(block_on(job.progress.step(31, 120)), Err(Cancelled));
         let before = bench.session().document().clone();
-        let baked = settings.run(&before, |_, _| true).expect("it is baked");
+        let baked = block_on(settings.run(&before, async |_, _| true)).expect("it is baked");
         bench.tell(BakeAction::Ended(job, Ok(Box::new(baked))));
         bench.settle();
         assert_eq!(bench.session().document(), &before);

@@ -9,6 +9,7 @@ use egui_kittest::kittest::NodeT as _;
 use glam::Vec3;
 use ik_arm::io::{self, Cancelled, Progress};
 use ik_arm::session::{Effect, Export, ExportJob, FileAction, KeysEdit, PlaybackAction};
+use pollster::block_on;
 
 use crate::bench::Bench;
 
@@ -71,7 +72,7 @@ fn a_running_export_shows_its_progress_and_can_be_cancelled() {
     let progress = Arc::new(Progress::default());
     let job = ExportJob { path: export.path.clone(), progress: Arc::clone(&progress) };
     bench.apply_moving([FileAction::ExportStarted(job)]);
-    assert_eq!(progress.step(30, 120), Ok(()));
+    assert_eq!(block_on(progress.step(30, 120)), Ok(()));
     bench.frame([]);
     assert!(bench.says("Exporting ik-arm.glb") && bench.says("25 %"));
     // A second one waits.
@@ -79,7 +80,7 @@ fn a_running_export_shows_its_progress_and_can_be_cancelled() {
     assert!(bench.says("Another export is running; cancel it or wait"));
     let cancel = bench.rect(Role::Button, "Cancel").center();
     bench.click_at(cancel);
-    assert_eq!(progress.step(31, 120), Err(Cancelled));
+    assert_eq!(block_on(progress.step(31, 120)), Err(Cancelled));
     bench.tell(FileAction::ExportEnded(Ok("Export cancelled".to_owned())));
     bench.settle();
     assert!(bench.says("Export cancelled") && !bench.says("25 %"));

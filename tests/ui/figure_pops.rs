@@ -9,6 +9,7 @@ use ik_arm::session::{
     InspectAction, InspectionJob, PanelTab, PlaybackAction, SolverAction, SolverEdit, TargetEdit,
     TransactionAction,
 };
+use pollster::block_on;
 
 use crate::bench::{Bench, LARGE};
 use crate::common::documents::open_example;
@@ -17,7 +18,7 @@ use crate::common::documents::open_example;
 fn inspect(bench: &mut Bench) {
     let job = bench.session().next_inspection().expect("something new to inspect");
     bench.apply([InspectAction::Started(job.clone())]);
-    bench.apply([job.run()]);
+    bench.apply([block_on(job.run())]);
 }
 
 /// The chain of the example, each frame solved by itself.
@@ -81,7 +82,7 @@ fn a_cancelled_inspection_is_made_again() {
     bench.apply([InspectAction::Started(job.clone())]);
     assert!(bench.session().next_inspection().is_none(), "it runs");
     bench.apply([InspectAction::Started(InspectionJob::new(bench.session().history()))]);
-    bench.apply([job.run()]);
+    bench.apply([block_on(job.run())]);
     assert!(bench.session().inspection().is_none(), "it was cancelled");
     assert!(bench.session().next_inspection().is_some());
 }

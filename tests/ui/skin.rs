@@ -11,6 +11,7 @@ use ik_arm::session::{
     Dialog, DisplayEdit, Effect, FileAction, JointEdit, PathDialog, PlaybackAction, SelectAction,
     TransactionAction,
 };
+use pollster::block_on;
 
 use crate::bench::Bench;
 use crate::common::documents::example;
@@ -162,7 +163,7 @@ fn with_file() -> (tempfile::TempDir, Bench) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("figure.glb");
     let human = example("two-targets");
-    let bytes = io::glb(&human, None, &Progress::default()).expect("an export");
+    let bytes = block_on(io::glb(&human, None, &Progress::default())).expect("an export");
     std::fs::write(&path, bytes).expect("a file");
     let document =
         Box::new(io::open(&path, &io::OpenOptions::default()).expect("it opens").document);

@@ -10,6 +10,7 @@ use std::fs;
 
 use ik_arm::document::Document;
 use ik_arm::io::{self, Example, Link, OpenOptions, Progress};
+use pollster::block_on;
 
 use browser::Browser;
 
@@ -68,7 +69,7 @@ fn links_open_examples_steps_of_the_tour_and_documents() {
 fn a_figure_is_opened_from_a_file_and_a_document_is_downloaded() {
     let folder = tempfile::tempdir().expect("a folder");
     let human = Example::find("human").expect("an example").open().expect("valid").document;
-    let glb = io::glb(&human, None, &Progress::default()).expect("a figure");
+    let glb = block_on(io::glb(&human, None, &Progress::default())).expect("a figure");
 
     let browser = Browser::open("", folder.path());
     let [x, y] = hand_on_screen(&browser);

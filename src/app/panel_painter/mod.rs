@@ -245,7 +245,7 @@ mod tests {
 
     impl Panels {
         fn new() -> Self {
-            let gpu = Gpu::headless().expect("a graphics adapter");
+            let gpu = pollster::block_on(Gpu::headless()).expect("a graphics adapter");
             let context = Context::default();
             style::install(&context);
             let usage =

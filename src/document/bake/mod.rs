@@ -78,17 +78,19 @@ impl Bake {
     /// # Errors
     ///
     /// See [`BakeError`].
-    pub fn run(
+    pub async fn run(
         &self,
         document: &Document,
-        mut step: impl FnMut(usize, usize) -> bool,
+        mut step: impl AsyncFnMut(usize, usize) -> bool,
     ) -> Result<Baked, BakeError> {
         self.check(document)?;
         let evaluations = self.frames.frames();
         let total = 2 * evaluations;
-        let mut go_on = |done| if step(done, total) { Ok(()) } else { Err(BakeError::Cancelled) };
+        let mut go_on = async |done| {
+            if step(done, total).await { Ok(()) } else { Err(BakeError::Cancelled) }
+        };
         let track = Track::new(document);
-        let motion = Motion::record(&track, &self.frames, &mut go_on)?;
+        let motion = Motion::record(&track, &self.frames, &mut go_on).await?;
         if !motion.is_posed() {
             return Err(BakeError::Nothing);
         }
@@ -98,7 +100,10 @@ impl Bake {
         let keys_at_frames = tracks.len() * evaluations;
         let mut reduction = Reduction::new(&motion, frames, tracks);
         reduction
-            .run(tolerance, |part| go_on(evaluations + (part * evaluations as f32) as usize))?;
+            .run(tolerance, async |part| {
+                go_on(evaluations + (part * evaluations as f32) as usize).await
+            })
+            .await?;
         Ok(Baked {
             keys_at_frames,
             keys: reduction.keys(),

@@ -51,10 +51,10 @@ pub struct ShortenedBone {
 
 impl Motion {
     /// Records a track at all frames. `go_on` is called before each with its number.
-    pub fn record<E>(
+    pub async fn record<E>(
         track: &Track,
         frames: &Timeline,
-        go_on: &mut impl FnMut(usize) -> Result<(), E>,
+        go_on: &mut impl AsyncFnMut(usize) -> Result<(), E>,
     ) -> Result<Self, E> {
         let first = track.at(frames.start);
         let rig = &first.document().rig;
@@ -70,7 +70,7 @@ impl Motion {
             follows_path: track.document().follows_path(),
         };
         for frame in 0..frames.frames() {
-            go_on(frame)?;
+            go_on(frame).await?;
             motion.add(&track.at(frames.time(frame)));
         }
         Ok(motion)

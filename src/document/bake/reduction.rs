@@ -60,10 +60,10 @@ impl<'a> Reduction<'a> {
 
     /// Removes keys while all bases and tips are within `tolerance`, in the world, until no key can
     /// be removed. `go_on` is called with the part of the work that is done, from 0 to 1.
-    pub fn run<E>(
+    pub async fn run<E>(
         &mut self,
         tolerance: f32,
-        mut go_on: impl FnMut(f32) -> Result<(), E>,
+        mut go_on: impl AsyncFnMut(f32) -> Result<(), E>,
     ) -> Result<(), E> {
         // The rest of the tolerance is for the rounding of positions in the world.
         let most = 0.99 * tolerance;
@@ -72,7 +72,7 @@ impl<'a> Reduction<'a> {
             for track in 0..self.tracks.len() {
                 // Each round removes less than the one before, and the number of rounds is unknown.
                 let done = round as f32 + track as f32 / self.tracks.len() as f32;
-                self.reduce(track, most, || go_on(1.0 - (-done).exp2()))?;
+                self.reduce(track, most, async || go_on(1.0 - (-done).exp2()).await).await?;
             }
             if self.keys() == before {
                 break;
@@ -95,17 +95,17 @@ impl<'a> Reduction<'a> {
 
     /// Removes keys of one track while all bases and tips are within `most`, in the world. At least
     /// one key is left. `go_on` is called for each key.
-    fn reduce<E>(
+    async fn reduce<E>(
         &mut self,
         track: usize,
         most: f32,
-        mut go_on: impl FnMut() -> Result<(), E>,
+        mut go_on: impl AsyncFnMut() -> Result<(), E>,
     ) -> Result<(), E> {
         self.trial.start(self.motion, self.tracks[track].joint);
         let before = std::mem::take(&mut self.tracks[track].frames);
         let mut left = Vec::with_capacity(before.len());
         for (index, frame) in before.iter().enumerate() {
-            go_on()?;
+            go_on().await?;
             let is_last = left.is_empty() && index + 1 == before.len();
             if is_last || !self.try_remove(track, *frame, most) {
                 left.push(*frame);

@@ -14,7 +14,7 @@ use crate::kinematics::skeleton::{JointId, is_within_numbers};
 ///
 /// Fails if the export is cancelled, `fps` is invalid, a position overflows, or the rig or the
 /// timeline is too large for a table.
-pub fn to_csv(
+pub async fn to_csv(
     document: &Document,
     fps: Option<f64>,
     progress: &Progress,
@@ -26,7 +26,7 @@ pub fn to_csv(
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.header())?;
     for frame in 0..frames.count() {
-        progress.step(frame, frames.count())?;
+        progress.step(frame, frames.count()).await?;
         let time = frames.time(frame);
         table.write_field(frame.to_string())?;
         table.write_field(time.to_string())?;
@@ -41,7 +41,7 @@ pub fn to_csv(
         }
         table.write_record(None::<&[u8]>)?;
     }
-    progress.step(frames.count(), frames.count())?;
+    progress.step(frames.count(), frames.count()).await?;
     let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
     Ok(Exported { bytes, notes: Vec::new() })
 }

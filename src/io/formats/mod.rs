@@ -14,6 +14,7 @@ use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fmt;
 use std::path::Path;
+use std::pin::Pin;
 
 use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, Visitor};
 use thiserror::Error;
@@ -77,7 +78,10 @@ pub enum Writer {
 }
 
 /// Converts a document to the content of an exported file.
-pub type WriteContent = fn(&Document, &ExportOptions, &Progress) -> Result<Exported, ContentError>;
+pub type WriteContent = for<'a> fn(&'a Document, &'a ExportOptions, &'a Progress) -> ContentJob<'a>;
+
+/// A running [`WriteContent`].
+pub type ContentJob<'a> = Pin<Box<dyn Future<Output = Result<Exported, ContentError>> + 'a>>;
 
 /// The reason why a format cannot hold a document.
 #[derive(Debug, Error)]
@@ -135,8 +139,10 @@ impl FileFormat {
                     options: &[ExportOption::FrameRate, ExportOption::Metres],
                 },
                 |document, options, progress| {
-                    let bytes = gltf::glb(document, options.fps, progress)?;
-                    Ok(Exported { bytes, notes: Vec::new() })
+                    Box::pin(async move {
+                        let bytes = gltf::glb(document, options.fps, progress).await?;
+                        Ok(Exported { bytes, notes: Vec::new() })
+                    })
                 },
             )),
         },
@@ -161,7 +167,9 @@ impl FileFormat {
                     options: &[ExportOption::FrameRate, ExportOption::Unit, ExportOption::Metres],
                 },
                 |document, options, progress| {
-                    Ok(bvh::to_bvh(document, options.fps, options.unit, progress)?)
+                    Box::pin(async move {
+                        Ok(bvh::to_bvh(document, options.fps, options.unit, progress).await?)
+                    })
                 },
             )),
         },
@@ -179,7 +187,9 @@ impl FileFormat {
                     tooltip: "A table of joint positions, one row a frame",
                     options: &[ExportOption::FrameRate],
                 },
-                |document, options, progress| Ok(csv::to_csv(document, options.fps, progress)?),
+                |document, options, progress| {
+                    Box::pin(async move { Ok(csv::to_csv(document, options.fps, progress).await?) })
+                },
             )),
         },
         Self {
@@ -197,8 +207,10 @@ impl FileFormat {
                     options: &[ExportOption::Time, ExportOption::Skinning],
                 },
                 |document, options, _| {
-                    let time = options.time.unwrap_or(document.timeline.start);
-                    Ok(obj::to_obj(document, time, options.skinning)?)
+                    Box::pin(async move {
+                        let time = options.time.unwrap_or(document.timeline.start);
+                        Ok(obj::to_obj(document, time, options.skinning)?)
+                    })
                 },
             )),
         },

@@ -6,6 +6,7 @@ use ik_arm::io::{Example, ExampleGroup};
 use ik_arm::rig::TaperedCylinder;
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
+use pollster::block_on;
 
 use crate::gallery::{opened, times};
 
@@ -72,15 +73,15 @@ fn numbers(scene: &Scene) -> impl Iterator<Item = f32> {
 #[cfg(feature = "app")]
 #[test]
 fn every_hard_case_is_drawn() {
-    let gpu = ik_arm::render::Gpu::headless().expect("a graphics adapter");
+    let gpu = block_on(ik_arm::render::Gpu::headless()).expect("a graphics adapter");
     let mut picture = ik_arm::render::PictureRenderer::new(&gpu, 240, 150, 1.0);
     for example in Example::of(ExampleGroup::HardCases) {
         let document = opened(example.name);
         let mut scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
-        let with = picture.draw(&scene).expect("drawn");
+        let with = block_on(picture.draw(&scene)).expect("drawn");
         scene.solids.clear();
         scene.balls.clear();
-        let without = picture.draw(&scene).expect("drawn");
+        let without = block_on(picture.draw(&scene)).expect("drawn");
         let differing = with.pixels().zip(without.pixels()).filter(|(a, b)| a != b).count();
         let part = differing as f64 / (240.0 * 150.0);
         assert!((0.01..0.5).contains(&part), "{}: {part}", example.name);

@@ -6,13 +6,15 @@ use ik_arm::document::{Channel, Document, SkeletonRig, Timeline, TwistReferenceK
 use ik_arm::io::{self, Example, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
+use pollster::block_on;
 
 use crate::common::Random;
 use crate::common::documents::example;
 use crate::common::skeletons::transform;
 
 pub fn glb(document: &Document) -> Vec<u8> {
-    io::glb(document, None, &Progress::default()).unwrap_or_else(|error| panic!("{error}"))
+    block_on(io::glb(document, None, &Progress::default()))
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Every example, and variants with keys and transforms.

@@ -9,6 +9,7 @@ use ik_arm::document::{Channel, Document, SkeletonRig, Theme, Timeline};
 use ik_arm::io::{self, GlbError, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::scene::Palette;
+use pollster::block_on;
 use serde_json::Value;
 
 use crate::common::Random;
@@ -35,7 +36,7 @@ fn exported(document: &Document) -> Glb {
 }
 
 fn refusal(document: &Document) -> String {
-    io::glb(document, None, &Progress::default()).expect_err("it is refused").to_string()
+    block_on(io::glb(document, None, &Progress::default())).expect_err("it is refused").to_string()
 }
 
 /// A channel of the animation.
@@ -190,7 +191,7 @@ fn a_joints_y_is_along_its_bone() {
 fn at_a_given_rate_there_is_a_key_in_every_frame_and_time_counts_from_0() {
     for (name, document) in all() {
         let timeline = document.timeline;
-        let bytes = io::glb(&document, Some(timeline.frame_rate), &Progress::default());
+        let bytes = block_on(io::glb(&document, Some(timeline.frame_rate), &Progress::default()));
         let glb = Glb::new(&bytes.expect("it is written"));
         for Moving { times, values, .. } in channels(&glb) {
             assert!(times.len() == 1 || times.len() == timeline.frames(), "{name}");
@@ -253,7 +254,8 @@ fn only_nodes_that_leave_the_rest_pose_have_channels() {
 #[test]
 fn the_frame_rate_of_the_export_can_be_chosen() {
     let document = keyed_arm(&mut Random(5));
-    let bytes = io::glb(&document, Some(10.0), &Progress::default()).expect("it is written");
+    let bytes =
+        block_on(io::glb(&document, Some(10.0), &Progress::default())).expect("it is written");
     let glb = Glb::new(&bytes);
     let Moving { times, .. } = &channels(&glb)[0];
     assert_eq!((times.len(), times[1][0], times[20][0]), (21, 0.1, 2.0));
@@ -359,6 +361,6 @@ fn too_many_frames_are_refused_before_they_are_computed() {
 fn an_export_that_is_cancelled_stops() {
     let progress = Progress::default();
     progress.cancel();
-    let stopped = io::glb(&Document::default(), None, &progress);
+    let stopped = block_on(io::glb(&Document::default(), None, &progress));
     assert!(matches!(stopped, Err(GlbError::Cancelled(_))));
 }

@@ -16,6 +16,7 @@ use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
 use ik_arm::scene::Scene;
 use ik_arm::session::{Overlays, PlaybackAction, Preferences, Session};
+use pollster::block_on;
 use serde_json::Value;
 
 use crate::common::Random;
@@ -140,7 +141,8 @@ type Bases = Vec<Vec3>;
 
 /// Bases by the table.
 fn by_csv(document: &Document) -> Vec<Bases> {
-    let table = io::to_csv(document, None, &Progress::default()).expect("it is written").bytes;
+    let table =
+        block_on(io::to_csv(document, None, &Progress::default())).expect("it is written").bytes;
     let mut rows = csv::Reader::from_reader(&table[..]);
     let joints = document.skeleton().joints().len();
     let row = |row: csv::StringRecord| -> Bases {

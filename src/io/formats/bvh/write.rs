@@ -18,7 +18,7 @@ const WIDTH: usize = 6;
 ///
 /// Fails if the export is cancelled, `fps` is invalid, the skeleton has no joints, a position
 /// overflows, or the rig or the timeline is too large.
-pub fn to_bvh(
+pub async fn to_bvh(
     document: &Document,
     fps: Option<f64>,
     unit: BvhUnit,
@@ -30,14 +30,14 @@ pub fn to_bvh(
     let track = Track::new(document);
     let mut motion = BvhMotion::new(&rig, unit.per_unit(document));
     for frame in 0..frames.count() {
-        progress.step(frame, frames.count())?;
+        progress.step(frame, frames.count()).await?;
         let posed = track.at(frames.time(frame));
         let transform = SkeletonTransform::new(posed.document().skeleton().transform());
         motion.is_uneven |= !transform.is_even();
         motion.add(rig.pose(&posed, &transform))?;
     }
     let text = motion.text(&frames)?;
-    progress.step(frames.count(), frames.count())?;
+    progress.step(frames.count(), frames.count()).await?;
     Ok(Exported { bytes: text.into_bytes(), notes: motion.notes() })
 }
 

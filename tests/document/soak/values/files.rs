@@ -12,6 +12,7 @@ use ik_arm::session::{
     BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, InspectAction, InspectionJob,
     PathDialog,
 };
+use pollster::block_on;
 
 use super::Values;
 use crate::common::skeletons;
@@ -71,13 +72,16 @@ impl Values<'_> {
         let document = self.session.document();
         let frames = Timeline { start: 0.0, end: 0.2, frame_rate: 10.0 };
         let settings = Bake { frames, tolerance: 1e-3 };
-        let baked = settings.run(document, |done, _| done < 100).unwrap_or_else(|_| Baked {
-            document: document.clone(),
-            keys_at_frames: 0,
-            keys: 0,
-            error: 0.0,
-            shortened: Vec::new(),
-        });
+        let baked =
+            block_on(settings.run(document, async |done, _| done < 100)).unwrap_or_else(|_| {
+                Baked {
+                    document: document.clone(),
+                    keys_at_frames: 0,
+                    keys: 0,
+                    error: 0.0,
+                    shortened: Vec::new(),
+                }
+            });
         Box::new(baked)
     }
 

@@ -31,7 +31,7 @@ use crate::rig::SkinTexture;
 ///
 /// Fails if the skeleton has no joints, a position overflows, the motion has too many frames, or
 /// the export is cancelled.
-pub fn glb(
+pub async fn glb(
     document: &Document,
     frames_per_second: Option<f64>,
     progress: &Progress,
@@ -45,7 +45,7 @@ pub fn glb(
     if frames_per_second.is_none() && timeline.is_valid() {
         motion.keep_tracks(document, &rig);
     }
-    motion.record(&rig, &bones, progress)?;
+    motion.record(&rig, &bones, progress).await?;
     let mesh = match RigMesh::of_skin(document) {
         Some(skin) => skin,
         None => LimbMesh::new(&rig, &bones)?.into(),

@@ -97,7 +97,7 @@ impl JointAnimation {
 
     /// Records the values of all tracks that have none, and of the nodes that have no track at
     /// every frame. Drops the tracks of nodes that stay in the bind pose.
-    pub fn record(
+    pub async fn record(
         &mut self,
         rig: &GltfRig,
         bones: &JointNodes,
@@ -124,7 +124,7 @@ impl JointAnimation {
         complete(&mut self.translations, joints, &at_frames);
         let mut turned: Vec<DQuat> = bones.bind_pose.iter().map(|bind| bind.rotation).collect();
         for (done, &time) in times.iter().enumerate() {
-            progress.step(done, times.len())?;
+            progress.step(done, times.len()).await?;
             for (node, local) in bones.locals(&rig.at(time), Some(time))?.iter().enumerate() {
                 turned[node] = same_side(turned[node], local.rotation);
                 self.rotations[node].record(time, turned[node].as_quat().to_array());
