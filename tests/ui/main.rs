@@ -44,6 +44,7 @@ mod targets;
 mod timeline;
 mod timeline_keys;
 mod timeline_looks;
+mod touch;
 mod tour;
 mod view;
 mod view_keys;

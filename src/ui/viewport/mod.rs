@@ -3,9 +3,11 @@
 mod navigation;
 mod notes;
 
+use core::f32::consts::TAU;
+
 use egui::{
-    Event, Id, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Ui, WidgetInfo,
-    pos2, vec2,
+    Event, Id, InputState, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense,
+    TouchPhase, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::gizmo::screen::ScreenProjection;
@@ -17,7 +19,7 @@ use crate::session::{
     Action, Actions, CameraMotion, Drag, DragInput, Grip, JointEdit, PlaybackAction, PointHandle,
     SelectAction, Session, TransactionAction, ViewAction,
 };
-use navigation::{covers_view_axes, motion, show_cursor, view_axes, wheel};
+use navigation::{covers_view_axes, motion, show_cursor, two_fingers, view_axes, wheel};
 
 /// Width in points of the strip at each edge of the view in which the mouse grabs the panel beside
 /// it.
@@ -64,7 +66,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     }
 
     wiggle(ui, session, pointed.filter(|_| held_grip.is_none()), actions);
-    let Some(mouse) = mouse else {
+    let Some(mouse) = mouse.or_else(|| lifted_from(ui)) else {
         keys(ui, &response, session, actions);
         return rect;
     };
@@ -72,7 +74,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         actions.push(TransactionAction::Lead(screen.ray(mouse)));
     }
     let drag = press(ui, &response, session, &screen, &gizmo, actions);
-    follow(ui, drag, &screen, mouse, actions);
+    if !two_fingers(ui, session, &screen, &response, actions) {
+        follow(ui, drag, &screen, mouse, actions);
+    }
     if response.contains_pointer() {
         wheel(ui, session, &screen, mouse, actions);
     }
@@ -317,7 +321,8 @@ fn press(
         let can_take = button == PointerButton::Primary && !modifiers.alt && !on_view_axes;
         // Ctrl and Shift clicks select and add joints.
         let is_click = modifiers.command || modifiers.shift;
-        let grip = pointed_at(session, screen, gizmo, pos).grip.filter(|_| can_take && !is_click);
+        let at = under_finger(ui, gizmo, pos).unwrap_or(pos);
+        let grip = pointed_at(session, screen, gizmo, at).grip.filter(|_| can_take && !is_click);
         let motion = match motion(session.preferences().navigation, button, modifiers) {
             None if on_view_axes && button == PointerButton::Primary => Some(CameraMotion::Orbit),
             motion => motion,
@@ -343,7 +348,7 @@ fn follow(
     actions: &mut Actions,
 ) {
     let (down, modifiers) = ui.input(|input| (input.pointer.any_down(), input.modifiers));
-    let released = !down || ui.input(|input| input.pointer.any_released());
+    let released = !down || lifted_from(ui).is_some();
     let (moved, dropped): (Action, Action) = match drag {
         ViewportDrag::Nothing => return,
         ViewportDrag::Grip => {
@@ -360,6 +365,38 @@ fn follow(
     if released {
         actions.push(dropped);
     }
+}
+
+/// Where a mouse button was released in this frame, or a finger lifted.
+fn lifted_from(ui: &Ui) -> Option<Pos2> {
+    let is_cancel =
+        |event: &Event| matches!(event, Event::Touch { phase, .. } if *phase == TouchPhase::Cancel);
+    ui.input(|input| {
+        let is_lifted = input.pointer.any_released() || input.events.iter().any(is_cancel);
+        input.pointer.interact_pos().filter(|_| is_lifted)
+    })
+}
+
+/// The place of a handle that a finger at `at` covers: the nearest point, or else the nearest arrow
+/// or ring; `None` without a finger.
+fn under_finger(ui: &Ui, gizmo: &Gizmo, at: Pos2) -> Option<Pos2> {
+    const RADII: [f32; 3] = [0.0, 11.0, 22.0];
+    const PLACES: u8 = 12;
+    if !ui.input(InputState::any_touches) {
+        return None;
+    }
+    let around = |radius: f32| {
+        (0..PLACES).map(move |place| {
+            at + radius * Vec2::angled(f32::from(place) * TAU / f32::from(PLACES))
+        })
+    };
+    let places = RADII.into_iter().flat_map(around);
+    let is_point = |grip: Grip| {
+        use PointHandle::Free;
+        matches!(grip, Grip::Target(_, Free) | Grip::Head(_, Free) | Grip::Tip(_, Free))
+    };
+    let handles = places.filter_map(|place| Some((place, is_point(gizmo.at(place)?))));
+    Some(handles.min_by_key(|(_, is_point)| !is_point)?.0)
 }
 
 /// Handles shortcuts of single keys during a drag of a handle, or while the viewport or no widget

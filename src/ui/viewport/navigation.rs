@@ -1,8 +1,8 @@
-//! Orbit, pan and zoom by mouse and trackpad.
+//! Orbit, pan and zoom by mouse, trackpad and fingers.
 
 use egui::{
-    Align2, Color32, CursorIcon, Event, FontId, Id, MouseWheelUnit, PointerButton, Pos2, Rect,
-    Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2,
+    Align2, Color32, CursorIcon, Event, FontId, Id, InputState, MouseWheelUnit, PointerButton,
+    Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2,
 };
 use glam::Vec3;
 
@@ -88,6 +88,35 @@ fn scrolled(camera: Camera, steps: Vec2, shift: bool, aspect: f32) -> Camera {
     } else {
         camera.orbited(-steps.x * TURN, -steps.y * TURN)
     }
+}
+
+/// Pans and zooms by two fingers, which end a drag of the camera by the first one. Returns whether
+/// they do: not while the first one holds a handle.
+pub(super) fn two_fingers(
+    ui: &Ui,
+    session: &Session,
+    screen: &ScreenProjection,
+    view: &Response,
+    actions: &mut Actions,
+) -> bool {
+    let Some(touch) = ui.input(InputState::multi_touch) else { return false };
+    if !view.contains_pointer() || session.history().drag().is_some() {
+        return false;
+    }
+    if session.view().drag().is_some() {
+        actions.push(ViewAction::Drop);
+    }
+    let (before, now) = (touch.center_pos - touch.translation_delta, touch.center_pos);
+    let (before, now) = (screen.normalised(before), screen.normalised(now));
+    let aspect = screen.rect.aspect_ratio();
+    let panned = session.settled_camera().panned(before, now, aspect);
+    // Fingers that started at one point have no distance.
+    let spread = if touch.zoom_delta.is_normal() { touch.zoom_delta } else { 1.0 };
+    let camera = panned.zoomed(spread.recip(), now, aspect);
+    if camera != session.settled_camera() {
+        actions.push(ViewAction::SetCamera(camera));
+    }
+    true
 }
 
 pub(super) fn show_cursor(ui: &Ui, session: &Session, grip: Option<Grip>) {
