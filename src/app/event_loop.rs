@@ -120,12 +120,13 @@ impl App {
     fn wake(&mut self, event_loop: &ActiveEventLoop) {
         let AppState::Active(window) = &self.state else { return };
         let now = Instant::now();
-        if self.next_frame.is_some_and(|due| due <= now) {
+        // Taken, because a time that stays in the past would wake the program again at once.
+        if self.next_frame.take_if(|due| *due <= now).is_some() {
             window.request_redraw();
         }
-        // The tour changes settings while it lasts.
-        if self.session.tour().is_none() {
-            self.settings_writer.write_if_due(now, || window.settings(&self.session));
+        // The tour changes settings while it lasts; the frame after it notes them.
+        if self.settings_writer.is_due(now) && self.session.tour().is_none() {
+            self.settings_writer.write(&window.settings(&self.session));
         }
         self.sleep(event_loop);
     }

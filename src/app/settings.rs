@@ -80,13 +80,14 @@ impl SettingsWriter {
         self.due
     }
 
-    /// Writes the settings if they are due and differ from those written last; logs an error.
-    pub fn write_if_due(&mut self, now: Instant, settings: impl FnOnce() -> Settings) {
-        if self.due.is_none_or(|due| now < due) {
-            return;
-        }
-        self.due = None;
-        let text = match ron::to_string(&settings()) {
+    /// Returns whether it is time to look for changes, which it is once for each note.
+    pub fn is_due(&mut self, now: Instant) -> bool {
+        self.due.take_if(|due| *due <= now).is_some()
+    }
+
+    /// Writes the settings if they differ from those written last; logs an error.
+    pub fn write(&mut self, settings: &Settings) {
+        let text = match ron::to_string(settings) {
             Ok(text) if text != self.written => text,
             Ok(_) => return,
             Err(error) => return log::warn!("the settings cannot be written: {error}"),

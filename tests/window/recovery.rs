@@ -1,4 +1,5 @@
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use ik_arm::document::Document;
@@ -89,6 +90,21 @@ fn settings_are_kept_when_the_program_is_killed() {
     let file = folder.path().join("ik-arm/settings.ron");
     wait_for("the settings", || file.exists().then_some(()));
     program.kill();
+}
+
+#[test]
+#[ignore = "needs a display of its own"]
+fn a_tour_that_nobody_reads_on_takes_no_time_of_the_processor() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let link = Path::new("https://ik-arm.invalid/#tour=1");
+    let program = Program::open_file(folder.path(), link);
+    program.at_rest();
+    // After the time at which changed settings are written.
+    sleep(Duration::from_secs(3));
+    let before = program.processor_time();
+    sleep(Duration::from_secs(2));
+    let took = program.processor_time() - before;
+    assert!(took < 50, "{took} hundredths of a second in 2 s");
 }
 
 #[test]

@@ -211,6 +211,15 @@ impl Program {
         kill(Pid::from_raw(id), Signal::SIGTERM).expect("the program runs");
     }
 
+    /// Time that the program has spent on processors, in hundredths of a second.
+    pub fn processor_time(&self) -> u64 {
+        let stat = format!("/proc/{}/stat", self.child.borrow().id());
+        let stat = std::fs::read_to_string(stat).expect("it runs");
+        let after_name = stat.rsplit(')').next().expect("a name");
+        let times = after_name.split_whitespace().skip(11).take(2);
+        times.map(|time| time.parse::<u64>().expect("a number")).sum()
+    }
+
     /// Kills the program, as a crash would.
     pub fn kill(&self) {
         self.child.borrow_mut().kill().expect("the program runs");
