@@ -150,7 +150,7 @@ fn walking_shows_every_part_of_every_iteration_and_ends_with_the_run() {
 fn the_numbers_of_a_step_are_those_of_the_solver() {
     let mut bench = after_a_step(Method::DampedLeastSquares);
     look_inside(&mut bench);
-    assert!(bench.says("Columns of the Jacobian") && bench.says("Ellipsoid of J·Jᵀ"));
+    assert!(bench.says("Columns of the Jacobian") && bench.says("Manipulability ellipsoid"));
     let SubStepKind::Gradient(gradient) = &run(&bench).parts()[0].kind else { panic!("gradient") };
     let strongest = gradient.ellipsoids[0].values[0];
     assert!(bench.says(&format!("{strongest:.3}")), "{strongest}");
@@ -172,8 +172,8 @@ fn switches_hide_what_the_view_shows_and_keep_it_hidden() {
         overlays.inside.expect("a part").layers
     };
     assert!(lines(&bench).shows(InsideLayer::Ellipsoid));
-    bench.reveal(Role::CheckBox, "Ellipsoid of J·Jᵀ");
-    bench.click(Role::CheckBox, "Ellipsoid of J·Jᵀ");
+    bench.reveal(Role::CheckBox, "Manipulability ellipsoid");
+    bench.click(Role::CheckBox, "Manipulability ellipsoid");
     bench.settle();
     assert!(!lines(&bench).shows(InsideLayer::Ellipsoid));
     assert!(lines(&bench).shows(InsideLayer::Columns));

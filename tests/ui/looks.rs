@@ -1,8 +1,11 @@
 //! Appearance: everything is drawn; the harness panics at a letter that no font has.
 
+use std::fs;
+use std::path::Path;
+
 use crate::common::arm::ArmEdit;
 use egui::accesskit::Role;
-use egui::{Key, Order, PointerButton, vec2};
+use egui::{FontDefinitions, Key, Order, PointerButton, vec2};
 use egui_kittest::SnapshotResults;
 use glam::Vec3;
 use ik_arm::document::{Overlay, Theme};
@@ -11,6 +14,7 @@ use ik_arm::session::{
     Action, DisplayEdit, FileAction, Navigation, SelectAction, ShellAction, SolverAction,
     TargetEdit,
 };
+use skrifa::MetadataProvider as _;
 
 use crate::bench::{Bench, SMALL};
 use crate::panel::{CHECKBOXES, MENUS, SLIDERS};
@@ -83,6 +87,33 @@ fn every_menu_and_dialog_can_be_read_in_both_themes() {
             bench.wait(0.5);
         }
     }
+}
+
+#[test]
+fn the_built_in_fonts_have_every_letter_of_the_panels() {
+    let fonts = FontDefinitions::default().font_data;
+    let fonts: Vec<_> = fonts
+        .values()
+        .filter_map(|data| skrifa::FontRef::new((*data.font).as_ref()).ok())
+        .collect();
+    let has = |letter: char| fonts.iter().any(|font| font.charmap().map(letter).is_some());
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ui")];
+    let mut files = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            files += 1;
+            let source = fs::read_to_string(&path).expect("a source file");
+            let lines = source.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let missing = lines.flat_map(str::chars).find(|letter| !has(*letter));
+            assert_eq!(missing, None, "{}", path.display());
+        }
+    }
+    assert!(files > 20, "{files}");
 }
 
 #[test]

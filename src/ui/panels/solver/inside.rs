@@ -151,7 +151,7 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<MarkLegend> {
                 entry(
                     InsideLayer::Ellipsoid,
                     vec![guide, accent],
-                    "Ellipsoid of J·Jᵀ",
+                    "Manipulability ellipsoid",
                     "how fast the tip can go in each direction, not to scale, and what the damping λ leaves of it",
                 )
             });

@@ -3,7 +3,7 @@
 
 pub(in crate::ui) mod space;
 
-use egui::{RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{RichText, ScrollArea, Ui};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::chain_ik::{Root, Status};
@@ -68,8 +68,7 @@ fn what_is_missing(ui: &mut Ui, report: &TargetReport, tolerance: f32) {
         let missing = ui.label(RichText::new(text::degrees(angle)).monospace());
         missing.on_hover_text("Rotation that is missing");
     } else {
-        let tick = ui.label(RichText::new("✓").color(ui.visuals().weak_text_color()));
-        tick.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Reached"));
+        let tick = widgets::text::tick(ui, "Reached");
         tick.on_hover_text(format!("Reached: the tip is {distance} from the target"));
     }
 }
