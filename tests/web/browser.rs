@@ -112,6 +112,15 @@ impl Browser {
 
     /// Presses the mouse at one place and releases it at another.
     pub fn drag(&self, from: [i32; 2], to: [i32; 2]) {
+        self.point("mouse", from, to);
+    }
+
+    /// Puts a finger on one place and lifts it at another.
+    pub fn drag_with_finger(&self, from: [i32; 2], to: [i32; 2]) {
+        self.point("touch", from, to);
+    }
+
+    fn point(&self, pointer: &str, from: [i32; 2], to: [i32; 2]) {
         let mut steps = vec![move_to(from, 200), json!({ "type": "pointerDown", "button": 0 })];
         for step in 1..=8 {
             let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * step / 8);
@@ -119,7 +128,10 @@ impl Browser {
         }
         steps.push(json!({ "type": "pause", "duration": 300 }));
         steps.push(json!({ "type": "pointerUp", "button": 0 }));
-        self.act(&json!({ "type": "pointer", "id": "mouse", "actions": steps }));
+        let parameters = json!({ "pointerType": pointer });
+        let source =
+            json!({ "type": "pointer", "id": pointer, "parameters": parameters, "actions": steps });
+        self.act(&source);
     }
 
     /// Clicks, which gives the keyboard to the page.
@@ -134,6 +146,21 @@ impl Browser {
         let up = |key: &str| json!({ "type": "keyUp", "value": key });
         let steps = [down(CTRL), down(key), up(key), up(CTRL)];
         self.act(&json!({ "type": "key", "id": "keyboard", "actions": steps }));
+    }
+
+    /// Types a text and presses Enter.
+    pub fn enter(&self, text: &str) {
+        const ENTER: char = '\u{e007}';
+        let key = |key: char| {
+            [json!({ "type": "keyDown", "value": key }), json!({ "type": "keyUp", "value": key })]
+        };
+        let steps: Vec<Value> = text.chars().chain([ENTER]).flat_map(key).collect();
+        self.act(&json!({ "type": "key", "id": "keyboard", "actions": steps }));
+    }
+
+    /// Waits until a file is downloaded with this name.
+    pub fn downloaded(&self, path: &Path) -> Vec<u8> {
+        self.eventually("the download", |_| std::fs::read(path).ok())
     }
 
     /// Drops a file on the page. Without a screen, the browser's file dialog cancels itself.
@@ -153,9 +180,21 @@ impl Browser {
             if let Some(found) = look(self) {
                 return found;
             }
-            assert!(started.elapsed() < PATIENCE, "{what} does not come");
+            if started.elapsed() > PATIENCE {
+                let picture = std::env::temp_dir().join("ik-arm-page.png");
+                let _ = std::fs::write(&picture, self.screenshot());
+                panic!("{what} does not come; see {}", picture.display());
+            }
             std::thread::sleep(Duration::from_millis(100));
         }
+    }
+
+    /// What the browser shows, as PNG.
+    pub fn screenshot(&self) -> Vec<u8> {
+        let answer = self.agent.get(format!("{}/screenshot", self.session)).call();
+        let answer: Option<Value> = answer.ok().and_then(|mut it| it.body_mut().read_json().ok());
+        let text = answer.as_ref().and_then(|answer| answer["value"].as_str());
+        BASE64_STANDARD.decode(text.unwrap_or_default()).unwrap_or_default()
     }
 
     /// The page's own words for a failure; empty if there is none.

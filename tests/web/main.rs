@@ -7,9 +7,14 @@
 mod browser;
 
 use std::fs;
+use std::time::Instant;
 
 use ik_arm::document::Document;
 use ik_arm::io::{self, Example, Link, OpenOptions, Progress};
+use ik_arm::render::{Gpu, PictureRenderer};
+use ik_arm::scene::Scene;
+use ik_arm::session::Session;
+use image::RgbaImage;
 use pollster::block_on;
 
 use browser::Browser;
@@ -87,6 +92,86 @@ fn a_figure_is_opened_from_a_file_and_a_document_is_downloaded() {
         io::open(&saved, &OpenOptions::default()).ok()
     });
     assert_eq!(saved.document.skeleton().joints().len(), human.skeleton().joints().len());
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn a_finger_drags_the_hand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let browser = Browser::open("", folder.path());
+    let hand = hand_on_screen(&browser);
+    browser.drag_with_finger(hand, [hand[0] - 90, hand[1] - 80]);
+    let after = browser.hand();
+    assert!(distance(after, [250.0, 120.0, 60.0]) > 40.0, "{after:?}, {}", browser.failure());
+    // A touch beside it orbits, and leaves the hand.
+    browser.drag_with_finger([hand[0] - 250, hand[1] - 120], [hand[0] - 150, hand[1] - 120]);
+    assert_eq!(browser.hand(), after);
+}
+
+/// The picture of the view that a session on this computer shows, in pixels of the page's picture.
+fn native_picture(session: &Session, width: u32, height: u32) -> RgbaImage {
+    let gpu = block_on(Gpu::headless()).expect("a graphics adapter");
+    let scene = Scene::new(session.posed(), &session.overlays(), session.preferences().theme);
+    let mut renderer = PictureRenderer::new(&gpu, width, height, 1.0);
+    block_on(renderer.draw(&scene)).expect("a picture")
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn pictures_of_the_page_are_those_of_the_program_on_a_computer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let browser = Browser::open("", folder.path());
+    let hand = hand_on_screen(&browser);
+    browser.click([hand[0] - 250, hand[1] - 120]);
+    browser.press_with_ctrl("p");
+    let bytes = browser.downloaded(&folder.path().join("ik-arm.png"));
+    let page = image::load_from_memory(&bytes).expect("a picture").into_rgba8();
+    let native = native_picture(&Session::default(), page.width(), page.height());
+    native.save("/tmp/native.png").unwrap();
+    let pairs = page.pixels().zip(native.pixels());
+    let off = pairs.map(|(one, other)| {
+        one.0.iter().zip(other.0).map(|(one, other)| one.abs_diff(other)).max().unwrap_or(0)
+    });
+    let (mut differing, mut sum) = (0, 0.0);
+    for off in off {
+        differing += u32::from(off > 16);
+        sum += f64::from(off);
+    }
+    let all = f64::from(page.width() * page.height());
+    let (part, mean) = (f64::from(differing) / all, sum / all);
+    println!(
+        "{:.3} % of the pixels differ by more than 16 of 255; {mean:.3} on average",
+        100.0 * part
+    );
+    assert!(part < 0.005 && mean < 0.5, "{part}, {mean}");
+}
+
+#[test]
+#[ignore = "needs the page and Chromium"]
+fn the_page_goes_on_while_a_motion_is_exported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let browser = Browser::open("#example=walk", folder.path());
+    let hand = hand_on_screen(&browser);
+    browser.click([hand[0] - 250, hand[1] - 120]);
+    browser.run(
+        "window.longest = 0; window.frames = 0; let last;
+         const look = now => {
+             window.longest = Math.max(window.longest, now - (last ?? now));
+             window.frames++; last = now; requestAnimationFrame(look);
+         };
+         requestAnimationFrame(look);",
+    );
+    browser.press_with_ctrl("e");
+    browser.enter("walk.apng");
+    let started = Instant::now();
+    let bytes = browser.downloaded(&folder.path().join("walk.apng"));
+    let took = started.elapsed();
+    let [longest, frames] = ["longest", "frames"]
+        .map(|name| browser.run(&format!("return window.{name}")).as_f64().expect("a number"));
+    println!("exported in {took:?}: {frames} frames of the page, the longest {longest} ms");
+    assert!(bytes.windows(4).any(|name| name == b"acTL"), "an animated picture");
+    assert!(longest < 1000.0, "{longest} ms");
+    assert!(frames > 20.0, "{frames}");
 }
 
 #[test]

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use js_sys::Uint8Array;
-use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{DragEvent, FileList, HtmlInputElement};
+use web_sys::{DragEvent, Event, FileList, HtmlInputElement};
 use winit::event_loop::EventLoopProxy;
 
-use super::page::document;
+use super::page::{document, on_each};
 use crate::app::background;
 use crate::app::event::{PathChoice, UserEvent, send};
 use crate::io::{self, FileFormat, OpenOptions};
@@ -44,7 +43,7 @@ pub fn choose_path(dialog: PathDialog, path: &Path, proxy: EventLoopProxy<UserEv
 }
 
 /// Opens the browser's file dialog, and calls `chosen` with the files.
-fn pick(accept: &str, mut chosen: impl FnMut(Option<FileList>) + 'static) -> Result<(), JsValue> {
+fn pick(accept: &str, chosen: impl Fn(Option<FileList>) + Clone + 'static) -> Result<(), JsValue> {
     let document = document().ok_or("there is no page")?;
     let input: HtmlInputElement = document.create_element("input")?.unchecked_into();
     input.set_type("file");
@@ -52,15 +51,13 @@ fn pick(accept: &str, mut chosen: impl FnMut(Option<FileList>) + 'static) -> Res
     input.set_accept(accept);
     input.set_hidden(true);
     document.body().ok_or("the page is empty")?.append_child(&input)?;
-    let of_input = input.clone();
-    let on_change = Closure::<dyn FnMut()>::new(move || {
-        chosen(of_input.files());
-        of_input.remove();
-    });
     for event in ["change", "cancel"] {
-        input.add_event_listener_with_callback(event, on_change.as_ref().unchecked_ref())?;
+        let (of_input, chosen) = (input.clone(), chosen.clone());
+        on_each(Some(&input), event, move |_: Event| {
+            chosen(of_input.files());
+            of_input.remove();
+        });
     }
-    on_change.forget();
     input.click();
     Ok(())
 }
@@ -89,7 +86,7 @@ async fn keep_all(files: Option<FileList>) -> Option<PathBuf> {
 /// Opens files that are dropped on the page.
 pub fn take_dropped(proxy: &EventLoopProxy<UserEvent>) {
     let proxy = proxy.clone();
-    let on_drop = Closure::<dyn FnMut(_)>::new(move |event: DragEvent| {
+    on_each(document(), "drop", move |event: DragEvent| {
         event.prevent_default();
         let files = event.data_transfer().and_then(|data| data.files());
         let proxy = proxy.clone();
@@ -99,14 +96,5 @@ pub fn take_dropped(proxy: &EventLoopProxy<UserEvent>) {
             }
         });
     });
-    let on_drag = Closure::<dyn FnMut(_)>::new(|event: DragEvent| event.prevent_default());
-    if let Some(document) = document() {
-        for (event, closure) in [("drop", &on_drop), ("dragover", &on_drag)] {
-            let callback = closure.as_ref().unchecked_ref();
-            let _ = document.add_event_listener_with_callback(event, callback);
-        }
-    }
-    // The page listens as long as it is open.
-    on_drop.forget();
-    on_drag.forget();
+    on_each(document(), "dragover", |event: DragEvent| event.prevent_default());
 }

@@ -1,9 +1,8 @@
-use wasm_bindgen::JsCast as _;
-use wasm_bindgen::closure::Closure;
-use web_sys::UrlSearchParams;
+use web_sys::{Event, UrlSearchParams};
 use winit::event_loop::EventLoopProxy;
 
 use super::event::PlatformEvent;
+use super::page::on_each;
 use crate::app::event::{UserEvent, send};
 use crate::io::Link;
 use crate::session::{Action, link_actions};
@@ -33,12 +32,7 @@ pub fn actions() -> Vec<Action> {
 /// Opens what the link carries whenever it changes.
 pub fn take_changed(proxy: &EventLoopProxy<UserEvent>) {
     let proxy = proxy.clone();
-    let on_change = Closure::<dyn FnMut()>::new(move || {
+    on_each(web_sys::window(), "hashchange", move |_: Event| {
         send(&proxy, UserEvent::Platform(PlatformEvent::Linked(actions())));
     });
-    if let Some(window) = web_sys::window() {
-        window.set_onhashchange(Some(on_change.as_ref().unchecked_ref()));
-    }
-    // The page listens as long as it is open.
-    on_change.forget();
 }

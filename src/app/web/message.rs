@@ -2,12 +2,12 @@
 
 use js_sys::{JSON, Reflect};
 use serde_json::json;
-use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{MessageEvent, Window};
 use winit::event_loop::EventLoopProxy;
 
 use super::event::PlatformEvent;
+use super::page::on_each;
 use crate::app::event::{UserEvent, send};
 use crate::io::Link;
 use crate::session::{Session, link_actions};
@@ -16,7 +16,7 @@ use crate::session::{Session, link_actions};
 /// with [`answer`].
 pub fn take_sent(proxy: &EventLoopProxy<UserEvent>) {
     let proxy = proxy.clone();
-    let on_message = Closure::<dyn FnMut(_)>::new(move |event: MessageEvent| {
+    on_each(web_sys::window(), "message", move |event: MessageEvent| {
         let field = |name: &str| Reflect::get(&event.data(), &name.into()).ok();
         if let Some(link) = field("open").and_then(|link| link.as_string()) {
             let actions = link_actions(Link::parse(&link));
@@ -30,11 +30,6 @@ pub fn take_sent(proxy: &EventLoopProxy<UserEvent>) {
             send(&proxy, UserEvent::Platform(PlatformEvent::Asked(asker)));
         }
     });
-    if let Some(window) = web_sys::window() {
-        window.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
-    }
-    // The page listens as long as it is open.
-    on_message.forget();
 }
 
 /// Posts the shown limb: `{ik_arm: {hand, elbow, yaw_deg, pitch_deg, twist_deg, shoulder_angle_deg,

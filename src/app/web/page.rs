@@ -1,12 +1,30 @@
 use std::time::Duration;
 
-use web_sys::{Document, HtmlElement};
+use wasm_bindgen::JsCast as _;
+use wasm_bindgen::closure::Closure;
+use wasm_bindgen::convert::FromWasmAbi;
+use web_sys::{Document, EventTarget, HtmlElement};
 
 use crate::app::error::AppError;
 
 /// The document of the page.
 pub fn document() -> Option<Document> {
     web_sys::window()?.document()
+}
+
+/// Calls `react` with each event of this name, as long as the page is open.
+pub fn on_each<E: FromWasmAbi + 'static>(
+    target: Option<impl AsRef<EventTarget>>,
+    name: &str,
+    react: impl FnMut(E) + 'static,
+) {
+    let react = Closure::<dyn FnMut(E)>::new(react);
+    let callback = react.as_ref().unchecked_ref();
+    let added = target.map(|it| it.as_ref().add_event_listener_with_callback(name, callback));
+    if added.is_none_or(|added| added.is_err()) {
+        log::error!("the browser tells no {name}");
+    }
+    react.forget();
 }
 
 fn body() -> Option<HtmlElement> {
