@@ -16,6 +16,8 @@ use std::time::Duration;
 
 use web_time::Instant;
 
+use crate::ui::FrameTime;
+
 /// Fractions of the viewport's width and height at which the scene is drawn while it moves.
 const SCALES: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
 
@@ -66,11 +68,12 @@ impl DynamicResolution {
         Some((self.moved? + REST).saturating_duration_since(now))
     }
 
-    /// Adapts the resolution to the time that a frame of this scale took.
-    pub fn measure(&mut self, scale: f32, time: Duration, budget: Option<Duration>) {
-        let Some(budget) = budget.filter(|_| scale == SCALES[self.step]) else {
-            return;
-        };
+    /// Adapts the resolution to the time that a frame took, if it drew the scene at the present
+    /// scale.
+    pub fn measure(&mut self, frame: &FrameTime, time: Duration, budget: Option<Duration>) {
+        let scale = frame.resolution_scale;
+        let is_telling = frame.draws_scene && scale == SCALES[self.step];
+        let Some(budget) = budget.filter(|_| is_telling) else { return };
         let used = time.as_secs_f32() / budget.as_secs_f32();
         // Assumes that the frame time is proportional to the number of pixels.
         let larger = self.step.saturating_sub(1);
@@ -116,6 +119,11 @@ mod tests {
         })
     }
 
+    /// A frame that draws the scene at a scale.
+    fn drawn(resolution_scale: f32) -> FrameTime {
+        FrameTime { resolution_scale, draws_scene: true, ..FrameTime::default() }
+    }
+
     /// Shares of frames in motion, on a machine whose frames take `fixed` milliseconds and
     /// `in_full` more for a picture in full, with up to a tenth of noise.
     fn scales(fixed: f32, in_full: f32, frames: usize) -> Vec<f32> {
@@ -125,7 +133,7 @@ mod tests {
         for noise in numbers().take(frames) {
             let scale = resolution.next(true, BUDGET, now);
             let time = (fixed + in_full * scale * scale) * (0.9 + 0.2 * noise);
-            resolution.measure(scale, Duration::from_secs_f32(time / 1000.0), BUDGET);
+            resolution.measure(&drawn(scale), Duration::from_secs_f32(time / 1000.0), BUDGET);
             scales.push(scale);
         }
         scales
@@ -166,13 +174,26 @@ mod tests {
         let now = Instant::now();
         let mut draw = |milliseconds| {
             let scale = resolution.next(true, BUDGET, now);
-            resolution.measure(scale, Duration::from_millis(milliseconds), BUDGET);
+            resolution.measure(&drawn(scale), Duration::from_millis(milliseconds), BUDGET);
             scale
         };
         let slow: Vec<f32> = (0..6).map(|_| draw(200)).collect();
         assert_eq!(slow.last(), Some(&0.5));
         let fast: Vec<f32> = (0..100).map(|_| draw(5)).collect();
         assert_eq!(fast.last(), Some(&1.0));
+    }
+
+    #[test]
+    fn frames_of_the_panels_alone_tell_nothing_about_the_scene() {
+        let mut resolution = DynamicResolution::default();
+        let now = Instant::now();
+        for _ in 0..4 {
+            let scale = resolution.next(true, BUDGET, now);
+            resolution.measure(&drawn(scale), Duration::from_millis(90), BUDGET);
+            let panels = FrameTime { draws_scene: false, ..drawn(scale) };
+            resolution.measure(&panels, Duration::from_millis(9), BUDGET);
+        }
+        assert!(resolution.next(true, BUDGET, now) < 1.0);
     }
 
     #[test]
@@ -196,7 +217,7 @@ mod tests {
         let mut resolution = DynamicResolution { step: 4, ..DynamicResolution::default() };
         let now = Instant::now();
         assert_eq!(resolution.next(true, None, now), 1.0);
-        resolution.measure(1.0, Duration::from_secs(1), None);
+        resolution.measure(&drawn(1.0), Duration::from_secs(1), None);
         assert_eq!(resolution.next(true, None, now), 1.0);
         assert_eq!(resolution.rests_in(now), None);
     }

@@ -59,7 +59,7 @@ impl AppWindow {
                 }
                 if !self.graphics.as_ref().is_some_and(|graphics| graphics.has_own_time) {
                     let budget = session.preferences().frame_budget.time();
-                    self.dynamic_resolution.measure(frame.resolution_scale, frame.total(), budget);
+                    self.dynamic_resolution.measure(&frame, frame.total(), budget);
                 }
                 self.moving_since = delay.filter(Duration::is_zero).map(|_| started);
                 self.frames += 1;
@@ -193,17 +193,14 @@ impl AppWindow {
                 if let Some(earlier) = machine.times.set_gpu(earlier, time)
                     && graphics.has_own_time
                 {
-                    dynamic_resolution.measure(
-                        earlier.resolution_scale,
-                        earlier.work() + time,
-                        budget,
-                    );
+                    dynamic_resolution.measure(earlier, earlier.work() + time, budget);
                 }
             }
             graphics.panels.update_textures(&graphics.gpu, changed);
             if let Some(scene) = &mut self.scene {
                 machine.counts =
                     Some(graphics.draw_scene(scene, pixels, scale, frame.resolution_scale));
+                frame.draws_scene = graphics.picture.is_new;
                 self.awaits_counts = graphics.awaits_counts();
             }
             frame.encode += lap();

@@ -157,9 +157,11 @@ impl Gpu {
         format!("{} ({})", info.name, info.backend)
     }
 
-    /// True if the adapter is a program on the CPU.
+    /// True if the adapter is a program on the CPU that draws while this program waits. That of a
+    /// browser draws in another process.
     pub fn is_software(&self) -> bool {
-        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+        let info = self.adapter.get_info();
+        info.device_type == wgpu::DeviceType::Cpu && info.backend != wgpu::Backend::BrowserWebGpu
     }
 
     /// Maximum width and height of a texture in pixels.

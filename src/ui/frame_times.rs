@@ -28,6 +28,8 @@ pub struct FrameTime {
     pub interval: Option<Duration>,
     /// Fraction of the viewport's width and height at which the scene is drawn, from 0 to 1.
     pub resolution_scale: f32,
+    /// True if the scene is drawn, false if it is unchanged and the panels alone are.
+    pub draws_scene: bool,
 }
 
 impl FrameTime {

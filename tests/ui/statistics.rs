@@ -27,6 +27,7 @@ fn frame(index: u64) -> FrameTime {
         gpu: Some(part(250)),
         interval: Some(Duration::from_micros(16_667)),
         resolution_scale: 0.7,
+        draws_scene: true,
     }
 }
 
