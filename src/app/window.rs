@@ -238,7 +238,7 @@ impl AppWindow {
     pub(super) fn update_title(&mut self, session: &Session) {
         let title = title(session);
         if title != self.title {
-            self.window.set_title(&title);
+            platform::show_title(&self.window, &title);
             self.title = title;
         }
     }

@@ -120,6 +120,20 @@ impl Browser {
         self.point("touch", from, to);
     }
 
+    /// Puts two fingers on places beside `middle` and spreads them to twice their distance.
+    pub fn spread_fingers(&self, middle: [i32; 2]) {
+        let finger = |id: &str, side: i32| {
+            let at = |distance| [middle[0] + side * distance, middle[1]];
+            let mut steps =
+                vec![move_to(at(40), 100), json!({ "type": "pointerDown", "button": 0 })];
+            steps.extend((1..=8).map(|step| move_to(at(40 + 5 * step), 60)));
+            steps.push(json!({ "type": "pointerUp", "button": 0 }));
+            let parameters = json!({ "pointerType": "touch" });
+            json!({ "type": "pointer", "id": id, "parameters": parameters, "actions": steps })
+        };
+        self.act_with(&[finger("thumb", -1), finger("index finger", 1)]);
+    }
+
     fn point(&self, pointer: &str, from: [i32; 2], to: [i32; 2]) {
         let mut steps = vec![move_to(from, 200), json!({ "type": "pointerDown", "button": 0 })];
         for step in 1..=8 {
@@ -163,7 +177,24 @@ impl Browser {
         self.eventually("the download", |_| std::fs::read(path).ok())
     }
 
-    /// Drops a file on the page. Without a screen, the browser's file dialog cancels itself.
+    /// Chooses a file in the browser's file dialog, which Ctrl+O opens.
+    pub fn choose_file(&self, path: &Path) {
+        const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
+        // Without a screen, the dialog would cancel itself.
+        let catch = json!({
+            "cmd": "Page.setInterceptFileChooserDialog", "params": { "enabled": true },
+        });
+        self.post("/goog/cdp/execute", &catch);
+        self.press_with_ctrl("o");
+        let input = json!({ "using": "css selector", "value": "input[type=file]" });
+        let input = self.eventually("the dialog", |browser| {
+            let found = browser.try_post("/element", &input)?;
+            Some(found[ELEMENT].as_str()?.to_owned())
+        });
+        self.post(&format!("/element/{input}/value"), &json!({ "text": path }));
+    }
+
+    /// Drops a file on the page.
     pub fn drop_file(&self, name: &str, bytes: &[u8]) {
         let script = "const bytes = Uint8Array.from(atob(arguments[1]), it => it.charCodeAt(0));
             const files = new DataTransfer();
@@ -204,7 +235,11 @@ impl Browser {
     }
 
     fn act(&self, source: &Value) {
-        self.post("/actions", &json!({ "actions": [source] }));
+        self.act_with(std::slice::from_ref(source));
+    }
+
+    fn act_with(&self, sources: &[Value]) {
+        self.post("/actions", &json!({ "actions": sources }));
         std::thread::sleep(Duration::from_millis(300));
     }
 

@@ -71,7 +71,7 @@ fn links_open_examples_steps_of_the_tour_and_documents() {
 
 #[test]
 #[ignore = "needs the page and Chromium"]
-fn a_figure_is_opened_from_a_file_and_a_document_is_downloaded() {
+fn figures_are_opened_from_files_and_a_document_is_downloaded() {
     let folder = tempfile::tempdir().expect("a folder");
     let human = Example::find("human").expect("an example").open().expect("valid").document;
     let glb = block_on(io::glb(&human, None, &Progress::default())).expect("a figure");
@@ -92,11 +92,16 @@ fn a_figure_is_opened_from_a_file_and_a_document_is_downloaded() {
         io::open(&saved, &OpenOptions::default()).ok()
     });
     assert_eq!(saved.document.skeleton().joints().len(), human.skeleton().joints().len());
+
+    let walk = folder.path().join("walk.json");
+    fs::write(&walk, Example::find("walk").expect("an example").text).expect("written");
+    browser.choose_file(&walk);
+    browser.eventually("the limb of the file", |browser| browser.pose().as_object().map(drop));
 }
 
 #[test]
 #[ignore = "needs the page and Chromium"]
-fn a_finger_drags_the_hand() {
+fn one_finger_drags_the_hand_and_two_zoom() {
     let folder = tempfile::tempdir().expect("a folder");
     let browser = Browser::open("", folder.path());
     let hand = hand_on_screen(&browser);
@@ -106,6 +111,12 @@ fn a_finger_drags_the_hand() {
     // A touch beside it orbits, and leaves the hand.
     browser.drag_with_finger([hand[0] - 250, hand[1] - 120], [hand[0] - 150, hand[1] - 120]);
     assert_eq!(browser.hand(), after);
+
+    let view = [634, hand[1]];
+    let before = browser.screenshot();
+    browser.spread_fingers(view);
+    assert_eq!(browser.hand(), after);
+    assert!(browser.screenshot() != before, "the view is zoomed");
 }
 
 /// The picture of the view that a session on this computer shows, in pixels of the page's picture.

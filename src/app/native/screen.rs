@@ -24,6 +24,11 @@ pub(in crate::app) fn address() -> String {
     "ik-arm:".to_owned()
 }
 
+/// Shows the title of the window.
+pub(in crate::app) fn show_title(window: &Window, title: &str) {
+    window.set_title(title);
+}
+
 /// Does nothing: egui copies by itself.
 pub(in crate::app) fn copy(_: &[OutputCommand]) {}
 

@@ -20,7 +20,7 @@ pub(super) use clipboard::copy;
 pub(super) use event::PlatformEvent;
 pub(super) use files::choose_path;
 pub(super) use link::address;
-pub(super) use page::{on_failure, on_first_frame};
+pub(super) use page::{on_failure, on_first_frame, show_title};
 pub(super) use recovery::{RecoveredFile, Recovery, remove};
 pub use run::run;
 pub(super) use storage::{save_settings, saved_settings, settings_place};

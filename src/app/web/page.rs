@@ -4,6 +4,7 @@ use wasm_bindgen::JsCast as _;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::convert::FromWasmAbi;
 use web_sys::{Document, EventTarget, HtmlElement};
+use winit::window::Window;
 
 use crate::app::error::AppError;
 
@@ -35,6 +36,13 @@ fn body() -> Option<HtmlElement> {
 pub(in crate::app) fn show_failure(reason: &str) {
     let Some(body) = body() else { return };
     let _ = body.set_attribute("data-failure", reason);
+}
+
+/// Shows the title in the tab of the browser.
+pub(in crate::app) fn show_title(_: &Window, title: &str) {
+    if let Some(document) = document() {
+        document.set_title(title);
+    }
 }
 
 /// Shows an error after which the program cannot go on.

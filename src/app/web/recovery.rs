@@ -1,8 +1,7 @@
-//! Recovery of unsaved changes: the document is kept in the browser's storage a second after a change,
-//! and the next visit finds it.
+//! Recovery of unsaved changes: the document is kept in the browser's storage after each change, and the
+//! next visit finds it.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use web_time::Instant;
 use winit::event_loop::EventLoopProxy;
@@ -13,8 +12,6 @@ use crate::document::Document;
 use crate::io::{self, OpenOptions};
 use crate::session::Session;
 
-/// Time from a change of the document to its backup.
-const INTERVAL: Duration = Duration::from_secs(1);
 const DOCUMENT: &str = "ik-arm unsaved document";
 const FILE: &str = "ik-arm unsaved file";
 
@@ -33,15 +30,14 @@ pub struct RecoveredFile {
 
 /// Keeps the document of this visit.
 pub struct Recovery {
-    /// Revision that is kept; `None` if there is none.
-    kept: Option<u64>,
-    /// Time since which the document differs from the one that is kept.
-    since: Option<Instant>,
+    /// The latest revision that was to be kept, and whether the browser has kept it; `None` if all
+    /// changes are saved.
+    kept: Option<(u64, bool)>,
 }
 
 impl Recovery {
     pub fn start() -> Self {
-        Self { kept: None, since: None }
+        Self { kept: None }
     }
 
     /// The document of the last visit; `None` if all of its changes were saved.
@@ -54,37 +50,22 @@ impl Recovery {
         Some(RecoveredFile { backup, path: PathBuf::from(DOCUMENT) })
     }
 
-    /// Keeps the document if that is due. Returns the time of the next call if a change is not kept
-    /// yet.
+    /// Keeps the document if it has changed. There is never a time to wait for.
     pub fn update(&mut self, session: &Session, _: &EventLoopProxy<UserEvent>) -> Option<Instant> {
         if !session.history().is_unsaved() {
-            self.discard();
+            self.end();
             return None;
         }
         let revision = session.history().revision();
-        if self.kept == Some(revision) {
-            self.since = None;
-            return None;
+        if self.kept.is_none_or(|(kept, _)| kept != revision) {
+            self.kept = Some((revision, keep(session)));
         }
-        let due = *self.since.get_or_insert_with(Instant::now) + INTERVAL;
-        if Instant::now() < due {
-            return Some(due);
-        }
-        self.since = None;
-        self.kept = keep(session).then_some(revision);
         None
     }
 
     /// True if the document is kept with this revision.
     pub fn has(&self, revision: u64) -> bool {
-        self.kept == Some(revision)
-    }
-
-    fn discard(&mut self) {
-        self.since = None;
-        if self.kept.take().is_some() {
-            remove(Path::new(DOCUMENT));
-        }
+        self.kept == Some((revision, true))
     }
 
     /// Keeps unsaved changes for the next visit.
@@ -99,9 +80,11 @@ impl Recovery {
         }
     }
 
-    /// Forgets the document when the program ends cleanly.
+    /// Forgets the document, because its changes are saved or given up.
     pub fn end(&mut self) {
-        self.discard();
+        if self.kept.take().is_some() {
+            remove(Path::new(DOCUMENT));
+        }
     }
 }
 

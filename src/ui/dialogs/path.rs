@@ -98,10 +98,15 @@ pub(in crate::ui) fn browse(ui: &mut Ui, actions: &mut Actions) {
     }
 }
 
-/// Shows the folder in which the dialog's path lies, also if the path is typed without a folder.
+/// Shows the folder in which the dialog's path lies, also if the path is typed without a folder. In a
+/// page there is none.
 pub(in crate::ui) fn folder(ui: &mut Ui, session: &Session, dialog: &PathDialog) {
     let folder = session.files().folder_of(dialog);
-    ui.add(Label::new(RichText::new(format!("In {}", folder.display())).weak()).truncate());
+    let place = match folder.as_os_str() {
+        none if none.is_empty() => "Among the downloads of the browser".to_owned(),
+        folder => format!("In {}", folder.display()),
+    };
+    ui.add(Label::new(RichText::new(place).weak()).truncate());
 }
 
 /// Returns `action`, which writes the file at `path`. If that would overwrite a file other than the
