@@ -1,8 +1,8 @@
 use std::collections::HashSet;
 
-use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Vec3};
+use glam::{Affine3A, DMat3, DVec3, Mat3, Mat3A, Quat, Vec3};
 use ik_arm::kinematics::chain_ik::{
-    ChainSolver, Method, Report, Root, SolverOptions, TipTarget, jacobian,
+    ChainSolver, ChainTarget, Method, Orientation, Report, Root, SolverOptions, jacobian,
 };
 use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
 
@@ -11,7 +11,7 @@ use super::opened::is_readable;
 
 /// A skeleton of a few joints with targets, of any numbers, by every method: invalid problems are
 /// refused with a short message; else the solver moves only the chains of targets, within limits,
-/// and reports the true error.
+/// and reports the true error of the places.
 pub fn chain(data: &[u8]) {
     let bits = &mut Bits::new(data);
     let Some(skeleton) = skeleton(bits) else { return };
@@ -85,15 +85,21 @@ fn transform(bits: &mut Bits<'_>) -> Affine3A {
     }
 }
 
-fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<TipTarget> {
+fn targets(bits: &mut Bits<'_>, skeleton: &Skeleton) -> Vec<ChainTarget> {
     const MOST: usize = 3;
     // Including one index out of range.
     let places = skeleton.joints().len() + 1;
     let count = 1 + bits.below(MOST);
-    let target = |_| TipTarget {
-        joint: JointId::new(bits.below(places)),
-        point: bits.vector(),
-        weight: if bits.coin() { 1.0 } else { bits.number() },
+    let target = |_| {
+        let target = ChainTarget::at(JointId::new(bits.below(places)), bits.vector())
+            .with_weight(if bits.coin() { 1.0 } else { bits.number() });
+        let orientation = match bits.byte() {
+            0..32 => Orientation::Rotation(Quat::from_vec4(bits.vector().extend(bits.number()))),
+            32..64 => Orientation::Aim { axis: bits.vector(), point: bits.vector() },
+            _ => return target,
+        };
+        let target = target.with_orientation(orientation);
+        if bits.coin() { target } else { target.with_orientation_weight(bits.number()) }
     };
     (0..count).map(target).collect()
 }
@@ -118,7 +124,7 @@ fn options(bits: &mut Bits<'_>) -> SolverOptions {
     options
 }
 
-fn solve(before: &Skeleton, targets: &[TipTarget], options: &SolverOptions, elsewhere: Vec3) {
+fn solve(before: &Skeleton, targets: &[ChainTarget], options: &SolverOptions, elsewhere: Vec3) {
     let mut solve = match ChainSolver::new(before, targets, options) {
         Ok(solve) => solve,
         Err(error) => return is_readable(&error.to_string()),
@@ -134,7 +140,7 @@ fn solve(before: &Skeleton, targets: &[TipTarget], options: &SolverOptions, else
     case.check(&after, targets, solve.report());
 
     let moved: Vec<_> =
-        targets.iter().map(|target| TipTarget { point: elsewhere, ..*target }).collect();
+        targets.iter().map(|target| ChainTarget { point: elsewhere, ..*target }).collect();
     solve.retarget(&moved).expect("the same joints");
     solve.run();
     solve.write(&mut after);
@@ -150,7 +156,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn check(&mut self, after: &Skeleton, targets: &[TipTarget], report: Report) {
+    fn check(&mut self, after: &Skeleton, targets: &[ChainTarget], report: Report) {
         let Self { before, options, .. } = *self;
         let is_free = options.root == Root::Free;
         let on_path: HashSet<JointId> =
@@ -173,7 +179,7 @@ impl Case<'_> {
     }
 }
 
-fn farthest(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
+fn farthest(skeleton: &Skeleton, targets: &[ChainTarget]) -> f64 {
     let roots = skeleton.joints().iter().filter(|joint| joint.parent.is_none());
     let scale = scale(skeleton);
     let roots = roots.map(|root| scale * root.offset.as_dvec3().length());
@@ -195,14 +201,15 @@ fn is_rigid(joint: &Joint) {
 
 /// The reported error is the distance from tips to targets, within rounding. Angles of many
 /// turns leave few digits for their fraction.
-fn is_truth(skeleton: &Skeleton, targets: &[TipTarget], report: Report, way: f64) {
+fn is_truth(skeleton: &Skeleton, targets: &[ChainTarget], report: Report, way: f64) {
     const COARSE: f64 = 1e-6;
     const FEW_TURNS: f32 = 100.0;
     assert!((0.0..=f32::MAX).contains(&report.error), "{report:?}");
     if skeleton.joints().iter().any(|joint| joint.rotation.abs().max_element() > FEW_TURNS) {
         return;
     }
-    let twins: Vec<_> = targets.iter().map(|target| Twin::new(skeleton, target)).collect();
+    let placed = targets.iter().filter(|target| target.weight > 0.0);
+    let twins: Vec<_> = placed.map(|target| Twin::new(skeleton, target)).collect();
     let error = twins.iter().map(|twin| twin.error).fold(0.0, f64::max);
     let blur = twins.iter().map(|twin| twin.blur).fold(0.0, f64::max);
     let off = (error.min(f64::from(f32::MAX)) - f64::from(report.error)).abs();
@@ -225,7 +232,7 @@ struct Twin {
 }
 
 impl Twin {
-    fn new(skeleton: &Skeleton, target: &TipTarget) -> Self {
+    fn new(skeleton: &Skeleton, target: &ChainTarget) -> Self {
         let joints = skeleton.joints();
         let mut path: Vec<_> =
             skeleton.ancestors(target.joint).map(|joint| &joints[joint.index()]).collect();

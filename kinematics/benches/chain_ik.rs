@@ -9,7 +9,7 @@ use core::hint::black_box;
 use common::Random;
 use common::skeletons::{chain, reachable};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use ik_arm_kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget, solve};
+use ik_arm_kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SolverOptions, solve};
 use ik_arm_kinematics::skeleton::{JointId, Skeleton};
 
 const METHODS: [Method; 6] = [
@@ -22,7 +22,7 @@ const METHODS: [Method; 6] = [
 ];
 
 /// Chains in their bind pose, each with a target from a random one.
-fn cases(joints: usize) -> Vec<(Skeleton, [TipTarget; 1])> {
+fn cases(joints: usize) -> Vec<(Skeleton, [ChainTarget; 1])> {
     let mut random = Random(7);
     let case = |_| {
         let skeleton = chain(&mut random, joints, 1.0);

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::Random;
 use common::skeletons::{chain, length, reachable, shake, tree};
-use ik_arm_kinematics::chain_ik::{Method, Report, SolverOptions, TipTarget, solve};
+use ik_arm_kinematics::chain_ik::{ChainTarget, Method, Report, SolverOptions, solve};
 use ik_arm_kinematics::skeleton::Skeleton;
 
 /// Table columns, with one value per random case.
@@ -50,7 +50,7 @@ impl Kind {
     }
 
     /// A rig in its bind pose or any other, and targets that it can reach.
-    fn case(self, random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
+    fn case(self, random: &mut Random) -> (Skeleton, Vec<ChainTarget>) {
         let (mut skeleton, tips) = match self {
             Self::Chain(joints) => (chain(random, joints, 1.0), vec![joints.into()]),
             Self::Tree(targets) => tree(random, targets, 1.0),
@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn outcome(
     method: Method,
-    (mut skeleton, targets): (Skeleton, Vec<TipTarget>),
+    (mut skeleton, targets): (Skeleton, Vec<ChainTarget>),
 ) -> Result<Outcome, Box<dyn std::error::Error>> {
     let options = SolverOptions::new(method);
     let start = Instant::now();

@@ -21,7 +21,7 @@ use common::Random;
 use common::skeletons::{chain, limit};
 use glam::Vec3;
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, Method, SolveError, SolverOptions, TipTarget, solve,
+    ChainSolver, ChainTarget, Method, SolveError, SolverOptions, solve,
 };
 use ik_arm_kinematics::skeleton::{JointId, JointLimits, Skeleton, SkeletonPose};
 
@@ -122,12 +122,12 @@ impl Motion {
         Self { fk, tip, centre, axes, is_eight, frames }
     }
 
-    fn target(&self, frame: usize) -> TipTarget {
+    fn target(&self, frame: usize) -> ChainTarget {
         let angle = TAU * (frame % self.frames) as f32 / self.frames as f32;
         let (sin, cos) = angle.sin_cos();
         let y = if self.is_eight { sin * cos } else { sin };
         let point = self.centre + cos * self.axes[0] + y * self.axes[1];
-        TipTarget { joint: self.tip, point, weight: 1.0 }
+        ChainTarget::at(self.tip, point)
     }
 
     fn length(&self) -> f32 {

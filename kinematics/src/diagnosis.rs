@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 
-use crate::chain_ik::{Method, Root, SolverOptions, TipTarget};
+use crate::chain_ik::{ChainTarget, Method, Root, SolverOptions};
 use crate::skeleton::{JointId, Limit, RotationAxis, Skeleton, SkeletonError};
 
 /// A cause for which a tip is not at its target, or a hand not turned as its target asks.
@@ -248,8 +248,8 @@ impl Remedy {
     }
 
     /// Applies the part of the remedy that concerns targets of chains.
-    pub fn change_targets(&self, targets: &mut Vec<TipTarget>) {
-        let mut change = |joint: JointId, change: &dyn Fn(&mut TipTarget)| {
+    pub fn change_targets(&self, targets: &mut Vec<ChainTarget>) {
+        let mut change = |joint: JointId, change: &dyn Fn(&mut ChainTarget)| {
             targets.iter_mut().filter(|target| target.joint == joint).for_each(change);
         };
         match self {

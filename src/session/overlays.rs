@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use crate::document::{Document, Overlay, Posed, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
-use crate::kinematics::chain_ik::{ChainSolver, Method, SubStep, TipTarget};
+use crate::kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SubStep};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
@@ -91,7 +91,7 @@ pub struct SolverGhost {
     /// The part of the iteration that is looked at, counted from 1, and the number of its parts.
     pub part: Option<[usize; 2]>,
     /// The targets that are solved for.
-    pub targets: Vec<TipTarget>,
+    pub targets: Vec<ChainTarget>,
     /// The pose, in world space.
     pub pose: SkeletonPose,
 }

@@ -6,7 +6,7 @@ use ik_arm::document::{
     Channel, Document, PathKind, SkeletonRig, Target, TargetMotion, TargetPath, Theme, WavyRing,
 };
 use ik_arm::io::to_json;
-use ik_arm::kinematics::chain_ik::{ChainSolver, Method, Root, SolverOptions, Status, TipTarget};
+use ik_arm::kinematics::chain_ik::{ChainSolver, ChainTarget, Method, Root, SolverOptions, Status};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::scene::Scene;
 use ik_arm::session::{
@@ -423,7 +423,7 @@ fn the_labels_in_the_view_tell_the_shown_iteration_and_its_gaps() {
         let texts = labels(&session);
         assert!(texts.contains(&format!("Iteration {number}")), "{texts:?}");
         let run = session.solvers().run().expect("it steps");
-        let gap = |it: &TipTarget| run.skeleton().tip(it.joint).distance(it.point);
+        let gap = |it: &ChainTarget| run.skeleton().tip(it.joint).distance(it.point);
         let gaps: Vec<f32> = run.targets().iter().map(gap).collect();
         let told: Vec<f32> = texts.iter().filter_map(|text| text.parse().ok()).collect();
         // A gap that the target's ball hides is not told.

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Vec3, Vec3A};
 use ik_arm::io::Example;
-use ik_arm::kinematics::chain_ik::{Method, SolverOptions, TipTarget, solve};
+use ik_arm::kinematics::chain_ik::{ChainTarget, Method, SolverOptions, solve};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 use ik_arm::rig::{Carried, EvaluatedSkeleton, SkeletonRig};
 use ik_arm::words;
@@ -88,7 +88,7 @@ fn reached(options: &SolverOptions, tip: &str) -> usize {
     let is_reached = |_: &usize| {
         let (mut posed, mut solved) = (bind.clone(), bind.clone());
         pose_within_limits(&mut random, &mut posed, tip);
-        let target = TipTarget { joint: tip, point: posed.tip(tip), weight: 1.0 };
+        let target = ChainTarget::at(tip, posed.tip(tip));
         solve(&mut solved, &[target], options).expect("solve");
         assert_knee_is_forward(&solved, options.method);
         solved.tip(tip).distance(target.point) <= 1e-3 * length

@@ -1,6 +1,7 @@
 //! Rotations about a centre that bring points as near as possible to their destinations.
 
-use glam::{Quat, Vec3, Vec3A};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3, Vec3A};
+use nalgebra::Matrix4;
 
 use crate::skeleton::{JointLimits, RotationAxis};
 use crate::{normalize, rotation_between};
@@ -26,6 +27,38 @@ pub(super) fn align(pairs: &[PointPair]) -> Quat {
     let moment: Vec3A = pairs.iter().map(|pair| pair.weight * pair.from.cross(pair.to)).sum();
     let Some(axis) = normalize(moment) else { return Quat::IDENTITY };
     Quat::from_axis_angle(axis.into(), best_angle(axis, pairs))
+}
+
+/// The rotation that brings points nearest to their destinations, of all rotations: that of the
+/// greatest eigenvalue of Horn's matrix. Where several are as good, a small one.
+///
+/// # Source
+///
+/// B. Horn, *Closed-form solution of absolute orientation using unit quaternions*, 1987.
+pub(super) fn align_best(pairs: &[PointPair]) -> Quat {
+    /// Weight of the identity, relative to that of the pairs.
+    const SMALL: f64 = 1e-6;
+    let mut sums = DMat3::ZERO;
+    let mut whole = 0.0;
+    for PointPair { from, to, weight } in pairs {
+        let (from, to) = (from.as_dvec3(), to.as_dvec3() * f64::from(*weight));
+        sums += DMat3::from_cols(from * to.x, from * to.y, from * to.z);
+        whole += from.length() * to.length();
+    }
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = sums + DMat3::IDENTITY * (SMALL * whole);
+    let trace = x.x + y.y + z.z;
+    let skew = DVec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
+    #[rustfmt::skip]
+    let horn = Matrix4::new(
+        trace,  skew.x,              skew.y,              skew.z,
+        skew.x, 2.0 * x.x - trace,   x.y + y.x,           z.x + x.z,
+        skew.y, x.y + y.x,           2.0 * y.y - trace,   y.z + z.y,
+        skew.z, z.x + x.z,           y.z + z.y,           2.0 * z.z - trace,
+    );
+    let eigen = horn.symmetric_eigen();
+    let best = eigen.eigenvectors.column(eigen.eigenvalues.imax());
+    let rotation = DQuat::from_xyzw(best[1], best[2], best[3], best[0]).as_quat();
+    if rotation.is_finite() { rotation.normalize() } else { Quat::IDENTITY }
 }
 
 /// Sets each Euler angle in turn, x first, to its best value within its limits, which never

@@ -1,5 +1,6 @@
 use glam::{DVec3, Mat3A, Quat, Vec3, Vec3A};
 
+use super::orientation::MissingTurn;
 use super::problem::{EndEffector, Link, Problem};
 use crate::skeleton::{JointAngles, nearest_angles};
 
@@ -94,13 +95,36 @@ impl Configuration {
         }
     }
 
-    /// The cost f = Σ ½ w |tip − target|².
+    /// G of the link of an end effector; without a link, no rotation.
+    pub fn orientation_of(&self, effector: &EndEffector) -> Quat {
+        match effector.link {
+            Some(link) if self.orientations.is_empty() => Quat::from_mat3a(&self.frames[link]),
+            Some(link) => self.orientations[link],
+            None => Quat::IDENTITY,
+        }
+    }
+
+    /// The turns that joints miss, of all end effectors with a wanted orientation.
+    pub fn missing_turns<'a>(
+        &'a self,
+        problem: &'a Problem,
+    ) -> impl Iterator<Item = MissingTurn> + 'a {
+        problem.effectors.iter().filter_map(|effector| MissingTurn::new(effector, self))
+    }
+
+    /// The cost f = Σ ½ w |tip − target|² + Σ ½ w ℓ² φ².
     pub fn cost(&self, problem: &Problem) -> f64 {
         let costs = problem.effectors.iter().zip(&self.tips).map(|(effector, tip)| {
             let residual = tip.as_dvec3() - effector.target.as_dvec3();
             0.5 * f64::from(effector.weight) * residual.length_squared()
         });
-        costs.sum()
+        costs.sum::<f64>() + self.missing_turns(problem).map(|missing| missing.cost()).sum::<f64>()
+    }
+
+    /// Largest angle of a missing turn, in radians.
+    pub fn orientation_error(&self, problem: &Problem) -> f64 {
+        let angles = self.missing_turns(problem).map(|missing| f64::from(missing.turn.length()));
+        angles.fold(0.0, f64::max)
     }
 
     /// Largest distance from a tip to its target, in world units.
@@ -108,13 +132,17 @@ impl Configuration {
         problem.residuals(&self.tips).map(DVec3::length).fold(0.0, f64::max)
     }
 
-    /// Σ w r² with the distances r from joints to the tips below them, in the problem's units; as
-    /// [`Problem::inertia`] in this pose.
+    /// Σ w r² with the distances r from joints to the tips below them, in the problem's units, and
+    /// what orientations add; as [`Problem::inertia`] in this pose.
     pub fn inertia(&self, problem: &Problem) -> f32 {
         let of_link = |(link, base): (&Link, &Vec3A)| {
-            let squares = problem.below(link).iter().map(|effector| {
-                let arm = self.tips[*effector] - *base;
-                problem.effectors[*effector].weight * arm.length_squared()
+            let squares = problem.below(link).iter().map(|index| {
+                let effector = &problem.effectors[*index];
+                let arm = self.tips[*index] - *base;
+                let of_turn = MissingTurn::new(effector, self).map_or(0.0, |missing| {
+                    missing.stiffness * missing.longest_column(*base).powi(2)
+                });
+                effector.weight * arm.length_squared() + of_turn
             });
             squares.sum::<f32>()
         };
@@ -122,37 +150,42 @@ impl Configuration {
         turning + problem.inertia_of_shifts()
     }
 
-    /// Largest distance from a tip to the point to which methods move it, in the problem's units.
+    /// Largest distance from a tip to the point to which methods move it, in the problem's units; a
+    /// missing turn by φ counts as the distance ℓ φ.
     pub fn farthest(&self, problem: &Problem) -> f64 {
         let tips = problem.effectors.iter().zip(&self.tips);
-        let distances = tips.map(|(effector, tip)| effector.target.distance(*tip));
-        f64::from(distances.fold(0.0, f32::max))
+        let placed = tips.filter(|(effector, _)| effector.weight > 0.0);
+        let distances = placed.map(|(effector, tip)| effector.target.distance(*tip));
+        let farthest = f64::from(distances.fold(0.0, f32::max));
+        farthest.max(problem.turn_length() * self.orientation_error(problem))
     }
 
-    /// Sum of the distances from tips to requested targets, in world units.
+    /// Sum of the distances from tips to requested targets, in world units, and of the missing turns
+    /// times ℓ.
     pub fn total_error(&self, problem: &Problem) -> f64 {
-        problem.residuals(&self.tips).map(DVec3::length).sum()
+        let turns = self.missing_turns(problem).map(|missing| f64::from(missing.turn.length()));
+        let turned = problem.turn_length_in_world() * turns.sum::<f64>();
+        problem.residuals(&self.tips).map(DVec3::length).sum::<f64>() + turned
     }
 
-    /// Weighted root mean square distance from tips to targets, in the problem's units.
+    /// Weighted root mean square distance from tips to targets, in the problem's units; a missing
+    /// turn by φ counts as the distance ℓ φ.
     pub fn distance(&self, problem: &Problem) -> f64 {
-        let weights: f64 =
-            problem.effectors.iter().map(|effector| f64::from(effector.weight)).sum();
-        (2.0 * self.cost(problem) / weights.max(f64::MIN_POSITIVE)).sqrt()
+        (2.0 * self.cost(problem) / problem.weights()).sqrt()
     }
 
     /// Weighted mean distance from tips to targets, in the problem's units. One far target does not
     /// hide how much nearer the other tips are.
     pub fn mean_distance(&self, problem: &Problem) -> f64 {
         let of_effector = |(effector, tip): (&EndEffector, &Vec3A)| {
-            let weight = f64::from(effector.weight);
-            (weight * f64::from(effector.target.distance(*tip)), weight)
+            f64::from(effector.weight) * f64::from(effector.target.distance(*tip))
         };
-        let all = problem.effectors.iter().zip(&self.tips).map(of_effector);
-        let (sum, weights) = all.fold((0.0, 0.0), |(sum, weights), (distance, weight)| {
-            (sum + distance, weights + weight)
-        });
-        sum / f64::max(weights, f64::MIN_POSITIVE)
+        let sum: f64 = problem.effectors.iter().zip(&self.tips).map(of_effector).sum();
+        let length = problem.turn_length().max(f64::MIN_POSITIVE);
+        let turned = self
+            .missing_turns(problem)
+            .map(|missing| f64::from(missing.stiffness * missing.turn.length()) / length);
+        (sum + turned.sum::<f64>()) / problem.weights()
     }
 
     /// Largest distance of a joint or tip from its position in another configuration.

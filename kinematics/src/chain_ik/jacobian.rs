@@ -17,6 +17,7 @@
 use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::{Configuration, Coordinates};
+use super::orientation::MissingTurn;
 use super::problem::Problem;
 use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton};
 
@@ -98,16 +99,18 @@ impl Wrenches {
             let effector = &problem.effectors[index];
             (effector.target - config.tips[index]) * effector.weight
         };
-        self.apply_transpose(problem, config, force, descent);
+        let moment = |_, missing: &MissingTurn| missing.turn * missing.stiffness;
+        self.apply_transpose(problem, config, force, moment, descent);
     }
 
     /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F
-    /// at the tip of an end effector.
+    /// at the tip of an end effector, `moment` the moment on one that misses a turn.
     pub fn apply_transpose(
         &mut self,
         problem: &Problem,
         config: &Configuration,
         force: impl Fn(usize) -> Vec3A,
+        moment: impl Fn(usize, &MissingTurn) -> Vec3A,
         Coordinates { angles, shifts }: &mut Coordinates,
     ) {
         self.0.clear();
@@ -122,6 +125,13 @@ impl Wrenches {
             shifts[effector.tree] += force;
             if let Some(link) = effector.link {
                 self.add(link, force, config.tips[index].cross(force));
+            }
+            if let Some(missing) = MissingTurn::new(effector, config) {
+                let (force, moment, at) = missing.wrench(moment(index, &missing));
+                shifts[effector.tree] += force;
+                if let Some(link) = effector.link {
+                    self.add(link, force, moment + at.cross(force));
+                }
             }
         }
         for (index, link) in problem.links.iter().enumerate().rev() {

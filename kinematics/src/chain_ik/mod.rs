@@ -1,25 +1,28 @@
-//! Inverse kinematics of skeletons: solvers that move tips of bones to targets.
+//! Inverse kinematics of skeletons: solvers that move tips of bones to targets, and turn joints to
+//! orientations.
 //!
-//! With p a tip, t its target and w its weight, every method lowers
+//! A [`ChainTarget`] asks for a place of a joint's tip, for an orientation of the joint (its
+//! rotation, or an axis that is aimed at a point), or for both. With p a tip, t its target, w its
+//! weight, and φ the angle of the turn that an orientation of weight v misses, every method lowers
 //!
 //! ```text
-//! f = Σ ½ w |p − t|²
+//! f = Σ ½ w |p − t|² + Σ ½ v ℓ² φ²
 //! ```
 //!
-//! by rotating the joints between targets and roots within their limits. Locked joints, and joints
+//! with ℓ a quarter of the chain's length, by rotating the joints between targets and roots within their limits. Locked joints, and joints
 //! that are not between a target and a root, are unchanged, bit for bit; so are roots that are
 //! [locked](Root::Locked). Targets, errors and the
 //! tolerance are in the world; solvers work in skeleton space, so that mirrored and scaled
 //! skeletons are solved correctly.
 //!
-//! | method | moves | at limits |
-//! | --- | --- | --- |
-//! | [`Method::TransposeFixed`], [`Method::Transpose`] | all angles, along the gradient of f | stops at the limit |
-//! | [`Method::DampedLeastSquares`] | all angles, to the minimum of a quadratic model of f | solves for the other angles |
-//! | [`Method::Ccd`] | one joint after the other | best angle within the limits |
-//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short |
-//! | [`Method::Relaxation`] | points: each bone in turn moves both of its ends | as FABRIK |
-//! | [`Method::TwoBone`] | two joints, at once | stops short |
+//! | method | moves | at limits | orientations |
+//! | --- | --- | --- | --- |
+//! | [`Method::TransposeFixed`], [`Method::Transpose`] | all angles, along the gradient of f | stops at the limit | yes |
+//! | [`Method::DampedLeastSquares`] | all angles, to the minimum of a quadratic model of f | solves for the other angles | yes |
+//! | [`Method::Ccd`] | one joint after the other | best angle within the limits | yes |
+//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short | refused |
+//! | [`Method::Relaxation`] | points: each bone in turn moves both of its ends | as FABRIK | refused |
+//! | [`Method::TwoBone`] | two joints, at once | stops short | refused |
 //!
 //! A straight chain that must shorten is bent before the first iteration if no method can bend it:
 //! with its target on its line, or with joints that the target pushes against their limits, as a
@@ -49,6 +52,7 @@ mod inside;
 mod jacobian;
 mod method;
 mod options;
+mod orientation;
 mod perturb;
 mod problem;
 mod report;
@@ -63,6 +67,6 @@ pub use inside::{
 pub use jacobian::{Swing, jacobian};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
-pub use problem::TipTarget;
+pub use problem::{ChainTarget, Orientation};
 pub use report::{Report, Status};
 pub use solver::{ChainSolver, TrackStep, solve};

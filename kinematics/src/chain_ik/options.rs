@@ -4,7 +4,7 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::method::{Method, TwoBoneRefusal, TwoBonesRefused};
-use super::problem::Problem;
+use super::problem::{Orientation, Problem};
 use crate::skeleton::JointId;
 
 /// Options of all methods.
@@ -165,13 +165,32 @@ pub enum SolveError {
         /// The position.
         point: Vec3,
     },
-    /// The weight of a target is not finite or not above 0.
+    /// A weight of a target is not finite or negative, or none of them is above 0.
     #[error("the weight of joint {joint}'s target must be finite and above 0, got {weight}")]
     Weight {
         /// The target's joint.
         joint: JointId,
         /// The weight.
         weight: f32,
+    },
+    /// An orientation is not finite, or its rotation or axis is zero.
+    #[error("the orientation of joint {joint} must be finite and not zero, got {orientation:?}")]
+    Orientation {
+        /// The target's joint.
+        joint: JointId,
+        /// The orientation.
+        orientation: Orientation,
+    },
+    /// The method cannot turn joints to orientations.
+    #[error(
+        "{method} cannot turn joint {joint} to an orientation; {} can",
+        crate::chain_ik::method::orienting_methods()
+    )]
+    CannotOrient {
+        /// The method.
+        method: Method,
+        /// The target's joint.
+        joint: JointId,
     },
     /// One iteration is more work than [`ChainSolver::bounded`](super::ChainSolver::bounded)
     /// allows.

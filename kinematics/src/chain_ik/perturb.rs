@@ -38,7 +38,8 @@ pub(super) fn bend(
 ) -> bool {
     let mut any = false;
     for effector in 0..problem.effectors.len() {
-        if let Some(end) = straight_end(problem, config, effector)
+        if problem.effectors[effector].weight > 0.0
+            && let Some(end) = straight_end(problem, config, effector)
             && is_stuck(problem, config, end)
         {
             straight.copy_from(config);

@@ -12,12 +12,15 @@ pub struct Report {
     pub iterations: u32,
     /// Largest distance from a tip to its target, in world units.
     pub error: f32,
+    /// Largest turn that a joint misses, in radians; 0 without wanted orientations.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub orientation_error: f32,
     /// The state of the run: running, or the reason for its end.
     pub status: Status,
 }
 
 impl Report {
-    /// True if the error is within the tolerance.
+    /// True if the errors are within the tolerance.
     pub fn converged(&self) -> bool {
         self.status == Status::Converged
     }

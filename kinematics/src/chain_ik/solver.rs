@@ -9,7 +9,7 @@ use super::problem::{self, Builder, Problem};
 use super::report::{Report, Status};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
-use super::{SolveError, SolverOptions, TipTarget, perturb};
+use super::{ChainTarget, Method, SolveError, SolverOptions, perturb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::vector::saturate;
 
@@ -20,14 +20,14 @@ pub use self::track::TrackStep;
 /// ```
 /// use glam::Vec3;
 /// use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
-/// use ik_arm_kinematics::chain_ik::{SolverOptions, ChainSolver, TipTarget};
+/// use ik_arm_kinematics::chain_ik::{SolverOptions, ChainSolver, ChainTarget};
 ///
 /// let mut skeleton = Skeleton::with_root("root");
 /// let upper = skeleton.add(Joint::new("upper", Some(JointId::new(0)), Vec3::Y))?;
 /// let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y) };
 /// let lower = skeleton.add(lower)?;
 ///
-/// let target = TipTarget { joint: lower, point: Vec3::new(1.0, 0.5, 0.0), weight: 1.0 };
+/// let target = ChainTarget::at(lower, Vec3::new(1.0, 0.5, 0.0));
 /// let mut solver = ChainSolver::new(&skeleton, &[target], &SolverOptions::default())?;
 /// assert!(solver.run().converged());
 /// solver.write(&mut skeleton);
@@ -66,7 +66,7 @@ impl ChainSolver {
     /// See [`SolveError`].
     pub fn new(
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         let (builder, problem) = Self::problem(skeleton, targets, options)?;
@@ -82,7 +82,7 @@ impl ChainSolver {
     /// [`SolveError::TooMuchWork`] if not even one iteration is allowed; see also [`SolveError`].
     pub fn bounded(
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         options: &SolverOptions,
         work: u64,
     ) -> Result<Self, SolveError> {
@@ -99,10 +99,11 @@ impl ChainSolver {
 
     fn problem(
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         options: &SolverOptions,
     ) -> Result<(Builder, Problem), SolveError> {
         options.check()?;
+        check_method(options.method, targets)?;
         let mut builder = Builder::new(skeleton, targets, options)?;
         let mut problem = Problem::default();
         builder.fill(&mut problem, skeleton, targets)?;
@@ -114,7 +115,7 @@ impl ChainSolver {
         builder: Builder,
         problem: Problem,
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         let tolerance = options.tolerance_of(&problem);
@@ -127,7 +128,13 @@ impl ChainSolver {
         }
         let least = problem.length_from_world(tolerance);
         let stall = StallDetector::new(method.row().patience, least, &config);
-        let report = Report { method, iterations: 0, error: 0.0, status: Status::Iterating };
+        let report = Report {
+            method,
+            iterations: 0,
+            error: 0.0,
+            orientation_error: 0.0,
+            status: Status::Iterating,
+        };
         let (start, escape) = (config.clone(), Escape::new(&config));
         let mut solver = Self {
             report,
@@ -159,7 +166,8 @@ impl ChainSolver {
         self.report
     }
 
-    /// Distance in world units: the solver has converged if no tip is farther from its target.
+    /// Distance in world units: the solver has converged if no tip is farther from its target, and no
+    /// missing turn times a quarter of the chain's length is longer.
     #[must_use]
     pub fn tolerance(&self) -> f32 {
         saturate(self.tolerance)
@@ -238,14 +246,14 @@ impl ChainSolver {
     ///
     /// [`SolveError::NoJoint`] for other joints or another order; [`SolveError::Point`];
     /// [`SolveError::Weight`].
-    pub fn retarget(&mut self, targets: &[TipTarget]) -> Result<(), SolveError> {
+    pub fn retarget(&mut self, targets: &[ChainTarget]) -> Result<(), SolveError> {
         self.check_targets(targets)?;
         self.set_targets(targets);
         Ok(())
     }
 
     /// Checks targets that must be for the joints of the present targets, in the same order.
-    fn check_targets(&self, targets: &[TipTarget]) -> Result<(), SolveError> {
+    fn check_targets(&self, targets: &[ChainTarget]) -> Result<(), SolveError> {
         let effectors = &self.problem.effectors;
         for (index, effector) in effectors.iter().enumerate() {
             let joint = targets.get(index).map(|target| target.joint);
@@ -259,7 +267,7 @@ impl ChainSolver {
         for target in targets {
             problem::check_target(target)?;
         }
-        Ok(())
+        check_method(self.options.method, targets)
     }
 
     /// Begins anew with the angles of a pose, and with the offsets of its free roots, in place of
@@ -348,7 +356,7 @@ impl ChainSolver {
         }
     }
 
-    fn set_targets(&mut self, targets: &[TipTarget]) {
+    fn set_targets(&mut self, targets: &[ChainTarget]) {
         if self.problem.free_roots {
             self.problem.approach(targets, &self.config.tips);
         } else {
@@ -369,8 +377,10 @@ impl ChainSolver {
     /// Updates the error and the status of the report.
     fn measure(&mut self) {
         let error = self.config.error(&self.problem);
-        self.report.error = saturate(error);
-        self.report.status = if error <= self.tolerance {
+        let turn = self.config.orientation_error(&self.problem);
+        (self.report.error, self.report.orientation_error) = (saturate(error), saturate(turn));
+        let turned = turn * self.problem.turn_length_in_world();
+        self.report.status = if error.max(turned) <= self.tolerance {
             Status::Converged
         } else {
             self.used_up().unwrap_or(Status::Iterating)
@@ -474,6 +484,15 @@ impl ChainSolver {
     }
 }
 
+/// Checks that a method can turn joints to the orientations that targets ask for.
+fn check_method(method: Method, targets: &[ChainTarget]) -> Result<(), SolveError> {
+    let oriented = targets.iter().find(|target| target.orientation.is_some());
+    match oriented.filter(|_| !method.can_orient()) {
+        Some(ChainTarget { joint, .. }) => Err(SolveError::CannotOrient { method, joint: *joint }),
+        None => Ok(()),
+    }
+}
+
 /// Solves a skeleton in place with a new [`ChainSolver`].
 ///
 /// # Errors
@@ -481,7 +500,7 @@ impl ChainSolver {
 /// See [`SolveError`].
 pub fn solve(
     skeleton: &mut Skeleton,
-    targets: &[TipTarget],
+    targets: &[ChainTarget],
     options: &SolverOptions,
 ) -> Result<Report, SolveError> {
     let mut solver = ChainSolver::new(skeleton, targets, options)?;

@@ -1,4 +1,4 @@
-use glam::{Mat3A, Vec3};
+use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::{Configuration, Coordinates};
 use super::method::DampedLeastSquares;
@@ -20,6 +20,8 @@ pub(super) struct Tracker {
     pub last_motion: f64,
     /// The configuration as the FK pose takes it along.
     taken: Configuration,
+    /// The turns that joints missed before the step.
+    turns: Vec<Vec3A>,
     posture: DampedLeastSquares,
 }
 
@@ -30,17 +32,21 @@ impl Tracker {
             was_held_back: false,
             last_motion: 0.0,
             taken: config.clone(),
+            turns: Vec::new(),
             posture: DampedLeastSquares::new(problem, NULL_SPACE_DAMPING),
         }
     }
 
     /// Replaces a problem by the next one and takes the configuration along with the FK pose.
-    /// Returns the largest change of a vector from target to tip, in the world.
+    /// Returns the largest change of a vector from target to tip, in the world; a change of a missing
+    /// turn by φ counts as the distance ℓ φ.
     pub fn take_along(&mut self, problem: &mut Problem, config: &mut Configuration) -> f64 {
         std::mem::swap(problem, &mut self.next);
         let before = &self.next;
         let tips_before = &mut self.taken.tips;
         tips_before.clone_from(&config.tips);
+        self.turns.clear();
+        self.turns.extend(config.missing_turns(before).map(|missing| missing.turn));
         for (index, angles) in config.angles.iter_mut().enumerate() {
             *angles = taken_along(&before.links[index], &problem.links[index], *angles);
         }
@@ -50,7 +56,10 @@ impl Tracker {
         config.renew_orientations();
         let residuals_before = before.residuals(tips_before);
         let changes = problem.residuals(&config.tips).zip(residuals_before);
-        let motion = changes.map(|(now, before)| now.distance(before)).fold(0.0, f64::max);
+        let moved = changes.map(|(now, before)| now.distance(before)).fold(0.0, f64::max);
+        let turns = config.missing_turns(problem).zip(&self.turns);
+        let turned = turns.map(|(now, before)| f64::from(now.turn.distance(*before)));
+        let motion = moved.max(problem.turn_length_in_world() * turned.fold(0.0, f64::max));
         self.taken.copy_from(config);
         motion
     }

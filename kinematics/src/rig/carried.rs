@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use glam::{DQuat, Vec3};
 
 use crate::Shared;
-use crate::chain_ik::{ChainSolver, Report, SolveError, SolverOptions, TipTarget, TrackStep};
+use crate::chain_ik::{ChainSolver, ChainTarget, Report, SolveError, SolverOptions, TrackStep};
 use crate::limb_ik::{CarriedLimb, LimbPosture};
 use crate::skeleton::{JointId, JointRemap, Skeleton};
 
@@ -88,7 +88,7 @@ impl Posture {
 /// A whole-body target of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyTarget {
-    pub tip: TipTarget,
+    pub tip: ChainTarget,
     pub influence: f32,
 }
 
@@ -201,7 +201,7 @@ impl Carried {
         let last = influences.len() - 1;
         let body = |(index, least): (usize, &f32)| {
             let tips = targets.iter().filter(|target| target.influence >= *least);
-            let tips: Vec<TipTarget> = tips.map(|target| target.tip).collect();
+            let tips: Vec<ChainTarget> = tips.map(|target| target.tip).collect();
             before.step(options, pose, &tips, index == last)
         };
         self.bodies = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
@@ -236,7 +236,7 @@ impl Before {
         &mut self,
         options: &SolverOptions,
         fk: &Skeleton,
-        tips: &[TipTarget],
+        tips: &[ChainTarget],
         has_all_targets: bool,
     ) -> Result<Body, SolveError> {
         let is_same = |body: &Option<Body>| {
@@ -262,7 +262,7 @@ impl Before {
         &self,
         options: &SolverOptions,
         fk: &Skeleton,
-        tips: &[TipTarget],
+        tips: &[ChainTarget],
         has_all_targets: bool,
     ) -> Result<Body, SolveError> {
         let mut solver = ChainSolver::bounded(fk, tips, options, self.work)?;

@@ -5,7 +5,7 @@ use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
-use crate::chain_ik::{Report, Root, SolveError, TipTarget};
+use crate::chain_ik::{ChainTarget, Report, Root, SolveError};
 use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::soft_reach::SoftReach;
@@ -273,9 +273,9 @@ impl SkeletonRig {
 
 impl SkeletonRig {
     /// A whole-body target at a time in seconds, for a solver of chains, in the FK pose.
-    pub(super) fn tip_target(&self, target: &Target, fk: &Skeleton, time: f64) -> TipTarget {
+    pub(super) fn tip_target(&self, target: &Target, fk: &Skeleton, time: f64) -> ChainTarget {
         let point = self.softened(target, fk, target.in_world(fk, time));
-        TipTarget { joint: target.joint, point, weight: target.weight }
+        ChainTarget::at(target.joint, point).with_weight(target.weight)
     }
 
     /// The point to which solvers bring the tip of a whole-body target that is at `point`, in the

@@ -7,7 +7,7 @@ use super::follow_path::{FollowPath, PathKind};
 use super::skin::Skin;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind};
 use crate::Shared;
-use crate::chain_ik::{SolverOptions, TipTarget};
+use crate::chain_ik::{ChainTarget, SolverOptions};
 use crate::limb_ik::{self, Limb};
 use crate::skeleton::{JointId, JointRemap, Skeleton, SkeletonPose};
 use crate::spline::Spline;
@@ -181,7 +181,7 @@ impl SkeletonRig {
 
     /// The enabled targets at a time in seconds, for a solver, without those that lead a path;
     /// those on joints are where the FK pose has them.
-    pub fn targets_at(&self, time: f64) -> Vec<TipTarget> {
+    pub fn targets_at(&self, time: f64) -> Vec<ChainTarget> {
         let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
         enabled.map(|target| self.tip_target(target, &fk, time)).collect()

@@ -3,7 +3,7 @@
 use core::f32::consts::FRAC_PI_2;
 
 use glam::{Quat, Vec3};
-use ik_arm_kinematics::chain_ik::{Method, SolverOptions, Status, TipTarget, solve};
+use ik_arm_kinematics::chain_ik::{ChainTarget, Method, SolverOptions, Status, solve};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 
 use super::Random;
@@ -12,7 +12,7 @@ use super::skeletons::{ITERATIVE, chain, length, reachable, shake, target, trans
 /// A skeleton with targets that it misses.
 pub struct MissedTargets {
     pub skeleton: Skeleton,
-    pub targets: Vec<TipTarget>,
+    pub targets: Vec<ChainTarget>,
     pub options: SolverOptions,
 }
 

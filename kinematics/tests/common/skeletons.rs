@@ -1,7 +1,7 @@
 //! Random skeletons and targets, the same on every run.
 
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm_kinematics::chain_ik::{Method, TipTarget};
+use ik_arm_kinematics::chain_ik::{ChainTarget, Method};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 
 use super::Random;
@@ -17,8 +17,8 @@ pub const ITERATIVE: [Method; 6] = [
 ];
 
 /// A target of weight 1.
-pub fn target(joint: JointId, point: Vec3) -> TipTarget {
-    TipTarget { joint, point, weight: 1.0 }
+pub fn target(joint: JointId, point: Vec3) -> ChainTarget {
+    ChainTarget::at(joint, point)
 }
 
 /// A locked root and a chain of `joints`, straight or crooked, with bones 0.5 to 1.5 units long.
@@ -95,11 +95,10 @@ pub fn shake(random: &mut Random, skeleton: &mut Skeleton) {
 }
 
 /// Targets that can all be reached at once: the tips of a random pose.
-pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[JointId]) -> Vec<TipTarget> {
+pub fn reachable(random: &mut Random, skeleton: &Skeleton, tips: &[JointId]) -> Vec<ChainTarget> {
     let mut posed = skeleton.clone();
     shake(random, &mut posed);
-    let target =
-        |joint: &JointId| TipTarget { joint: *joint, point: posed.tip(*joint), weight: 1.0 };
+    let target = |joint: &JointId| ChainTarget::at(*joint, posed.tip(*joint));
     tips.iter().map(target).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3};
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, Method, OptionField, Report, Root, SolveError, SolverOptions, Status, TipTarget,
+    ChainSolver, ChainTarget, Method, OptionField, Report, Root, SolveError, SolverOptions, Status,
     TwoBoneRefusal, jacobian, solve,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, Skeleton};
@@ -26,12 +26,12 @@ fn straight(joints: usize) -> Skeleton {
 }
 
 /// The largest distance from a tip to its target, from the skeleton alone.
-fn error(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
+fn error(skeleton: &Skeleton, targets: &[ChainTarget]) -> f32 {
     targets.iter().map(|t| skeleton.tip(t.joint).distance(t.point)).fold(0.0, f32::max)
 }
 
 /// Root mean square distance of tips from their targets.
-fn rms(skeleton: &Skeleton, targets: &[TipTarget]) -> f32 {
+fn rms(skeleton: &Skeleton, targets: &[ChainTarget]) -> f32 {
     let squares = targets.iter().map(|t| skeleton.tip(t.joint).distance_squared(t.point));
     (squares.sum::<f32>() / targets.len() as f32).sqrt()
 }
@@ -232,7 +232,7 @@ fn the_jacobian_is_the_derivative_of_the_tip() {
 }
 
 /// Random forests with random targets, likely out of reach.
-fn anything(random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
+fn anything(random: &mut Random) -> (Skeleton, Vec<ChainTarget>) {
     let joints = 2 + random.below(10);
     let mut skeleton = forest(random, joints);
     skeleton.set_transform(transform(random)).expect("transform");
@@ -240,7 +240,7 @@ fn anything(random: &mut Random) -> (Skeleton, Vec<TipTarget>) {
     for joint in skeleton.ids() {
         if random.chance(0.3) {
             let weight = random.within(0.1..3.0);
-            targets.push(TipTarget { joint, point: random.vector(5.0), weight });
+            targets.push(ChainTarget::at(joint, random.vector(5.0)).with_weight(weight));
         }
     }
     (skeleton, targets)
@@ -694,7 +694,13 @@ fn without_targets_there_is_nothing_to_do() {
     for method in Method::ALL {
         let mut skeleton = Skeleton::with_root("root");
         let report = solve(&mut skeleton, &[], &SolverOptions::new(method)).expect("solve");
-        let expected = Report { method, iterations: 0, error: 0.0, status: Status::Converged };
+        let expected = Report {
+            method,
+            iterations: 0,
+            error: 0.0,
+            orientation_error: 0.0,
+            status: Status::Converged,
+        };
         assert_eq!(report, expected);
     }
 }
@@ -783,7 +789,7 @@ fn invalid_problems_are_refused() {
     let mut random = Random(59);
     let skeleton = chain(&mut random, 3, 1.0);
     let options = SolverOptions::default();
-    let refused = |targets: &[TipTarget], options: &SolverOptions| {
+    let refused = |targets: &[ChainTarget], options: &SolverOptions| {
         ChainSolver::new(&skeleton, targets, options).map(|_| ()).expect_err("refused")
     };
     let at = |joint| target(joint, Vec3::ONE);
@@ -798,7 +804,7 @@ fn invalid_problems_are_refused() {
         SolveError::Point { joint: JointId::new(3), point: nowhere.point }
     );
     for weight in [0.0, -1.0, f32::INFINITY] {
-        let light = TipTarget { weight, ..at(JointId::new(3)) };
+        let light = ChainTarget { weight, ..at(JointId::new(3)) };
         assert_eq!(
             refused(&[light], &options),
             SolveError::Weight { joint: JointId::new(3), weight }
@@ -917,8 +923,8 @@ fn an_unreachable_target_does_not_stop_another_chain_from_reaching_its_own() {
             }
             tips.extend(parent);
         }
-        let near = TipTarget { joint: tips[0], point: Vec3::new(0.9, 1.0, 0.4), weight: 1.0 };
-        let far = TipTarget { joint: tips[1], point: Vec3::new(9.0, 1.0, 0.0), weight: 1.0 };
+        let near = ChainTarget::at(tips[0], Vec3::new(0.9, 1.0, 0.4));
+        let far = ChainTarget::at(tips[1], Vec3::new(9.0, 1.0, 0.0));
         let options = SolverOptions::new(method);
         let report = solve(&mut skeleton, &[near, far], &options).expect("it can be solved");
         assert!(!report.converged());

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::{DAffine3, DVec3, Vec3};
-use ik_arm_kinematics::chain_ik::{ChainSolver, Method, SolverOptions, TipTarget};
+use ik_arm_kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SolverOptions};
 use ik_arm_kinematics::skeleton::{JointId, Limit, RotationAxis, Skeleton};
 use nalgebra::{DMatrix, DVector};
 
@@ -15,7 +15,7 @@ const CASES: usize = 300;
 /// A problem with several targets near its pose, in f64 and in skeleton space.
 struct Twin {
     skeleton: Skeleton,
-    targets: Vec<TipTarget>,
+    targets: Vec<ChainTarget>,
     angles: Vec<DVec3>,
 }
 
@@ -45,7 +45,7 @@ impl Twin {
             for joint in skeleton.ids() {
                 if random.chance(0.4) {
                     let weight = random.within(0.1..3.0);
-                    targets.push(TipTarget { joint, point: near.tip(joint), weight });
+                    targets.push(ChainTarget::at(joint, near.tip(joint)).with_weight(weight));
                 }
             }
             let angles = skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
@@ -114,7 +114,7 @@ impl Twin {
     fn inertia(&self) -> f64 {
         let zero = vec![DVec3::ZERO; self.angles.len()];
         let space = |joint: JointId| space_f64(&self.skeleton, joint, &zero);
-        let of_target = |(target, weight): (&TipTarget, f64)| {
+        let of_target = |(target, weight): (&ChainTarget, f64)| {
             let tip =
                 space(target.joint).transform_point3(self.skeleton[target.joint].axis.as_dvec3());
             let turning =

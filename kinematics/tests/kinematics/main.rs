@@ -11,6 +11,7 @@ mod fk;
 mod ik;
 mod limb_frames;
 mod limb_ik;
+mod orientation;
 mod pop;
 mod skeleton;
 mod skin_from_bones;

@@ -3,7 +3,7 @@
 
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, Column, Method, Root, SolverOptions, SubStep, SubStepKind, TipTarget,
+    ChainSolver, ChainTarget, Column, Method, Root, SolverOptions, SubStep, SubStepKind,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
 use nalgebra::Matrix3xX;
@@ -16,7 +16,7 @@ const CASES: usize = 120;
 /// A skeleton with targets and options, and a solver for them.
 struct Case {
     skeleton: Skeleton,
-    targets: Vec<TipTarget>,
+    targets: Vec<ChainTarget>,
     solver: ChainSolver,
     is_limited: bool,
 }
@@ -350,7 +350,7 @@ fn a_pass_of_relaxation_over_unit_bones_is_the_one_worked_out_by_hand() {
         let joint = Joint { offset, ..Joint::new(&name, Some(index.into()), Vec3::Y) };
         skeleton.add(joint).expect("joint");
     }
-    let target = TipTarget { joint: JointId::new(3), point: Vec3::new(2.0, 2.0, 0.0), weight: 1.0 };
+    let target = ChainTarget::at(JointId::new(3), Vec3::new(2.0, 2.0, 0.0));
     let options = SolverOptions::new(Method::Relaxation);
     let mut solver = ChainSolver::new(&skeleton, &[target], &options).expect("a solver");
     let (_, steps) = solver.step_inside(&skeleton);

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::{Affine3A, Mat3, Vec3};
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, Method, Root, SolveError, SolverOptions, TipTarget, TrackStep, solve,
+    ChainSolver, ChainTarget, Method, Root, SolveError, SolverOptions, TrackStep, solve,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton, SkeletonPose};
 
@@ -44,7 +44,7 @@ impl Motion {
         Self { fk, tip, centre, axes: [x, y].map(|axis| 0.25 * length * axis) }
     }
 
-    fn target(&self, frame: u16) -> TipTarget {
+    fn target(&self, frame: u16) -> ChainTarget {
         let (sin, cos) = (TAU * f32::from(frame) / f32::from(FRAMES)).sin_cos();
         target(self.tip, self.centre + cos * self.axes[0] + sin * self.axes[1])
     }
@@ -62,7 +62,7 @@ struct Tracked {
 }
 
 impl Tracked {
-    fn new(fk: &Skeleton, targets: &[TipTarget], options: &SolverOptions) -> Self {
+    fn new(fk: &Skeleton, targets: &[ChainTarget], options: &SolverOptions) -> Self {
         let mut solver = ChainSolver::new(fk, targets, options).expect("a solver");
         solver.run();
         let mut posed = fk.clone();
@@ -70,7 +70,7 @@ impl Tracked {
         Self { solver, posed }
     }
 
-    fn step(&mut self, targets: &[TipTarget], fk: &Skeleton) -> TrackStep {
+    fn step(&mut self, targets: &[ChainTarget], fk: &Skeleton) -> TrackStep {
         let step = self.solver.track(targets, fk).expect("a step");
         self.posed = fk.clone();
         self.solver.write(&mut self.posed);
@@ -236,9 +236,10 @@ fn bones_may_change_their_lengths_and_targets_their_weights() {
                     };
                     fk.change(joint, grow).expect("finite");
                 }
-                let TipTarget { joint, point, .. } = motion.target(frame);
+                let ChainTarget { joint, point, .. } = motion.target(frame);
                 let weight = 1.0 + f32::from(frame % 7);
-                let step = tracked.step(&[TipTarget { joint, point: point * scale, weight }], &fk);
+                let step =
+                    tracked.step(&[ChainTarget::at(joint, point * scale).with_weight(weight)], &fk);
                 let length = length(&fk, &[motion.tip]);
                 let seen = tracked.posed.tip(joint).distance(point * scale);
                 assert!((seen - step.report.error).abs() < 1e-5 * length, "{method}");
@@ -261,8 +262,8 @@ fn steps_in_a_moved_scaled_or_mirrored_skeleton_are_as_smooth() {
             let space = transform(&mut random);
             motion.fk.set_transform(space).expect("invertible");
             let target = |frame| {
-                let TipTarget { joint, point, weight } = motion.target(frame);
-                TipTarget { joint, point: space.transform_point3(point), weight }
+                let ChainTarget { joint, point, weight, .. } = motion.target(frame);
+                ChainTarget::at(joint, space.transform_point3(point)).with_weight(weight)
             };
             let options = SolverOptions::new(method);
             let mut tracked = Tracked::new(&motion.fk, &[target(0)], &options);
@@ -398,9 +399,9 @@ fn refused_steps_change_nothing() {
         let singular = Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0));
         let mut locked = motion.fk.clone();
         locked.change(JointId::new(4), |joint| joint.locked = true).expect("a joint");
-        let nowhere = TipTarget { point: Vec3::NAN, ..next };
-        let weightless = TipTarget { weight: 0.0, ..next };
-        let other = TipTarget { joint: JointId::new(3), ..next };
+        let nowhere = ChainTarget { point: Vec3::NAN, ..next };
+        let weightless = ChainTarget { weight: 0.0, ..next };
+        let other = ChainTarget { joint: JointId::new(3), ..next };
         let solver = &mut tracked.solver;
         if flat.set_transform(singular).is_ok() {
             assert_eq!(solver.track(&[next], &flat), Err(SolveError::Singular));
@@ -445,7 +446,7 @@ fn steps_of_any_skeleton_are_finite_and_keep_locked_joints_and_joints_off_the_pa
             .iter()
             .map(|joint| {
                 let point = random.vector(4.0) * unit;
-                TipTarget { joint: *joint, point, weight: random.within(0.1..5.0) }
+                ChainTarget::at(*joint, point).with_weight(random.within(0.1..5.0))
             })
             .collect();
         let root = random.one_of(&Root::ALL);

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use super::drawn_skeleton::{DrawnSkeleton, GHOST};
 use crate::document::{Display, Overlay};
 use crate::kinematics::chain_ik::{
-    Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipTarget, Turn,
+    ChainTarget, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, Turn,
 };
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
@@ -26,7 +26,7 @@ const LEAST_TURN: f32 = 2e-3;
 /// A part of an iteration, with all that its drawing depends on.
 pub(super) struct InsideDrawing<'a> {
     pub view: &'a InsideView,
-    pub targets: &'a [TipTarget],
+    pub targets: &'a [ChainTarget],
     /// Joints whose columns are drawn; all if it has none of the chain's.
     pub selection: &'a [JointId],
     pub reach: f32,

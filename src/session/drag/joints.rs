@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use crate::document::{Channel, Document, PathKind, Posed, Ray, Target, Track};
 use crate::kinematics::angle;
-use crate::kinematics::chain_ik::{self, Method, SolveError, SolverOptions, TipTarget};
+use crate::kinematics::chain_ik::{self, ChainTarget, Method, SolveError, SolverOptions};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::rig::TargetSpace;
@@ -304,7 +304,7 @@ fn drag_fk(session: &Session, posed: &Posed, joint: JointId, part: f32, moved: V
     if chain.into_iter().all(|joint| start[joint].locked) {
         return Outcome::say("A target poses this bone; drag the target instead");
     }
-    let target = TipTarget { joint, point: start.tip(joint) + moved, weight: 1.0 };
+    let target = ChainTarget::at(joint, start.tip(joint) + moved);
     let method = before.solver.method;
     let method = if method.is_closed_form() { Method::default() } else { method };
     let options = SolverOptions { method, iterations: Some(ITERATIONS), ..before.solver };

@@ -3,7 +3,7 @@ use std::time::Duration;
 use crate::document::Posed;
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{
-    ChainSolver, Method, Report, SolveError, SolverOptions, SubStep, TipTarget,
+    ChainSolver, ChainTarget, Method, Report, SolveError, SolverOptions, SubStep,
 };
 use crate::kinematics::skeleton::{Skeleton, SkeletonPose};
 use crate::session::solver::iterates::{Inside, Iterate, Iterates};
@@ -16,7 +16,7 @@ pub(in crate::session) struct SolverInputs {
     pub fk: Shared<Skeleton>,
     /// The pose with which the run starts: the FK pose, or that of the motion's step before.
     pub start: Shared<Skeleton>,
-    pub targets: Vec<TipTarget>,
+    pub targets: Vec<ChainTarget>,
     pub options: SolverOptions,
 }
 
@@ -115,7 +115,7 @@ impl SolverRun {
     }
 
     /// The targets that are solved for.
-    pub fn targets(&self) -> &[TipTarget] {
+    pub fn targets(&self) -> &[ChainTarget] {
         &self.inputs.targets
     }
 

@@ -1,6 +1,8 @@
 use glam::Vec3;
 
-use crate::chain_ik::{ChainSolver, Report, Root, SolveError, SolverOptions, TipTarget, jacobian};
+use crate::chain_ik::{
+    ChainSolver, ChainTarget, Report, Root, SolveError, SolverOptions, jacobian,
+};
 use crate::diagnosis::{Boundary, Cause, Remedy};
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
@@ -8,7 +10,7 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 #[derive(Clone)]
 pub(super) struct SolveInputs {
     pub skeleton: Skeleton,
-    pub targets: Vec<TipTarget>,
+    pub targets: Vec<ChainTarget>,
     pub options: SolverOptions,
 }
 
@@ -47,7 +49,7 @@ impl SolveInputs {
         self.solve().map_or(f32::INFINITY, |solved| solved.residual(self, joint))
     }
 
-    pub fn target_of(&self, joint: JointId) -> Option<&TipTarget> {
+    pub fn target_of(&self, joint: JointId) -> Option<&ChainTarget> {
         self.targets.iter().find(|target| target.joint == joint)
     }
 }
@@ -77,11 +79,11 @@ pub(super) struct OutOfReach {
     point: Vec3,
     /// Factor of the lengths with which they reach the target; `None` if longer bones do not help.
     factor: Option<f32>,
-    target: TipTarget,
+    target: ChainTarget,
 }
 
 impl ChainReach {
-    fn new(skeleton: &Skeleton, target: &TipTarget) -> Self {
+    fn new(skeleton: &Skeleton, target: &ChainTarget) -> Self {
         let path = || skeleton.ancestors(target.joint);
         let inner = path().filter(|joint| skeleton[*joint].parent.is_some());
         let segments = inner.map(|joint| skeleton[joint].offset.length());
@@ -96,7 +98,7 @@ impl ChainReach {
 
 impl OutOfReach {
     /// `None` if the bones reach the target, or come within `tolerance` (in the world) of it.
-    pub fn of(inputs: &SolveInputs, target: &TipTarget, tolerance: f32) -> Option<Self> {
+    pub fn of(inputs: &SolveInputs, target: &ChainTarget, tolerance: f32) -> Option<Self> {
         // Part of the reach by which a moved target is inside of it, where solvers are fast.
         const INSIDE: f32 = 2e-3;
         if inputs.options.root == Root::Free {
@@ -168,7 +170,7 @@ pub(super) struct Pulls {
 }
 
 impl Pulls {
-    pub fn new(pose: &Skeleton, target: &TipTarget) -> Self {
+    pub fn new(pose: &Skeleton, target: &ChainTarget) -> Self {
         let to_skeleton = pose.transform().inverse();
         let residual = to_skeleton.transform_vector3(target.point - pose.tip(target.joint));
         let direction = residual.try_normalize().unwrap_or(Vec3::ZERO);
@@ -231,7 +233,7 @@ impl Pull {
 /// The other target that pulls most against a target: with the most opposite moments about the
 /// joints that both turn.
 pub(super) fn opponent(inputs: &SolveInputs, pose: &Skeleton, joint: JointId) -> Option<JointId> {
-    let moments = |target: &TipTarget| -> Vec<Vec3> {
+    let moments = |target: &ChainTarget| -> Vec<Vec3> {
         let to_skeleton = pose.transform().inverse();
         let force =
             to_skeleton.transform_vector3(target.point - pose.tip(target.joint)) * target.weight;
@@ -241,7 +243,7 @@ pub(super) fn opponent(inputs: &SolveInputs, pose: &Skeleton, joint: JointId) ->
         columns.iter().map(moment).collect()
     };
     let own = moments(inputs.target_of(joint)?);
-    let agreement = |target: &TipTarget| -> f32 {
+    let agreement = |target: &ChainTarget| -> f32 {
         own.iter().zip(moments(target)).map(|(own, other)| own.dot(other)).sum()
     };
     let others = inputs.targets.iter().filter(|target| target.joint != joint);

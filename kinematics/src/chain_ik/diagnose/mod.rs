@@ -29,7 +29,7 @@ mod evidence;
 use glam::Vec3;
 
 use self::evidence::{OutOfReach, Pulls, SettledPose, SolveInputs, opponent};
-use super::{SolveError, SolverOptions, TipTarget};
+use super::{ChainTarget, SolveError, SolverOptions};
 use crate::chain_ik::{Method, Root, Status};
 use crate::diagnosis::{
     Angle, Cause, Diagnosis, Remedy, Start, TriedRemedy, in_turn, is_fixed, limited_angles,
@@ -48,7 +48,7 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 ///
 /// ```
 /// use glam::Vec3;
-/// use ik_arm_kinematics::chain_ik::{SolverOptions, TipTarget, diagnose};
+/// use ik_arm_kinematics::chain_ik::{SolverOptions, ChainTarget, diagnose};
 /// use ik_arm_kinematics::diagnosis::Cause;
 /// use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
 ///
@@ -57,7 +57,7 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 /// let lower = Joint { offset: Vec3::Y, ..Joint::new("lower", Some(upper), Vec3::Y) };
 /// let lower = skeleton.add(lower)?;
 ///
-/// let target = TipTarget { joint: lower, point: Vec3::new(3.0, 0.0, 0.0), weight: 1.0 };
+/// let target = ChainTarget::at(lower, Vec3::new(3.0, 0.0, 0.0));
 /// let found = diagnose(&skeleton, &[target], &SolverOptions::default())?;
 /// assert!(matches!(found[0].cause, Cause::OutOfReach { .. }));
 /// assert!(found[0].remedies[0].residual < 1e-3);
@@ -65,7 +65,7 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 /// ```
 pub fn diagnose(
     skeleton: &Skeleton,
-    targets: &[TipTarget],
+    targets: &[ChainTarget],
     options: &SolverOptions,
 ) -> Result<Vec<Diagnosis>, SolveError> {
     let joints: Vec<_> = targets.iter().map(|target| target.joint).collect();
@@ -79,7 +79,7 @@ pub fn diagnose(
 /// See [`SolveError`].
 pub fn diagnose_targets(
     skeleton: &Skeleton,
-    targets: &[TipTarget],
+    targets: &[ChainTarget],
     options: &SolverOptions,
     joints: &[JointId],
 ) -> Result<Vec<Diagnosis>, SolveError> {

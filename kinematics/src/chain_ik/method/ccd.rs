@@ -8,6 +8,10 @@
 //! treated as three hinges, x, y and z, each with its best angle within the limits. No rotation
 //! increases the cost.
 //!
+//! A wanted rotation counts like three points on the axes of the joint, a wanted aim like one on its
+//! axis, each with the weight that gives the cost of a small turn. Where such a rotation raises the
+//! cost, it is halved.
+//!
 //! During a sweep only the tips are moved. The joints are updated afterwards, in one pass from the
 //! roots, so that the time of an iteration is linear in the number of joints.
 //!
@@ -18,10 +22,11 @@
 
 use glam::{Mat3A, Quat, Vec3A};
 
-use crate::chain_ik::align::{PointPair, align, align_within};
+use crate::chain_ik::align::{PointPair, align, align_best, align_within};
 use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::{Event, Recorder};
-use crate::chain_ik::problem::Problem;
+use crate::chain_ik::orientation::MissingTurn;
+use crate::chain_ik::problem::{EndEffector, Orienting, Problem, Wanted};
 use crate::skeleton::JointAngles;
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +37,9 @@ pub(in crate::chain_ik) struct Ccd {
     /// Rotation of each link in this sweep; after the sweep, with the rotations of its ancestors.
     rotations: Vec<Quat>,
     pairs: Vec<PointPair>,
+    /// Orientation of each end effector's link, and position of the link's base, in this sweep;
+    /// empty without wanted orientations.
+    turned: Vec<(Quat, Vec3A)>,
 }
 
 impl Ccd {
@@ -39,7 +47,8 @@ impl Ccd {
         Self {
             mounts: problem.mounts().collect(),
             rotations: vec![Quat::IDENTITY; problem.links.len()],
-            pairs: Vec::with_capacity(problem.effectors.len()),
+            pairs: Vec::with_capacity(4 * problem.effectors.len()),
+            turned: Vec::new(),
         }
     }
 
@@ -56,6 +65,15 @@ impl Ccd {
         config: &mut Configuration,
         recorder: &mut Recorder,
     ) -> bool {
+        self.turned.clear();
+        if problem.orients {
+            let link_of = |effector: &EndEffector| {
+                let base =
+                    effector.link.map_or(config.shifts[effector.tree], |it| config.bases[it]);
+                (config.orientation_of(effector), base)
+            };
+            self.turned.extend(problem.effectors.iter().map(link_of));
+        }
         for index in (0..problem.links.len()).rev() {
             self.rotations[index] = self.rotate(problem, config, index);
             self.record(problem, config, index, recorder);
@@ -105,6 +123,9 @@ impl Ccd {
             to: problem.effectors[*effector].target - base,
             weight: problem.effectors[*effector].weight,
         }));
+        if !self.turned.is_empty() {
+            return self.rotate_with_orientations(problem, config, index);
+        }
         let rotation = if link.limits.is_limited() {
             let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
             let axes = Mat3A::from_quat(parent * self.mounts[index])
@@ -120,6 +141,108 @@ impl Ccd {
             config.tips[*effector] = base + pair.from;
         }
         rotation
+    }
+
+    /// As [`Ccd::rotate`], with the pairs of the places made, for links below which orientations are
+    /// wanted.
+    fn rotate_with_orientations(
+        &mut self,
+        problem: &Problem,
+        config: &mut Configuration,
+        index: usize,
+    ) -> Quat {
+        /// Halvings after which a rotation is within rounding.
+        const HALVINGS: u32 = 20;
+        let link = &problem.links[index];
+        let places = self.pairs.len();
+        self.add_pairs_of_turns(problem, index);
+        let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+        let mounted = parent * self.mounts[index];
+        let before = config.angles[index];
+        let axes = Mat3A::from_quat(mounted) * JointAngles(before).axes();
+        let mut rotation = if link.limits.is_limited() {
+            let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+            align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs.clone())
+        } else {
+            align_best(&self.pairs)
+        };
+        let cost = self.cost_below(problem, config, index, Quat::IDENTITY);
+        let mut halvings = 0;
+        while self.cost_below(problem, config, index, rotation) > cost {
+            halvings += 1;
+            if link.limits.is_limited() {
+                let angles = link.limits.project(before.lerp(config.angles[index], 0.5));
+                config.angles[index] = if halvings < HALVINGS { angles } else { before };
+                let own = |angles| Quat::from_mat3a(&JointAngles(angles).matrix());
+                let turned = own(config.angles[index]) * own(before).inverse();
+                rotation = mounted * turned * mounted.inverse();
+            } else {
+                rotation = Quat::IDENTITY.slerp(rotation, 0.5);
+            }
+            if halvings == HALVINGS {
+                rotation = Quat::IDENTITY;
+                break;
+            }
+        }
+        let base = config.bases[index];
+        for (effector, pair) in problem.below(link).iter().zip(&self.pairs[..places]) {
+            config.tips[*effector] = base + rotation * pair.from;
+            let (orientation, at) = &mut self.turned[*effector];
+            *orientation = rotation * *orientation;
+            *at = base + rotation * (*at - base);
+        }
+        self.pairs.truncate(places);
+        self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+        rotation
+    }
+
+    /// Adds the pairs that stand for the wanted orientations below a link.
+    fn add_pairs_of_turns(&mut self, problem: &Problem, index: usize) {
+        for effector in problem.below(&problem.links[index]) {
+            let (orientation, base) = self.turned[*effector];
+            let effector = &problem.effectors[*effector];
+            let Some(Orienting { wanted, stiffness }) = effector.orientation else { continue };
+            match wanted {
+                Wanted::Rotation(wanted) => {
+                    let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z];
+                    self.pairs.extend(axes.map(|axis| PointPair {
+                        from: orientation * axis,
+                        to: wanted * axis,
+                        weight: 0.5 * stiffness,
+                    }));
+                }
+                Wanted::Aim { axis, point } => {
+                    let way = point - (base + orientation * effector.space.translation);
+                    let from = orientation * axis;
+                    self.pairs.push(PointPair {
+                        from,
+                        to: way.try_normalize().unwrap_or(from),
+                        weight: stiffness,
+                    });
+                }
+            }
+        }
+    }
+
+    /// The cost of the targets below a link that rotates.
+    fn cost_below(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+        rotation: Quat,
+    ) -> f64 {
+        let base = config.bases[index];
+        let of_effector = |effector: &usize| {
+            let (orientation, at) = self.turned[*effector];
+            let tip = base + rotation * (config.tips[*effector] - base);
+            let effector = &problem.effectors[*effector];
+            let off = (tip - effector.target).as_dvec3().length_squared();
+            let at = base + rotation * (at - base);
+            let missing = MissingTurn::of_link(effector, rotation * orientation, at);
+            0.5 * f64::from(effector.weight) * off + missing.map_or(0.0, |it| it.cost())
+        };
+        problem.below(&problem.links[index]).iter().map(of_effector).sum()
     }
 
     /// Applies the sweep's rotations to the configuration.
@@ -167,6 +290,9 @@ pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configurat
         {
             sum += effector.weight * (effector.target - *tip);
             weights += effector.weight;
+        }
+        if weights == 0.0 {
+            continue;
         }
         let by = sum / weights;
         if !problem.can_shift(tree, config.shifts[tree] + by) {

@@ -1,9 +1,9 @@
 //! Damped least squares: Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ (target − p).
 //!
-//! J is the Jacobian of the tips p. Rows of J and residuals target − p are weighted by √w. The
-//! damping λ is a fraction of the chain's length: it grows while a step would raise the cost and
+//! J is the Jacobian of the tips p and of the [missing turns](crate::chain_ik::orientation). Rows
+//! of J and residuals target − p are weighted by √w, those of turns by ℓ √w. The damping λ is a fraction of the chain's length: it grows while a step would raise the cost and
 //! shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges, too.
-//! Residuals are clamped to 0.3 of the chain's length. Angles that are at a limit and would cross
+//! Residuals are clamped to 0.3 of the chain's length, also those of turns. Angles that are at a limit and would cross
 //! it are fixed, and the step is solved again for the other angles.
 //!
 //! # Sources
@@ -17,6 +17,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
+use crate::chain_ik::orientation::MissingTurn;
 use crate::chain_ik::problem::{Link, Problem};
 use crate::skeleton::RotationAxis;
 
@@ -38,6 +39,11 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
     velocities: Vec<(Vec3A, Vec3A)>,
     /// Rotation axes of the configuration, as columns; zero for fixed angles.
     axes: Vec<Mat3A>,
+    /// The turns that joints miss in the configuration.
+    missing: Vec<Option<MissingTurn>>,
+    /// Space for the weighted columns of a link: for each block of three rows, the first row, and
+    /// the columns of three coordinates.
+    blocks: Vec<(usize, Mat3A)>,
     /// JJᵀ; only the lower triangle is used.
     square: DMatrix<f32>,
     /// JJᵀ + λ²I, then its factorization.
@@ -48,7 +54,7 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
 
 impl DampedLeastSquares {
     pub fn new(problem: &Problem, damping: f32) -> Self {
-        let rows = 3 * problem.effectors.len();
+        let rows = rows(problem);
         Self {
             damping: damping * problem.length,
             raised: 1.0,
@@ -58,6 +64,8 @@ impl DampedLeastSquares {
             wanted: Coordinates::default(),
             velocities: Vec::new(),
             axes: Vec::new(),
+            missing: Vec::new(),
+            blocks: Vec::new(),
             square: DMatrix::zeros(rows, rows),
             factored: DMatrix::zeros(rows, rows),
             residuals: DVector::zeros(rows),
@@ -121,7 +129,7 @@ impl DampedLeastSquares {
         wanted: impl Fn(&mut Coordinates),
         most: f32,
     ) {
-        self.before.copy_from(config);
+        self.look(problem, config);
         self.axes.clone_from(&config.axes);
         self.wanted.copy_from(config);
         wanted(&mut self.wanted);
@@ -142,7 +150,28 @@ impl DampedLeastSquares {
         advance(problem, &self.before, &self.step, factor, config);
     }
 
-    /// Sets the residuals to J d, the weighted velocities of the tips on the wanted way.
+    /// Finds the missing turns, stores the angles and shifts before the step, and makes room for
+    /// all rows.
+    fn look(&mut self, problem: &Problem, config: &Configuration) {
+        self.before.copy_from(config);
+        self.missing.clear();
+        let missing = |effector| MissingTurn::new(effector, config);
+        self.missing.extend(problem.effectors.iter().map(missing));
+        let rows = rows(problem);
+        if self.square.nrows() != rows {
+            self.square = DMatrix::zeros(rows, rows);
+            self.factored = DMatrix::zeros(rows, rows);
+            self.residuals = DVector::zeros(rows);
+            self.forces = DVector::zeros(rows);
+        }
+    }
+
+    fn set_residual(&mut self, row: usize, residual: Vec3A) {
+        self.residuals.as_mut_slice()[row..][..3].copy_from_slice(&residual.to_array());
+    }
+
+    /// Sets the residuals to J d, the weighted velocities of the tips and missing turns on the
+    /// wanted way.
     fn set_velocities_as_residuals(&mut self, problem: &Problem, config: &Configuration) {
         self.velocities.clear();
         for (index, link) in problem.links.iter().enumerate() {
@@ -157,15 +186,19 @@ impl DampedLeastSquares {
             self.velocities.push((spin + own, velocity));
         }
         for (index, effector) in problem.effectors.iter().enumerate() {
-            let velocity = match effector.link {
+            let (spin, velocity, base) = match effector.link {
                 Some(link) => {
                     let (spin, velocity) = self.velocities[link];
-                    velocity + spin.cross(config.tips[index] - config.bases[link])
+                    (spin, velocity, config.bases[link])
                 }
-                None => self.wanted.shifts[effector.tree],
+                None => (Vec3A::ZERO, self.wanted.shifts[effector.tree], Vec3A::ZERO),
             };
-            let row = velocity * effector.weight.sqrt();
-            self.residuals.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
+            let of_tip = velocity + spin.cross(config.tips[index] - base);
+            self.set_residual(place_row(problem, index), of_tip * effector.weight.sqrt());
+            if let Some(missing) = self.missing[index] {
+                let taken = missing.taken(spin, velocity + spin.cross(missing.at - base));
+                self.set_residual(turn_row(index), taken * missing.stiffness.sqrt());
+            }
         }
     }
 
@@ -198,13 +231,17 @@ impl DampedLeastSquares {
 
     /// Sets the weighted and clamped residuals, and stores the angles and shifts before the step.
     fn set_residuals(&mut self, problem: &Problem, config: &Configuration) {
+        self.look(problem, config);
+        let most = MAX_RESIDUAL * problem.length;
+        let most_turn = most / problem.turn_length() as f32;
         for (index, effector) in problem.effectors.iter().enumerate() {
-            let residual = (effector.target - config.tips[index])
-                .clamp_length_max(MAX_RESIDUAL * problem.length);
-            let row = residual * effector.weight.sqrt();
-            self.residuals.as_mut_slice()[3 * index..][..3].copy_from_slice(&row.to_array());
+            let residual = (effector.target - config.tips[index]).clamp_length_max(most);
+            self.set_residual(place_row(problem, index), residual * effector.weight.sqrt());
+            if let Some(missing) = self.missing[index] {
+                let turn = missing.turn.clamp_length_max(most_turn);
+                self.set_residual(turn_row(index), turn * missing.stiffness.sqrt());
+            }
         }
-        self.before.copy_from(config);
     }
 
     /// Solves for the step, with those angles fixed that would leave their limits. Returns whether
@@ -226,24 +263,20 @@ impl DampedLeastSquares {
     fn multiply(&mut self, problem: &Problem, config: &Configuration) {
         self.square.fill(0.0);
         for (index, link) in problem.links.iter().enumerate() {
-            let below = problem.below(link);
-            let axes = self.axes[index];
-            let base = config.bases[index];
-            let columns = |effector: usize| {
+            let (base, axes) = (config.bases[index], self.axes[index]);
+            self.blocks.clear();
+            for effector in problem.below(link) {
                 let arm =
-                    (config.tips[effector] - base) * problem.effectors[effector].weight.sqrt();
-                Mat3A::from_cols(
-                    axes.x_axis.cross(arm),
-                    axes.y_axis.cross(arm),
-                    axes.z_axis.cross(arm),
-                )
-            };
-            for (nth, row) in below.iter().enumerate() {
-                let left = columns(*row);
-                for column in &below[..=nth] {
-                    self.add(*row, *column, left * columns(*column).transpose());
+                    (config.tips[*effector] - base) * problem.effectors[*effector].weight.sqrt();
+                let place = columns(axes, |axis| axis.cross(arm));
+                self.blocks.push((place_row(problem, *effector), place));
+                if let Some(missing) = self.missing[*effector] {
+                    let weight = missing.stiffness.sqrt();
+                    let turn = columns(axes, |axis| missing.column(axis, base) * weight);
+                    self.blocks.push((turn_row(*effector), turn));
                 }
             }
+            self.add_blocks();
         }
         if problem.free_roots {
             self.add_shifts(problem);
@@ -252,22 +285,35 @@ impl DampedLeastSquares {
 
     /// Adds the shifts of each free root to JJᵀ: three columns of one chain length.
     fn add_shifts(&mut self, problem: &Problem) {
-        for (row, one) in problem.effectors.iter().enumerate() {
-            for (column, other) in problem.effectors[..=row].iter().enumerate() {
-                if one.tree == other.tree {
-                    let lever =
-                        problem.length * problem.length * (one.weight * other.weight).sqrt();
-                    self.add(row, column, Mat3A::from_diagonal(Vec3::splat(lever)));
+        for tree in 0..problem.trees.len() {
+            self.blocks.clear();
+            for (index, effector) in problem.effectors.iter().enumerate() {
+                if effector.tree != tree {
+                    continue;
+                }
+                let lever = Vec3::splat(problem.length * effector.weight.sqrt());
+                self.blocks.push((place_row(problem, index), Mat3A::from_diagonal(lever)));
+                if let Some(missing) = self.missing[index] {
+                    let weight = problem.length * missing.stiffness.sqrt();
+                    let [x, y, z] = missing.of_velocity().map(|column| column * weight);
+                    self.blocks.push((turn_row(index), Mat3A::from_cols(x, y, z)));
                 }
             }
+            self.add_blocks();
         }
     }
 
-    /// Adds a 3 × 3 block to the lower triangle of JJᵀ; the upper triangle is not read.
-    fn add(&mut self, row: usize, column: usize, block: Mat3A) {
-        for (j, side) in block.to_cols_array_2d().iter().enumerate() {
-            for (i, value) in side.iter().enumerate() {
-                self.square[(3 * row + i, 3 * column + j)] += value;
+    /// Adds the products of all pairs of blocks of the same coordinates to the lower triangle of
+    /// JJᵀ; the upper triangle is not read.
+    fn add_blocks(&mut self) {
+        for (nth, (row, left)) in self.blocks.iter().enumerate() {
+            for (column, right) in &self.blocks[..=nth] {
+                let block = *left * right.transpose();
+                for (j, side) in block.to_cols_array_2d().iter().enumerate() {
+                    for (i, value) in side.iter().enumerate() {
+                        self.square[(row + i, column + j)] += value;
+                    }
+                }
             }
         }
     }
@@ -289,9 +335,13 @@ impl DampedLeastSquares {
 
         let forces = self.forces.as_slice();
         let force = |effector: usize| {
-            Vec3A::from_slice(&forces[3 * effector..]) * problem.effectors[effector].weight.sqrt()
+            let weight = problem.effectors[effector].weight.sqrt();
+            Vec3A::from_slice(&forces[place_row(problem, effector)..]) * weight
         };
-        self.wrenches.apply_transpose(problem, config, force, &mut self.step);
+        let moment = |effector: usize, missing: &MissingTurn| {
+            Vec3A::from_slice(&forces[turn_row(effector)..]) * missing.stiffness.sqrt()
+        };
+        self.wrenches.apply_transpose(problem, config, force, moment, &mut self.step);
         true
     }
 
@@ -316,13 +366,34 @@ impl DampedLeastSquares {
     }
 }
 
+/// Rows of J: three for each place and, if a target asks for an orientation, three for each turn,
+/// those of a target side by side.
+fn rows(problem: &Problem) -> usize {
+    place_row(problem, problem.effectors.len())
+}
+
+/// The first row of an end effector's place.
+fn place_row(problem: &Problem, effector: usize) -> usize {
+    if problem.orients { 6 * effector } else { 3 * effector }
+}
+
+/// The first row of an end effector's turn.
+fn turn_row(effector: usize) -> usize {
+    6 * effector + 3
+}
+
+/// Columns made from the rotation axes of a link; zero for fixed angles, whose axis is zero.
+fn columns(axes: Mat3A, column: impl Fn(Vec3A) -> Vec3A) -> Mat3A {
+    Mat3A::from_cols(column(axes.x_axis), column(axes.y_axis), column(axes.z_axis))
+}
+
 /// Work of the pairs of targets at each joint, and of the factorization of a matrix with three rows
 /// for each target.
 pub(super) fn work(problem: &Problem) -> u64 {
     /// Multiplications that take as long as a visit of a joint.
     const MULTIPLICATIONS: u64 = 64;
     let pairs = |link: &Link| (problem.below(link).len() as u64).pow(2);
-    let rows = 3 * problem.effectors.len() as u64;
+    let rows = rows(problem) as u64;
     let factor = rows.saturating_pow(3) / (3 * MULTIPLICATIONS);
     problem.links.iter().map(pairs).sum::<u64>() + factor
 }

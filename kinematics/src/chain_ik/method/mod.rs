@@ -66,6 +66,8 @@ pub(super) struct MethodRow {
     uses_damping: bool,
     uses_step: bool,
     is_closed_form: bool,
+    /// True if the method turns joints to orientations.
+    can_orient: bool,
     /// True if the method works on orientations instead of angles.
     pub uses_orientations: bool,
     /// Distance of a target from the root, in lengths of the path to the tip, up to which the
@@ -106,6 +108,7 @@ impl MethodRow {
             uses_damping: false,
             uses_step: false,
             is_closed_form: false,
+            can_orient: false,
             uses_orientations: false,
             stable_distance: f64::INFINITY,
             work: visits,
@@ -123,6 +126,7 @@ const METHODS: [MethodRow; 7] = [
         // The fixed step overshoots for longer before it settles.
         patience: Patience::of_repeated_steps(100),
         uses_step: true,
+        can_orient: true,
         // Up to about twice the distance; the direction is all that counts of a target out of
         // reach.
         stable_distance: 1.25,
@@ -134,6 +138,7 @@ const METHODS: [MethodRow; 7] = [
         title: "Jacobian transpose",
         short_title: "Transpose",
         summary: "Descend the gradient with steps that fit its curvature",
+        can_orient: true,
         ..MethodRow::new(Method::Transpose, "transpose", 500, |it| {
             Ok(MethodState::Transpose(Transpose::new(it.problem)))
         })
@@ -143,6 +148,7 @@ const METHODS: [MethodRow; 7] = [
         short_title: "Damped l. s.",
         summary: "Solve damped least squares: few iterations, handles limits and many targets",
         uses_damping: true,
+        can_orient: true,
         work: |problem| visits(problem) + damped_least_squares::work(problem),
         ..MethodRow::new(Method::DampedLeastSquares, "dls", 500, |it| {
             let damped = DampedLeastSquares::new(it.problem, it.damping);
@@ -155,6 +161,7 @@ const METHODS: [MethodRow; 7] = [
         summary: "Rotate one joint at a time, tip to root: cheap, bends tips",
         // In exact arithmetic no sweep increases the distance.
         patience: Patience::of_orientations(20, -(f32::EPSILON as f64)),
+        can_orient: true,
         uses_orientations: true,
         ..MethodRow::new(Method::Ccd, "ccd", 2_000, |it| Ok(MethodState::Ccd(Ccd::new(it.problem))))
     },
@@ -261,11 +268,22 @@ impl Method {
         self.row().uses_step
     }
 
+    /// True if the method turns joints to an [`Orientation`](super::Orientation).
+    pub const fn can_orient(self) -> bool {
+        self.row().can_orient
+    }
+
     /// True if one iteration is all: the method solves limbs of two bones at once and refuses
     /// others.
     pub const fn is_closed_form(self) -> bool {
         self.row().is_closed_form
     }
+}
+
+/// The names of the methods that turn joints to orientations.
+pub(super) fn orienting_methods() -> String {
+    let can_orient = Method::ALL.into_iter().filter(|method| method.can_orient());
+    can_orient.map(Method::name).collect::<Vec<_>>().join(", ")
 }
 
 /// The joints and the pairs of a joint and a target.

@@ -69,6 +69,12 @@ impl TransposeFixed {
         self.step = if inertia > 0.0 { step / inertia } else { 0.0 };
     }
 
+    /// The step τ, shorter where an aim at a near point has more curvature than the bind pose.
+    fn step_at(&self, problem: &Problem, config: &Configuration) -> f32 {
+        let inertia = if problem.aims() { config.inertia(problem) } else { 0.0 };
+        if inertia > problem.inertia { self.step * problem.inertia / inertia } else { self.step }
+    }
+
     /// Makes a step and returns `true`.
     pub fn iterate(
         &mut self,
@@ -80,10 +86,11 @@ impl TransposeFixed {
         recorder
             .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
         self.before.copy_from(config);
-        advance(problem, &self.before, &self.descent, self.step, config);
+        let step = self.step_at(problem, config);
+        advance(problem, &self.before, &self.descent, step, config);
         recorder.record(config, || Event::Step {
             by: self.descent.clone(),
-            factor: self.step,
+            factor: step,
             tries: 0,
             damping: None,
         });

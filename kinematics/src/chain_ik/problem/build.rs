@@ -1,7 +1,7 @@
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3A};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
 use super::{EndEffector, KinematicTree, Link, Problem};
-use crate::chain_ik::{Method, Root, SolveError, SolverOptions, TipTarget};
+use crate::chain_ik::{ChainTarget, Method, Orientation, Root, SolveError, SolverOptions};
 use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// The space of a joint, relative to the link to which it is attached or, without a link, to its
@@ -48,7 +48,7 @@ impl Builder {
     /// [`SolveError::NoJoint`] and the errors of targets.
     pub fn new(
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
         check_targets(skeleton, targets)?;
@@ -57,8 +57,8 @@ impl Builder {
         Ok(Self { root: options.root, method: options.method, path, ..Self::default() })
     }
 
-    /// Fills a problem in its memory, but for the points of the targets, which must be on the same
-    /// joints, in the same order, as those for which the builder was made.
+    /// Fills a problem in its memory. The targets must be on the same joints, in the same order, as
+    /// those for which the builder was made.
     ///
     /// # Errors
     ///
@@ -68,7 +68,7 @@ impl Builder {
         &mut self,
         problem: &mut Problem,
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
     ) -> Result<(), SolveError> {
         let is_same = |joint: &&PathJoint| {
             let found = skeleton.joint(joint.id);
@@ -90,6 +90,7 @@ impl Builder {
         self.add_links(problem, skeleton);
         problem.add_effectors(skeleton, targets, &self.attachments, self.method);
         problem.list_below();
+        problem.set_targets(targets);
         skeleton.write_bind_pose_in_skeleton(&mut self.bind);
         problem.inertia = problem.bind_inertia(&self.bind);
         Ok(())
@@ -155,11 +156,16 @@ impl Problem {
     fn add_effectors(
         &mut self,
         skeleton: &Skeleton,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         attachments: &[Option<Attachment>],
         method: Method,
     ) {
-        let heaviest = targets.iter().map(|target| target.weight).fold(0.0, f32::max);
+        let orientation_weight = |target: &ChainTarget| match target.orientation {
+            Some(_) => target.orientation_weight,
+            None => 0.0,
+        };
+        let weights = targets.iter().map(|target| target.weight.max(orientation_weight(target)));
+        self.heaviest = weights.fold(0.0, f32::max);
         for target in targets {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
             let axis = self.scaled(skeleton[target.joint].axis);
@@ -170,7 +176,7 @@ impl Problem {
             let max_distance = if stable_distance.is_finite() && !self.free_roots {
                 stable_distance * f64::from(reach)
             } else {
-                1e4 * f64::from(self.length.max(1.0))
+                self.farthest()
             };
             self.effectors.push(EndEffector {
                 joint: target.joint,
@@ -179,7 +185,12 @@ impl Problem {
                 tip: attachment.to_link.transform_point3a(axis),
                 target: Vec3A::ZERO,
                 requested: DVec3::ZERO,
-                weight: (target.weight / heaviest).max(f32::MIN_POSITIVE),
+                weight: match target.weight {
+                    0.0 => 0.0,
+                    weight => (weight / self.heaviest).max(f32::MIN_POSITIVE),
+                },
+                space: attachment.to_link,
+                orientation: None,
                 max_distance,
             });
         }
@@ -221,6 +232,7 @@ impl Problem {
                 let effector = &self.effectors[*effector];
                 let arm = bind.tip(effector.joint).as_dvec3() - bind.base(link.joint).as_dvec3();
                 sum += f64::from(effector.weight) * (arm * self.unit).length_squared();
+                sum += effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
             }
         }
         sum as f32 + self.inertia_of_shifts()
@@ -259,8 +271,8 @@ fn path(skeleton: &Skeleton, targets: impl Iterator<Item = JointId>, root: Root)
 }
 
 /// Length of the longest path from a root to a tip, in skeleton units.
-fn longest_path(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
-    let path = |target: &TipTarget| {
+fn longest_path(skeleton: &Skeleton, targets: &[ChainTarget]) -> f64 {
+    let path = |target: &ChainTarget| {
         let inner =
             skeleton.ancestors(target.joint).filter(|joint| skeleton[*joint].parent.is_some());
         let offsets: f64 = inner.map(|joint| skeleton[joint].offset.as_dvec3().length()).sum();
@@ -269,7 +281,10 @@ fn longest_path(skeleton: &Skeleton, targets: &[TipTarget]) -> f64 {
     targets.iter().map(path).fold(0.0, f64::max)
 }
 
-pub(super) fn check_targets(skeleton: &Skeleton, targets: &[TipTarget]) -> Result<(), SolveError> {
+pub(super) fn check_targets(
+    skeleton: &Skeleton,
+    targets: &[ChainTarget],
+) -> Result<(), SolveError> {
     let mut targeted = vec![false; skeleton.joints().len()];
     for target in targets {
         if skeleton.joint(target.joint).is_none() {
@@ -283,13 +298,33 @@ pub(super) fn check_targets(skeleton: &Skeleton, targets: &[TipTarget]) -> Resul
     Ok(())
 }
 
-/// Checks that a target's point is finite, and its weight finite and above 0.
-pub fn check_target(&TipTarget { joint, point, weight }: &TipTarget) -> Result<(), SolveError> {
+/// Checks that a target's place and orientation are finite, and its weights finite and not
+/// negative, with one above 0.
+pub fn check_target(target: &ChainTarget) -> Result<(), SolveError> {
+    let &ChainTarget { joint, point, weight, orientation, orientation_weight } = target;
     if !point.is_finite() {
         return Err(SolveError::Point { joint, point });
     }
-    if !(weight.is_finite() && weight > 0.0) {
+    let is_weight = |weight: f32| weight.is_finite() && weight >= 0.0;
+    let is_free = weight == 0.0 && (orientation.is_none() || orientation_weight == 0.0);
+    if !is_weight(weight) || is_free {
         return Err(SolveError::Weight { joint, weight });
     }
-    Ok(())
+    let is_orientation = |orientation| match orientation {
+        Orientation::Rotation(rotation) => {
+            rotation.is_finite() && rotation.length_squared().is_normal()
+        }
+        Orientation::Aim { axis, point } => {
+            axis.is_finite() && axis != Vec3::ZERO && point.is_finite()
+        }
+    };
+    match orientation {
+        Some(orientation) if !is_orientation(orientation) => {
+            Err(SolveError::Orientation { joint, orientation })
+        }
+        Some(_) if !is_weight(orientation_weight) => {
+            Err(SolveError::Weight { joint, weight: orientation_weight })
+        }
+        _ => Ok(()),
+    }
 }

@@ -15,22 +15,78 @@
 
 mod build;
 
-use glam::{DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
+use super::configuration::Configuration;
+use super::orientation::MissingTurn;
 use crate::skeleton::{JointId, JointLimits};
 
 pub(super) use build::{Builder, check_target};
 
-/// A target for the tip of a joint's bone.
+/// A target for a joint: a place for the tip of its bone, and an orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct TipTarget {
-    /// The joint whose tip is to reach the target.
+pub struct ChainTarget {
+    /// The joint.
     pub joint: JointId,
-    /// Position of the target in the world.
+    /// Place for the joint's tip, in the world.
     pub point: Vec3,
-    /// Weight relative to other targets, above 0.
+    /// Weight of the place relative to other targets; 0 lets the tip be anywhere, if there is an
+    /// orientation.
     pub weight: f32,
+    /// Orientation of the joint; `None` for any.
+    pub orientation: Option<Orientation>,
+    /// Weight of the orientation relative to other weights, 0 or more. A turn by 1 radian counts
+    /// like a distance of a quarter of the chain's length.
+    pub orientation_weight: f32,
+}
+
+/// An orientation that a joint is to have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Orientation {
+    /// The rotation of the joint's space in skeleton space, that of
+    /// [`Skeleton::pose_in_skeleton`](crate::skeleton::Skeleton::pose_in_skeleton).
+    Rotation(Quat),
+    /// The line from the joint's base along an axis goes through a point.
+    Aim {
+        /// Axis in the joint's space, of any length above 0.
+        axis: Vec3,
+        /// The point in the world.
+        point: Vec3,
+    },
+}
+
+impl ChainTarget {
+    /// A place for the tip of a joint, in the world, with the weight 1.
+    #[must_use]
+    pub const fn at(joint: JointId, point: Vec3) -> Self {
+        Self { joint, point, weight: 1.0, orientation: None, orientation_weight: 1.0 }
+    }
+
+    /// An orientation of a joint, with the weight 1, and any place for its tip.
+    #[must_use]
+    pub const fn turned(joint: JointId, orientation: Orientation) -> Self {
+        Self { weight: 0.0, ..Self::at(joint, Vec3::ZERO).with_orientation(orientation) }
+    }
+
+    /// This target with another weight of the place.
+    #[must_use]
+    pub const fn with_weight(self, weight: f32) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// This target with an orientation.
+    #[must_use]
+    pub const fn with_orientation(self, orientation: Orientation) -> Self {
+        Self { orientation: Some(orientation), ..self }
+    }
+
+    /// This target with another weight of the orientation.
+    #[must_use]
+    pub const fn with_orientation_weight(self, orientation_weight: f32) -> Self {
+        Self { orientation_weight, ..self }
+    }
 }
 
 /// A joint that rotates, with everything that is rigidly attached to it.
@@ -51,7 +107,7 @@ pub struct Link {
     pub start: Vec3,
 }
 
-/// A tip with its target.
+/// A joint with its target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EndEffector {
     pub joint: JointId,
@@ -66,10 +122,29 @@ pub struct EndEffector {
     pub target: Vec3A,
     /// Position of the caller's target, in problem space.
     pub requested: DVec3,
-    /// Weight as a fraction of the greatest weight, at most 1.
+    /// Weight of the place as a fraction of the greatest weight, at most 1; 0 if the place is free.
     pub weight: f32,
+    /// The joint's space from the link's space; without a link, relative to the tree's origin.
+    pub space: Affine3A,
+    pub orientation: Option<Orienting>,
     /// Maximum distance of `target` from the tree's origin, in the problem's units.
     pub max_distance: f64,
+}
+
+/// The orientation that a target asks for, in problem space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orienting {
+    pub wanted: Wanted,
+    /// w ℓ², with the weight as a fraction of the greatest weight.
+    pub stiffness: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// The orientation G of the link.
+    Rotation(Quat),
+    /// The line from the joint's base along a unit vector in the link's space goes through a point.
+    Aim { axis: Vec3A, point: Vec3A },
 }
 
 /// A root and its descendants.
@@ -101,9 +176,48 @@ pub struct Problem {
     to_world: DMat3,
     /// Factor from skeleton units to the problem's units.
     unit: f64,
+    /// The greatest weight of a target.
+    heaviest: f32,
+    /// True if a target asks for an orientation.
+    pub orients: bool,
 }
 
+/// The length ℓ by which turns are compared with distances, in lengths of the chain: a turn by one
+/// radian counts like this distance.
+const TURN_LENGTH: f64 = 0.25;
+
 impl Problem {
+    /// True if a target asks for an aim.
+    pub fn aims(&self) -> bool {
+        let is_aim = |orienting: &Orienting| matches!(orienting.wanted, Wanted::Aim { .. });
+        self.effectors.iter().any(|effector| effector.orientation.as_ref().is_some_and(is_aim))
+    }
+
+    /// Distance beyond which points lose the tips' positions to rounding, in the problem's units.
+    fn farthest(&self) -> f64 {
+        1e4 * f64::from(self.length.max(1.0))
+    }
+
+    /// ℓ in the problem's units.
+    pub fn turn_length(&self) -> f64 {
+        TURN_LENGTH * f64::from(self.length)
+    }
+
+    /// ℓ in world units.
+    pub fn turn_length_in_world(&self) -> f64 {
+        TURN_LENGTH * self.world_length()
+    }
+
+    /// Sum of the weights of places and orientations.
+    pub fn weights(&self) -> f64 {
+        let square = self.turn_length().powi(2).max(f64::MIN_POSITIVE);
+        let of_effector = |effector: &EndEffector| {
+            let stiffness = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
+            f64::from(effector.weight) + stiffness / square
+        };
+        self.effectors.iter().map(of_effector).sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
     /// Indices of the end effectors at a link and below.
     pub fn below(&self, link: &Link) -> &[usize] {
         &self.below[link.below.0..link.below.1]
@@ -134,10 +248,11 @@ impl Problem {
         length / self.unit * self.scale()
     }
 
-    /// Vectors from all requested targets to their tips, in the world.
+    /// Vectors from all requested places to their tips, in the world; zero for free places.
     pub fn residuals<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
-        self.effectors.iter().zip(tips).map(|(effector, tip)| {
-            self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit)
+        self.effectors.iter().zip(tips).map(|(effector, tip)| match effector.weight {
+            0.0 => DVec3::ZERO,
+            _ => self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit),
         })
     }
 
@@ -149,22 +264,49 @@ impl Problem {
         }
     }
 
-    pub fn set_targets(&mut self, targets: &[TipTarget]) {
+    pub fn set_targets(&mut self, targets: &[ChainTarget]) {
+        let farthest = self.farthest();
         for (effector, target) in self.effectors.iter_mut().zip(targets) {
-            let point = self.to_skeleton.transform_point3(target.point.as_dvec3());
-            effector.requested = (point - self.trees[effector.tree].origin) * self.unit;
+            let origin = self.trees[effector.tree].origin;
+            let place = |point: Vec3| {
+                (self.to_skeleton.transform_point3(point.as_dvec3()) - origin) * self.unit
+            };
+            let square = (TURN_LENGTH * f64::from(self.length)).powi(2) as f32;
+            effector.requested = place(target.point);
             effector.target = effector.requested.clamp_length_max(effector.max_distance).as_vec3a();
+            effector.orientation = target.orientation.map(|orientation| Orienting {
+                wanted: match orientation {
+                    Orientation::Rotation(rotation) => {
+                        let space = Quat::from_mat3a(&effector.space.matrix3);
+                        Wanted::Rotation(rotation.normalize() * space.inverse())
+                    }
+                    Orientation::Aim { axis, point } => {
+                        let axis = axis.as_dvec3().normalize_or_zero().as_vec3a();
+                        let point = place(point).clamp_length_max(farthest);
+                        let axis = effector.space.matrix3 * axis;
+                        Wanted::Aim { axis, point: point.as_vec3a() }
+                    }
+                },
+                stiffness: target.orientation_weight / self.heaviest * square,
+            });
         }
+        self.orients = self.effectors.iter().any(|effector| effector.orientation.is_some());
     }
 
     /// Brings the points to which tips move to at most `most` from the tips, in the problem's
     /// units, until the targets are set again. Returns whether a point was farther away.
-    pub fn hold_back(&mut self, tips: &[Vec3A], most: f32) -> bool {
+    pub fn hold_back(&mut self, config: &Configuration, most: f32) -> bool {
         let mut is_held_back = false;
-        for (effector, tip) in self.effectors.iter_mut().zip(tips) {
+        let most_turn = most / self.turn_length() as f32;
+        for (effector, tip) in self.effectors.iter_mut().zip(&config.tips) {
             let way = effector.target - *tip;
-            if way.length() > most {
+            if effector.weight > 0.0 && way.length() > most {
                 effector.target = *tip + way.clamp_length_max(most);
+                is_held_back = true;
+            }
+            let missing = MissingTurn::new(effector, config).map(|missing| missing.turn);
+            if let Some(turn) = missing.filter(|turn| turn.length() > most_turn) {
+                effector.turn_back(turn - turn.clamp_length_max(most_turn), config);
                 is_held_back = true;
             }
         }
@@ -179,7 +321,7 @@ impl Problem {
     /// Sets the targets. If a tree is farther than two chain lengths from its targets, moves its
     /// origin to one chain length from them, within the range of f32, because coordinates are exact
     /// near the origin only.
-    pub fn approach(&mut self, targets: &[TipTarget], tips: &[Vec3A]) {
+    pub fn approach(&mut self, targets: &[ChainTarget], tips: &[Vec3A]) {
         for tree in 0..self.trees.len() {
             let residual = self.mean_residual(tree, tips);
             let most = f64::from(self.length);
@@ -194,14 +336,14 @@ impl Problem {
     }
 
     /// Weighted mean vector from the tips of a tree to their requested targets, in the problem's
-    /// units.
+    /// units; zero if all places are free.
     fn mean_residual(&self, tree: usize, tips: &[Vec3A]) -> DVec3 {
         let of_tree = self.effectors.iter().zip(tips).filter(|(effector, _)| effector.tree == tree);
         let (sum, weight) = of_tree.fold((DVec3::ZERO, 0.0), |(sum, all), (effector, tip)| {
             let weight = f64::from(effector.weight);
             (sum + (effector.requested - tip.as_dvec3()) * weight, all + weight)
         });
-        sum / weight
+        if weight > 0.0 { sum / weight } else { DVec3::ZERO }
     }
 
     /// True if the offset of a tree's root, shifted by `shift`, is finite in f32.
@@ -222,6 +364,21 @@ impl Problem {
 
     fn scaled(&self, v: Vec3) -> Vec3A {
         (v.as_dvec3() * self.unit).as_vec3a()
+    }
+}
+
+impl EndEffector {
+    /// Takes a turn, a rotation vector, from the wanted orientation.
+    fn turn_back(&mut self, turn: Vec3A, config: &Configuration) {
+        let back = Quat::from_scaled_axis((-turn).into());
+        let base = self.link.map_or(config.shifts[self.tree], |link| config.bases[link]);
+        let at = base + config.orientation_of(self) * self.space.translation;
+        if let Some(Orienting { wanted, .. }) = &mut self.orientation {
+            match wanted {
+                Wanted::Rotation(wanted) => *wanted = back * *wanted,
+                Wanted::Aim { point, .. } => *point = at + back * (*point - at),
+            }
+        }
     }
 }
 

@@ -19,7 +19,7 @@ use super::ChainSolver;
 use crate::chain_ik::inside::Recorder;
 use crate::chain_ik::report::{Report, Status};
 use crate::chain_ik::tracker::Tracker;
-use crate::chain_ik::{SolveError, SolverOptions, TipTarget};
+use crate::chain_ik::{ChainTarget, SolveError, SolverOptions};
 use crate::skeleton::Skeleton;
 use crate::vector::saturate;
 
@@ -90,7 +90,7 @@ impl ChainSolver {
     ///
     /// ```
     /// use glam::Vec3;
-    /// use ik_arm_kinematics::chain_ik::{ChainSolver, SolverOptions, TipTarget};
+    /// use ik_arm_kinematics::chain_ik::{ChainSolver, SolverOptions, ChainTarget};
     /// use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
     ///
     /// let mut fk = Skeleton::with_root("root");
@@ -100,7 +100,7 @@ impl ChainSolver {
     /// }
     /// let target = |frame: u16| {
     ///     let (sin, cos) = (f32::from(frame) / 60.0).sin_cos();
-    ///     TipTarget { joint: tip, point: Vec3::new(2.0 + cos, sin, 0.5), weight: 1.0 }
+    ///     ChainTarget::at(tip, Vec3::new(2.0 + cos, sin, 0.5))
     /// };
     /// let mut solver = ChainSolver::new(&fk, &[target(0)], &SolverOptions::default())?;
     /// solver.run();
@@ -120,7 +120,11 @@ impl ChainSolver {
     /// [`SolveError::OtherJoint`]; [`SolveError::Point`]; [`SolveError::Weight`];
     /// [`SolveError::Singular`]; [`SolveError::TwoBone`] if a bone has lost its length. The
     /// configuration is unchanged.
-    pub fn track(&mut self, targets: &[TipTarget], fk: &Skeleton) -> Result<TrackStep, SolveError> {
+    pub fn track(
+        &mut self,
+        targets: &[ChainTarget],
+        fk: &Skeleton,
+    ) -> Result<TrackStep, SolveError> {
         self.check_targets(targets)?;
         let tracker = self.tracker.take();
         let new = || Box::new(Tracker::new(&self.problem, &self.config));
@@ -161,7 +165,7 @@ impl ChainSolver {
     fn track_with(
         &mut self,
         tracker: &mut Tracker,
-        targets: &[TipTarget],
+        targets: &[ChainTarget],
         fk: &Skeleton,
     ) -> Result<TrackStep, SolveError> {
         self.builder.fill(&mut tracker.next, fk, targets)?;
@@ -202,7 +206,7 @@ impl ChainSolver {
         let length = self.problem.world_length();
         let reach = motion + CATCH_UP * length;
         let most_way = self.problem.length_from_world(reach) as f32;
-        let is_far = self.problem.hold_back(&self.config.tips, most_way);
+        let is_far = self.problem.hold_back(&self.config, most_way);
         let most_turn = (POSTURE_RATE * motion / length) as f32;
         tracker.move_to_fk(&self.problem, &mut self.config, most_turn);
         let before = self.config.total_error(&self.problem);

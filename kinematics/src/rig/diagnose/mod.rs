@@ -8,7 +8,7 @@ use super::carried::Carried;
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::chain_ik::{self, SolveError, TipTarget};
+use crate::chain_ik::{self, ChainTarget, SolveError};
 use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy, in_turn};
 use crate::skeleton::{JointId, SkeletonError};
 use crate::soft_reach::{SoftReach, SoftReachError};
@@ -112,7 +112,7 @@ impl SkeletonRig {
             return Vec::new();
         }
         let active = self.targets.iter().filter(|it| self.is_solved_for(it)).filter(is_whole_body);
-        let tips: Vec<TipTarget> =
+        let tips: Vec<ChainTarget> =
             active.map(|it| self.tip_target(it, &evaluated.fk, time)).collect();
         chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
     }

@@ -1,7 +1,7 @@
 //! Targets of chains, on random rigs that have exactly one cause by construction.
 
 use glam::Vec3;
-use ik_arm_kinematics::chain_ik::{Method, Root, SolverOptions, TipTarget, diagnose, solve};
+use ik_arm_kinematics::chain_ik::{ChainTarget, Method, Root, SolverOptions, diagnose, solve};
 use ik_arm_kinematics::diagnosis::{Boundary, Cause, Remedy};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton};
 
@@ -150,6 +150,6 @@ fn a_locked_root_is_told_as_the_root_that_may_turn() {
     assert_eq!(found[0].remedies[0].remedy, Remedy::SetRoot(Root::Turns));
 }
 
-fn tip_target(joint: JointId, point: Vec3) -> TipTarget {
-    TipTarget { joint, point, weight: 1.0 }
+fn tip_target(joint: JointId, point: Vec3) -> ChainTarget {
+    ChainTarget::at(joint, point)
 }
