@@ -132,7 +132,7 @@ impl Channel {
                 "target orientation",
                 Rotation,
             )
-            .of_target(joint, |it| it.limb()?.orientation, set_orientation, |_| true),
+            .of_target(joint, |it| it.orientation, set_orientation, |_| true),
             Self::TargetTwist(joint) => named("target_twist", "Socket twist", Angle).of_target(
                 joint,
                 |it| Some(number(it.limb()?.twist)),
@@ -317,7 +317,7 @@ fn has_twist(limb: &LimbSettings) -> bool {
 }
 
 fn set_orientation(target: &mut Target, angles: Vec3) {
-    if let Some(LimbSettings { orientation: Some(orientation), .. }) = target.limb_mut() {
+    if let Some(orientation) = &mut target.orientation {
         *orientation = angles;
     }
 }

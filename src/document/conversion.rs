@@ -81,8 +81,7 @@ impl Document {
         };
         let own = [Channel::Rotation(hand), Channel::TargetOrientation(joint)];
         let [from, to] = if is_kept { own } else { [own[1], own[0]] };
-        let has_kept = self.rig.targets[index].limb().is_some_and(|it| it.orientation.is_some());
-        if has_kept == is_kept {
+        if self.rig.targets[index].orientation.is_some() == is_kept {
             return;
         }
         let angles = |posed: &Posed, near: Option<Vec3>| {
@@ -90,7 +89,7 @@ impl Document {
             let rotation = pose[hand].rotation;
             if is_kept {
                 let in_world = pose.rotation_in_world(hand).as_quat();
-                target.hand_angles(pose, in_world, near.unwrap_or(rotation))
+                target.orientation_angles(pose, in_world, near.unwrap_or(rotation))
             } else {
                 let Vec3 { x, y, z } = rotation;
                 let turned = Mat3A::from_euler(EulerRot::ZYX, z, y, x);
@@ -106,9 +105,7 @@ impl Document {
             self.keys.insert_key(to, Knot { value, slopes: None, ..knot });
         }
         self.keys.clear(from);
-        if let Some(limb) = self.limb_settings_mut(joint) {
-            limb.orientation = is_kept.then_some(present);
-        }
+        self.rig.targets[index].orientation = is_kept.then_some(present);
         if !is_kept {
             to.set(self, present);
         }
@@ -206,7 +203,7 @@ impl Document {
     fn turn_target(&mut self, index: usize) {
         let before = self.rig.targets[index];
         let Target { joint, space, .. } = before;
-        let frame = Mat3A::from_quat(before.hand_frame(self.skeleton()));
+        let frame = Mat3A::from_quat(before.orientation_frame(self.skeleton()));
         let is_in_world = before.present_space() == TargetSpace::World;
         let target = &mut self.rig.targets[index];
         let (mut turned, mut is_oriented) = (Vec::new(), false);
@@ -215,15 +212,15 @@ impl Document {
             turned.push(Channel::Target(joint));
         }
         target.pin = TURN * target.pin;
-        if let Some(limb) = target.limb_mut() {
-            if let (Some(pole), TargetSpace::World) = (&mut limb.pole, limb.pole_space) {
-                *pole = TURN * *pole;
-                turned.push(Channel::TargetPole(joint));
-            }
-            if let Some(angles) = limb.orientation.as_mut().filter(|_| is_in_world) {
-                *angles = turned_angles(frame, *angles, *angles);
-                is_oriented = true;
-            }
+        if let Some(limb) = target.limb_mut()
+            && let (Some(pole), TargetSpace::World) = (&mut limb.pole, limb.pole_space)
+        {
+            *pole = TURN * *pole;
+            turned.push(Channel::TargetPole(joint));
+        }
+        if let Some(angles) = target.orientation.as_mut().filter(|_| is_in_world) {
+            *angles = turned_angles(frame, *angles, *angles);
+            is_oriented = true;
         }
         turned.into_iter().for_each(|channel| self.turn_keys(channel));
         if is_oriented {

@@ -61,7 +61,10 @@ pub async fn sequence(
     }
     writers.finish()?;
     progress.step(frames.count(), frames.count()).await?;
-    batch.finish()?;
+    // The writers have ended, and with them their shares of the batch.
+    if let Some(batch) = Arc::into_inner(batch) {
+        batch.finish()?;
+    }
     Ok(Vec::new())
 }
 

@@ -159,8 +159,8 @@ impl FileBatch {
     /// # Errors
     ///
     /// Fails if the browser refuses a download.
-    pub fn finish(&self) -> Result<(), WriteError> {
-        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+    pub fn finish(self) -> Result<(), WriteError> {
+        let files = self.files.into_inner().unwrap_or_else(PoisonError::into_inner);
         files.iter().try_for_each(|(name, bytes)| write(&self.folder.join(name), bytes))
     }
 }

@@ -153,7 +153,7 @@ impl FileBatch {
     /// # Errors
     ///
     /// Fails if a file cannot be moved. The final folder is then restored as far as possible.
-    pub fn finish(&self) -> Result<(), WriteError> {
+    pub fn finish(self) -> Result<(), WriteError> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         for (index, name) in names.iter().enumerate() {
             if let Err(source) = self.install(name) {

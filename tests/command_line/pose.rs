@@ -8,6 +8,7 @@ use std::process::{Output, Stdio};
 use glam::{Mat4, Vec3};
 use ik_arm::document::Document;
 use ik_arm::io::{self, Example};
+use ik_arm::kinematics::chain_ik::Method;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{LimbSettings, Target as RigTarget, TargetKind, TargetPath, TargetSpace};
 use serde::Deserialize;
@@ -458,8 +459,8 @@ fn a_malformed_target_is_an_error_that_shows_a_right_one() {
         let output = scene.run(&["--target", given]);
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{given}");
         let expected = format!(
-            "error: invalid value '{given}' for '--target <JOINT=x,y,z>': must be a joint and a \
-             point, like left_hand=0.3,1.2,0.4"
+            "error: invalid value '{given}' for '--target <JOINT=x,y,z>': must be a joint and \
+             three numbers, like left_hand=0.3,1.2,0.4"
         );
         assert!(stderr(&output).starts_with(&expected), "{}", stderr(&output));
     }
@@ -694,9 +695,53 @@ fn foot_turned_by(degrees: f32) -> Scene {
     let rig = &mut document.rig;
     let shin = rig.skeleton.find("left_shin").expect("a shin");
     let index = rig.target(shin).expect("a target");
-    let limb = rig.targets[index].limb_mut().expect("a limb");
-    limb.orientation = Some(Vec3::X * degrees.to_radians());
+    rig.targets[index].orientation = Some(Vec3::X * degrees.to_radians());
     Scene::document(&document)
+}
+
+/// The rotation of a joint in the world, of a skeleton without scale, by the printed transform.
+fn rotation(joint: &Joint) -> glam::DQuat {
+    let axes = Mat4::from_cols_array(&joint.transform).as_dmat4();
+    glam::DQuat::from_mat3(&glam::DMat3::from_mat4(axes)).normalize()
+}
+
+#[test]
+fn a_whole_body_target_turns_its_joint_to_a_rotation() {
+    let scene = Scene::document(&example("human"));
+    let tip = scene.pose(&[]).joint("head").tip;
+    let answer = scene.pose(&["--rotation", "head=0,45,0"]);
+    let head = answer.targets.last().expect("a target of the head");
+    assert_eq!(head.kind, "whole_body");
+    assert!(head.target.distance(tip) < 1e-6, "it is where the head is");
+    assert!(head.error < 1e-3, "{head:?}");
+    assert!(head.rotation_error_deg.expect("a rotation") < 0.06, "{head:?}");
+    let angle = 45.0_f64.to_radians();
+    let wanted = glam::DQuat::from_rotation_y(angle);
+    let off = rotation(answer.joint("head")).angle_between(wanted).to_degrees();
+    assert!(off < 0.06, "{off}");
+
+    // In a document, the angles are in radians.
+    let mut document = example("human");
+    let joint = document.skeleton().find("head").expect("a head");
+    let target = RigTarget::new(joint, head.target, 0.1);
+    let orientation = Some(Vec3::Y * angle as f32);
+    document.rig.targets.push(RigTarget { orientation, influence: 1.0, ..target });
+    let same = Scene::document(&document).pose(&[]);
+    let apart = rotation(same.joint("head")).angle_between(rotation(answer.joint("head")));
+    assert!(apart < 1e-3, "{apart}");
+}
+
+#[test]
+fn a_rotation_that_the_method_cannot_give_is_refused_by_name() {
+    let mut document = example("human");
+    document.rig.solver.method = Method::Fabrik;
+    let output = Scene::document(&document).run(&["--rotation", "head=0,45,0"]);
+    assert!(output.status.success());
+    let said = stderr(&output);
+    assert!(
+        said.contains("fabrik cannot turn joint 4 to an orientation; transpose-fixed,"),
+        "{said}"
+    );
 }
 
 #[test]

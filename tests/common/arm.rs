@@ -135,7 +135,7 @@ impl Arm {
         let target = target(document);
         let limb = target.limb().expect("the target of a limb");
         let skeleton = document.skeleton();
-        let kept = limb.orientation.map(of_ball);
+        let kept = target.orientation.map(of_ball);
         let own = of_ball(skeleton[WRIST].rotation);
         Self {
             cursor: Cursor {
@@ -200,7 +200,7 @@ impl Arm {
         limb.pole = Some(self.pole);
         limb.soft_reach = self.soft_reach;
         limb.fk_stretch = self.fk.stretch;
-        limb.orientation = is_kept.then(|| ball(angles));
+        target.orientation = is_kept.then(|| ball(angles));
     }
 
     pub fn cursor_in_root(&self) -> Vec3 {
@@ -371,8 +371,9 @@ impl ArmEdit {
             Self::SetShoulder(angles) => rotate(UPPER, ball(angles)),
             Self::SetBend(bend) => rotate(LOWER, hinge(bend)),
             Self::SetHandOrientation(angles) => {
-                if target.limb().is_some_and(|limb| limb.orientation.is_some()) {
-                    limb(&|limb| limb.orientation = Some(ball(angles)))
+                if target.orientation.is_some() {
+                    let orientation = Some(ball(angles));
+                    TargetEdit::SetTarget(Target { orientation, ..target }).into()
                 } else {
                     rotate(WRIST, ball(angles))
                 }

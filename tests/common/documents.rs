@@ -44,6 +44,8 @@ pub fn document(random: &mut Random) -> Document {
                 pin: if random.coin() { random.finite_vector() } else { home },
                 is_pinned: random.coin(),
                 kind,
+                orientation: random.coin().then(|| random.finite_vector()),
+                orientation_weight: if random.coin() { 1.0 } else { random.positive() },
                 influence,
                 weight,
                 softness,
@@ -141,7 +143,6 @@ fn target_kind(random: &mut Random) -> TargetKind {
         fk_stretch: if random.coin() { random.positive() } else { 1.0 },
         twist: random.finite(),
         soft_reach: soft_reach.expect("in range"),
-        orientation: random.coin().then(|| random.finite_vector()),
         pole_space: TargetSpace::World,
     })
 }

@@ -71,12 +71,19 @@ fn random_target(random: &mut Random, joint: JointId, tip: Vec3) -> Target {
         twist: random.within(-3.0..3.0),
         soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
             .expect("in range"),
-        orientation: random.coin().then(|| random.angles()),
         ..LimbSettings::default()
     };
+    let orientation = random.coin().then(|| random.angles());
     let kind = if random.coin() { TargetKind::Limb(settings) } else { TargetKind::WholeBody };
     let influence = random.one_of(&[0.0, 0.3, 1.0]);
-    Target { kind, influence, motion, ..Target::new(joint, tip + random.vector(0.5), 0.1) }
+    let orientation = orientation.filter(|_| kind != TargetKind::WholeBody);
+    Target {
+        kind,
+        orientation,
+        influence,
+        motion,
+        ..Target::new(joint, tip + random.vector(0.5), 0.1)
+    }
 }
 
 /// A chain of three bones along y from the origin whose tip goes around a circle.

@@ -166,9 +166,9 @@ fn keyed(random: &mut Random) -> (Document, JointId) {
     target.kind = TargetKind::Limb(LimbSettings {
         reference: TwistReferenceKind::Pole,
         pole: Some(Vec3::new(2.0, 0.0, 0.0)),
-        orientation: Some(random.angles()),
         ..LimbSettings::default()
     });
+    target.orientation = Some(random.angles());
     shake(random, driver.rig.skeleton_mut());
     driver.rig.skeleton_mut().set_transform(transform(random)).expect("finite");
     let mut document = Document { rig: driver.rig, ..Document::default() };
@@ -195,7 +195,7 @@ fn in_world(document: &Document, time: f64) -> (Vec3, Quat, Vec3) {
     let limb = target.limb().expect("a limb");
     (
         target.in_world(&pose, time),
-        target.hand_in_world(&pose).expect("an orientation"),
+        target.orientation_in_world(&pose).expect("an orientation"),
         limb.pole_in_world(&pose).expect("a pole"),
     )
 }
@@ -273,8 +273,8 @@ fn keys_of_influence_twist_orientation_and_pole_pose_the_limb_as_their_values_do
             target.influence = value(Channel::TargetInfluence(joint)).x;
             let limb = target.limb_mut().expect("a limb");
             limb.twist = value(Channel::TargetTwist(joint)).x;
-            limb.orientation = Some(value(Channel::TargetOrientation(joint)));
             limb.pole = Some(value(Channel::TargetPole(joint)));
+            target.orientation = Some(value(Channel::TargetOrientation(joint)));
             let solved = document.at(time).skeleton().clone();
             assert_eq!(solved, rig.skeleton_at(time));
         }

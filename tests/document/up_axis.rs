@@ -206,11 +206,12 @@ fn rig(random: &mut Random) -> Document {
     let limb = LimbSettings {
         reference: TwistReferenceKind::Pole,
         pole: Some(random.vector(3.0)),
-        orientation: Some(random.angles()),
         ..LimbSettings::default()
     };
+    let orientation = Some(random.angles());
     let target = Target::new(tips[0], random.vector(3.0), 1.0);
-    rig.targets.push(Target { kind: TargetKind::Limb(limb), influence: 0.0, ..target });
+    let kind = TargetKind::Limb(limb);
+    rig.targets.push(Target { kind, orientation, influence: 0.0, ..target });
     let mut document = Document::new(rig);
     for time in 0..4 {
         let time = f64::from(time);
@@ -245,9 +246,8 @@ fn everything_in_the_world_turns_with_the_skeleton() {
                 assert!(turned.as_dvec3().distance(expected) < 1e-5 * 20.0, "{turned}");
             }
             if step % 10 == 0 {
-                let [one, other] = evaluated.map(|rig| {
-                    rotation(rig.targets[0].limb().expect("a limb").orientation.expect("angles"))
-                });
+                let [one, other] =
+                    evaluated.map(|rig| rotation(rig.targets[0].orientation.expect("angles")));
                 assert!(other.abs_diff_eq(turn() * one, 1e-5), "{other}");
             }
         }

@@ -230,7 +230,7 @@ fn a_click_on_the_hand_shows_rings_that_turn_it() {
             let ring = ring.expect("a ring");
             let angles = |bench: &Bench| {
                 let rig = bench.session().rig();
-                let kept = rig.targets[0].limb().expect("a limb").orientation;
+                let kept = rig.targets[0].orientation;
                 kept.unwrap_or(rig.skeleton[WRIST].rotation)
             };
             let old = angles(&bench);

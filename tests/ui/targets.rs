@@ -6,10 +6,12 @@ use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::{Channel, Target};
+use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
 use ik_arm::kinematics::skeleton::RotationAxis;
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace};
+use ik_arm::rig::{TargetKind, TargetSpace};
 use ik_arm::session::{
-    Action, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, TargetEdit, TransactionAction,
+    Action, Grip, GripRing, JointEdit, PlaybackAction, SelectAction, SolverEdit, TargetEdit,
+    TransactionAction,
 };
 
 use crate::bench::Bench;
@@ -275,8 +277,7 @@ fn a_hand_keeps_its_orientation_while_the_arm_moves() {
     bench.apply([Action::from(TargetEdit::SetTarget(moved))]);
     assert!(bench.tip("left_forearm").distance(place) <= 1e-5);
     assert!(turned(&bench).angle_between(before) <= 1e-4);
-    let kind = TargetKind::Limb(LimbSettings::default());
-    bench.apply([Action::from(TargetEdit::SetTarget(Target { kind, ..moved }))]);
+    bench.apply([Action::from(TargetEdit::SetTarget(Target { orientation: None, ..moved }))]);
     assert!(turned(&bench).angle_between(before) > 0.05, "without, it follows the forearm");
 }
 
@@ -338,7 +339,7 @@ fn human() -> Bench {
 }
 
 fn held(bench: &Bench, name: &str) -> Option<Vec3> {
-    target(bench, name).limb().expect("a limb").orientation
+    target(bench, name).orientation
 }
 
 #[test]
@@ -401,6 +402,41 @@ fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
     let keys = &bench.session().document().keys;
     assert!(keys.has(Channel::TargetOrientation(shin)));
     assert!(!keys.has(Channel::Target(shin)), "nothing else is keyed");
+}
+
+#[test]
+fn a_whole_body_target_can_turn_its_joint() {
+    let mut bench = human();
+    select(&mut bench, "head");
+    bench.key(Key::T);
+    bench.settle();
+    let turned = |bench: &Bench| {
+        let head = bench.joint("head");
+        bench.session().posed().evaluated_skeleton().solved.rotation_in_world(head)
+    };
+    let before = turned(&bench);
+    bench.reveal(Role::CheckBox, "Rotation");
+    bench.click(Role::CheckBox, "Rotation");
+    assert!(turned(&bench).angle_between(before) < 1e-3, "it keeps the rotation that it has");
+    let held = held(&bench, "head").expect("angles");
+    bench.reveal(Role::Slider, "Target rotation y");
+    bench.enter("Target rotation y", "30");
+    let wanted = glam::DQuat::from_rotation_z(f64::from(held.z))
+        * glam::DQuat::from_rotation_y(30.0_f64.to_radians())
+        * glam::DQuat::from_rotation_x(f64::from(held.x));
+    assert!(turned(&bench).angle_between(wanted) < 2e-3);
+    let head = bench.joint("head");
+    let ring = GripRing::of_orientation(bench.session().posed(), head, RotationAxis::Y);
+    assert!(ring.is_some(), "a ring turns it, too");
+
+    // A method that cannot do it says so.
+    bench.apply([TransactionAction::Undo, TransactionAction::Undo]);
+    assert_eq!(self::held(&bench, "head"), None);
+    let options = SolverOptions::new(Method::Fabrik);
+    bench.apply([SolverEdit::SetSolver(options)]);
+    bench.reveal(Role::CheckBox, "Rotation");
+    bench.click(Role::CheckBox, "Rotation");
+    assert_eq!(self::held(&bench, "head"), None, "the box is disabled");
 }
 
 #[test]

@@ -104,12 +104,23 @@ impl Configuration {
         }
     }
 
+    /// The turn that the joint of an end effector misses; `None` if no orientation is wanted.
+    pub fn missing_turn(&self, effector: &EndEffector) -> Option<MissingTurn> {
+        effector.orientation?;
+        MissingTurn::new(effector, self.orientation_of(effector), self.base_of(effector))
+    }
+
+    /// Base of the link of an end effector; without a link, the tree's origin.
+    pub fn base_of(&self, effector: &EndEffector) -> Vec3A {
+        effector.link.map_or(self.shifts[effector.tree], |link| self.bases[link])
+    }
+
     /// The turns that joints miss, of all end effectors with a wanted orientation.
     pub fn missing_turns<'a>(
         &'a self,
         problem: &'a Problem,
     ) -> impl Iterator<Item = MissingTurn> + 'a {
-        problem.effectors.iter().filter_map(|effector| MissingTurn::new(effector, self))
+        problem.effectors.iter().filter_map(|effector| self.missing_turn(effector))
     }
 
     /// The cost f = Σ ½ w |tip − target|² + Σ ½ w ℓ² φ².
@@ -139,7 +150,7 @@ impl Configuration {
             let squares = problem.below(link).iter().map(|index| {
                 let effector = &problem.effectors[*index];
                 let arm = self.tips[*index] - *base;
-                let of_turn = MissingTurn::new(effector, self).map_or(0.0, |missing| {
+                let of_turn = self.missing_turn(effector).map_or(0.0, |missing| {
                     missing.stiffness * missing.longest_column(*base).powi(2)
                 });
                 effector.weight * arm.length_squared() + of_turn

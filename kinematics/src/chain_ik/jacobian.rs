@@ -126,7 +126,7 @@ impl Wrenches {
             if let Some(link) = effector.link {
                 self.add(link, force, config.tips[index].cross(force));
             }
-            if let Some(missing) = MissingTurn::new(effector, config) {
+            if let Some(missing) = config.missing_turn(effector) {
                 let (force, moment, at) = missing.wrench(moment(index, &missing));
                 shifts[effector.tree] += force;
                 if let Some(link) = effector.link {

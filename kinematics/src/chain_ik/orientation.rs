@@ -18,7 +18,6 @@
 
 use glam::{Quat, Vec3A};
 
-use super::configuration::Configuration;
 use super::problem::{EndEffector, Wanted};
 
 /// The turn that a joint misses, and how it changes.
@@ -37,15 +36,9 @@ pub(super) struct MissingTurn {
 }
 
 impl MissingTurn {
-    /// The turn that the joint of an end effector misses in a configuration whose link has the
-    /// orientation G; `None` if no orientation is wanted.
-    pub fn new(effector: &EndEffector, config: &Configuration) -> Option<Self> {
-        let base = effector.link.map_or(config.shifts[effector.tree], |link| config.bases[link]);
-        Self::of_link(effector, config.orientation_of(effector), base)
-    }
-
-    /// As [`MissingTurn::new`], for a link with this orientation and base.
-    pub fn of_link(effector: &EndEffector, orientation: Quat, base: Vec3A) -> Option<Self> {
+    /// The turn that the joint of an end effector misses whose link has the orientation G and this
+    /// base; `None` if no orientation is wanted.
+    pub fn new(effector: &EndEffector, orientation: Quat, base: Vec3A) -> Option<Self> {
         let orienting = effector.orientation?;
         let stiffness = orienting.stiffness;
         Some(match orienting.wanted {

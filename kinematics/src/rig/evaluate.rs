@@ -5,7 +5,7 @@ use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
-use crate::chain_ik::{ChainTarget, Report, Root, SolveError};
+use crate::chain_ik::{ChainTarget, Orientation, Report, Root, SolveError};
 use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::soft_reach::SoftReach;
@@ -55,8 +55,9 @@ pub struct TargetReport {
     /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a
     /// head that the target leads.
     pub error: f32,
-    /// Angle in radians from the rotation of the hand to that which the target asks for, in the
-    /// evaluated pose; `None` for a hand that follows its bone and for a target without a hand.
+    /// Angle in radians from the rotation of the target's [oriented
+    /// joint](Target::oriented_joint) to that which the target asks for, in the evaluated pose;
+    /// `None` without an orientation.
     pub rotation_error: Option<f32>,
     /// The solver's report.
     pub outcome: TargetOutcome,
@@ -80,7 +81,7 @@ pub enum TargetOutcome {
 }
 
 impl TargetReport {
-    /// True if the hand is farther from the rotation that its target asks for than
+    /// True if the joint is farther from the rotation that its target asks for than
     /// [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn misses_rotation(&self) -> bool {
         self.rotation_error.is_some_and(|angle| angle > SkeletonRig::ROTATION_TOLERANCE)
@@ -88,7 +89,7 @@ impl TargetReport {
 }
 
 impl SkeletonRig {
-    /// Angle in radians within which a hand has the rotation that its target asks for.
+    /// Angle in radians within which a joint has the rotation that its target asks for.
     pub const ROTATION_TOLERANCE: f32 = 1e-3;
 
     /// The skeleton at a time in seconds, as a function of the rig and the time alone: a
@@ -160,17 +161,17 @@ impl SkeletonRig {
         targets.filter(|(target, _)| target.is_posing()).all(|(_, report)| self.is_reached(report))
     }
 
-    /// Angle in radians from the rotation of a limb's hand to that which its target asks for, in a
-    /// pose; `None` for a hand that follows its bone and for a target without a hand.
+    /// Angle in radians from the rotation of a target's [oriented joint](Target::oriented_joint) to
+    /// that which the target asks for, in a pose; `None` without an orientation.
     pub fn rotation_error(&self, target: &Target, pose: &Skeleton) -> Option<f32> {
-        let wanted = target.hand_in_world(pose)?.as_dquat();
-        let hand = Limb::ending_at(pose, target.joint).ok()?.hand?;
-        let DQuat { x, y, z, w } = pose.rotation_in_world(hand).inverse() * wanted;
+        let wanted = target.orientation_in_world(pose)?.as_dquat();
+        let joint = target.oriented_joint(pose).filter(|joint| pose.joint(*joint).is_some())?;
+        let DQuat { x, y, z, w } = pose.rotation_in_world(joint).inverse() * wanted;
         // Exact for small angles, too, where the arc cosine of w loses half of the digits.
         Some((2.0 * DVec3::new(x, y, z).length().atan2(w.abs())) as f32)
     }
 
-    /// True if the tip of a target's joint, and the rotation of its hand, are as the target asks,
+    /// True if the tip of a target's joint, and the rotation of its hand or of itself, are as the target asks,
     /// within [`SkeletonRig::tolerance`] and [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn is_reached(&self, report: &TargetReport) -> bool {
         report.error <= self.tolerance() && !report.misses_rotation()
@@ -275,7 +276,17 @@ impl SkeletonRig {
     /// A whole-body target at a time in seconds, for a solver of chains, in the FK pose.
     pub(super) fn tip_target(&self, target: &Target, fk: &Skeleton, time: f64) -> ChainTarget {
         let point = self.softened(target, fk, target.in_world(fk, time));
-        ChainTarget::at(target.joint, point).with_weight(target.weight)
+        let placed = ChainTarget::at(target.joint, point).with_weight(target.weight);
+        // The orientation of a limb's target is that of its hand, which no chain turns.
+        match target.orientation_in_world(fk).filter(|_| target.limb().is_none()) {
+            None => placed,
+            Some(rotation) => {
+                let rotation = fk.rotation_from_world(rotation.as_dquat()).as_quat();
+                placed
+                    .with_orientation(Orientation::Rotation(rotation))
+                    .with_orientation_weight(target.orientation_weight)
+            }
+        }
     }
 
     /// The point to which solvers bring the tip of a whole-body target that is at `point`, in the
@@ -322,7 +333,7 @@ impl Target {
             reference: settings.reference_in_world(pose),
             twist: settings.twist,
             soft_reach: settings.soft_reach,
-            hand: self.hand_in_world(pose),
+            hand: self.orientation_in_world(pose),
             fk_stretch: settings.fk_stretch,
             influence: self.influence,
         }

@@ -443,10 +443,11 @@ impl RootSpace {
         soft_reach: SoftReach,
         bones: TwoBone,
     ) -> TwoBonePose {
-        // The distance is clamped in f64, exactly but for rounding of the law of cosines.
-        const EXACT: f64 = 1e-9;
+        // The distance is clamped in f64, but a target at a limit is rounded to f32.
+        const ROUNDING: f64 = f32::EPSILON as f64;
         let (distance, wanted) = (solution.triangle.distance, solution.target.length());
-        let is_at_target = (distance - wanted).abs() <= EXACT * solution.triangle.sides[0];
+        let length: f64 = solution.triangle.sides.iter().sum();
+        let is_at_target = (distance - wanted).abs() <= ROUNDING * length;
         let reach = match ik::reach(
             saturate(distance * self.scale),
             saturate(wanted * self.scale),

@@ -144,8 +144,9 @@ impl Step<'_> {
     /// True if a target sets the orientation of a joint, its hand.
     fn turns_hand(&self, index: usize, joint: JointId) -> bool {
         let target = &self.after.rig.targets[index];
-        let orientation = target.limb().and_then(|limb| limb.orientation);
-        orientation.is_some() && joint != target.joint && self.after.rig.end_of(target) == joint
+        target.orientation.is_some()
+            && joint != target.joint
+            && self.after.rig.end_of(target) == joint
     }
 
     /// Way of a target and of its other inputs.

@@ -8,14 +8,14 @@ use crate::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
 use crate::soft_reach::SoftReach;
 use crate::twist::{Stereographic, TwistReferenceKind};
 
-/// A target of a skeleton: a point that the tip of a joint's bone should reach.
+/// A target of a skeleton: a point that the tip of a joint's bone should reach, and an orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// Joint whose tip should reach the target.
     pub joint: JointId,
     /// Position at time 0, in [`Target::space`], while the target is not pinned.
     pub home: Vec3,
-    /// The space of the position and of the hand's orientation while the target is not pinned.
+    /// The space of the position and of the orientation while the target is not pinned.
     pub space: TargetSpace,
     /// Position at time 0, in the world, while the target is pinned.
     pub pin: Vec3,
@@ -23,6 +23,13 @@ pub struct Target {
     pub is_pinned: bool,
     /// The joints that the target moves, and how.
     pub kind: TargetKind,
+    /// Euler angles in radians of the joint that the target turns, in the target's space, R_z · R_y
+    /// · R_x in the frame of that joint: the hand or foot at the end of a limb, or the joint of a
+    /// whole-body target. `None` for a hand that follows the lower bone, and for any rotation.
+    pub orientation: Option<Vec3>,
+    /// Weight of the orientation of a whole-body target, relative to weights of places: a turn by 1
+    /// radian counts like a distance of a quarter of the chain's length. 0 or more.
+    pub orientation_weight: f32,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
     pub influence: f32,
     /// Weight relative to the other whole-body targets, above 0.
@@ -60,6 +67,8 @@ impl Target {
             pin: home,
             is_pinned: false,
             kind: TargetKind::WholeBody,
+            orientation: None,
+            orientation_weight: 1.0,
             influence: 0.0,
             weight: 1.0,
             softness: 0.0,
@@ -89,9 +98,19 @@ impl Target {
         }
     }
 
-    /// True if the settings of a limb target are finite.
+    /// True if the orientation and the settings of a limb target are finite.
     pub fn has_finite_kind(&self) -> bool {
-        self.limb().is_none_or(LimbSettings::is_finite)
+        self.orientation.is_none_or(Vec3::is_finite)
+            && self.limb().is_none_or(LimbSettings::is_finite)
+    }
+
+    /// The joint that the target's orientation is about: the hand or foot at the end of a limb, or
+    /// the joint of a whole-body target; `None` for a limb without a hand.
+    pub fn oriented_joint(&self, skeleton: &Skeleton) -> Option<JointId> {
+        match self.kind {
+            TargetKind::WholeBody => Some(self.joint),
+            TargetKind::Limb(_) => Limb::ending_at(skeleton, self.joint).ok()?.hand,
+        }
     }
 
     /// True if the target poses the skeleton.
@@ -143,7 +162,7 @@ impl Target {
     }
 
     /// The target pinned to the world, or not pinned, where it is in the world at `time`, in
-    /// seconds; the hand keeps its orientation.
+    /// seconds; the orientation stays in the world, too.
     #[must_use]
     pub fn with_pinned(self, is_pinned: bool, pose: &Skeleton, time: f64) -> Self {
         let after = Self { is_pinned, ..self };
@@ -155,50 +174,46 @@ impl Target {
             return after.with_home(self.present_home());
         }
         let placed = after.placed(pose, time, self.in_world(pose, time));
-        placed.with_hand_of(&self, pose, None)
+        placed.with_orientation_of(&self, pose, None)
     }
 
-    /// The target with the hand's orientation in the world that `other` has; its angles are the
-    /// equivalent ones nearest to `near`, or to those that it has.
+    /// The target with the orientation in the world that `other` has; its angles are the equivalent
+    /// ones nearest to `near`, or to those that it has.
     #[must_use]
-    fn with_hand_of(mut self, other: &Self, pose: &Skeleton, near: Option<Vec3>) -> Self {
-        let rotation = other.hand_in_world(pose);
-        let near = near.or(self.limb().and_then(|limb| limb.orientation)).unwrap_or_default();
-        let angles = rotation.map(|rotation| self.hand_angles(pose, rotation, near));
-        if let Some(limb) = self.limb_mut() {
-            limb.orientation = angles;
-        }
+    fn with_orientation_of(mut self, other: &Self, pose: &Skeleton, near: Option<Vec3>) -> Self {
+        let rotation = other.orientation_in_world(pose);
+        let near = near.or(self.orientation).unwrap_or_default();
+        self.orientation = rotation.map(|rotation| self.orientation_angles(pose, rotation, near));
         self
     }
 
-    /// Rotation of the hand in the world, for a pose of the skeleton; `None` for a hand that
-    /// follows the lower bone.
-    pub fn hand_in_world(&self, pose: &Skeleton) -> Option<Quat> {
-        let Vec3 { x, y, z } = self.limb()?.orientation?;
-        let (frame, turned) = (self.hand_frame(pose), Quat::from_euler(EulerRot::ZYX, z, y, x));
+    /// The orientation in the world, for a pose of the skeleton; `None` without one.
+    pub fn orientation_in_world(&self, pose: &Skeleton) -> Option<Quat> {
+        let Vec3 { x, y, z } = self.orientation?;
+        let frame = self.orientation_frame(pose);
+        let turned = Quat::from_euler(EulerRot::ZYX, z, y, x);
         Some(self.present_space().rotation(pose) * (frame * turned * frame.conjugate()))
     }
 
-    /// Angles of the hand's orientation, in radians, for a rotation in the world: of all equivalent
-    /// angles those nearest to `near`.
-    pub fn hand_angles(&self, pose: &Skeleton, rotation: Quat, near: Vec3) -> Vec3 {
-        let frame = self.hand_frame(pose);
+    /// Angles of the orientation, in radians, for a rotation in the world: of all equivalent angles
+    /// those nearest to `near`.
+    pub fn orientation_angles(&self, pose: &Skeleton, rotation: Quat, near: Vec3) -> Vec3 {
+        let frame = self.orientation_frame(pose);
         let local = self.present_space().rotation(pose).inverse() * rotation;
         let local = frame.conjugate() * local * frame;
         nearest_angles(Mat3A::from_quat(local.normalize()), near)
     }
 
-    /// The frame in which the angles of the hand's orientation are measured, as those of the
-    /// hand's joint.
-    pub fn hand_frame(&self, pose: &Skeleton) -> Quat {
-        let hand = Limb::ending_at(pose, self.joint).ok().and_then(|limb| limb.hand);
-        let frame = hand.map_or(Mat3::IDENTITY, |hand| pose[hand].frame);
+    /// The frame in which the angles of the orientation are measured, that of the joint that it
+    /// turns.
+    pub fn orientation_frame(&self, pose: &Skeleton) -> Quat {
+        let joint = self.oriented_joint(pose).and_then(|joint| pose.joint(joint));
+        let frame = joint.map_or(Mat3::IDENTITY, |joint| joint.frame);
         if frame == Mat3::IDENTITY { Quat::IDENTITY } else { Quat::from_mat3(&frame) }
     }
 
-    /// The target in another space, where it is in the world at `time`, in seconds; the hand keeps
-    /// its orientation. Its angles are the equivalent ones nearest to `near`, or to those that it
-    /// has.
+    /// The target in another space, where it is in the world at `time`, in seconds, with its
+    /// orientation. Its angles are the equivalent ones nearest to `near`, or to those that it has.
     #[must_use]
     pub fn in_space(
         self,
@@ -214,7 +229,7 @@ impl Target {
         let unpinned = Self { is_pinned: false, ..self };
         let moved = Self { space, ..unpinned }.placed(pose, time, unpinned.in_world(pose, time));
         let after = Self { is_pinned: self.is_pinned, ..moved };
-        after.with_hand_of(&self, pose, near)
+        after.with_orientation_of(&self, pose, near)
     }
 
     /// The target with its limb's pole in another space, where it is in the world.
@@ -307,15 +322,12 @@ pub struct LimbSettings {
     pub twist: f32,
     /// Behaviour near the limits of the reach.
     pub soft_reach: SoftReach,
-    /// Euler angles in radians of the hand or foot in the target's space, R_z · R_y · R_x in the
-    /// frame of its joint; `None` for a hand that follows the lower bone.
-    pub orientation: Option<Vec3>,
     /// Factor by which the bones are lengthened in the FK pose, above 0.
     pub fk_stretch: f32,
 }
 
 impl Default for LimbSettings {
-    /// An elbow on the side that it has by FK, hard limits, and a hand that follows the lower bone.
+    /// An elbow on the side that it has by FK, and hard limits.
     fn default() -> Self {
         Self {
             reference: TwistReferenceKind::Fk,
@@ -324,7 +336,6 @@ impl Default for LimbSettings {
             map: Stereographic::default(),
             twist: 0.0,
             soft_reach: SoftReach::default(),
-            orientation: None,
             fk_stretch: 1.0,
         }
     }
@@ -371,7 +382,6 @@ impl LimbSettings {
     pub(super) fn is_finite(&self) -> bool {
         self.pole.is_none_or(Vec3::is_finite)
             && self.twist.is_finite()
-            && self.orientation.is_none_or(Vec3::is_finite)
             && self.fk_stretch.is_finite()
             && self.fk_stretch > 0.0
     }

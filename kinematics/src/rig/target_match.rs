@@ -3,7 +3,7 @@ use glam::{DQuat, Vec3};
 use super::carried::Carried;
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome};
 use super::skeleton_rig::SkeletonRig;
-use super::target::{LimbSettings, Target, TargetKind};
+use super::target::{LimbSettings, TargetKind};
 use crate::angle;
 use crate::limb_ik::{self, Limb};
 use crate::skeleton::Skeleton;
@@ -32,10 +32,13 @@ impl SkeletonRig {
             _ => pose.tip(target.joint),
         };
         let mut target = target.placed(pose, time, place);
-        if let (TargetKind::Limb(settings), Ok(limb)) =
-            (target.kind, Limb::ending_at(pose, target.joint))
-        {
-            target.kind = TargetKind::Limb(settings.matched(pose, limb, &target));
+        if let (Some(angles), Some(joint)) = (target.orientation, target.oriented_joint(pose)) {
+            let rotation = pose.rotation_in_world(joint).as_quat();
+            target.orientation = Some(target.orientation_angles(pose, rotation, angles));
+        }
+        let limb = Limb::ending_at(pose, target.joint);
+        if let (Some(settings), Ok(limb)) = (target.limb_mut(), limb) {
+            settings.match_elbow(pose, limb);
         }
         self.targets[index] = target;
     }
@@ -93,16 +96,6 @@ impl SkeletonRig {
 }
 
 impl LimbSettings {
-    /// The settings with which the limb of a target at its tip stays in a pose.
-    fn matched(mut self, pose: &Skeleton, limb: Limb, target: &Target) -> Self {
-        if let (Some(angles), Some(hand)) = (self.orientation, limb.hand) {
-            let rotation = pose.rotation_in_world(hand).as_quat();
-            self.orientation = Some(target.hand_angles(pose, rotation, angles));
-        }
-        self.match_elbow(pose, limb);
-        self
-    }
-
     /// Turns the pole about the limb, or sets the twist, so that the elbow stays where a pose has
     /// it.
     fn match_elbow(&mut self, pose: &Skeleton, limb: Limb) {

@@ -207,12 +207,22 @@ impl Skeleton {
     ///
     /// If there is no such joint.
     pub fn rotation_in_world(&self, joint: JointId) -> DQuat {
-        let (_, rotation, _) = self.transform.as_daffine3().to_scale_rotation_translation();
-        let rotation = if rotation.is_finite() { rotation } else { DQuat::IDENTITY };
         let below = self.fold_down(joint, DMat3::IDENTITY, |above, joint| {
             above * self[joint].rotation_f64(self[joint].rotation)
         });
-        (rotation * DQuat::from_mat3(&below)).normalize()
+        (self.own_rotation() * DQuat::from_mat3(&below)).normalize()
+    }
+
+    /// A rotation in skeleton space that is `rotation` in the world, as
+    /// [`Skeleton::rotation_in_world`] measures it.
+    pub fn rotation_from_world(&self, rotation: DQuat) -> DQuat {
+        (self.own_rotation().inverse() * rotation).normalize()
+    }
+
+    /// The rotation of the skeleton's transform, without its scale.
+    fn own_rotation(&self) -> DQuat {
+        let (_, rotation, _) = self.transform.as_daffine3().to_scale_rotation_translation();
+        if rotation.is_finite() { rotation } else { DQuat::IDENTITY }
     }
 
     /// Transforms of all joints in the world.

@@ -99,14 +99,15 @@ fn random_rig(random: &mut Random) -> SkeletonRig {
             twist: random.within(-3.0..3.0),
             soft_reach: SoftReach::new(random.within(0.0..0.5), random.one_of(&[1.0, 1.3]), 0.1)
                 .expect("in range"),
-            orientation: random.coin().then(|| random.angles()),
             ..LimbSettings::default()
         };
+        let orientation = random.coin().then(|| random.angles());
         let kind = if random.coin() { TargetKind::Limb(settings) } else { TargetKind::WholeBody };
         let influence = random.one_of(&[0.0, 0.3, 1.0]);
         let enabled = random.chance(0.9);
         let target = Target::new(joint, home, 0.1);
-        rig.targets.push(Target { kind, influence, enabled, motion, ..target });
+        let orientation = orientation.filter(|_| kind != TargetKind::WholeBody);
+        rig.targets.push(Target { kind, orientation, influence, enabled, motion, ..target });
     }
     rig
 }
@@ -295,9 +296,8 @@ fn a_foot_keeps_its_rotation_in_the_world_while_the_pelvis_turns() {
     let shin = figure.lower[1];
     let foot = figure.rig.skeleton.find("left_leg_end").expect("a foot");
     assert_eq!(Limb::ending_at(&figure.rig.skeleton, shin).expect("a leg").hand, Some(foot));
-    let kind =
-        TargetKind::Limb(LimbSettings { orientation: Some(Vec3::ZERO), ..Default::default() });
-    figure.rig.targets[1].kind = kind;
+    figure.rig.targets[1].kind = TargetKind::Limb(LimbSettings::default());
+    figure.rig.targets[1].orientation = Some(Vec3::ZERO);
     let pelvis = figure.pelvis;
     let turn = |pelvis: &mut Joint| {
         pelvis.rotation = Vec3::new(0.1, 0.4, 0.0);
@@ -352,11 +352,13 @@ fn the_missing_angle_of_a_foot_is_the_one_computed_in_f64_and_0_within_its_limit
         let space =
             if case % 4 < 2 { TargetSpace::World } else { TargetSpace::Joint(figure.pelvis) };
         let angles = random.vector(2.5);
-        let settings = LimbSettings { orientation: Some(angles), ..Default::default() };
+        let settings = LimbSettings::default();
         let influence = if case % 5 == 0 { random.within(0.1..1.0) } else { 1.0 };
-        let target = Target { kind: TargetKind::Limb(settings), influence, ..rig.targets[1] };
+        let kind = TargetKind::Limb(settings);
+        let orientation = Some(angles);
+        let target = Target { kind, orientation, influence, ..rig.targets[1] };
         rig.targets[1] = target.in_space(space, &rig.skeleton, 0.0, None);
-        rig.targets[1].limb_mut().expect("a limb").orientation = Some(angles);
+        rig.targets[1].orientation = Some(angles);
         let evaluated = rig.evaluate(0.0);
 
         let to_world = to_world.as_dmat3();

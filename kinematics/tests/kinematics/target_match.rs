@@ -52,7 +52,6 @@ fn settings(random: &mut Random) -> LimbSettings {
         ]),
         pole: Some(Vec3::new(1.0, -2.0, 3.0)),
         twist: random.within(-3.0..3.0),
-        orientation: random.coin().then(|| random.angles()),
         soft_reach: SoftReach::new(0.0, random.one_of(&[1.0, 1.4]), 0.0).expect("in range"),
         ..LimbSettings::default()
     }
@@ -85,6 +84,7 @@ fn a_target_that_moves_to_the_fk_pose_takes_over_without_moving_the_skeleton() {
         rig.targets.push(Target {
             kind,
             space,
+            orientation: random.coin().then(|| random.angles()),
             influence: random.one_of(&[0.0, 0.5, 1.0]),
             ..target
         });
@@ -116,7 +116,9 @@ fn the_evaluated_pose_written_to_the_angles_moves_nothing() {
             settings.soft_reach = SoftReach::default();
         }
         let kind = TargetKind::Limb(settings);
-        rig.targets.push(Target { kind, influence, ..Target::new(forearm, home, 0.1) });
+        let orientation = random.coin().then(|| random.angles());
+        let target = Target::new(forearm, home, 0.1);
+        rig.targets.push(Target { kind, orientation, influence, ..target });
         let before = rig.evaluate(0.0);
         rig.match_fk_to_pose(0, 0.0, &Carried::default());
         let after = rig.evaluate(0.0);

@@ -33,7 +33,7 @@ The file is not changed. The output is one line of JSON, in world space:
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
-foot to that which the target asks for, null if it asks for none. Limb has the figures of a limb's
+foot, or of a whole-body target's joint, to that which the target asks for, null if it asks for none. Limb has the figures of a limb's
 target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
 angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
 the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
@@ -45,26 +45,31 @@ found; it is empty if all targets are reached, and with --fk. Causes: out_of_rea
 rotation_limits, locked, conflict, stalled, lost, singular, out_of_iterations, influence. A solve that
 does not converge is not an error. `ik-arm solve` solves two bones without a file.
 
-  ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --target 15=0.2,0.3,0.4"#,
+  ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --rotation left_hand=0,90,0"#,
     mut_arg("file", |file| file.help(open::input_help("File to pose")))
 )]
 pub struct PoseArgs {
     #[command(flatten)]
     input: InputArgs,
     /// Print what the file has, instead of a pose: its skeletons, animations and targets
-    #[arg(long, conflicts_with_all = ["fk", "solver", "targets"])]
+    #[arg(long, conflicts_with_all = ["fk", "solver", "targets", "rotations"])]
     list: bool,
     /// Time in seconds at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0", value_parser = time)]
     time: f64,
     /// Print the FK pose, without the targets
-    #[arg(long, conflicts_with_all = ["solver", "targets"])]
+    #[arg(long, conflicts_with_all = ["solver", "targets", "rotations"])]
     fk: bool,
     /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a
     /// name or an index. A hand or foot at the end of two bones gets a limb target for its base,
     /// any other joint a whole-body target for its tip; a target of influence 0 gets influence 1
     #[arg(long = "target", value_name = "JOINT=x,y,z")]
     targets: Vec<GivenTarget>,
+    /// Turn the joint of a target to these angles in degrees, as those of a joint, R_z·R_y·R_x, in
+    /// the world; repeatable. Of a limb it is the hand or foot. A joint without a target gets one
+    /// where it is
+    #[arg(long = "rotation", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
+    rotations: Vec<GivenTarget>,
     /// Solve all enabled targets together from the FK pose with this solver, at full influence
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
@@ -109,7 +114,8 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
         return Ok(writeln!(io::stdout(), "{text}")?);
     }
     let Opened { document, order, .. } = opened;
-    let posed = targets::with_targets(&Track::new(&document), args.time, &args.targets, &order)
+    let track = Track::new(&document);
+    let posed = targets::with_targets(&track, args.time, &args.targets, &args.rotations, &order)
         .map_err(|error| CommandError::of_file(file.clone(), error))?;
     let answer = answered(&posed, args, &order, &file)?;
     if let Some(remark) = &answer.remark {
@@ -150,10 +156,11 @@ fn answered(
 
 /// Replaces the joint's index in an error by the index of the same joint in the file.
 fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
-    use SolveError::{NoJoint, Point, TwoBone, TwoTargets, Weight};
+    use SolveError::{CannotOrient, NoJoint, Point, TwoBone, TwoTargets, Weight};
     match &mut error {
         NoJoint(joint)
         | TwoTargets(joint)
+        | CannotOrient { joint, .. }
         | Point { joint, .. }
         | Weight { joint, .. }
         | TwoBone { joint, .. } => {

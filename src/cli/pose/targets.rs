@@ -11,15 +11,16 @@ use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::TargetSpace;
 
-/// A target given on the command line: a joint by name or index, and a position in the world.
+/// What is given on the command line for a target: a joint by name or index, and three numbers, a
+/// position in the world or angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenTarget {
     joint: String,
-    point: Vec3,
+    numbers: Vec3,
 }
 
 #[derive(Debug, Error)]
-#[error("must be a joint and a point, like left_hand=0.3,1.2,0.4")]
+#[error("must be a joint and three numbers, like left_hand=0.3,1.2,0.4")]
 pub struct GivenTargetError;
 
 /// Reasons why given targets cannot be set.
@@ -29,6 +30,8 @@ pub enum SetTargetsError {
     Joint(#[from] JointNameError),
     #[error("joint {0:?} must be given one target, got two")]
     Two(String),
+    #[error("joint {0:?} must have a target for its rotation: no single joint is at its tip")]
+    NoHand(String),
 }
 
 impl FromStr for GivenTarget {
@@ -37,13 +40,14 @@ impl FromStr for GivenTarget {
     fn from_str(text: &str) -> Result<Self, GivenTargetError> {
         // A name may contain "=", a point may not.
         let (joint, point) = text.rsplit_once('=').ok_or(GivenTargetError)?;
-        let point = argument::point(point).map_err(|_| GivenTargetError)?;
-        Ok(Self { joint: joint.to_owned(), point })
+        let numbers = argument::point(point).map_err(|_| GivenTargetError)?;
+        Ok(Self { joint: joint.to_owned(), numbers })
     }
 }
 
-/// The document of a track at `time`, in seconds, with targets at the given positions: those that
-/// their joints have are moved, others are added. `order` has the rig's joints in the file's order.
+/// The document of a track at `time`, in seconds, with targets at the given positions, then with the
+/// given rotations: those that their joints have are changed, others are added. `order` has the
+/// rig's joints in the file's order.
 ///
 /// # Errors
 ///
@@ -52,25 +56,38 @@ pub fn with_targets(
     track: &Track,
     time: f64,
     targets: &[GivenTarget],
+    rotations: &[GivenTarget],
     order: &[JointId],
 ) -> Result<Posed, SetTargetsError> {
     let mut posed = track.at(time);
-    let mut set = Vec::new();
-    for GivenTarget { joint: name, point } in targets {
-        let skeleton = posed.document().skeleton();
-        let joint = find(name, skeleton, order)?;
-        let (document, index) = place(&posed, joint, *point);
-        if set.contains(&index) {
-            return Err(SetTargetsError::Two(skeleton[joint].name.clone()));
+    for (given, is_rotation) in [(targets, false), (rotations, true)] {
+        let mut set = Vec::new();
+        for GivenTarget { joint: name, numbers } in given {
+            let skeleton = posed.document().skeleton();
+            let joint = find(name, skeleton, order)?;
+            let name = || skeleton[joint].name.clone();
+            let (mut document, index) = with_target(&posed, joint);
+            if set.contains(&index) {
+                return Err(SetTargetsError::Two(name()));
+            }
+            set.push(index);
+            let target = &mut document.rig.targets[index];
+            if !is_rotation {
+                *target = target.placed(posed.skeleton(), time, *numbers);
+            } else if target.oriented_joint(skeleton).is_some() {
+                target.orientation = Some(numbers.map(f32::to_radians));
+            } else {
+                return Err(SetTargetsError::NoHand(name()));
+            }
+            posed = track.pose(document, time);
         }
-        set.push(index);
-        posed = track.pose(document, time);
     }
     Ok(posed)
 }
 
-/// Moves the joint's target, or adds one; returns the document and the target's index.
-fn place(posed: &Posed, joint: JointId, point: Vec3) -> (Document, usize) {
+/// The document with an enabled target of the joint in the world, where it is at present; a new one
+/// is at the joint's tip. Returns its index, too.
+fn with_target(posed: &Posed, joint: JointId) -> (Document, usize) {
     let mut document = posed.document().clone();
     let (rig, pose) = (&mut document.rig, posed.skeleton());
     let lower = Limb::for_end(&rig.skeleton, joint).map_or(joint, |limb| limb.lower);
@@ -81,8 +98,7 @@ fn place(posed: &Posed, joint: JointId, point: Vec3) -> (Document, usize) {
     });
     let target = &mut rig.targets[index];
     // On a joint, it would move with the joint when the targets are solved.
-    let in_world = target.in_space(TargetSpace::World, pose, posed.time(), None);
-    *target = in_world.placed(pose, posed.time(), point);
+    *target = target.in_space(TargetSpace::World, pose, posed.time(), None);
     target.enabled = true;
     if target.influence == 0.0 {
         target.influence = 1.0;

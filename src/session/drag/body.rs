@@ -209,7 +209,7 @@ impl GripRing {
         let EvaluatedSkeleton { fk, solved, .. } = posed.evaluated_skeleton();
         // A hand that follows the bone above it keeps its own angles.
         let is_following = |target: &Target| {
-            let follows = target.limb().is_some_and(|limb| limb.orientation.is_none());
+            let follows = target.limb().is_some() && target.orientation.is_none();
             follows && target.joint != joint && rig.end_of(target) == joint
         };
         let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
@@ -229,12 +229,12 @@ impl GripRing {
     }
 
     /// The ring, at the target of a joint and in world space, of the angle about x, y or z of the
-    /// orientation that the target holds. `None` if it holds none, or if there is no hand or foot.
+    /// orientation that the target holds. `None` if it holds none, or for a limb without a hand.
     pub fn of_orientation(posed: &Posed, joint: JointId, axis: RotationAxis) -> Option<Self> {
         let rig = &posed.document().rig;
         let index = rig.target(joint)?;
-        let angles = rig.targets[index].limb()?.orientation?;
-        Limb::ending_at(&rig.skeleton, joint).ok()?.hand?;
+        let angles = rig.targets[index].orientation?;
+        rig.targets[index].oriented_joint(&rig.skeleton)?;
         let turn = Quat::from_rotation_z(angles.z);
         let local = match axis {
             RotationAxis::X => turn * (Quat::from_rotation_y(angles.y) * Vec3::X),
@@ -242,7 +242,7 @@ impl GripRing {
             RotationAxis::Z => Vec3::Z,
         };
         let target = &rig.targets[index];
-        let frame = target.hand_frame(posed.skeleton());
+        let frame = target.orientation_frame(posed.skeleton());
         let axis = target.present_space().rotation(posed.skeleton()) * (frame * local);
         Some(Self { centre: posed.targets().get(index)?.position, axis })
     }

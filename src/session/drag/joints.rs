@@ -53,7 +53,7 @@ pub(in crate::session) fn grab(
             return Some(Drag::of_ring(grip, TurnDrag::new(ring, start, ray)));
         }
         Grip::Orientation(joint, axis) => {
-            let start = target(session, joint)?.limb()?.orientation?[axis.index()];
+            let start = target(session, joint)?.orientation?[axis.index()];
             let drag =
                 TurnDrag::new(GripRing::of_orientation(session.posed(), joint, axis)?, start, ray);
             return Some(Drag::of_ring(grip, drag));
@@ -195,8 +195,7 @@ fn drag_orientation(session: &Session, joint: JointId, axis: RotationAxis, angle
     let Some(mut target) = target(session, joint) else {
         return Outcome::default();
     };
-    let held = target.limb_mut().and_then(|limb| limb.orientation.as_mut());
-    let Some(angles) = held else {
+    let Some(angles) = &mut target.orientation else {
         return Outcome::default();
     };
     angles[axis.index()] = angle;

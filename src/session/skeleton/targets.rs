@@ -151,8 +151,8 @@ pub(in crate::session) fn changed_label(session: &Session, target: &Target) -> &
         "Set Socket twist"
     } else if differs(|limb| limb.pole) {
         "Move pole"
-    } else if differs(|limb| limb.orientation) {
-        "Turn hand"
+    } else if target.orientation != now.orientation {
+        if target.limb().is_some() { "Turn hand" } else { "Turn target" }
     } else if target.limb().map(|it| it.soft_reach) != now.limb().map(|it| it.soft_reach) {
         "Change soft reach"
     } else {

@@ -486,7 +486,7 @@ fn hand_orientation(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
         return;
     };
     let joint = limb.target.joint;
-    let kept = limb.settings.orientation;
+    let kept = limb.target.orientation;
     let choices = [
         (false, "Follow bone", "Turn the hand or foot with the bone above it"),
         (
@@ -511,8 +511,10 @@ fn hand_orientation(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
                 ("Rotate the hand or foot in the target's space", order.shown(angles));
             let channel = limb.keyed(Channel::TargetOrientation(joint));
             euler_sliders(ui, limb.session, (name, tooltip, channel), angles, actions, |angles| {
-                let orientation = Some(order.kept(angles));
-                limb.with(LimbSettings { orientation, ..limb.settings })
+                TargetEdit::SetTarget(Target {
+                    orientation: Some(order.kept(angles)),
+                    ..*limb.target
+                })
             });
         }
         None => {

@@ -77,12 +77,13 @@ fn target(random: &mut Random, rig: &SkeletonRig, joint: JointId, reach: f32) ->
         twist: random.within(-2.0..2.0),
         // No stretch: bones of exported skeletons keep their lengths.
         soft_reach: SoftReach::new(random.within(0.0..0.5), 1.0, 0.1).expect("in range"),
-        orientation: random.coin().then(|| random.angles()),
         ..LimbSettings::default()
     };
+    let orientation = random.coin().then(|| random.angles());
     let kind = if random.coin() { TargetKind::Limb(settings) } else { TargetKind::WholeBody };
     let influence = random.one_of(&[0.0, 0.6, 1.0, 1.0]);
-    Target { kind, influence, motion, ..Target::new(joint, home, 0.1) }
+    let orientation = orientation.filter(|_| kind != TargetKind::WholeBody);
+    Target { kind, orientation, influence, motion, ..Target::new(joint, home, 0.1) }
 }
 
 fn key(random: &mut Random, document: &mut Document, reach: f32) {

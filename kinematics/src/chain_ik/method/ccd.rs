@@ -68,9 +68,7 @@ impl Ccd {
         self.turned.clear();
         if problem.orients {
             let link_of = |effector: &EndEffector| {
-                let base =
-                    effector.link.map_or(config.shifts[effector.tree], |it| config.bases[it]);
-                (config.orientation_of(effector), base)
+                (config.orientation_of(effector), config.base_of(effector))
             };
             self.turned.extend(problem.effectors.iter().map(link_of));
         }
@@ -239,7 +237,7 @@ impl Ccd {
             let effector = &problem.effectors[*effector];
             let off = (tip - effector.target).as_dvec3().length_squared();
             let at = base + rotation * (at - base);
-            let missing = MissingTurn::of_link(effector, rotation * orientation, at);
+            let missing = MissingTurn::new(effector, rotation * orientation, at);
             0.5 * f64::from(effector.weight) * off + missing.map_or(0.0, |it| it.cost())
         };
         problem.below(&problem.links[index]).iter().map(of_effector).sum()

@@ -155,8 +155,7 @@ impl DampedLeastSquares {
     fn look(&mut self, problem: &Problem, config: &Configuration) {
         self.before.copy_from(config);
         self.missing.clear();
-        let missing = |effector| MissingTurn::new(effector, config);
-        self.missing.extend(problem.effectors.iter().map(missing));
+        self.missing.extend(problem.effectors.iter().map(|it| config.missing_turn(it)));
         let rows = rows(problem);
         if self.square.nrows() != rows {
             self.square = DMatrix::zeros(rows, rows);

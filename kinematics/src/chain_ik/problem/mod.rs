@@ -17,8 +17,6 @@ mod build;
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
-use super::configuration::Configuration;
-use super::orientation::MissingTurn;
 use crate::skeleton::{JointId, JointLimits};
 
 pub(super) use build::{Builder, check_target};
@@ -293,26 +291,6 @@ impl Problem {
         self.orients = self.effectors.iter().any(|effector| effector.orientation.is_some());
     }
 
-    /// Brings the points to which tips move to at most `most` from the tips, in the problem's
-    /// units, until the targets are set again. Returns whether a point was farther away.
-    pub fn hold_back(&mut self, config: &Configuration, most: f32) -> bool {
-        let mut is_held_back = false;
-        let most_turn = most / self.turn_length() as f32;
-        for (effector, tip) in self.effectors.iter_mut().zip(&config.tips) {
-            let way = effector.target - *tip;
-            if effector.weight > 0.0 && way.length() > most {
-                effector.target = *tip + way.clamp_length_max(most);
-                is_held_back = true;
-            }
-            let missing = MissingTurn::new(effector, config).map(|missing| missing.turn);
-            if let Some(turn) = missing.filter(|turn| turn.length() > most_turn) {
-                effector.turn_back(turn - turn.clamp_length_max(most_turn), config);
-                is_held_back = true;
-            }
-        }
-        is_held_back
-    }
-
     /// Rotations from links' spaces to their parents', without the links' own rotations.
     pub fn mounts(&self) -> impl Iterator<Item = Quat> + '_ {
         self.links.iter().map(|link| Quat::from_mat3a(&link.mount))
@@ -364,21 +342,6 @@ impl Problem {
 
     fn scaled(&self, v: Vec3) -> Vec3A {
         (v.as_dvec3() * self.unit).as_vec3a()
-    }
-}
-
-impl EndEffector {
-    /// Takes a turn, a rotation vector, from the wanted orientation.
-    fn turn_back(&mut self, turn: Vec3A, config: &Configuration) {
-        let back = Quat::from_scaled_axis((-turn).into());
-        let base = self.link.map_or(config.shifts[self.tree], |link| config.bases[link]);
-        let at = base + config.orientation_of(self) * self.space.translation;
-        if let Some(Orienting { wanted, .. }) = &mut self.orientation {
-            match wanted {
-                Wanted::Rotation(wanted) => *wanted = back * *wanted,
-                Wanted::Aim { point, .. } => *point = at + back * (*point - at),
-            }
-        }
     }
 }
 

@@ -15,8 +15,12 @@
 //! If s is above 0.1·L, the target or the FK pose has jumped, and the step is a run with restarts.
 //! If nothing has changed since a step that ended, its configuration is kept, bit for bit.
 
+use glam::{Quat, Vec3A};
+
 use super::ChainSolver;
+use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::Recorder;
+use crate::chain_ik::problem::{EndEffector, Problem, Wanted};
 use crate::chain_ik::report::{Report, Status};
 use crate::chain_ik::tracker::Tracker;
 use crate::chain_ik::{ChainTarget, SolveError, SolverOptions};
@@ -206,7 +210,7 @@ impl ChainSolver {
         let length = self.problem.world_length();
         let reach = motion + CATCH_UP * length;
         let most_way = self.problem.length_from_world(reach) as f32;
-        let is_far = self.problem.hold_back(&self.config, most_way);
+        let is_far = hold_back(&mut self.problem, &self.config, most_way);
         let most_turn = (POSTURE_RATE * motion / length) as f32;
         tracker.move_to_fk(&self.problem, &mut self.config, most_turn);
         let before = self.config.total_error(&self.problem);
@@ -253,5 +257,38 @@ impl ChainSolver {
         if self.report.status == Status::Iterating {
             self.report.status = Status::Stalled;
         }
+    }
+}
+
+/// Brings the places and orientations to which joints move to at most `most` from where they are, in
+/// the problem's units, until the targets are set again; a turn by φ counts as ℓ φ. Returns whether
+/// one was farther away.
+fn hold_back(problem: &mut Problem, config: &Configuration, most: f32) -> bool {
+    let mut is_held_back = false;
+    let most_turn = most / problem.turn_length() as f32;
+    for (effector, tip) in problem.effectors.iter_mut().zip(&config.tips) {
+        let way = effector.target - *tip;
+        if effector.weight > 0.0 && way.length() > most {
+            effector.target = *tip + way.clamp_length_max(most);
+            is_held_back = true;
+        }
+        let turn = config.missing_turn(effector).map(|missing| missing.turn);
+        if let Some(turn) = turn.filter(|turn| turn.length() > most_turn) {
+            turn_back(effector, turn - turn.clamp_length_max(most_turn), config);
+            is_held_back = true;
+        }
+    }
+    is_held_back
+}
+
+/// Takes a turn, a rotation vector, from the wanted orientation of an end effector.
+fn turn_back(effector: &mut EndEffector, turn: Vec3A, config: &Configuration) {
+    let back = Quat::from_scaled_axis((-turn).into());
+    let at =
+        config.base_of(effector) + config.orientation_of(effector) * effector.space.translation;
+    match effector.orientation.as_mut().map(|orienting| &mut orienting.wanted) {
+        Some(Wanted::Rotation(wanted)) => *wanted = back * *wanted,
+        Some(Wanted::Aim { point, .. }) => *point = at + back * (*point - at),
+        None => {}
     }
 }

@@ -223,8 +223,8 @@ fn turned_hand(random: &mut Random, axis: usize, angle: f32) -> SkeletonRig {
     let pose = rig.skeleton_at(0.0);
     let turn = Quat::from_axis_angle(Vec3::AXES[axis], angle);
     let wanted = pose.rotation_in_world(LOWER).as_quat() * turn;
-    let angles = rig.targets[0].hand_angles(&pose, wanted, Vec3::ZERO);
-    rig.targets[0].limb_mut().expect("a limb").orientation = Some(angles);
+    let angles = rig.targets[0].orientation_angles(&pose, wanted, Vec3::ZERO);
+    rig.targets[0].orientation = Some(angles);
     rig
 }
 

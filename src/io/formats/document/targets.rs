@@ -31,6 +31,11 @@ pub struct TargetFields {
     pinned: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     limb: Option<JsonObject<LimbFields>>,
+    /// The orientation of a whole-body target; that of a limb is in `limb`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotation: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotation_weight: Option<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
     influence: Option<Fraction>,
     weight: Option<Above0>,
@@ -122,8 +127,13 @@ impl TargetFields {
             pinned: target.is_pinned.then_some(true),
             limb: match &target.kind {
                 TargetKind::WholeBody => None,
-                TargetKind::Limb(settings) => Some(JsonObject(LimbFields::new(settings))),
+                TargetKind::Limb(settings) => {
+                    Some(JsonObject(LimbFields::new(settings, target.orientation)))
+                }
             },
+            rotation: target.orientation.filter(|_| target.limb().is_none()).map(JsonPoint),
+            rotation_weight: (target.orientation_weight != 1.0)
+                .then_some(target.orientation_weight.into()),
             influence: (target.influence != 0.0).then_some(target.influence.into()),
             weight: Some(target.weight.into()),
             softness: (target.softness != 0.0).then_some(target.softness.into()),
@@ -135,10 +145,21 @@ impl TargetFields {
     fn target(self, joints: usize, radius: f32) -> Result<Target, FieldError> {
         let joint = joint(self.joint, joints).at("joint")?;
         let default = Target::new(joint, self.home.0, radius);
-        let kind = match self.limb {
-            Some(JsonObject(fields)) => TargetKind::Limb(fields.settings(joints).at("limb")?),
-            None => TargetKind::WholeBody,
+        let (kind, orientation) = match self.limb {
+            Some(_) if self.rotation.is_some() => {
+                return Err("must be `limb.orientation` for a limb").at("rotation");
+            }
+            Some(JsonObject(fields)) => {
+                let orientation = fields.orientation.map(Vec3::from);
+                (TargetKind::Limb(fields.settings(joints).at("limb")?), orientation)
+            }
+            None => (TargetKind::WholeBody, self.rotation.map(Vec3::from)),
         };
+        let orientation_weight = value_or(self.rotation_weight, default.orientation_weight);
+        if orientation_weight < 0.0 {
+            return Err(format!("must be 0 or more, got {orientation_weight}"))
+                .at("rotation_weight");
+        }
         let motion = self.motion.map(|JsonObject(fields)| fields.motion(default.motion));
         let softness = value_or(self.softness, default.softness);
         if !(0.0..1.0).contains(&softness) {
@@ -149,6 +170,8 @@ impl TargetFields {
             pin: value_or(self.pin, default.pin),
             is_pinned: self.pinned.unwrap_or(default.is_pinned),
             kind,
+            orientation,
+            orientation_weight,
             influence: value_or(self.influence, default.influence),
             weight: value_or(self.weight, default.weight),
             softness,
@@ -160,7 +183,7 @@ impl TargetFields {
 }
 
 impl LimbFields {
-    fn new(settings: &LimbSettings) -> Self {
+    fn new(settings: &LimbSettings, orientation: Option<Vec3>) -> Self {
         let default = LimbSettings::default();
         let map =
             MapFields { singular: settings.map.singular().into(), up: settings.map.up().into() };
@@ -171,7 +194,7 @@ impl LimbFields {
             map: (settings.map != default.map).then_some(JsonObject(map)),
             twist: Some(settings.twist.into()),
             soft_reach: Some(JsonObject(SoftReachFields::new(settings.soft_reach))),
-            orientation: settings.orientation.map(JsonPoint),
+            orientation: orientation.map(JsonPoint),
             fk_stretch: (settings.fk_stretch != default.fk_stretch)
                 .then_some(settings.fk_stretch.into()),
         }
@@ -192,7 +215,6 @@ impl LimbFields {
             map: map.transpose().at("map")?.unwrap_or_default(),
             twist: value_or(self.twist, default.twist),
             soft_reach: soft_reach.transpose().at("soft_reach")?.unwrap_or_default(),
-            orientation: self.orientation.map(Vec3::from),
             fk_stretch: value_or(self.fk_stretch, default.fk_stretch),
         })
     }

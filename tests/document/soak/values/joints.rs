@@ -189,13 +189,13 @@ impl Values<'_> {
         let influence = self.one_of(&[0.0, 0.4, 1.0, 1.5]);
         let kind = if self.chance(0.5) { TargetKind::WholeBody } else { self.limb() };
         let space = self.space();
+        let orientation = self.chance(0.4).then(|| self.small_point());
         let target = Target::new(joint, home, 1.0);
-        Target { weight, enabled, motion, influence, kind, space, ..target }
+        Target { weight, enabled, motion, influence, kind, space, orientation, ..target }
     }
 
     fn limb(&mut self) -> TargetKind {
         let reference = self.elbow_reference();
-        let orientation = self.chance(0.5).then(|| self.small_point());
         let (twist, pole_space) = (self.number(4.0), self.space());
         let pole = self.chance(0.7).then(|| self.small_point());
         let soft_reach = self.soft_reach();
@@ -203,7 +203,6 @@ impl Values<'_> {
             reference,
             pole,
             twist,
-            orientation,
             pole_space,
             soft_reach,
             ..Default::default()

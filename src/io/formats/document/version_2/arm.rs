@@ -98,6 +98,7 @@ impl Arm {
         let target = &mut rig.targets[0];
         (target.home, target.pin, target.is_pinned) = (self.cursor, self.pin, self.is_pinned);
         target.influence = self.influence;
+        target.orientation = turns_hand.then_some(hand);
         if let Some(limb) = target.limb_mut() {
             (limb.reference, limb.twist) = match self.state.transported {
                 Some(frame) if is_transported && !is_unkeyed => {
@@ -111,7 +112,6 @@ impl Arm {
             limb.pole = Some(self.pole);
             limb.soft_reach = self.soft_reach;
             limb.fk_stretch = self.fk.stretch;
-            limb.orientation = turns_hand.then_some(hand);
         }
         rig.posture = posture.map(|posture| {
             let limbs = [(SkeletonRig::LOWER, posture)].into_iter().collect();

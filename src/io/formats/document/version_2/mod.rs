@@ -138,7 +138,7 @@ fn convert_limbs(figure: &mut Document) {
     for index in 0..figure.rig.targets.len() {
         let target = figure.rig.targets[index];
         let axes = figure.rig.limb_axes(target.joint);
-        let frame = Mat3A::from_quat(target.hand_frame(figure.skeleton()));
+        let frame = Mat3A::from_quat(target.orientation_frame(figure.skeleton()));
         let Some(limb) = figure.rig.targets[index].limb_mut() else { continue };
         if let Some(axes) = axes.filter(|_| limb.reference == TwistReferenceKind::Stereographic) {
             let in_root = |direction: Vec3| axes.transpose() * direction;
@@ -153,7 +153,8 @@ fn convert_limbs(figure: &mut Document) {
             let rotation = Mat3A::from_euler(glam::EulerRot::ZYX, z, y, x);
             nearest_angles(frame.transpose() * rotation * frame, near)
         };
-        limb.orientation = limb.orientation.map(|angles| turned(angles, angles));
+        let orientation = target.orientation.map(|angles| turned(angles, angles));
+        figure.rig.targets[index].orientation = orientation;
         let channel = Channel::TargetOrientation(target.joint);
         let mut last = None;
         let knots = figure.keys.track(channel).map_or(Vec::new(), |keys| keys.knots().to_vec());

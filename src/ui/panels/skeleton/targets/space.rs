@@ -20,7 +20,9 @@ pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut
         tooltip: "Choose the joints that the target moves",
         shown: if is_limb { "Limb" } else { "Whole body" },
     };
-    let mut set = |kind| actions.push(TargetEdit::SetTarget(Target { kind, ..target }));
+    // The orientation is about another joint then.
+    let changed = Target { orientation: None, ..target };
+    let mut set = |kind| actions.push(TargetEdit::SetTarget(Target { kind, ..changed }));
     choice.show(ui, |list| {
         let by_body = "Solve from the root, together with the other whole-body targets";
         if list.item(!is_limb, "Whole body", by_body, None) {
