@@ -105,6 +105,7 @@ impl Configuration {
     }
 
     /// The turn that the joint of an end effector misses; `None` if no orientation is wanted.
+    #[inline]
     pub fn missing_turn(&self, effector: &EndEffector) -> Option<MissingTurn> {
         effector.orientation?;
         MissingTurn::new(effector, self.orientation_of(effector), self.base_of(effector))
@@ -129,11 +130,15 @@ impl Configuration {
             let residual = tip.as_dvec3() - effector.target.as_dvec3();
             0.5 * f64::from(effector.weight) * residual.length_squared()
         });
-        costs.sum::<f64>() + self.missing_turns(problem).map(|missing| missing.cost()).sum::<f64>()
+        let turned = || self.missing_turns(problem).map(|missing| missing.cost()).sum::<f64>();
+        costs.sum::<f64>() + if problem.orients { turned() } else { 0.0 }
     }
 
     /// Largest angle of a missing turn, in radians.
     pub fn orientation_error(&self, problem: &Problem) -> f64 {
+        if !problem.orients {
+            return 0.0;
+        }
         let angles = self.missing_turns(problem).map(|missing| f64::from(missing.turn.length()));
         angles.fold(0.0, f64::max)
     }
@@ -174,15 +179,18 @@ impl Configuration {
     /// Sum of the distances from tips to requested targets, in world units, and of the missing turns
     /// times ℓ.
     pub fn total_error(&self, problem: &Problem) -> f64 {
+        let placed: f64 = problem.residuals(&self.tips).map(DVec3::length).sum();
+        if !problem.orients {
+            return placed;
+        }
         let turns = self.missing_turns(problem).map(|missing| f64::from(missing.turn.length()));
-        let turned = problem.turn_length_in_world() * turns.sum::<f64>();
-        problem.residuals(&self.tips).map(DVec3::length).sum::<f64>() + turned
+        placed + problem.turn_length_in_world() * turns.sum::<f64>()
     }
 
     /// Weighted root mean square distance from tips to targets, in the problem's units; a missing
     /// turn by φ counts as the distance ℓ φ.
     pub fn distance(&self, problem: &Problem) -> f64 {
-        (2.0 * self.cost(problem) / problem.weights()).sqrt()
+        (2.0 * self.cost(problem) / problem.weights).sqrt()
     }
 
     /// Weighted mean distance from tips to targets, in the problem's units. One far target does not
@@ -192,11 +200,14 @@ impl Configuration {
             f64::from(effector.weight) * f64::from(effector.target.distance(*tip))
         };
         let sum: f64 = problem.effectors.iter().zip(&self.tips).map(of_effector).sum();
+        if !problem.orients {
+            return sum / problem.weights;
+        }
         let length = problem.turn_length().max(f64::MIN_POSITIVE);
         let turned = self
             .missing_turns(problem)
             .map(|missing| f64::from(missing.stiffness * missing.turn.length()) / length);
-        (sum + turned.sum::<f64>()) / problem.weights()
+        (sum + turned.sum::<f64>()) / problem.weights
     }
 
     /// Largest distance of a joint or tip from its position in another configuration.

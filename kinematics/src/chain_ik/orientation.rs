@@ -38,6 +38,7 @@ pub(super) struct MissingTurn {
 impl MissingTurn {
     /// The turn that the joint of an end effector misses whose link has the orientation G and this
     /// base; `None` if no orientation is wanted.
+    #[inline(never)]
     pub fn new(effector: &EndEffector, orientation: Quat, base: Vec3A) -> Option<Self> {
         let orienting = effector.orientation?;
         let stiffness = orienting.stiffness;

@@ -107,7 +107,6 @@ impl ChainSolver {
         let mut builder = Builder::new(skeleton, targets, options)?;
         let mut problem = Problem::default();
         builder.fill(&mut problem, skeleton, targets)?;
-        problem.set_targets(targets);
         Ok((builder, problem))
     }
 
@@ -379,7 +378,7 @@ impl ChainSolver {
         let error = self.config.error(&self.problem);
         let turn = self.config.orientation_error(&self.problem);
         (self.report.error, self.report.orientation_error) = (saturate(error), saturate(turn));
-        let turned = turn * self.problem.turn_length_in_world();
+        let turned = if turn > 0.0 { turn * self.problem.turn_length_in_world() } else { 0.0 };
         self.report.status = if error.max(turned) <= self.tolerance {
             Status::Converged
         } else {

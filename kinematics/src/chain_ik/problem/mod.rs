@@ -178,6 +178,8 @@ pub struct Problem {
     heaviest: f32,
     /// True if a target asks for an orientation.
     pub orients: bool,
+    /// Sum of the weights of places and orientations, above 0.
+    pub weights: f64,
 }
 
 /// The length ℓ by which turns are compared with distances, in lengths of the chain: a turn by one
@@ -204,16 +206,6 @@ impl Problem {
     /// ℓ in world units.
     pub fn turn_length_in_world(&self) -> f64 {
         TURN_LENGTH * self.world_length()
-    }
-
-    /// Sum of the weights of places and orientations.
-    pub fn weights(&self) -> f64 {
-        let square = self.turn_length().powi(2).max(f64::MIN_POSITIVE);
-        let of_effector = |effector: &EndEffector| {
-            let stiffness = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
-            f64::from(effector.weight) + stiffness / square
-        };
-        self.effectors.iter().map(of_effector).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// Indices of the end effectors at a link and below.
@@ -289,6 +281,13 @@ impl Problem {
             });
         }
         self.orients = self.effectors.iter().any(|effector| effector.orientation.is_some());
+        let square = self.turn_length().powi(2).max(f64::MIN_POSITIVE);
+        let weight = |effector: &EndEffector| {
+            let stiffness = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
+            f64::from(effector.weight) + stiffness / square
+        };
+        let weights: f64 = self.effectors.iter().map(weight).sum();
+        self.weights = weights.max(f64::MIN_POSITIVE);
     }
 
     /// Rotations from links' spaces to their parents', without the links' own rotations.

@@ -311,9 +311,11 @@ fn explain(
     causes: &[Diagnosis],
     actions: &mut Actions,
 ) {
+    let away = || format!("{} away", text::short(report.error));
     let text = match missing_rotation(report) {
         Some(missing) if report.error <= session.rig().tolerance() => missing,
-        _ => format!("{} away", text::short(report.error)),
+        Some(missing) => format!("{}, {missing}", away()),
+        None => away(),
     };
     let heading = RichText::new(format!("{end} not reached: {text}"));
     ui.label(heading.color(style::accent(ui)));
