@@ -218,6 +218,9 @@ impl Document {
             *pole = TURN * *pole;
             turned.push(Channel::TargetPole(joint));
         }
+        if let Some(aim) = target.aim.as_mut().filter(|_| is_in_world) {
+            aim.point = TURN * aim.point;
+        }
         if let Some(angles) = target.orientation.as_mut().filter(|_| is_in_world) {
             *angles = turned_angles(frame, *angles, *angles);
             is_oriented = true;

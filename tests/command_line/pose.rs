@@ -115,6 +115,7 @@ struct Target {
     tip: Vec3,
     error: f32,
     rotation_error_deg: Option<f32>,
+    aim_error_deg: Option<f32>,
     limb: Option<Limb>,
 }
 
@@ -163,7 +164,7 @@ fn an_answer_has_exactly_these_keys_in_this_order() {
             r#""base":[0.0,0.0,5.0],"tip":[0.0,1.0,5.0],"transform":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"#,
             r#"0.0,0.0,1.0,0.0,0.0,0.0,5.0,1.0]}],"#,
             r#""targets":[{"joint":0,"kind":"whole_body","influence":0.0,"target":[0.0,1.0,5.0],"#,
-            r#""tip":[0.0,1.0,5.0],"error":0.0,"rotation_error_deg":null,"limb":null}],"#,
+            r#""tip":[0.0,1.0,5.0],"error":0.0,"rotation_error_deg":null,"aim_error_deg":null,"limb":null}],"#,
             r#""report":null,"why":[]}"#,
             "\n"
         )
@@ -729,6 +730,25 @@ fn a_whole_body_target_turns_its_joint_to_a_rotation() {
     let same = Scene::document(&document).pose(&[]);
     let apart = rotation(same.joint("head")).angle_between(rotation(answer.joint("head")));
     assert!(apart < 1e-3, "{apart}");
+}
+
+#[test]
+fn a_head_looks_at_a_point() {
+    let scene = Scene::document(&example("human"));
+    let point = Vec3::new(0.5, 1.5, 1.2);
+    let answer = scene.pose(&["--aim", "head=0.5,1.5,1.2"]);
+    let target = answer.targets.last().expect("a target of the head");
+    assert_eq!(target.rotation_error_deg, None);
+    assert!(target.aim_error_deg.expect("an aim") < 0.06, "{target:?}");
+    let head = answer.joint("head");
+    let looks = rotation(head) * glam::DVec3::Z;
+    let off = looks.angle_between((point - head.base).as_dvec3()).to_degrees();
+    assert!(off < 0.06, "{off}");
+
+    let refused = scene.run(&["--aim", "left_hand=0,1,0"]);
+    let expected = "the target of joint \"left_hand\" must turn a joint: a limb's turns the one joint \
+                    at its tip, if there is one, and aims at nothing";
+    assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));
 }
 
 #[test]

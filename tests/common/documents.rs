@@ -15,7 +15,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton}
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::Stereographic;
 use ik_arm::kinematics::two_bone::TwoBone;
-use ik_arm::rig::{LimbSettings, Posture, PosturedJoint, TargetKind, TargetSpace};
+use ik_arm::rig::{Aim, LimbSettings, Posture, PosturedJoint, TargetKind, TargetSpace};
 use ik_arm::session::FileAction;
 
 use super::Random;
@@ -36,6 +36,10 @@ pub fn document(random: &mut Random) -> Document {
             let (home, weight) = (random.finite_vector(), random.positive());
             let enabled = random.coin();
             let (kind, influence) = (target_kind(random), random.within(0.0..1.0));
+            let turns = random.below(3);
+            let orientation = (turns == 1).then(|| random.finite_vector());
+            let aims = turns == 2 && kind == TargetKind::WholeBody;
+            let aim = aims.then(|| Aim { axis: random.direction(), point: random.finite_vector() });
             let (space, softness) = (TargetSpace::World, random.within(0.0..0.99));
             rig.targets.push(Target {
                 joint,
@@ -44,7 +48,8 @@ pub fn document(random: &mut Random) -> Document {
                 pin: if random.coin() { random.finite_vector() } else { home },
                 is_pinned: random.coin(),
                 kind,
-                orientation: random.coin().then(|| random.finite_vector()),
+                orientation,
+                aim,
                 orientation_weight: if random.coin() { 1.0 } else { random.positive() },
                 influence,
                 weight,

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Target};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::twist::TwistReferenceKind;
-use ik_arm::rig::{LimbSettings, TargetKind, TargetSpace, TargetSpaceError};
+use ik_arm::rig::{Aim, LimbSettings, TargetKind, TargetSpace, TargetSpaceError};
 
 use crate::common::Random;
 use crate::common::skeletons::{shake, transform};
@@ -247,6 +247,27 @@ fn deleting_a_joint_leaves_the_targets_that_were_on_it_where_they_are() {
                 assert!(place.distance(place_after) <= 2e-5 * size);
                 assert!(pole.distance(pole_after) <= 2e-5 * size);
             }
+        }
+    }
+}
+
+#[test]
+fn an_aim_stays_at_its_point_in_the_world_when_its_space_changes() {
+    let mut random = Random(381);
+    for _ in 0..200 {
+        let mut driver = Driver::new();
+        shake(&mut random, driver.rig.skeleton_mut());
+        driver.rig.skeleton_mut().set_transform(transform(&mut random)).expect("finite");
+        let (pose, wheel) = (driver.rig.skeleton.clone(), driver.wheel);
+        let aim = Some(Aim { axis: Vec3::Z, point: random.vector(2.0) });
+        let target = Target::new(driver.forearms[0], random.vector(1.0), 0.1);
+        let target = Target { aim, ..target };
+        let before = target.aim_point_in_world(&pose).expect("an aim");
+        let moved = target.in_space(TargetSpace::Joint(wheel), &pose, 0.0, None);
+        let pinned = moved.with_pinned(true, &pose, 0.0);
+        for after in [moved, pinned, pinned.with_pinned(false, &pose, 0.0)] {
+            let point = after.aim_point_in_world(&pose).expect("an aim");
+            assert!(point.distance(before) < 1e-4 * before.length().max(1.0), "{point}, {before}");
         }
     }
 }

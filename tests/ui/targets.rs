@@ -415,8 +415,7 @@ fn a_whole_body_target_can_turn_its_joint() {
         bench.session().posed().evaluated_skeleton().solved.rotation_in_world(head)
     };
     let before = turned(&bench);
-    bench.reveal(Role::CheckBox, "Rotation");
-    bench.click(Role::CheckBox, "Rotation");
+    choose(&mut bench, "Target turns", "To a rotation");
     assert!(turned(&bench).angle_between(before) < 1e-3, "it keeps the rotation that it has");
     let held = held(&bench, "head").expect("angles");
     bench.reveal(Role::Slider, "Target rotation y");
@@ -434,9 +433,34 @@ fn a_whole_body_target_can_turn_its_joint() {
     assert_eq!(self::held(&bench, "head"), None);
     let options = SolverOptions::new(Method::Fabrik);
     bench.apply([SolverEdit::SetSolver(options)]);
-    bench.reveal(Role::CheckBox, "Rotation");
-    bench.click(Role::CheckBox, "Rotation");
-    assert_eq!(self::held(&bench, "head"), None, "the box is disabled");
+    choose(&mut bench, "Target turns", "To a rotation");
+    assert_eq!(self::held(&bench, "head"), None, "the choice is disabled");
+}
+
+#[test]
+fn a_whole_body_target_can_aim_an_axis_of_its_joint() {
+    let mut bench = human();
+    select(&mut bench, "head");
+    bench.key(Key::T);
+    bench.settle();
+    let head = bench.joint("head");
+    let solved = |bench: &Bench| bench.session().posed().evaluated_skeleton().solved.clone();
+    let before = solved(&bench).rotation_in_world(head);
+    choose(&mut bench, "Target turns", "Aims at a point");
+    assert!(solved(&bench).rotation_in_world(head).angle_between(before) < 1e-3);
+    bench.reveal(Role::Slider, "Aim x");
+    bench.enter("Aim x", "0.4");
+    let aim = target(&bench, "head").aim.expect("an aim");
+    let off = |bench: &Bench, axis: Vec3| {
+        let pose = solved(bench);
+        let looks = pose.rotation_in_world(head).as_quat() * axis;
+        looks.angle_between(aim.point - pose.base(head))
+    };
+    assert_eq!((aim.axis, aim.point.x), (Vec3::Z, 0.4));
+    assert!(off(&bench, Vec3::Z) < 2e-3, "{}", off(&bench, Vec3::Z));
+
+    choose(&mut bench, "Target turns", "Free");
+    assert_eq!((target(&bench, "head").aim, held(&bench, "head")), (None, None));
 }
 
 #[test]

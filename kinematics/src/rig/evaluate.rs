@@ -56,8 +56,8 @@ pub struct TargetReport {
     /// head that the target leads.
     pub error: f32,
     /// Angle in radians from the rotation of the target's [oriented
-    /// joint](Target::oriented_joint) to that which the target asks for, in the evaluated pose;
-    /// `None` without an orientation.
+    /// joint](Target::oriented_joint) to that which the target asks for, or from the axis of its aim
+    /// to the point, in the evaluated pose; `None` without both.
     pub rotation_error: Option<f32>,
     /// The solver's report.
     pub outcome: TargetOutcome,
@@ -81,7 +81,7 @@ pub enum TargetOutcome {
 }
 
 impl TargetReport {
-    /// True if the joint is farther from the rotation that its target asks for than
+    /// True if the joint is farther from the rotation or aim that its target asks for than
     /// [`SkeletonRig::ROTATION_TOLERANCE`].
     pub fn misses_rotation(&self) -> bool {
         self.rotation_error.is_some_and(|angle| angle > SkeletonRig::ROTATION_TOLERANCE)
@@ -162,8 +162,12 @@ impl SkeletonRig {
     }
 
     /// Angle in radians from the rotation of a target's [oriented joint](Target::oriented_joint) to
-    /// that which the target asks for, in a pose; `None` without an orientation.
+    /// that which the target asks for, or from the axis of its aim to the point, in a pose; `None`
+    /// without both.
     pub fn rotation_error(&self, target: &Target, pose: &Skeleton) -> Option<f32> {
+        if let Some(angle) = aim_error(target, pose) {
+            return Some(angle);
+        }
         let wanted = target.orientation_in_world(pose)?.as_dquat();
         let joint = target.oriented_joint(pose).filter(|joint| pose.joint(*joint).is_some())?;
         let DQuat { x, y, z, w } = pose.rotation_in_world(joint).inverse() * wanted;
@@ -277,15 +281,20 @@ impl SkeletonRig {
     pub(super) fn tip_target(&self, target: &Target, fk: &Skeleton, time: f64) -> ChainTarget {
         let point = self.softened(target, fk, target.in_world(fk, time));
         let placed = ChainTarget::at(target.joint, point).with_weight(target.weight);
-        // The orientation of a limb's target is that of its hand, which no chain turns.
-        match target.orientation_in_world(fk).filter(|_| target.limb().is_none()) {
+        if target.limb().is_some() {
+            // The orientation of a limb's target is that of its hand, which no chain turns.
+            return placed;
+        }
+        let rotation = target.orientation_in_world(fk).map(|rotation| {
+            Orientation::Rotation(fk.rotation_from_world(rotation.as_dquat()).as_quat())
+        });
+        let aim = target.aim.zip(target.aim_point_in_world(fk));
+        let aim = aim.map(|(aim, point)| Orientation::Aim { axis: aim.axis, point });
+        match rotation.or(aim) {
+            Some(orientation) => placed
+                .with_orientation(orientation)
+                .with_orientation_weight(target.orientation_weight),
             None => placed,
-            Some(rotation) => {
-                let rotation = fk.rotation_from_world(rotation.as_dquat()).as_quat();
-                placed
-                    .with_orientation(Orientation::Rotation(rotation))
-                    .with_orientation_weight(target.orientation_weight)
-            }
         }
     }
 
@@ -314,6 +323,18 @@ impl SkeletonRig {
         let (softened, _) = soft.between(0.0, most, distance);
         (base + way * (softened / distance)).as_vec3()
     }
+}
+
+/// Angle in radians from the axis of a target's aim to its point, in skeleton space, in a pose; `None`
+/// without an aim.
+fn aim_error(target: &Target, pose: &Skeleton) -> Option<f32> {
+    let (aim, point) = target.aim.zip(target.aim_point_in_world(pose))?;
+    pose.joint(target.joint)?;
+    let space = pose.pose_in_skeleton().full(target.joint);
+    let to_skeleton = pose.transform().as_daffine3().inverse();
+    let way = to_skeleton.transform_point3(point.as_dvec3()) - space.translation.as_dvec3();
+    let axis = space.transform_vector3(aim.axis).as_dvec3();
+    Some(axis.cross(way).length().atan2(axis.dot(way)) as f32)
 }
 
 impl Target {

@@ -419,7 +419,9 @@ impl RootSpace {
     /// The pose with a triangle; its reach is `None`.
     fn pose(&self, triangle: LimbTriangle, stretch: f32) -> TwoBonePose {
         let LimbTriangle { aim, distance, along, out, .. } = triangle;
-        let [direction, outward] = [aim.pointer, aim.outward].map(|it| self.direction(it));
+        // Frames of joints are rounded to f32, which leaves directions a little off the length 1.
+        let unit = |direction| self.direction(direction).normalize_or_zero();
+        let [direction, outward] = [aim.pointer, aim.outward].map(unit);
         let pointer = pointer(direction);
         let [distance, along, out] = [distance, along, out].map(|length| length * self.scale);
         TwoBonePose {

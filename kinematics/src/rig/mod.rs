@@ -33,5 +33,5 @@ pub use pops::{RigMoment, RigPop};
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{BoneSkin, Skin, SkinMeshError, SkinSource};
 pub use tapered_cylinder::TaperedCylinder;
-pub use target::{LimbSettings, Target, TargetKind, TargetMotion, TargetPath, TargetSpace};
+pub use target::{Aim, LimbSettings, Target, TargetKind, TargetMotion, TargetPath, TargetSpace};
 pub use up_axis::UpAxis;

@@ -27,7 +27,10 @@ pub struct Target {
     /// · R_x in the frame of that joint: the hand or foot at the end of a limb, or the joint of a
     /// whole-body target. `None` for a hand that follows the lower bone, and for any rotation.
     pub orientation: Option<Vec3>,
-    /// Weight of the orientation of a whole-body target, relative to weights of places: a turn by 1
+    /// An axis of a whole-body target's joint that is aimed at a point; not together with an
+    /// orientation.
+    pub aim: Option<Aim>,
+    /// Weight of the orientation or aim of a whole-body target, relative to weights of places: a turn by 1
     /// radian counts like a distance of a quarter of the chain's length. 0 or more.
     pub orientation_weight: f32,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
@@ -41,6 +44,15 @@ pub struct Target {
     pub enabled: bool,
     /// Motion in time, in the target's space.
     pub motion: TargetMotion,
+}
+
+/// The line from a joint's base along one of its axes goes through a point, as eyes look at something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// The axis in the joint's own space, of any length above 0.
+    pub axis: Vec3,
+    /// The point, in [`Target::present_space`].
+    pub point: Vec3,
 }
 
 /// The joints that a target moves, and how.
@@ -68,6 +80,7 @@ impl Target {
             is_pinned: false,
             kind: TargetKind::WholeBody,
             orientation: None,
+            aim: None,
             orientation_weight: 1.0,
             influence: 0.0,
             weight: 1.0,
@@ -98,9 +111,12 @@ impl Target {
         }
     }
 
-    /// True if the orientation and the settings of a limb target are finite.
+    /// True if the orientation, the aim and the settings of a limb target are finite.
     pub fn has_finite_kind(&self) -> bool {
+        let is_aim =
+            |Aim { axis, point }: Aim| axis.is_finite() && axis != Vec3::ZERO && point.is_finite();
         self.orientation.is_none_or(Vec3::is_finite)
+            && self.aim.is_none_or(is_aim)
             && self.limb().is_none_or(LimbSettings::is_finite)
     }
 
@@ -177,14 +193,23 @@ impl Target {
         placed.with_orientation_of(&self, pose, None)
     }
 
-    /// The target with the orientation in the world that `other` has; its angles are the equivalent
+    /// The target with the orientation and aim in the world that `other` has; its angles are the equivalent
     /// ones nearest to `near`, or to those that it has.
     #[must_use]
     fn with_orientation_of(mut self, other: &Self, pose: &Skeleton, near: Option<Vec3>) -> Self {
         let rotation = other.orientation_in_world(pose);
         let near = near.or(self.orientation).unwrap_or_default();
         self.orientation = rotation.map(|rotation| self.orientation_angles(pose, rotation, near));
+        if let (Some(aim), Some(point)) = (&mut self.aim, other.aim_point_in_world(pose)) {
+            let space = if self.is_pinned { TargetSpace::World } else { self.space };
+            aim.point = space.point_from_world(pose, point);
+        }
         self
+    }
+
+    /// The point of the aim in the world, for a pose of the skeleton; `None` without an aim.
+    pub fn aim_point_in_world(&self, pose: &Skeleton) -> Option<Vec3> {
+        Some(self.present_space().to_world(pose).transform_point3(self.aim?.point))
     }
 
     /// The orientation in the world, for a pose of the skeleton; `None` without one.

@@ -25,7 +25,7 @@ The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
    "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
-    "error":E,"rotation_error_deg":A,"limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
+    "error":E,"rotation_error_deg":A,"aim_error_deg":A,"limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
     "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
     "along":H,"out":O,"shoulder_angle_deg":A,"elbow_angle_deg":A}|null}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false},
@@ -33,7 +33,8 @@ The file is not changed. The output is one line of JSON, in world space:
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
-foot, or of a whole-body target's joint, to that which the target asks for, null if it asks for none. Limb has the figures of a limb's
+foot, or of a whole-body target's joint, to that which the target asks for, null if it asks for none; aim_error_deg is the angle from the axis
+that is aimed at a point to the point. Limb has the figures of a limb's
 target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
 angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
 the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
@@ -52,13 +53,13 @@ pub struct PoseArgs {
     #[command(flatten)]
     input: InputArgs,
     /// Print what the file has, instead of a pose: its skeletons, animations and targets
-    #[arg(long, conflicts_with_all = ["fk", "solver", "targets", "rotations"])]
+    #[arg(long, conflicts_with_all = ["fk", "solver", "targets", "rotations", "aims"])]
     list: bool,
     /// Time in seconds at which keys and moving targets are evaluated
     #[arg(long, value_name = "S", allow_hyphen_values = true, default_value = "0", value_parser = time)]
     time: f64,
     /// Print the FK pose, without the targets
-    #[arg(long, conflicts_with_all = ["solver", "targets", "rotations"])]
+    #[arg(long, conflicts_with_all = ["solver", "targets", "rotations", "aims"])]
     fk: bool,
     /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a
     /// name or an index. A hand or foot at the end of two bones gets a limb target for its base,
@@ -70,6 +71,11 @@ pub struct PoseArgs {
     /// where it is
     #[arg(long = "rotation", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     rotations: Vec<GivenTarget>,
+    /// Aim the joint of a whole-body target at a point in the world; repeatable. The axis is that of
+    /// the target's aim, else z of the joint's own space, where faces look. A joint without a target
+    /// gets one where it is
+    #[arg(long = "aim", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
+    aims: Vec<GivenTarget>,
     /// Solve all enabled targets together from the FK pose with this solver, at full influence
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
@@ -115,7 +121,8 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
     }
     let Opened { document, order, .. } = opened;
     let track = Track::new(&document);
-    let posed = targets::with_targets(&track, args.time, &args.targets, &args.rotations, &order)
+    let given = [&args.targets, &args.rotations, &args.aims].map(Vec::as_slice);
+    let posed = targets::with_targets(&track, args.time, given, &order)
         .map_err(|error| CommandError::of_file(file.clone(), error))?;
     let answer = answered(&posed, args, &order, &file)?;
     if let Some(remark) = &answer.remark {

@@ -43,6 +43,7 @@ struct TargetLine {
     tip: Vec3,
     error: f32,
     rotation_error_deg: Option<f32>,
+    aim_error_deg: Option<f32>,
     limb: Option<LimbLine>,
 }
 
@@ -139,6 +140,7 @@ impl<'a> PoseLine<'a> {
         let targets = enabled.map(|target| {
             let (point, tip) = (target.in_world(skeleton, time), pose.tip(target.joint));
             let error = point.as_dvec3().distance(tip.as_dvec3());
+            let missing = rig.rotation_error(target, skeleton).map(f32::to_degrees);
             TargetLine {
                 joint: index_of[target.joint.index()],
                 kind: match target.kind {
@@ -149,7 +151,8 @@ impl<'a> PoseLine<'a> {
                 target: point,
                 tip,
                 error: (error as f32).min(f32::MAX),
-                rotation_error_deg: rig.rotation_error(target, skeleton).map(f32::to_degrees),
+                rotation_error_deg: missing.filter(|_| target.aim.is_none()),
+                aim_error_deg: missing.filter(|_| target.aim.is_some()),
                 limb: limb(target).as_ref().map(LimbLine::new),
             }
         });

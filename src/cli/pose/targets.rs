@@ -6,10 +6,10 @@ use glam::Vec3;
 use thiserror::Error;
 
 use crate::cli::argument;
-use crate::document::{Document, Posed, Track};
+use crate::document::{Document, Posed, Target, Track};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, Skeleton};
-use crate::rig::TargetSpace;
+use crate::rig::{Aim, TargetSpace};
 
 /// What is given on the command line for a target: a joint by name or index, and three numbers, a
 /// position in the world or angles in degrees.
@@ -30,8 +30,11 @@ pub enum SetTargetsError {
     Joint(#[from] JointNameError),
     #[error("joint {0:?} must be given one target, got two")]
     Two(String),
-    #[error("joint {0:?} must have a target for its rotation: no single joint is at its tip")]
-    NoHand(String),
+    #[error(
+        "the target of joint {0:?} must turn a joint: a limb's turns the one joint at its tip, if \
+         there is one, and aims at nothing"
+    )]
+    NotThere(String),
 }
 
 impl FromStr for GivenTarget {
@@ -45,8 +48,8 @@ impl FromStr for GivenTarget {
     }
 }
 
-/// The document of a track at `time`, in seconds, with targets at the given positions, then with the
-/// given rotations: those that their joints have are changed, others are added. `order` has the
+/// The document of a track at `time`, in seconds, with targets that are given positions, rotations and
+/// points to aim at: those that their joints have are changed, others are added. `order` has the
 /// rig's joints in the file's order.
 ///
 /// # Errors
@@ -55,12 +58,12 @@ impl FromStr for GivenTarget {
 pub fn with_targets(
     track: &Track,
     time: f64,
-    targets: &[GivenTarget],
-    rotations: &[GivenTarget],
+    given: [&[GivenTarget]; 3],
     order: &[JointId],
 ) -> Result<Posed, SetTargetsError> {
     let mut posed = track.at(time);
-    for (given, is_rotation) in [(targets, false), (rotations, true)] {
+    let set_all = [set_place, set_rotation, set_aim];
+    for (given, set_on) in given.into_iter().zip(set_all) {
         let mut set = Vec::new();
         for GivenTarget { joint: name, numbers } in given {
             let skeleton = posed.document().skeleton();
@@ -71,18 +74,33 @@ pub fn with_targets(
                 return Err(SetTargetsError::Two(name()));
             }
             set.push(index);
-            let target = &mut document.rig.targets[index];
-            if !is_rotation {
-                *target = target.placed(posed.skeleton(), time, *numbers);
-            } else if target.oriented_joint(skeleton).is_some() {
-                target.orientation = Some(numbers.map(f32::to_radians));
-            } else {
-                return Err(SetTargetsError::NoHand(name()));
+            if !set_on(&mut document.rig.targets[index], &posed, *numbers) {
+                return Err(SetTargetsError::NotThere(name()));
             }
             posed = track.pose(document, time);
         }
     }
     Ok(posed)
+}
+
+fn set_place(target: &mut Target, posed: &Posed, point: Vec3) -> bool {
+    *target = target.placed(posed.skeleton(), posed.time(), point);
+    true
+}
+
+/// Returns whether the target turns a joint.
+fn set_rotation(target: &mut Target, posed: &Posed, degrees: Vec3) -> bool {
+    target.orientation = Some(degrees.map(f32::to_radians));
+    target.aim = None;
+    target.oriented_joint(posed.skeleton()).is_some()
+}
+
+/// Returns whether the target can aim its joint.
+fn set_aim(target: &mut Target, _: &Posed, point: Vec3) -> bool {
+    let axis = target.aim.map_or(Vec3::Z, |aim| aim.axis);
+    target.aim = Some(Aim { axis, point });
+    target.orientation = None;
+    target.limb().is_none()
 }
 
 /// The document with an enabled target of the joint in the world, where it is at present; a new one

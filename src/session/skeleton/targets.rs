@@ -151,6 +151,8 @@ pub(in crate::session) fn changed_label(session: &Session, target: &Target) -> &
         "Set Socket twist"
     } else if differs(|limb| limb.pole) {
         "Move pole"
+    } else if target.aim != now.aim {
+        "Aim target"
     } else if target.orientation != now.orientation {
         if target.limb().is_some() { "Turn hand" } else { "Turn target" }
     } else if target.limb().map(|it| it.soft_reach) != now.limb().map(|it| it.soft_reach) {
@@ -293,7 +295,7 @@ fn fault(target: &Target) -> Option<String> {
         Some("A limb with the reference Pole must have a pole".to_owned())
     } else if !target.has_finite_kind() {
         Some(
-            "The twist, pole, orientation and FK stretch of a limb's target must be finite"
+            "The twist, pole, orientation, aim and FK stretch of a target must be finite"
                 .to_owned(),
         )
     } else {

@@ -1,7 +1,7 @@
 //! The screen that gizmos are painted on: projection from world to screen, distances and colours,
-//! and the lines of a locked axis.
+//! and the lines of a locked axis and of aims.
 
-use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
 
 use crate::document::{Camera, Projection, Ray};
@@ -87,6 +87,30 @@ pub(in crate::ui) fn locked_axis(
     for axis in (0..3).filter(|axis| is_free(*axis)) {
         let stroke = Stroke::new(1.5, style::colour(colours[axis]));
         line(painter, screen, drag.at(), Vec3::AXES[axis], stroke);
+    }
+}
+
+/// Draws the lines from the joints of targets that aim to the points that they aim at, those of the
+/// selected joint in the accent colour.
+pub(in crate::ui) fn aims(
+    painter: &Painter,
+    ui: &Ui,
+    screen: &ScreenProjection,
+    session: &Session,
+) {
+    const DASH: f32 = 6.0;
+    let pose = &session.posed().evaluated_skeleton().solved;
+    let selected = session.selection().active();
+    for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
+        let ends = [Some(pose.base(target.joint)), target.aim_point_in_world(pose)];
+        let [Some(from), Some(to)] = ends.map(|point| point.and_then(|it| screen.place(it))) else {
+            continue;
+        };
+        let is_selected = selected == Some(target.joint);
+        let weak = ui.visuals().weak_text_color();
+        let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
+        painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
+        painter.circle_stroke(to, 5.0, stroke);
     }
 }
 

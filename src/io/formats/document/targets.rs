@@ -15,7 +15,7 @@ use crate::io::json::{
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
 use crate::kinematics::twist::{Stereographic, TwistReferenceKind};
-use crate::rig::{LimbSettings, TargetKind, TargetSpace};
+use crate::rig::{Aim, LimbSettings, TargetKind, TargetSpace};
 
 #[derive(Serialize, Deserialize)]
 pub struct TargetFields {
@@ -34,6 +34,8 @@ pub struct TargetFields {
     /// The orientation of a whole-body target; that of a limb is in `limb`.
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aim: Option<JsonObject<AimFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation_weight: Option<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,6 +63,12 @@ struct LimbFields {
     orientation: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fk_stretch: Option<Above0>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct AimFields {
+    axis: JsonPoint,
+    point: JsonPoint,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -132,6 +140,9 @@ impl TargetFields {
                 }
             },
             rotation: target.orientation.filter(|_| target.limb().is_none()).map(JsonPoint),
+            aim: target.aim.map(|Aim { axis, point }| {
+                JsonObject(AimFields { axis: axis.into(), point: point.into() })
+            }),
             rotation_weight: (target.orientation_weight != 1.0)
                 .then_some(target.orientation_weight.into()),
             influence: (target.influence != 0.0).then_some(target.influence.into()),
@@ -145,6 +156,10 @@ impl TargetFields {
     fn target(self, joints: usize, radius: f32) -> Result<Target, FieldError> {
         let joint = joint(self.joint, joints).at("joint")?;
         let default = Target::new(joint, self.home.0, radius);
+        let aim = self.aim.map(|JsonObject(fields)| fields.aim()).transpose().at("aim")?;
+        if aim.is_some() && (self.rotation.is_some() || self.limb.is_some()) {
+            return Err("must not be beside `rotation` or `limb`").at("aim");
+        }
         let (kind, orientation) = match self.limb {
             Some(_) if self.rotation.is_some() => {
                 return Err("must be `limb.orientation` for a limb").at("rotation");
@@ -171,6 +186,7 @@ impl TargetFields {
             is_pinned: self.pinned.unwrap_or(default.is_pinned),
             kind,
             orientation,
+            aim,
             orientation_weight,
             influence: value_or(self.influence, default.influence),
             weight: value_or(self.weight, default.weight),
@@ -179,6 +195,16 @@ impl TargetFields {
             motion: motion.unwrap_or(default.motion),
             ..default
         })
+    }
+}
+
+impl AimFields {
+    fn aim(self) -> Result<Aim, FieldError> {
+        let [axis, point] = [self.axis, self.point].map(Vec3::from);
+        if axis == Vec3::ZERO {
+            return Err("must not be zero").at("axis");
+        }
+        Ok(Aim { axis, point })
     }
 }
 

@@ -10,7 +10,7 @@ use ik_arm::kinematics::skin::{
 };
 use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{
-    BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
+    Aim, BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
     SkinSource, TargetKind, TargetSpace,
 };
 
@@ -190,8 +190,10 @@ impl Values<'_> {
         let kind = if self.chance(0.5) { TargetKind::WholeBody } else { self.limb() };
         let space = self.space();
         let orientation = self.chance(0.4).then(|| self.small_point());
+        let aims = kind == TargetKind::WholeBody && orientation.is_none() && self.chance(0.5);
+        let aim = aims.then(|| Aim { axis: Vec3::Z, point: self.small_point() });
         let target = Target::new(joint, home, 1.0);
-        Target { weight, enabled, motion, influence, kind, space, orientation, ..target }
+        Target { weight, enabled, motion, influence, kind, space, orientation, aim, ..target }
     }
 
     fn limb(&mut self) -> TargetKind {

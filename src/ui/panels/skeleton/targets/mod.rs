@@ -2,6 +2,7 @@
 //! whether it is reached and, if not, why, with what helps.
 
 pub(in crate::ui) mod space;
+mod turn;
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -13,9 +14,7 @@ use crate::kinematics::skeleton::JointId;
 use crate::rig::{TargetOutcome, TargetReport};
 use crate::session::{Actions, PlaybackAction, SelectAction, Session, TargetEdit};
 use crate::ui::panels::limb;
-use crate::ui::widgets::{
-    self, AXES, Choice, NumberField, PointSliders, Slider, euler_sliders, text,
-};
+use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, Slider, text};
 use crate::ui::{labels, pose_summary, style};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
@@ -95,7 +94,7 @@ pub(in crate::ui) fn selected(
     ui.horizontal(|ui| limb::pin(ui, session, &target, actions));
     space::of_target(ui, session, &target, actions);
     if target.limb().is_none() {
-        rotation(ui, session, target, actions);
+        turn::show(ui, session, target, step, actions);
         weight(ui, session, target, actions);
     }
     path(ui, target, actions);
@@ -123,49 +122,6 @@ fn place(ui: &mut Ui, session: &Session, target: Target, step: f32, actions: &mu
         channel: Some(Channel::of_point(&target)),
     };
     place.show(ui, session, actions, |home| TargetEdit::SetTarget(target.with_home(home)));
-}
-
-/// Shows whether a whole-body target turns its joint, and how.
-fn rotation(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    let set = |target| TargetEdit::SetTarget(target);
-    let method = session.rig().solver.method;
-    let cannot = (!method.can_orient()).then(|| {
-        format!(
-            "{} turns no joint to a rotation; choose another method on the page Solver",
-            method.title()
-        )
-    });
-    let mut turns = target.orientation.is_some();
-    let is_usable = turns || cannot.is_none();
-    let checkbox = ui.add_enabled(is_usable, egui::Checkbox::new(&mut turns, "Rotation"));
-    let checkbox = checkbox.on_hover_text("Turn the joint to a rotation, too");
-    let checkbox = checkbox.on_disabled_hover_text(cannot.unwrap_or_default());
-    if checkbox.changed() {
-        let pose = &session.posed().evaluated_skeleton().solved;
-        let present = pose.rotation_in_world(target.joint).as_quat();
-        let angles = target.orientation_angles(pose, present, pose[target.joint].rotation);
-        actions.push(set(Target { orientation: turns.then_some(angles), ..target }));
-    }
-    let Some(angles) = target.orientation else { return };
-    let of_target = (
-        "Target rotation",
-        "Rotate the joint in the target's space",
-        Some(Channel::TargetOrientation(target.joint)),
-    );
-    euler_sliders(ui, session, of_target, angles, actions, |angles| {
-        set(Target { orientation: Some(angles), ..target })
-    });
-    let weight = NumberField {
-        name: "Rotation weight",
-        value: target.orientation_weight,
-        unit: "",
-        step: 0.1,
-        digits: 2,
-        tooltip: "Weigh the rotation against places: 1 radian counts like a quarter of the chain",
-    };
-    weight.row(ui, session, "Rotation weight", actions, |weight: f32| {
-        set(Target { orientation_weight: weight.max(0.0), ..target })
-    });
 }
 
 fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
@@ -367,7 +323,7 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
     }
 }
 
-/// The rotation that is missing, in words; `None` for a hand that is turned as its target asks.
+/// The rotation that is missing, in words; `None` for a joint that is turned as its target asks.
 fn missing_rotation(report: &TargetReport) -> Option<String> {
     let angle = report.rotation_error.filter(|_| report.misses_rotation())?;
     Some(format!("{} of its rotation missing", text::degrees(angle)))
