@@ -99,18 +99,21 @@ impl Wrenches {
             let effector = &problem.effectors[index];
             (effector.target - config.tips[index]) * effector.weight
         };
-        let moment = |_, missing: &MissingTurn| missing.turn * missing.stiffness;
+        let moment = |index: usize| {
+            let missing = config.missing_turn(&problem.effectors[index])?;
+            Some((missing, missing.turn * missing.stiffness))
+        };
         self.apply_transpose(problem, config, force, moment, descent);
     }
 
     /// Writes Jᵀ F for every link, and the sum of forces on every tree. `force` gives the force F
-    /// at the tip of an end effector, `moment` the moment on one that misses a turn.
+    /// at the tip of an end effector, `moment` the turn that it misses and the moment about it.
     pub fn apply_transpose(
         &mut self,
         problem: &Problem,
         config: &Configuration,
         force: impl Fn(usize) -> Vec3A,
-        moment: impl Fn(usize, &MissingTurn) -> Vec3A,
+        moment: impl Fn(usize) -> Option<(MissingTurn, Vec3A)>,
         Coordinates { angles, shifts }: &mut Coordinates,
     ) {
         self.0.clear();
@@ -126,8 +129,8 @@ impl Wrenches {
             if let Some(link) = effector.link {
                 self.add(link, force, config.tips[index].cross(force));
             }
-            if let Some(missing) = config.missing_turn(effector) {
-                let (force, moment, at) = missing.wrench(moment(index, &missing));
+            if let Some((missing, moment)) = moment(index) {
+                let (force, moment, at) = missing.wrench(moment);
                 shifts[effector.tree] += force;
                 if let Some(link) = effector.link {
                     self.add(link, force, moment + at.cross(force));

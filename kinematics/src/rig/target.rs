@@ -200,8 +200,8 @@ impl Target {
         let rotation = other.orientation_in_world(pose);
         let near = near.or(self.orientation).unwrap_or_default();
         self.orientation = rotation.map(|rotation| self.orientation_angles(pose, rotation, near));
+        let space = self.present_space();
         if let (Some(aim), Some(point)) = (&mut self.aim, other.aim_point_in_world(pose)) {
-            let space = if self.is_pinned { TargetSpace::World } else { self.space };
             aim.point = space.point_from_world(pose, point);
         }
         self

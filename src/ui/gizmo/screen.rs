@@ -102,10 +102,9 @@ pub(in crate::ui) fn aims(
     let pose = &session.posed().evaluated_skeleton().solved;
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
-        let ends = [Some(pose.base(target.joint)), target.aim_point_in_world(pose)];
-        let [Some(from), Some(to)] = ends.map(|point| point.and_then(|it| screen.place(it))) else {
-            continue;
-        };
+        let Some(point) = target.aim_point_in_world(pose) else { continue };
+        let ends = [pose.base(target.joint), point].map(|end| screen.place(end));
+        let [Some(from), Some(to)] = ends else { continue };
         let is_selected = selected == Some(target.joint);
         let weak = ui.visuals().weak_text_color();
         let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });

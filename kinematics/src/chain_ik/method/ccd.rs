@@ -20,7 +20,7 @@
 //! L. Wang, C. Chen, *A combined optimization method for solving the inverse kinematics problem of
 //! mechanical manipulators*, 1991.
 
-use glam::{Mat3A, Quat, Vec3A};
+use glam::{Mat3A, Quat, Vec3, Vec3A};
 
 use crate::chain_ik::align::{PointPair, align, align_best, align_within};
 use crate::chain_ik::configuration::Configuration;
@@ -125,10 +125,7 @@ impl Ccd {
             return self.rotate_with_orientations(problem, config, index);
         }
         let rotation = if link.limits.is_limited() {
-            let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
-            let axes = Mat3A::from_quat(parent * self.mounts[index])
-                * JointAngles(config.angles[index]).axes();
-            let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+            let axes = axes(self.mounted(problem, config, index), config.angles[index]);
             align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs)
         } else {
             let rotation = align(&self.pairs);
@@ -154,13 +151,11 @@ impl Ccd {
         let link = &problem.links[index];
         let places = self.pairs.len();
         self.add_pairs_of_turns(problem, index);
-        let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
-        let mounted = parent * self.mounts[index];
+        let mounted = self.mounted(problem, config, index);
         let before = config.angles[index];
-        let axes = Mat3A::from_quat(mounted) * JointAngles(before).axes();
         let mut rotation = if link.limits.is_limited() {
-            let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-            align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs.clone())
+            let (axes, pairs) = (axes(mounted, before), &mut self.pairs.clone());
+            align_within(&link.limits, axes, &mut config.angles[index], pairs)
         } else {
             align_best(&self.pairs)
         };
@@ -168,18 +163,18 @@ impl Ccd {
         let mut halvings = 0;
         while self.cost_below(problem, config, index, rotation) > cost {
             halvings += 1;
+            if halvings == HALVINGS {
+                (config.angles[index], rotation) = (before, Quat::IDENTITY);
+                break;
+            }
             if link.limits.is_limited() {
                 let angles = link.limits.project(before.lerp(config.angles[index], 0.5));
-                config.angles[index] = if halvings < HALVINGS { angles } else { before };
+                config.angles[index] = angles;
                 let own = |angles| Quat::from_mat3a(&JointAngles(angles).matrix());
-                let turned = own(config.angles[index]) * own(before).inverse();
+                let turned = own(angles) * own(before).inverse();
                 rotation = mounted * turned * mounted.inverse();
             } else {
                 rotation = Quat::IDENTITY.slerp(rotation, 0.5);
-            }
-            if halvings == HALVINGS {
-                rotation = Quat::IDENTITY;
-                break;
             }
         }
         let base = config.bases[index];
@@ -243,6 +238,13 @@ impl Ccd {
         problem.below(&problem.links[index]).iter().map(of_effector).sum()
     }
 
+    /// Rotation from a link's space to skeleton space, without the link's own rotation.
+    fn mounted(&self, problem: &Problem, config: &Configuration, index: usize) -> Quat {
+        let parent = problem.links[index].parent;
+        let parent = parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
+        parent * self.mounts[index]
+    }
+
     /// Applies the sweep's rotations to the configuration.
     fn update(&mut self, problem: &Problem, config: &mut Configuration) {
         for (index, link) in problem.links.iter().enumerate() {
@@ -250,16 +252,20 @@ impl Ccd {
                 self.rotations[index] = self.rotations[parent] * self.rotations[index];
             }
             config.orientations[index] = if link.limits.is_limited() {
-                let parent =
-                    link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
                 let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
-                (parent * self.mounts[index] * own).normalize()
+                (self.mounted(problem, config, index) * own).normalize()
             } else {
                 (self.rotations[index] * config.orientations[index]).normalize()
             };
         }
         update_points(problem, config);
     }
+}
+
+/// Rotation axes of a link's three angles in skeleton space.
+fn axes(mounted: Quat, angles: Vec3) -> [Vec3A; 3] {
+    let axes = Mat3A::from_quat(mounted) * JointAngles(angles).axes();
+    [axes.x_axis, axes.y_axis, axes.z_axis]
 }
 
 /// Updates the positions of joints and tips from the links' orientations.

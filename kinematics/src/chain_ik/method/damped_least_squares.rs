@@ -337,8 +337,10 @@ impl DampedLeastSquares {
             let weight = problem.effectors[effector].weight.sqrt();
             Vec3A::from_slice(&forces[place_row(problem, effector)..]) * weight
         };
-        let moment = |effector: usize, missing: &MissingTurn| {
-            Vec3A::from_slice(&forces[turn_row(effector)..]) * missing.stiffness.sqrt()
+        let moment = |effector: usize| {
+            let missing = self.missing[effector]?;
+            let row = Vec3A::from_slice(&forces[turn_row(effector)..]);
+            Some((missing, row * missing.stiffness.sqrt()))
         };
         self.wrenches.apply_transpose(problem, config, force, moment, &mut self.step);
         true

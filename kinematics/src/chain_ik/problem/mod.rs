@@ -255,13 +255,12 @@ impl Problem {
     }
 
     pub fn set_targets(&mut self, targets: &[ChainTarget]) {
-        let farthest = self.farthest();
+        let (farthest, square) = (self.farthest(), self.turn_length().powi(2));
         for (effector, target) in self.effectors.iter_mut().zip(targets) {
             let origin = self.trees[effector.tree].origin;
             let place = |point: Vec3| {
                 (self.to_skeleton.transform_point3(point.as_dvec3()) - origin) * self.unit
             };
-            let square = (TURN_LENGTH * f64::from(self.length)).powi(2) as f32;
             effector.requested = place(target.point);
             effector.target = effector.requested.clamp_length_max(effector.max_distance).as_vec3a();
             effector.orientation = target.orientation.map(|orientation| Orienting {
@@ -277,11 +276,11 @@ impl Problem {
                         Wanted::Aim { axis, point: point.as_vec3a() }
                     }
                 },
-                stiffness: target.orientation_weight / self.heaviest * square,
+                stiffness: target.orientation_weight / self.heaviest * square as f32,
             });
         }
         self.orients = self.effectors.iter().any(|effector| effector.orientation.is_some());
-        let square = self.turn_length().powi(2).max(f64::MIN_POSITIVE);
+        let square = square.max(f64::MIN_POSITIVE);
         let weight = |effector: &EndEffector| {
             let stiffness = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
             f64::from(effector.weight) + stiffness / square
