@@ -35,6 +35,15 @@ fn with_targets() -> Bench {
     bench
 }
 
+/// The Human with a whole-body target that was added to its head by T; the head is selected.
+fn with_head_target() -> Bench {
+    let mut bench = human();
+    select(&mut bench, "head");
+    bench.key(Key::T);
+    bench.settle();
+    bench
+}
+
 fn select(bench: &mut Bench, name: &str) {
     let joint = bench.joint(name);
     bench.apply([SelectAction::Joints(vec![joint])]);
@@ -406,10 +415,7 @@ fn ctrl_snaps_a_held_orientation_and_auto_key_keys_it() {
 
 #[test]
 fn a_whole_body_target_can_turn_its_joint() {
-    let mut bench = human();
-    select(&mut bench, "head");
-    bench.key(Key::T);
-    bench.settle();
+    let mut bench = with_head_target();
     let turned = |bench: &Bench| {
         let head = bench.joint("head");
         bench.session().posed().evaluated_skeleton().solved.rotation_in_world(head)
@@ -439,10 +445,7 @@ fn a_whole_body_target_can_turn_its_joint() {
 
 #[test]
 fn a_whole_body_target_can_aim_an_axis_of_its_joint() {
-    let mut bench = human();
-    select(&mut bench, "head");
-    bench.key(Key::T);
-    bench.settle();
+    let mut bench = with_head_target();
     let head = bench.joint("head");
     let solved = |bench: &Bench| bench.session().posed().evaluated_skeleton().solved.clone();
     let before = solved(&bench).rotation_in_world(head);

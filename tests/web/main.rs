@@ -29,6 +29,12 @@ fn hand_on_screen(browser: &Browser) -> [i32; 2] {
     [634.0 + 0.1336 * view, MENU + (0.5 - 0.0088) * view].map(|it| it.round() as i32)
 }
 
+/// Clicks on the empty view, which gives the keyboard to the page.
+fn click_beside_the_hand(browser: &Browser) {
+    let [x, y] = hand_on_screen(browser);
+    browser.click([x - 250, y - 120]);
+}
+
 fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
 }
@@ -77,8 +83,7 @@ fn figures_are_opened_from_files_and_a_document_is_downloaded() {
     let glb = block_on(io::glb(&human, None, &Progress::default())).expect("a figure");
 
     let browser = Browser::open("", folder.path());
-    let [x, y] = hand_on_screen(&browser);
-    browser.click([x - 250, y - 120]);
+    click_beside_the_hand(&browser);
     browser.drop_file("human.glb", &glb);
     // Joints of a file have no targets, and so no limb whose pose is told.
     browser.eventually("the figure", |browser| browser.pose().is_null().then_some(()));
@@ -132,8 +137,7 @@ fn native_picture(session: &Session, width: u32, height: u32) -> RgbaImage {
 fn pictures_of_the_page_are_those_of_the_program_on_a_computer() {
     let folder = tempfile::tempdir().expect("a folder");
     let browser = Browser::open("", folder.path());
-    let hand = hand_on_screen(&browser);
-    browser.click([hand[0] - 250, hand[1] - 120]);
+    click_beside_the_hand(&browser);
     browser.press_with_ctrl("p");
     let bytes = browser.downloaded(&folder.path().join("ik-arm.png"));
     let page = image::load_from_memory(&bytes).expect("a picture").into_rgba8();
@@ -162,8 +166,7 @@ fn pictures_of_the_page_are_those_of_the_program_on_a_computer() {
 fn the_page_goes_on_while_a_motion_is_exported() {
     let folder = tempfile::tempdir().expect("a folder");
     let browser = Browser::open("#example=walk", folder.path());
-    let hand = hand_on_screen(&browser);
-    browser.click([hand[0] - 250, hand[1] - 120]);
+    click_beside_the_hand(&browser);
     browser.run(
         "window.longest = 0; window.frames = 0; let last;
          const look = now => {

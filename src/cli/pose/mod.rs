@@ -25,7 +25,8 @@ The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
    "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
-    "error":E,"rotation_error_deg":A,"aim_error_deg":A,"limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
+    "error":E,"rotation_error_deg":A,"aim_error_deg":A,
+    "limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
     "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
     "along":H,"out":O,"shoulder_angle_deg":A,"elbow_angle_deg":A}|null}, …],
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false},
@@ -33,9 +34,9 @@ The file is not changed. The output is one line of JSON, in world space:
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
-foot, or of a whole-body target's joint, to that which the target asks for, null if it asks for none; aim_error_deg is the angle from the axis
-that is aimed at a point to the point. Limb has the figures of a limb's
-target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
+foot, or of a whole-body target's joint, to that which the target asks for; aim_error_deg is the
+angle from the axis that is aimed to its point. Both are null if the target asks for none. Limb has the
+figures of a limb's target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
 angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
 the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
 for other targets, and with --fk and --solver. The report is that of --solver, or
