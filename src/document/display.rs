@@ -71,6 +71,8 @@ pub enum Overlay {
     SkinWeights,
     /// The skin three times side by side, once for each way of blending joints.
     CompareSkinning,
+    /// The bones, through the skin, coloured by the stiffness of their joints.
+    Stiffness,
 }
 
 impl Overlay {
@@ -104,6 +106,7 @@ impl Overlay {
             Self::Wireframe => "wireframe",
             Self::SkinWeights => "skin_weights",
             Self::CompareSkinning => "compare_skinning",
+            Self::Stiffness => "stiffness",
         }
     }
 
@@ -126,8 +129,8 @@ impl Overlay {
     pub const LIMB: [Self; 5] =
         [Self::Cylinders, Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
-    /// Other poses, and the skin.
-    pub const POSE: [Self; 7] = [
+    /// Other poses, the skin, and properties of joints.
+    pub const POSE: [Self; 8] = [
         Self::FkPose,
         Self::ByItself,
         Self::Skin,
@@ -135,6 +138,7 @@ impl Overlay {
         Self::Wireframe,
         Self::SkinWeights,
         Self::CompareSkinning,
+        Self::Stiffness,
     ];
 
     /// Overlays that show motion over time.
@@ -173,6 +177,11 @@ impl Display {
             self.shown &= !bit(overlay);
         }
         self
+    }
+
+    /// True if the bones are drawn although the skin is shown.
+    pub fn shows_bones_in_skin(self) -> bool {
+        self.shows(Overlay::Bones) || self.shows(Overlay::Stiffness)
     }
 
     /// The overlays that are shown.

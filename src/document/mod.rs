@@ -144,7 +144,8 @@ impl Document {
 
     /// True if the shown skin hides the bones.
     pub fn hides_bones(&self) -> bool {
-        let is_shown = self.display.shows(Overlay::Skin) && !self.display.shows(Overlay::Bones);
+        let display = self.display;
+        let is_shown = display.shows(Overlay::Skin) && !display.shows_bones_in_skin();
         is_shown && self.rig.skin.as_ref().is_some_and(|skin| skin.mesh().is_ok())
     }
 

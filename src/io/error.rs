@@ -189,8 +189,8 @@ pub fn without_position(error: &serde_json::Error) -> String {
 
 /// Replaces the middle of a long message by `…`.
 pub fn shortened(message: String) -> String {
-    const START: usize = 260;
-    const END: usize = 120;
+    const START: usize = 400;
+    const END: usize = 160;
     let count = message.chars().count();
     if count <= START + END {
         return message;

@@ -108,6 +108,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Bones => "Toggle bones",
         Overlay::Wireframe => "Toggle wireframe",
         Overlay::SkinWeights => "Toggle skin weights",
+        Overlay::Stiffness => "Toggle stiffness",
         Overlay::CompareSkinning => "Toggle comparison of skinning",
         Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",

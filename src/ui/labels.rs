@@ -90,6 +90,7 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Bones => ("Bones", "Show the bones through the skin"),
         Overlay::Wireframe => ("Wireframe", "Show the edges of the skin's triangles"),
         Overlay::SkinWeights => ("Weights", "Colour the skin by the weights of the selected joint"),
+        Overlay::Stiffness => ("Stiffness", "Colour the bones by the stiffness of their joints"),
         Overlay::CompareSkinning => {
             ("Compare", "Show the skin three times, once for each way of blending")
         }

@@ -67,6 +67,7 @@ pub fn document(random: &mut Random) -> Document {
     rig.solver.tolerance = random.coin().then(|| random.positive());
     rig.solver.damping = random.positive();
     rig.solver.step = random.positive();
+    rig.solver.posture_rate = random.positive();
     rig.solver.root = random.one_of(&Root::ALL);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
     let ring = PathKind::Ring(WavyRing {
@@ -253,6 +254,7 @@ fn skeleton(random: &mut Random) -> Skeleton {
                 let (a, b) = (random.finite(), random.finite());
                 random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
             })),
+            stiffness: Vec3::from_array([(); 3].map(|()| random.within(0.0..1.0))),
             locked: random.coin(),
             connected: random.coin(),
             radius: random.finite().abs(),

@@ -75,6 +75,10 @@ examples! {
             joint: JointId::new(INNER),
             limits: JointLimits::new([None, Some(Limit { min: -0.1, max: 0.1 }), None]),
         }];
+        SetStiffness: [JointEdit::SetStiffness {
+            joint: JointId::new(INNER),
+            stiffness: Vec3::splat(0.6),
+        }];
         SetLocked: [
             JointEdit::SetLocked { joint: JointId::new(INNER), locked: true },
             JointEdit::SetLocked { joint: JointId::new(AIMED), locked: true },

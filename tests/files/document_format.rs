@@ -261,7 +261,8 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
              `pointer`, `inner_limit`, `outer_limit`, `elbow_circle`, `grid_xy`, `grid_xz`, \
              `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `paths`, `onion_skins`, \
              `singularity_globe`, `twist_references`, `cylinders`, `hand`, `frames`, `fk_pose`, \
-             `by_itself`, `skin`, `bones`, `wireframe`, `skin_weights`, `compare_skinning`",
+             `by_itself`, `skin`, `bones`, `wireframe`, `skin_weights`, `compare_skinning`, \
+             `stiffness`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {
@@ -338,6 +339,15 @@ fn an_invalid_value_is_named_with_the_rule() {
             joints("{\"name\":\"a\",\"frame\":[2,0,0,0,1,0,0,0,1]}"),
             "line 3, column 21: skeleton.joints[0].frame: the frame of joint 0 must be a \
              right-handed orthonormal basis",
+        ),
+        (
+            joints("{\"name\":\"a\",\"stiffness\":[0,1,0]}"),
+            "line 3, column 25: skeleton.joints[0].stiffness: the stiffness of joint 0 must be 0 or \
+             more and below 1, got [0, 1, 0]",
+        ),
+        (
+            "\"solver\":{\"posture_rate\":-1}".to_owned(),
+            "line 2, column 26: solver.posture_rate: must be 0 or more, got -1",
         ),
         (
             joints(limit),

@@ -17,7 +17,7 @@ use ik_arm::session::{
 
 use crate::bench::{Bench, LARGE, SMALL};
 use crate::common::documents::{example, open_example};
-use ik_arm::kinematics::skeleton::{JointId, JointLimits};
+use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits};
 
 /// A root with three joints in a chain, built by pressing buttons.
 fn built() -> Bench {
@@ -510,6 +510,36 @@ fn lengthening_a_bone_moves_the_children_on_its_tip() {
     let skeleton = &bench.session().skeleton();
     assert!((skeleton.joints()[2].axis.length() - 2.5).abs() < 1e-6);
     assert!(skeleton.base(JointId::new(3)).distance(skeleton.tip(JointId::new(2))) < 1e-6);
+}
+
+#[test]
+fn a_joint_is_made_stiff_as_a_whole_or_about_one_axis() {
+    let mut bench = built();
+    select(&mut bench, "joint_1");
+    let stiffness = |bench: &Bench| bench.session().skeleton().joints()[2].stiffness;
+    bench.reveal(Role::Slider, "Stiffness");
+    bench.enter("Stiffness", "0.5");
+    assert_eq!(stiffness(&bench), Vec3::splat(0.5));
+    bench.click(Role::DisclosureTriangle, "Stiffness by angle");
+    bench.reveal(Role::Slider, "Stiffness y");
+    bench.enter("Stiffness y", "7");
+    assert_eq!(stiffness(&bench), Vec3::new(0.5, Joint::MAX_STIFFNESS, 0.5));
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    assert_eq!(stiffness(&bench), Vec3::ZERO);
+}
+
+#[test]
+fn the_posture_rate_is_set_on_the_solver_page() {
+    let mut bench = built();
+    bench.click(Role::Button, "Add target");
+    bench.reveal(Role::SpinButton, "Posture rate");
+    bench.click(Role::SpinButton, "Posture rate");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text("0".to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.session().rig().solver.posture_rate, 0.0);
 }
 
 #[test]

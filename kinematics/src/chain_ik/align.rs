@@ -63,12 +63,13 @@ pub(super) fn align_best(pairs: &[PointPair]) -> Quat {
 
 /// Sets each Euler angle in turn, x first, to its best value within its limits, which never
 /// increases the weighted squared distance. Rotates the points `from` of the pairs and returns the
-/// total rotation.
+/// total rotation. With a `part` below 1, each angle changes by that part of its way alone.
 ///
 /// `axes` are the rotation axes of the three angles before the call.
 pub(super) fn align_within(
     limits: &JointLimits,
     axes: [Vec3A; 3],
+    part: f32,
     angles: &mut Vec3,
     pairs: &mut [PointPair],
 ) -> Quat {
@@ -78,13 +79,13 @@ pub(super) fn align_within(
         let by = match limits.room(*angles, about) {
             Some(room) => {
                 let from = angles[about.index()];
-                angles[about.index()] += best_within(best, *room.start(), *room.end());
+                angles[about.index()] += part * best_within(best, *room.start(), *room.end());
                 *angles = limits.project(*angles);
                 angles[about.index()] - from
             }
             None => {
-                angles[about.index()] += best;
-                best
+                angles[about.index()] += part * best;
+                part * best
             }
         };
         if by != 0.0 {

@@ -160,7 +160,7 @@ impl Configuration {
                 });
                 effector.weight * arm.length_squared() + of_turn
             });
-            squares.sum::<f32>()
+            link.compliance.max_element() * squares.sum::<f32>()
         };
         let turning: f32 = problem.links.iter().zip(&self.bases).map(of_link).sum();
         turning + problem.inertia_of_shifts()
@@ -263,6 +263,13 @@ impl Coordinates {
         angles.for_each(|(angles, other)| *angles -= *other);
         let shifts = self.shifts.iter_mut().zip(&other.shifts);
         shifts.for_each(|(shift, other)| *shift -= *other);
+    }
+
+    /// Multiplies the angles by the compliances of their links.
+    pub fn scale_by_compliance(&mut self, problem: &Problem) {
+        for (angles, link) in self.angles.iter_mut().zip(&problem.links) {
+            *angles *= Vec3::from(link.compliance);
+        }
     }
 
     /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes

@@ -147,6 +147,18 @@ impl Wrenches {
         }
     }
 
+    /// Writes the way of steepest descent in the metric of the joints' stiffness, W⁻¹ Jᵀ W
+    /// (target − p) with the compliances 1 − k of angles as W⁻¹, to `descent`.
+    pub fn descend_compliantly(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        descent: &mut Coordinates,
+    ) {
+        self.descend(problem, config, descent);
+        descent.scale_by_compliance(problem);
+    }
+
     fn add(&mut self, link: usize, force: Vec3A, moment: Vec3A) {
         self.0[link].0 += force;
         self.0[link].1 += moment;

@@ -30,6 +30,11 @@ pub struct SolverOptions {
     /// Step length of [`Method::TransposeFixed`], in units of 1/Σ w r², with the weights w of the
     /// targets and the distances r from joints to tips in the bind pose.
     pub step: f32,
+    /// The posture rate γ of [tracking](super::ChainSolver::track): for each length of the chain by
+    /// which a target moves, a step moves the joints towards the FK pose by at most this many
+    /// radians, where the targets leave them free. With 0, the pose does not come back after a
+    /// closed path of the targets; the higher it is, the faster joints move beside the targets.
+    pub posture_rate: f32,
     /// The inputs of roots that solvers may change.
     pub root: Root,
 }
@@ -42,6 +47,7 @@ impl Default for SolverOptions {
             tolerance: None,
             damping: 0.05,
             step: 1.0,
+            posture_rate: 10.0,
             root: Root::Turns,
         }
     }
@@ -84,6 +90,12 @@ impl SolverOptions {
         Self { step, ..self }
     }
 
+    /// These options with another posture rate.
+    #[must_use]
+    pub fn with_posture_rate(self, posture_rate: f32) -> Self {
+        Self { posture_rate, ..self }
+    }
+
     /// These options with another mobility of roots.
     #[must_use]
     pub fn with_root(self, root: Root) -> Self {
@@ -95,6 +107,11 @@ impl SolverOptions {
         let checks = [
             (OptionField::Damping, self.damping, is_positive(self.damping)),
             (OptionField::Step, self.step, is_positive(self.step)),
+            (
+                OptionField::PostureRate,
+                self.posture_rate,
+                self.posture_rate.is_finite() && self.posture_rate >= 0.0,
+            ),
             (
                 OptionField::Tolerance,
                 self.tolerance.unwrap_or_default(),
@@ -192,6 +209,20 @@ pub enum SolveError {
         /// The target's joint.
         joint: JointId,
     },
+    /// The method cannot give the joint its stiffness, or one of its own to each of its angles.
+    #[error(
+        "{method} cannot turn joint {joint} by {}; {} can",
+        if *per_angle { "angles of different stiffness" } else { "its stiffness" },
+        crate::chain_ik::method::methods_with_stiffness(*per_angle)
+    )]
+    CannotStiffen {
+        /// The method.
+        method: Method,
+        /// The joint.
+        joint: JointId,
+        /// True if only a different stiffness of its angles is refused.
+        per_angle: bool,
+    },
     /// One iteration is more work than [`ChainSolver::bounded`](super::ChainSolver::bounded)
     /// allows.
     #[error(
@@ -237,24 +268,27 @@ pub enum OptionField {
     Damping,
     /// [`SolverOptions::step`](super::SolverOptions::step), above 0.
     Step,
+    /// [`SolverOptions::posture_rate`](super::SolverOptions::posture_rate), 0 or more.
+    PostureRate,
 }
 
 impl OptionField {
     fn bound(self) -> &'static str {
         match self {
-            Self::Tolerance => "0 or more",
+            Self::Tolerance | Self::PostureRate => "0 or more",
             Self::Damping | Self::Step => "above 0",
         }
     }
 }
 
-/// The field's name: "tolerance", "damping" or "step".
+/// The field's name: "tolerance", "damping", "step" or "posture rate".
 impl fmt::Display for OptionField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Tolerance => "tolerance",
             Self::Damping => "damping",
             Self::Step => "step",
+            Self::PostureRate => "posture rate",
         })
     }
 }

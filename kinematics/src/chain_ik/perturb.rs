@@ -222,7 +222,7 @@ fn align_top(problem: &Problem, config: &mut Configuration, end: StraightEnd) {
             to: problem.effectors[end.effector].target - base,
             weight: 1.0,
         }];
-        align_within(&link.limits, axes, &mut config.angles[end.top], &mut pairs);
+        align_within(&link.limits, axes, 1.0, &mut config.angles[end.top], &mut pairs);
         config.forward(problem);
     }
 }

@@ -9,7 +9,7 @@ use super::problem::{self, Builder, Problem};
 use super::report::{Report, Status};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
-use super::{ChainTarget, Method, SolveError, SolverOptions, perturb};
+use super::{ChainTarget, Method, SolveError, SolverOptions, method, perturb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::vector::saturate;
 
@@ -107,6 +107,7 @@ impl ChainSolver {
         let mut builder = Builder::new(skeleton, targets, options)?;
         let mut problem = Problem::default();
         builder.fill(&mut problem, skeleton, targets)?;
+        check_stiffness(options.method, &problem)?;
         Ok((builder, problem))
     }
 
@@ -488,6 +489,18 @@ fn check_method(method: Method, targets: &[ChainTarget]) -> Result<(), SolveErro
     let oriented = targets.iter().find(|target| target.orientation.is_some());
     match oriented.filter(|_| !method.can_orient()) {
         Some(ChainTarget { joint, .. }) => Err(SolveError::CannotOrient { method, joint: *joint }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that a method can give joints their stiffness.
+fn check_stiffness(method: Method, problem: &Problem) -> Result<(), SolveError> {
+    match method::too_stiff(method, problem) {
+        Some(link) => Err(SolveError::CannotStiffen {
+            method,
+            joint: link.joint,
+            per_angle: link.uniform_compliance().is_none() && method.row().respects_joints(),
+        }),
         None => Ok(()),
     }
 }

@@ -445,11 +445,12 @@ impl RootSpace {
         soft_reach: SoftReach,
         bones: TwoBone,
     ) -> TwoBonePose {
-        // The distance is clamped in f64, but a target at a limit is rounded to f32.
+        // The distance is clamped in f64, but a target at a limit is rounded to f32 in the world.
         const ROUNDING: f64 = f32::EPSILON as f64;
         let (distance, wanted) = (solution.triangle.distance, solution.target.length());
         let length: f64 = solution.triangle.sides.iter().sum();
-        let is_at_target = (distance - wanted).abs() <= ROUNDING * length;
+        let rounding = ROUNDING * (length + self.to_world.translation.length() / self.scale);
+        let is_at_target = (distance - wanted).abs() <= rounding;
         let reach = match ik::reach(
             saturate(distance * self.scale),
             saturate(wanted * self.scale),

@@ -86,6 +86,10 @@ pub struct Joint {
     pub frame: Mat3,
     /// Limits of the rotation.
     pub limits: JointLimits,
+    /// Reluctance of each angle to turn when a solver divides a motion among joints, from 0 to
+    /// below 1: an angle with the stiffness k counts as if it were 1/(1 − k) times as large. It
+    /// changes which pose reaches a target, not whether it is reached.
+    pub stiffness: Vec3,
     /// True if solvers leave the rotation unchanged.
     pub locked: bool,
     /// True if keys that move this joint also move the tip of its parent's bone, so that the bone
@@ -101,6 +105,9 @@ impl Joint {
         self.parent.is_none() && self.axis == Vec3::ZERO
     }
 
+    /// The greatest stiffness.
+    pub const MAX_STIFFNESS: f32 = 1.0 - f32::EPSILON;
+
     /// An unlimited joint at its parent's base, with a radius of a tenth of its bone's length.
     pub fn new(name: &str, parent: Option<JointId>, axis: Vec3) -> Self {
         Self {
@@ -111,6 +118,7 @@ impl Joint {
             rotation: Vec3::ZERO,
             frame: Mat3::IDENTITY,
             limits: JointLimits::NONE,
+            stiffness: Vec3::ZERO,
             locked: false,
             connected: false,
             radius: (axis.as_dvec3().length() * 0.1) as f32,
@@ -198,6 +206,9 @@ impl Joint {
         }
         if !(self.radius.is_finite() && self.radius >= 0.0) {
             return Err(SkeletonError::Radius { joint, value: self.radius });
+        }
+        if !(self.stiffness.cmpge(Vec3::ZERO).all() && self.stiffness.cmplt(Vec3::ONE).all()) {
+            return Err(SkeletonError::Stiffness { joint, value: self.stiffness });
         }
         let squared = self.frame.transpose() * self.frame;
         if !(squared.abs_diff_eq(Mat3::IDENTITY, ORTHONORMAL) && self.frame.determinant() > 0.0) {
@@ -360,6 +371,14 @@ pub enum SkeletonError {
         joint: JointId,
         /// Its radius.
         value: f32,
+    },
+    /// A stiffness is negative, 1 or more, or not a number.
+    #[error("the stiffness of joint {joint} must be 0 or more and below 1, got {value}")]
+    Stiffness {
+        /// The joint.
+        joint: JointId,
+        /// Its stiffness.
+        value: Vec3,
     },
     /// The frame is not a right-handed orthonormal basis.
     #[error("the frame of joint {joint} must be a right-handed orthonormal basis")]

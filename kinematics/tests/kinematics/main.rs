@@ -19,6 +19,7 @@ mod skinning;
 mod soft_reach;
 mod solver_inside;
 mod spline;
+mod stiffness;
 mod swing;
 mod target_match;
 mod track;

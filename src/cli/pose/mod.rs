@@ -164,11 +164,12 @@ fn answered(
 
 /// Replaces the joint's index in an error by the index of the same joint in the file.
 fn with_file_indices(mut error: SolveError, order: &[JointId]) -> SolveError {
-    use SolveError::{CannotOrient, NoJoint, Point, TwoBone, TwoTargets, Weight};
+    use SolveError::{CannotOrient, CannotStiffen, NoJoint, Point, TwoBone, TwoTargets, Weight};
     match &mut error {
         NoJoint(joint)
         | TwoTargets(joint)
         | CannotOrient { joint, .. }
+        | CannotStiffen { joint, .. }
         | Point { joint, .. }
         | Weight { joint, .. }
         | TwoBone { joint, .. } => {

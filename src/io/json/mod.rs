@@ -10,7 +10,7 @@ use serde::de::{
 };
 
 pub use value::{
-    Above0, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds, KeyRow, Whole,
+    Above0, AtLeast0, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds, KeyRow, Whole,
     to_styled_json, value_or,
 };
 

@@ -117,6 +117,12 @@ number_with_rule!(
     |value| value > 0.0
 );
 number_with_rule!(
+    /// A number of at least 0.
+    AtLeast0,
+    "0 or more",
+    |value| value >= 0.0
+);
+number_with_rule!(
     /// A number from 0 to 1.
     Fraction,
     "from 0 to 1",
@@ -284,7 +290,7 @@ macro_rules! stands_for {
     )*};
 }
 
-stands_for!(JsonNumber: f32, Above0: f32, Fraction: f32, JsonPoint: Vec3, JsonSeconds: f64, Whole: u32);
+stands_for!(JsonNumber: f32, Above0: f32, AtLeast0: f32, Fraction: f32, JsonPoint: Vec3, JsonSeconds: f64, Whole: u32);
 
 /// The value in a file, or `default` if the file has none.
 pub fn value_or<T>(file: Option<impl Into<T>>, default: T) -> T {

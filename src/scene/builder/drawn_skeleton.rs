@@ -49,6 +49,8 @@ pub(super) struct DrawnSkeleton<'a> {
     pub reach: f32,
     /// World units per unit of the skeleton.
     pub scale: f32,
+    /// True if bones have the colours of their joints' stiffness.
+    pub shows_stiffness: bool,
 }
 
 impl<'a> DrawnSkeleton<'a> {
@@ -80,11 +82,32 @@ impl<'a> DrawnSkeleton<'a> {
         if length > SLENDER * radius { radius * TAPER } else { radius }
     }
 
+    /// Greatest stiffness of a joint's angles; 1 if it is locked.
+    fn stiffness(&self, joint: JointId) -> f32 {
+        let joint = &self.joints[joint.index()];
+        if joint.locked { 1.0 } else { joint.stiffness.max_element() }
+    }
+
+    /// Adds the stiffness of each stiff joint as a label beside its bone.
+    pub fn add_stiffness(&self, scene: &mut Scene) {
+        for joint in self.pose.ids().filter(|joint| !self.joints[joint.index()].locked) {
+            let stiffness = self.stiffness(joint);
+            if stiffness > 0.0 {
+                let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
+                let colour = scene.palette.text;
+                let label = Label::new(middle, self.radius(joint), LabelSide::Above, colour);
+                scene.add_label(label, format_args!("{stiffness:.2}"));
+            }
+        }
+    }
+
     /// Colour of a bone. The limbs' colours alternate from parent to child; locked, hovered and
     /// selected joints have colours of their own.
     pub fn colour(&self, scene: &Scene, joint: JointId, overlays: &Overlays) -> Colour {
         let palette = &scene.palette;
-        let colour = if self.joints[joint.index()].locked {
+        let colour = if self.shows_stiffness {
+            palette.weight(self.stiffness(joint))
+        } else if self.joints[joint.index()].locked {
             palette.joint
         } else if self.depths[joint.index()].is_multiple_of(2) {
             palette.upper

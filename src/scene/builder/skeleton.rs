@@ -69,7 +69,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
-    let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale };
+    let shows_stiffness = display.shows(Overlay::Stiffness);
+    let drawn =
+        DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale, shows_stiffness };
     let skin = ShownSkin::new(rig, display);
     cylinders.clear();
     cylinders.resize(joints.len(), false);
@@ -139,6 +141,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     }
     if display.shows(Overlay::Paths) {
         rig.follow_paths.iter().for_each(|path| add_path(scene, rig, path, posed.time()));
+    }
+    if shows_stiffness {
+        drawn.add_stiffness(scene);
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);

@@ -41,7 +41,7 @@ impl<'a> ShownSkin<'a> {
         let mesh = skin.mesh().ok()?;
         let is_compared = display.shows(Overlay::CompareSkinning);
         let compared = is_compared.then(|| ComparedSkins::new(mesh, rig.skeleton.transform()));
-        Some(Self { skin, mesh, has_bones: display.shows(Overlay::Bones), compared })
+        Some(Self { skin, mesh, has_bones: display.shows_bones_in_skin(), compared })
     }
 
     /// True if the bones are drawn too.

@@ -78,6 +78,13 @@ pub enum JointEdit {
         /// All of its limits.
         limits: JointLimits,
     },
+    /// Sets the stiffness of a joint's angles about x, y and z.
+    SetStiffness {
+        /// The joint.
+        joint: JointId,
+        /// The stiffness of each angle, from 0 to below 1.
+        stiffness: Vec3,
+    },
     /// Locks or unlocks a joint: solvers do not turn locked joints.
     SetLocked {
         /// The joint.
@@ -108,6 +115,7 @@ impl JointEdit {
             Self::SetLength { .. } => "Change length",
             Self::SetOffset { .. } => "Move joint",
             Self::SetLimits { .. } => "Change limit",
+            Self::SetStiffness { .. } => "Change stiffness",
             Self::SetLocked { locked: true, .. } => "Lock joint",
             Self::SetLocked { locked: false, .. } => "Unlock joint",
             Self::SetTranslation(_) => "Move skeleton",
@@ -148,6 +156,9 @@ impl JointEdit {
             }
             Self::SetLimits { joint, limits } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.limits = limits)
+            }
+            Self::SetStiffness { joint, stiffness } => {
+                Outcome::edit_joint(session.shown(), joint, |joint| joint.stiffness = stiffness)
             }
             Self::SetLocked { joint, locked } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.locked = locked)

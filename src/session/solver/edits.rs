@@ -44,7 +44,9 @@ impl SolverEdit {
                 Outcome::change(session.shown(), |document| document.rig.solver = solver)
             }
             Self::SetSolver(_) => {
-                Outcome::fail("Tolerance, damping, step and iterations must be above 0")
+                Outcome::fail(
+                    "Tolerance, damping, step and iterations must be above 0, the posture rate 0 or more",
+                )
             }
             Self::SetIterationsPerFrame(iterations) => {
                 let iterations = iterations.clamp(1, SkeletonRig::MAX_ITERATIONS_PER_FRAME);
@@ -78,6 +80,8 @@ fn is_valid(solver: &SolverOptions) -> bool {
     let above_0 = |value: f32| value.is_finite() && value > 0.0;
     above_0(solver.damping)
         && above_0(solver.step)
+        && solver.posture_rate.is_finite()
+        && solver.posture_rate >= 0.0
         && solver.tolerance.is_none_or(above_0)
         && solver.iterations.is_none_or(|iterations| iterations > 0)
 }

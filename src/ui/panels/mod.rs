@@ -69,7 +69,7 @@ fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) 
 }
 
 /// Guides of a figure.
-const FIGURE_GUIDES: [Overlay; 7] = [
+const FIGURE_GUIDES: [Overlay; 8] = [
     Overlay::Cursor,
     Overlay::Pointer,
     Overlay::InnerLimit,
@@ -77,6 +77,7 @@ const FIGURE_GUIDES: [Overlay; 7] = [
     Overlay::ElbowCircle,
     Overlay::FkPose,
     Overlay::ByItself,
+    Overlay::Stiffness,
 ];
 
 fn resets(ui: &mut Ui, actions: &mut Actions) {

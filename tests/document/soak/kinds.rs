@@ -117,6 +117,10 @@ kinds! {
             JointEdit::SetOffset { joint: v.joint(), offset: v.point(size) }
         };
         SetLimits: Build 3, |v| JointEdit::SetLimits { joint: v.joint(), limits: v.limits() };
+        SetStiffness: Build 2, |v| JointEdit::SetStiffness {
+            joint: v.joint(),
+            stiffness: v.stiffness(),
+        };
         SetLocked: Build 2, |v| JointEdit::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
     }
     Edit (Skin) (SkinEdit) {

@@ -73,7 +73,8 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     if let Some(skin) = skin {
         self::skin(skin, skeleton)?;
     }
-    let SolverOptions { iterations, tolerance, damping, step, .. } = *solver;
+    let SolverOptions { iterations, tolerance, damping, step, posture_rate, .. } = *solver;
+    hold!(posture_rate.is_finite() && posture_rate >= 0.0, "a posture rate: {posture_rate}");
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
     hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");
     hold!(iterations != Some(0), "the solver has iterations: {solver:?}");
@@ -121,6 +122,7 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
         rotation,
         frame,
         limits,
+        stiffness,
         locked: _,
         connected: _,
         radius,
@@ -133,6 +135,8 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
     let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
     hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
     hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
+    let is_stiffness = |it: f32| (0.0..1.0).contains(&it);
+    hold!(stiffness.to_array().into_iter().all(is_stiffness), "{name:?} is stiff: {stiffness}");
     for limit in RotationAxis::ALL.into_iter().filter_map(|axis| limits.range(axis)) {
         let Limit { min, max } = limit;
         hold!(min.is_finite() && max.is_finite() && min <= max, "{name:?} has limits: {limit:?}");

@@ -12,6 +12,8 @@
 //! axis, each with the weight that gives the cost of a small turn. Where such a rotation raises the
 //! cost, it is halved.
 //!
+//! A joint with the stiffness k makes the part 1 − k of its rotation.
+//!
 //! During a sweep only the tips are moved. The joints are updated afterwards, in one pass from the
 //! roots, so that the time of an iteration is linear in the number of joints.
 //!
@@ -26,7 +28,7 @@ use crate::chain_ik::align::{PointPair, align, align_best, align_within};
 use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::orientation::MissingTurn;
-use crate::chain_ik::problem::{EndEffector, Orienting, Problem, Wanted};
+use crate::chain_ik::problem::{EndEffector, Link, Orienting, Problem, Wanted};
 use crate::skeleton::JointAngles;
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,9 +128,10 @@ impl Ccd {
         }
         let rotation = if link.limits.is_limited() {
             let axes = axes(self.mounted(problem, config, index), config.angles[index]);
-            align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs)
+            let angles = &mut config.angles[index];
+            align_within(&link.limits, axes, link.part_of_turn(), angles, &mut self.pairs)
         } else {
-            let rotation = align(&self.pairs);
+            let rotation = part_of(align(&self.pairs), link);
             self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
             rotation
         };
@@ -155,9 +158,10 @@ impl Ccd {
         let before = config.angles[index];
         let mut rotation = if link.limits.is_limited() {
             let (axes, pairs) = (axes(mounted, before), &mut self.pairs.clone());
-            align_within(&link.limits, axes, &mut config.angles[index], pairs)
+            let angles = &mut config.angles[index];
+            align_within(&link.limits, axes, link.part_of_turn(), angles, pairs)
         } else {
-            align_best(&self.pairs)
+            part_of(align_best(&self.pairs), link)
         };
         let cost = self.cost_below(problem, config, index, Quat::IDENTITY);
         let mut halvings = 0;
@@ -260,6 +264,12 @@ impl Ccd {
         }
         update_points(problem, config);
     }
+}
+
+/// The part of a rotation that a stiff link makes.
+fn part_of(rotation: Quat, link: &Link) -> Quat {
+    let part = link.part_of_turn();
+    if part < 1.0 { Quat::IDENTITY.slerp(rotation, part) } else { rotation }
 }
 
 /// Rotation axes of a link's three angles in skeleton space.

@@ -1,10 +1,14 @@
-//! Damped least squares: Δθ = Jᵀ (JJᵀ + λ²I)⁻¹ (target − p).
+//! Damped least squares: Δθ = W⁻¹ Jᵀ (J W⁻¹ Jᵀ + λ²I)⁻¹ (target − p).
 //!
 //! J is the Jacobian of the tips p and of the [missing turns](crate::chain_ik::orientation). Rows
-//! of J and residuals target − p are weighted by √w, those of turns by ℓ √w. The damping λ is a fraction of the chain's length: it grows while a step would raise the cost and
-//! shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges, too.
-//! Residuals are clamped to 0.3 of the chain's length, also those of turns. Angles that are at a limit and would cross
-//! it are fixed, and the step is solved again for the other angles.
+//! of J and residuals target − p are weighted by √w, those of turns by ℓ √w. W is the diagonal
+//! matrix of 1/(1 − k) with the stiffness k of each angle: of all steps that bring the tips equally
+//! near, this one has the least Δθᵀ W Δθ.
+//!
+//! The damping λ is a fraction of the chain's length: it grows while a step would raise the cost
+//! and shrinks again afterwards (Levenberg and Marquardt), so that a chain out of reach converges,
+//! too. Residuals are clamped to 0.3 of the chain's length, also those of turns. Angles that are at
+//! a limit and would cross it are fixed, and the step is solved again for the other angles.
 //!
 //! # Sources
 //!
@@ -44,9 +48,9 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
     /// Space for the weighted columns of a link: for each block of three rows, the first row, and
     /// the columns of three coordinates.
     blocks: Vec<(usize, Mat3A)>,
-    /// JJᵀ; only the lower triangle is used.
+    /// J W⁻¹ Jᵀ; only the lower triangle is used.
     square: DMatrix<f32>,
-    /// JJᵀ + λ²I, then its factorization.
+    /// J W⁻¹ Jᵀ + λ²I, then its factorization.
     factored: DMatrix<f32>,
     residuals: DVector<f32>,
     forces: DVector<f32>,
@@ -119,7 +123,7 @@ impl DampedLeastSquares {
     }
 
     /// Moves the configuration towards wanted coordinates without moving the tips, to first order:
-    /// by the part of the way d that is in the null space, (I − Jᵀ (JJᵀ + λ²I)⁻¹ J) d, and by at
+    /// by the part of the way d that is in the null space, (I − W⁻¹ Jᵀ (J W⁻¹ Jᵀ + λ²I)⁻¹ J) d, and by at
     /// most `most`, the Euclidean norm of the changes of angles in radians and of shifts in chain
     /// lengths. Angles that would cross a limit are fixed.
     pub fn advance_in_null_space(
@@ -258,11 +262,12 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Sets JJᵀ, link by link.
+    /// Sets J W⁻¹ Jᵀ, link by link.
     fn multiply(&mut self, problem: &Problem, config: &Configuration) {
         self.square.fill(0.0);
         for (index, link) in problem.links.iter().enumerate() {
-            let (base, axes) = (config.bases[index], self.axes[index]);
+            let base = config.bases[index];
+            let axes = scaled(self.axes[index], link.compliance);
             self.blocks.clear();
             for effector in problem.below(link) {
                 let arm =
@@ -282,7 +287,7 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Adds the shifts of each free root to JJᵀ: three columns of one chain length.
+    /// Adds the shifts of each free root to J W⁻¹ Jᵀ: three columns of one chain length.
     fn add_shifts(&mut self, problem: &Problem) {
         for tree in 0..problem.trees.len() {
             self.blocks.clear();
@@ -303,7 +308,7 @@ impl DampedLeastSquares {
     }
 
     /// Adds the products of all pairs of blocks of the same coordinates to the lower triangle of
-    /// JJᵀ; the upper triangle is not read.
+    /// J W⁻¹ Jᵀ; the upper triangle is not read.
     fn add_blocks(&mut self) {
         for (nth, (row, left)) in self.blocks.iter().enumerate() {
             for (column, right) in &self.blocks[..=nth] {
@@ -343,6 +348,7 @@ impl DampedLeastSquares {
             Some((missing, row * missing.stiffness.sqrt()))
         };
         self.wrenches.apply_transpose(problem, config, force, moment, &mut self.step);
+        self.step.scale_by_compliance(problem);
         true
     }
 
@@ -381,6 +387,12 @@ fn place_row(problem: &Problem, effector: usize) -> usize {
 /// The first row of an end effector's turn.
 fn turn_row(effector: usize) -> usize {
     6 * effector + 3
+}
+
+/// Axes times the roots of compliances, as columns.
+fn scaled(axes: Mat3A, compliance: Vec3A) -> Mat3A {
+    let Vec3 { x, y, z } = compliance.into();
+    Mat3A::from_cols(axes.x_axis * x.sqrt(), axes.y_axis * y.sqrt(), axes.z_axis * z.sqrt())
 }
 
 /// Columns made from the rotation axes of a link; zero for fixed angles, whose axis is zero.

@@ -23,7 +23,7 @@ use self::two_bone::TwoBones;
 pub(super) use self::two_bone::TwoBonesRefused;
 use super::configuration::Configuration;
 use super::inside::Recorder;
-use super::problem::Problem;
+use super::problem::{Link, Problem};
 use super::stall::Patience;
 use crate::skeleton::Skeleton;
 
@@ -68,6 +68,8 @@ pub(super) struct MethodRow {
     is_closed_form: bool,
     /// True if the method turns joints to orientations.
     can_orient: bool,
+    /// The stiffness of joints that the method respects.
+    stiffness: ReadStiffness,
     /// True if the method works on orientations instead of angles.
     pub uses_orientations: bool,
     /// Distance of a target from the root, in lengths of the path to the tip, up to which the
@@ -77,6 +79,17 @@ pub(super) struct MethodRow {
     /// what takes as long.
     pub work: fn(&Problem) -> u64,
     prepare: fn(&MethodInputs<'_>) -> Result<MethodState, TwoBonesRefused>,
+}
+
+/// The stiffness of joints that a method respects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ReadStiffness {
+    /// Each angle's own.
+    PerAngle,
+    /// One for all angles of a joint that can change.
+    PerJoint,
+    /// None; the closed form refuses stiff joints by itself, and only those of its limbs.
+    Never,
 }
 
 /// Inputs of the first iteration of any method.
@@ -109,11 +122,19 @@ impl MethodRow {
             uses_step: false,
             is_closed_form: false,
             can_orient: false,
+            stiffness: ReadStiffness::PerAngle,
             uses_orientations: false,
             stable_distance: f64::INFINITY,
             work: visits,
             prepare,
         }
+    }
+}
+
+impl MethodRow {
+    /// True if the method respects one stiffness for each joint.
+    pub fn respects_joints(&self) -> bool {
+        self.stiffness != ReadStiffness::Never
     }
 }
 
@@ -162,6 +183,7 @@ const METHODS: [MethodRow; 7] = [
         // In exact arithmetic no sweep increases the distance.
         patience: Patience::of_orientations(20, -(f32::EPSILON as f64)),
         can_orient: true,
+        stiffness: ReadStiffness::PerJoint,
         uses_orientations: true,
         ..MethodRow::new(Method::Ccd, "ccd", 2_000, |it| Ok(MethodState::Ccd(Ccd::new(it.problem))))
     },
@@ -169,6 +191,7 @@ const METHODS: [MethodRow; 7] = [
         title: "FABRIK",
         short_title: "FABRIK",
         summary: "Move joint positions along the chain: very cheap, may stall at limits",
+        stiffness: ReadStiffness::PerJoint,
         // With conflicting targets, FABRIK converges near the minimum, not at it.
         patience: Patience::of_orientations(20, -1e-5),
         uses_orientations: true,
@@ -180,6 +203,7 @@ const METHODS: [MethodRow; 7] = [
         title: "Constraint relaxation",
         short_title: "Relaxation",
         summary: "Move both ends of each bone in turn: smooth, many iterations",
+        stiffness: ReadStiffness::Never,
         // The poses that points of relaxation give are not nearer after every pass.
         patience: Patience::of_orientations(100, f64::INFINITY),
         uses_orientations: true,
@@ -192,6 +216,7 @@ const METHODS: [MethodRow; 7] = [
         short_title: "Two-bone",
         summary: "Solve the target's joint and its parent in closed form",
         is_closed_form: true,
+        stiffness: ReadStiffness::Never,
         ..MethodRow::new(Method::TwoBone, "two-bone", 1, |it| {
             Ok(MethodState::TwoBone(TwoBones::new(it.problem, it.skeleton)?))
         })
@@ -284,6 +309,27 @@ impl Method {
 pub(super) fn orienting_methods() -> String {
     let can_orient = Method::ALL.into_iter().filter(|method| method.can_orient());
     can_orient.map(Method::name).collect::<Vec<_>>().join(", ")
+}
+
+/// The first link of a problem whose stiffness a method cannot respect.
+pub(super) fn too_stiff(method: Method, problem: &Problem) -> Option<&Link> {
+    let respects = |link: &&Link| match method.row().stiffness {
+        ReadStiffness::PerAngle => true,
+        ReadStiffness::PerJoint => link.uniform_compliance().is_some(),
+        ReadStiffness::Never => method.is_closed_form() || !link.is_stiff(),
+    };
+    problem.links.iter().find(|link| !respects(link))
+}
+
+/// The names of the methods that respect a stiffness of each angle, or only one for each joint.
+pub(super) fn methods_with_stiffness(per_angle: bool) -> String {
+    let respects = |method: &Method| match method.row().stiffness {
+        ReadStiffness::PerAngle => true,
+        ReadStiffness::PerJoint => !per_angle,
+        ReadStiffness::Never => false,
+    };
+    let respecting = Method::ALL.into_iter().filter(respects);
+    respecting.map(Method::name).collect::<Vec<_>>().join(", ")
 }
 
 /// The joints and the pairs of a joint and a target.

@@ -3,15 +3,17 @@
 //! A pass from the targets to the roots sets a destination for each point ([`InwardPass`]); then
 //! the links are laid out from the roots: each link keeps the distance of its points from its joint
 //! and points at their destinations. A link with several points (a bone with children away from its
-//! tip, or a locked fork) rotates as a whole, to the best fit. If any link has limits, every link
-//! rotates as a whole, and limited links angle by angle within their limits.
+//! tip, or a locked fork) rotates as a whole, to the best fit. If any link has limits or stiffness,
+//! every link rotates as a whole, and limited links angle by angle within their limits.
 //!
 //! Orientations of links with one point and no limits are computed on demand, by the smallest
 //! rotation.
 //!
-//! A chain whose only target is out of reach is laid out straight towards the target. The inward
-//! pass ignores limits. If any link has limits, a sweep of CCD follows where the passes do not
-//! halve the cost, after passes that do not lower it are undone.
+//! A chain without limits and stiffness whose only target is out of reach is laid out straight
+//! towards the target. The inward pass ignores limits. If any link has limits or stiffness, a sweep
+//! of CCD follows where the passes do not halve the cost, after passes that do not lower it are
+//! undone. A link with the stiffness k makes the part 1 − k of its turn from its rotation relative
+//! to its parent before the pass.
 
 use core::ops::Range;
 
@@ -68,7 +70,7 @@ impl<P: InwardPass> PointMethod<P> {
     ) -> bool {
         // Fraction of the cost that passes may leave without a sweep.
         const ENOUGH: f64 = 0.5;
-        if !self.points.limited {
+        if !self.points.turn_whole {
             self.pass(problem, config, recorder);
             return true;
         }
@@ -141,7 +143,10 @@ pub(in crate::chain_ik) struct LinkPoints {
     /// Joints and tips that are fixed to the root, for each tree.
     grounds: Vec<Vec<PointMember>>,
     mounts: Vec<Quat>,
-    limited: bool,
+    /// True if any link has limits or stiffness, so that each link rotates as a whole.
+    turn_whole: bool,
+    /// Rotation E of each stiff link before a pass.
+    locals: Vec<Quat>,
     /// Destination of each point.
     pub destinations: Vec<Vec3A>,
     /// Destination of each link's joint.
@@ -157,7 +162,8 @@ impl LinkPoints {
         let mut points = Self {
             grounds: vec![Vec::new(); problem.trees.len()],
             mounts: problem.mounts().collect(),
-            limited: problem.links.iter().any(|link| link.limits.is_limited()),
+            turn_whole: Self::must_turn_whole(problem),
+            locals: vec![Quat::IDENTITY; problem.links.len()],
             base_destinations: vec![Vec3A::ZERO; problem.links.len()],
             ..Self::default()
         };
@@ -194,7 +200,7 @@ impl LinkPoints {
             *self = Self::new(problem);
             return;
         }
-        self.limited = problem.links.iter().any(|link| link.limits.is_limited());
+        self.turn_whole = Self::must_turn_whole(problem);
         self.mounts.clear();
         self.mounts.extend(problem.mounts());
     }
@@ -233,9 +239,13 @@ impl LinkPoints {
         lists
     }
 
-    /// True if any link has limits.
-    pub fn are_limited(&self) -> bool {
-        self.limited
+    fn must_turn_whole(problem: &Problem) -> bool {
+        problem.links.iter().any(|link| link.limits.is_limited() || link.is_stiff())
+    }
+
+    /// True if links rotate as a whole, so that a pass starts from the pose.
+    pub fn turn_whole(&self) -> bool {
+        self.turn_whole
     }
 
     /// Number of points of all links.
@@ -261,7 +271,7 @@ impl LinkPoints {
     /// True if the problem is a chain without limits, with a fixed root, whose one target is out of
     /// reach.
     fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
-        let ([effector], false, false) = (&problem.effectors[..], self.limited, problem.free_roots)
+        let ([effector], false, false) = (&problem.effectors[..], self.turn_whole, problem.free_roots)
         else {
             return false;
         };
@@ -304,12 +314,29 @@ impl LinkPoints {
         if problem.free_roots {
             self.move_roots(problem, config);
         }
+        self.keep_locals(problem, config);
         for (index, link) in problem.links.iter().enumerate() {
             if link.parent.is_none() {
                 config.bases[index] = config.shifts[link.tree] + link.pivot;
             }
             self.lay_link(problem, config, index);
         }
+    }
+
+    /// Keeps the rotations of stiff links without limits, relative to their parents.
+    fn keep_locals(&mut self, problem: &Problem, config: &Configuration) {
+        for (index, link) in problem.links.iter().enumerate() {
+            if link.is_stiff() && !link.limits.is_limited() {
+                let mounted = self.mounted(problem, config, index);
+                self.locals[index] = mounted.inverse() * config.orientations[index];
+            }
+        }
+    }
+
+    /// Rotation from a link's space to skeleton space, without the link's own rotation.
+    fn mounted(&self, problem: &Problem, config: &Configuration, index: usize) -> Quat {
+        let parent = problem.links[index].parent;
+        parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]) * self.mounts[index]
     }
 
     /// Shifts each tree by the weighted mean vector from the joints and tips fixed to its root to
@@ -338,7 +365,7 @@ impl LinkPoints {
     fn lay_link(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
-        if self.limited || to - from > 1 {
+        if self.turn_whole || to - from > 1 {
             self.rotate(problem, config, link);
         } else if let Some(towards) = normalize(self.destinations[from] - base) {
             self.arms[from] = self.all[from].radius * towards;
@@ -358,13 +385,16 @@ impl LinkPoints {
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
         let (from, to) = self.ranges[index];
         let link = &problem.links[index];
-        let parent = link.parent.map_or(Quat::IDENTITY, |parent| config.orientations[parent]);
-        let mounted = parent * self.mounts[index];
+        let mounted = self.mounted(problem, config, index);
         let own =
             |config: &Configuration| Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+        let before = config.angles[index];
         if link.limits.is_limited() {
             config.orientations[index] = (mounted * own(config)).normalize();
+        } else if link.is_stiff() {
+            config.orientations[index] = (mounted * self.locals[index]).normalize();
         }
+        let start = config.orientations[index];
         self.pairs.clear();
         for point in from..to {
             let LinkPoint { position, weight, .. } = self.all[point];
@@ -378,15 +408,20 @@ impl LinkPoints {
             if link.limits.is_limited() {
                 let axes = Mat3A::from_quat(mounted) * JointAngles(config.angles[index]).axes();
                 let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-                align_within(&link.limits, axes, &mut config.angles[index], &mut self.pairs);
+                align_within(&link.limits, axes, 1.0, &mut config.angles[index], &mut self.pairs);
             } else {
                 let rotation = align(&self.pairs);
                 self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
                 config.orientations[index] = (rotation * config.orientations[index]).normalize();
             }
         }
+        let part = link.part_of_turn();
         if link.limits.is_limited() {
+            let turned = before.lerp(config.angles[index], part);
+            config.angles[index] = if part < 1.0 { turned } else { config.angles[index] };
             config.orientations[index] = (mounted * own(config)).normalize();
+        } else if part < 1.0 {
+            config.orientations[index] = start.slerp(config.orientations[index], part);
         }
         for point in from..to {
             self.arms[point] = config.orientations[index] * self.all[point].position;
@@ -396,7 +431,7 @@ impl LinkPoints {
     /// Updates the orientations of links with one point, which passes move only: turns each, by
     /// the smallest angle, until the link points at its point.
     fn update_orientations(&self, config: &mut Configuration) {
-        if self.limited {
+        if self.turn_whole {
             return;
         }
         for (link, (from, to)) in self.ranges.iter().enumerate() {

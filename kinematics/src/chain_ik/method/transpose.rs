@@ -30,6 +30,11 @@
 //!
 //! with the greatest f of the last 10 iterations; otherwise τ is halved.
 //!
+//! # Stiffness
+//!
+//! With the stiffness k of angles, g is W⁻¹ times the gradient, with the diagonal matrix W of
+//! 1/(1 − k): the gradient for the angles measured in units of √(1 − k).
+//!
 //! # Sources
 //!
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2b; Buss 2004, section 4.
@@ -82,7 +87,7 @@ impl TransposeFixed {
         config: &mut Configuration,
         recorder: &mut Recorder,
     ) -> bool {
-        self.wrenches.descend(problem, config, &mut self.descent);
+        self.wrenches.descend_compliantly(problem, config, &mut self.descent);
         recorder
             .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
         self.before.copy_from(config);
@@ -160,7 +165,7 @@ impl Transpose {
         recorder: &mut Recorder,
     ) -> bool {
         std::mem::swap(&mut self.descent, &mut self.last_descent);
-        self.wrenches.descend(problem, config, &mut self.descent);
+        self.wrenches.descend_compliantly(problem, config, &mut self.descent);
         if self.iterations > 0 {
             self.step = self.fit_step(problem, config);
         }
@@ -224,7 +229,8 @@ impl Transpose {
     }
 
     /// Calls `add` for each coordinate that differs from `before`, with its change and with −g at
-    /// the last and at this iteration. Shifts count in chain lengths.
+    /// the last and at this iteration. Shifts count in chain lengths, angles in the roots of their
+    /// compliances.
     fn for_each_change(
         &self,
         problem: &Problem,
@@ -239,7 +245,11 @@ impl Transpose {
         let (before, from, to) = (&self.before, &self.last_descent, &self.descent);
         for (link, angles) in config.angles.iter().enumerate() {
             let change = *angles - before.angles[link];
-            (0..3).for_each(|i| each(change[i], from.angles[link][i], to.angles[link][i]));
+            let (from, to) = (from.angles[link], to.angles[link]);
+            for (i, compliance) in problem.links[link].compliance.to_array().into_iter().enumerate() {
+                let lever = compliance.sqrt();
+                each(change[i] / lever, from[i] / lever, to[i] / lever);
+            }
         }
         let lever = problem.length;
         for (tree, shift) in config.shifts.iter().enumerate() {

@@ -12,7 +12,7 @@ use super::ccd::move_roots;
 use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::perturb::bent_angles;
-use crate::chain_ik::problem::Problem;
+use crate::chain_ik::problem::{EndEffector, Problem};
 use crate::skeleton::{JointId, Skeleton, angle_triples};
 use crate::two_bone::TwoBone;
 use crate::{normalize, rotation_between};
@@ -33,6 +33,9 @@ pub enum TwoBoneRefusal {
     /// One of the two bones has length 0, or a length that the closed form cannot solve.
     #[error("one of its two bones has no length")]
     NoLength,
+    /// The joint or its parent is stiff: the closed form has no motion to divide.
+    #[error("it or its parent has a stiffness")]
+    Stiff,
     /// The joint or its parent belongs to the limb of another target.
     #[error("another target moves the same joint")]
     Shared,
@@ -43,6 +46,16 @@ pub enum TwoBoneRefusal {
 pub(in crate::chain_ik) struct TwoBonesRefused {
     pub joint: JointId,
     pub reason: TwoBoneRefusal,
+}
+
+fn check_stiffness(
+    problem: &Problem,
+    effector: &EndEffector,
+    links: [usize; 2],
+) -> Result<(), TwoBonesRefused> {
+    let is_stiff = links.iter().any(|link| problem.links[*link].is_stiff());
+    let refused = TwoBonesRefused { joint: effector.joint, reason: TwoBoneRefusal::Stiff };
+    if is_stiff { Err(refused) } else { Ok(()) }
 }
 
 /// The two links above one end effector.
@@ -74,6 +87,7 @@ impl TwoBones {
             let lengths = [problem.links[lower].pivot.length(), effector.tip.length()];
             let arm = TwoBone::new(lengths[0], lengths[1])
                 .map_err(|_| refuse(TwoBoneRefusal::NoLength))?;
+            check_stiffness(problem, effector, [upper, lower])?;
             let is_taken = |limb: &LinkPair| {
                 [limb.upper, limb.lower].iter().any(|link| *link == upper || *link == lower)
             };
@@ -90,7 +104,7 @@ impl TwoBones {
     ///
     /// # Errors
     ///
-    /// [`TwoBoneRefusal::NoLength`]; the limbs are unchanged.
+    /// [`TwoBoneRefusal::NoLength`], [`TwoBoneRefusal::Stiff`]; the limbs are unchanged.
     pub fn refit(&mut self, problem: &Problem) -> Result<(), TwoBonesRefused> {
         for check in [true, false] {
             for limb in &mut self.limbs {
@@ -99,6 +113,7 @@ impl TwoBones {
                 let refused =
                     |_| TwoBonesRefused { joint: effector.joint, reason: TwoBoneRefusal::NoLength };
                 let arm = TwoBone::new(lengths[0], lengths[1]).map_err(refused)?;
+                check_stiffness(problem, effector, [limb.upper, limb.lower])?;
                 if !check {
                     limb.arm = arm;
                 }

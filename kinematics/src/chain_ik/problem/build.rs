@@ -146,6 +146,7 @@ impl Problem {
             pivot: base.to_link.translation,
             mount: base.to_link.matrix3 * frame,
             limits: joint.limits,
+            compliance: (Vec3::ONE - joint.stiffness).into(),
             below: (0, 0),
             start: joint.rotation,
         });
@@ -228,11 +229,13 @@ impl Problem {
     fn bind_inertia(&self, bind: &SkeletonPose) -> f32 {
         let mut sum = 0.0;
         for link in &self.links {
+            let compliance = f64::from(link.compliance.max_element());
             for effector in self.below(link) {
                 let effector = &self.effectors[*effector];
                 let arm = bind.tip(effector.joint).as_dvec3() - bind.base(link.joint).as_dvec3();
-                sum += f64::from(effector.weight) * (arm * self.unit).length_squared();
-                sum += effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
+                let of_place = f64::from(effector.weight) * (arm * self.unit).length_squared();
+                let of_turn = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
+                sum += compliance * (of_place + of_turn);
             }
         }
         sum as f32 + self.inertia_of_shifts()

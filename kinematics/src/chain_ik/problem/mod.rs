@@ -17,7 +17,7 @@ mod build;
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
-use crate::skeleton::{JointId, JointLimits};
+use crate::skeleton::{JointId, JointLimits, RotationAxis};
 
 pub(super) use build::{Builder, check_target};
 
@@ -99,10 +99,32 @@ pub struct Link {
     pub pivot: Vec3A,
     pub mount: Mat3A,
     pub limits: JointLimits,
+    /// 1 − k with the stiffness k of each angle: the turns about x, y and z by the same effort.
+    pub compliance: Vec3A,
     /// End effectors at the link and below, as a range of [`Problem::below`].
     pub below: (usize, usize),
     /// Euler angles before the run, in radians.
     pub start: Vec3,
+}
+
+impl Link {
+    /// The compliance of all angles that the limits let change; `None` if they differ.
+    pub fn uniform_compliance(&self) -> Option<f32> {
+        let movable = RotationAxis::ALL.into_iter().filter(|axis| !self.limits.is_fixed(*axis));
+        let mut compliances = movable.map(|axis| self.compliance[axis.index()]);
+        let first = compliances.next().unwrap_or(1.0);
+        compliances.all(|other| other == first).then_some(first)
+    }
+
+    /// The fraction of a turn that a method makes of this link that turns joints as a whole.
+    pub fn part_of_turn(&self) -> f32 {
+        self.uniform_compliance().unwrap_or(1.0)
+    }
+
+    /// True if an angle is stiff.
+    pub fn is_stiff(&self) -> bool {
+        self.compliance != Vec3A::ONE
+    }
 }
 
 /// A joint with its target.

@@ -6,7 +6,7 @@
 //! 1. Each joint keeps its rotation relative to the FK pose: it turns by what the FK pose turned,
 //!    q ← q · FK⁻¹(before) · FK(now).
 //! 2. The configuration moves towards the FK pose in the null space of the targets, by at most
-//!    γ·s/L with the length L of the longest chain and the largest change s of a tip's way to its
+//!    γ·s/L with the posture rate γ, the length L of the longest chain and the largest change s of a tip's way to its
 //!    target. Without this, a pose would not return after a closed path of the targets, and limited
 //!    chains would lose targets.
 //! 3. The method iterates to a fraction of s, so that slow motions do not proceed in leaps. A
@@ -27,9 +27,6 @@ use crate::chain_ik::{ChainTarget, SolveError, SolverOptions};
 use crate::skeleton::Skeleton;
 use crate::vector::saturate;
 
-/// γ, the most radians by which a step moves towards the FK pose for each length of the chain by
-/// which a target has moved.
-const POSTURE_RATE: f64 = 10.0;
 /// Part of the targets' motion to which a step is solved.
 const FINENESS: f64 = 1.0 / 50.0;
 /// The finest tolerance of a step, in chain lengths; below it is rounding.
@@ -121,7 +118,7 @@ impl ChainSolver {
     /// # Errors
     ///
     /// [`SolveError::NoJoint`] for targets of other joints or in another order;
-    /// [`SolveError::OtherJoint`]; [`SolveError::Point`]; [`SolveError::Weight`];
+    /// [`SolveError::OtherJoint`]; [`SolveError::CannotStiffen`]; [`SolveError::Point`]; [`SolveError::Weight`];
     /// [`SolveError::Singular`]; [`SolveError::TwoBone`] if a bone has lost its length. The
     /// configuration is unchanged.
     pub fn track(
@@ -173,6 +170,7 @@ impl ChainSolver {
         fk: &Skeleton,
     ) -> Result<TrackStep, SolveError> {
         self.builder.fill(&mut tracker.next, fk, targets)?;
+        super::check_stiffness(self.options.method, &tracker.next)?;
         tracker.next.carry_origins(&self.problem);
         tracker.next.set_targets(targets);
         if self.is_settled() && !tracker.was_held_back && tracker.next == self.problem {
@@ -211,7 +209,7 @@ impl ChainSolver {
         let reach = motion + CATCH_UP * length;
         let most_way = self.problem.length_from_world(reach) as f32;
         let is_far = hold_back(&mut self.problem, &self.config, most_way);
-        let most_turn = (POSTURE_RATE * motion / length) as f32;
+        let most_turn = (f64::from(self.options.posture_rate) * motion / length) as f32;
         tracker.move_to_fk(&self.problem, &mut self.config, most_turn);
         let before = self.config.total_error(&self.problem);
         // Not finer than the step before: a short step, such as to a time between two frames, would

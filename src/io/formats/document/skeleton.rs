@@ -30,6 +30,8 @@ struct JointFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<JsonObject<LimitsFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    stiffness: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     locked: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     connected: Option<bool>,
@@ -87,6 +89,7 @@ fn invalid_field(error: &SkeletonError, names: &[String]) -> JsonPath {
     match error {
         SkeletonError::Parent { joint, .. } => at(joint.index()).key("parent"),
         SkeletonError::Radius { joint, .. } => at(joint.index()).key("radius"),
+        SkeletonError::Stiffness { joint, .. } => at(joint.index()).key("stiffness"),
         SkeletonError::Frame { joint } => at(joint.index()).key("frame"),
         SkeletonError::NotFinite { joint, field, .. } => at(joint.index()).key(&field.to_string()),
         SkeletonError::Limit { joint, axis, .. } => {
@@ -120,6 +123,7 @@ impl JointFields {
             rotation: Some(joint.rotation.into()),
             frame: (!is_identity).then_some(JsonNumbers(frame)),
             limits: joint.limits.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
+            stiffness: (joint.stiffness != Vec3::ZERO).then(|| joint.stiffness.into()),
             locked: joint.locked.then_some(true),
             connected: joint.connected.then_some(true),
             radius: Some(joint.radius.into()),
@@ -140,6 +144,7 @@ impl JointFields {
             rotation: value_or(self.rotation, Vec3::ZERO),
             frame: frame.unwrap_or(Mat3::IDENTITY),
             limits: JointLimits::new(limits),
+            stiffness: value_or(self.stiffness, default.stiffness),
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),
             radius: value_or(self.radius, default.radius.min(f32::MAX)),

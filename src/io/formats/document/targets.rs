@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::skeleton::joint;
 use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::json::{
-    Above0, AtField, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole, value_or,
+    Above0, AtField, AtLeast0, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole, value_or,
 };
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachField};
@@ -98,6 +98,8 @@ pub struct SolverFields {
     tolerance: Option<Above0>,
     damping: Option<Above0>,
     step: Option<Above0>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    posture_rate: Option<AtLeast0>,
     root: Option<Root>,
     iterations_per_frame: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -297,13 +299,15 @@ impl TargetMotionFields {
 
 impl SolverFields {
     pub fn new(rig: &SkeletonRig) -> Self {
-        let solver = rig.solver;
+        let (solver, default) = (rig.solver, SolverOptions::default());
         Self {
             method: Some(solver.method),
             iterations: solver.iterations.map(Whole),
             tolerance: solver.tolerance.map(Above0::from),
             damping: Some(solver.damping.into()),
             step: Some(solver.step.into()),
+            posture_rate: (solver.posture_rate != default.posture_rate)
+                .then(|| solver.posture_rate.into()),
             root: Some(solver.root),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
             track: (!rig.is_tracked).then_some(false),
@@ -323,6 +327,7 @@ impl SolverFields {
             tolerance: self.tolerance.map(f32::from),
             damping: value_or(self.damping, default.damping),
             step: value_or(self.step, default.step),
+            posture_rate: value_or(self.posture_rate, default.posture_rate),
             root: self.root.unwrap_or(default.root),
         };
         rig.is_tracked = self.track.unwrap_or(true);

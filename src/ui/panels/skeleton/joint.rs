@@ -22,6 +22,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
     }
     rotation(ui, session, index, joint, actions);
     limits(ui, session, index, joint, actions);
+    stiffness(ui, session, index, joint, actions);
     bone(ui, session, index, joint, actions);
     parent(ui, session, index, joint, actions);
     let tooltip = "Keep solvers from rotating this joint";
@@ -112,6 +113,55 @@ fn angle(
     let value = value.to_degrees();
     let field = NumberField { name, value, unit: "°", step: 1.0, digits: 1, tooltip };
     field.show(ui, session, actions, |degrees| set(degrees.to_radians()));
+}
+
+/// Shows a slider for the stiffness of all angles and, in a section of its own, one for each angle.
+fn stiffness(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
+    let set = |stiffness| JointEdit::SetStiffness { joint: index, stiffness };
+    let tooltip = "Let solvers turn this joint less than others, where others can do it";
+    let of_all = joint.stiffness.max_element();
+    stiffness_slider(["Stiffness"; 2], tooltip, joint.locked, of_all)
+        .show(ui, session, actions, |value| set(Vec3::splat(within_stiffness(value))));
+    widgets::named_folded_section(ui, "stiffness by angle", "Stiffness by angle", |ui| {
+        for axis in RotationAxis::ALL {
+            let names = [&*format!("Stiffness {axis}"), &format!("About {axis}")];
+            let tooltip = format!("Set the stiffness of the angle about {axis}");
+            let value = joint.stiffness[axis.index()];
+            stiffness_slider(names, &tooltip, joint.locked, value).show(
+                ui,
+                session,
+                actions,
+                |value| {
+                    let value = within_stiffness(value);
+                    set(with_axis(joint.stiffness, axis.index(), value))
+                },
+            );
+        }
+    });
+}
+
+fn within_stiffness(value: f32) -> f32 {
+    value.clamp(0.0, Joint::MAX_STIFFNESS)
+}
+
+fn stiffness_slider<'a>(
+    [name, label]: [&'a str; 2],
+    tooltip: &'a str,
+    is_locked: bool,
+    value: f32,
+) -> Slider<'a> {
+    /// The greatest stiffness that the rail reaches.
+    const MOST: f32 = 0.95;
+    Slider {
+        name,
+        label,
+        tooltip,
+        value,
+        range: (0.0, MOST),
+        step: 0.05,
+        disabled: is_locked.then_some("The joint is locked"),
+        ..Slider::default()
+    }
 }
 
 fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {

@@ -111,9 +111,24 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     motion(ui, session, actions);
 }
 
-/// Settings of motions: whether frames continue from each other, and the posture of the first.
+/// Settings of motions: the posture rate, whether frames continue from each other, and the posture of the first.
 fn motion(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.rig();
+    let options = rig.solver;
+    widgets::term_pair(ui, "Posture rate", "Posture rate", actions, |ui, actions| {
+        let field = NumberField {
+            name: "Posture rate",
+            value: options.posture_rate,
+            unit: "",
+            step: 1.0,
+            digits: 0,
+            tooltip: "Set how fast a motion returns to the joint angles: 0 never, 20 hastily",
+        };
+        field.show(ui, session, actions, |posture_rate| {
+            let posture_rate = posture_rate.max(0.0);
+            SolverEdit::SetSolver(SolverOptions { posture_rate, ..options })
+        });
+    });
     let tooltip = "Solve each frame from its joint angles, not from the frame before. Off by default: \
                    neighbouring frames then find different poses, and joints jump";
     let is_alone = !rig.is_tracked;

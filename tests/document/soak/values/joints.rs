@@ -141,6 +141,11 @@ impl Values<'_> {
         }
     }
 
+    /// Stiffness of a joint's angles; sometimes out of range.
+    pub fn stiffness(&mut self) -> Vec3 {
+        Vec3::from_array([(); 3].map(|()| 0.9 * self.part()))
+    }
+
     pub fn limits(&mut self) -> JointLimits {
         JointLimits::new([self.limit(), self.limit(), self.limit()])
     }
@@ -242,6 +247,7 @@ impl Values<'_> {
         options.tolerance = self.chance(0.3).then_some(tolerance);
         options.damping = self.above_0(0.2);
         options.step = self.above_0(2.0);
+        options.posture_rate = self.one_of(&[10.0, 10.0, 0.0, 1.0, 50.0, 1e6, -1.0]);
         options.root = if self.chance(0.4) { self.one_of(&Root::ALL) } else { Root::Turns };
         options
     }
