@@ -2,6 +2,7 @@
 
 mod arm_figures;
 mod bake;
+mod body_follows;
 mod bones;
 #[path = "../common/mod.rs"]
 mod common;

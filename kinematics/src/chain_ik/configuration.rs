@@ -127,7 +127,7 @@ impl Configuration {
     /// The cost f = Σ ½ w |tip − target|² + Σ ½ w ℓ² φ².
     pub fn cost(&self, problem: &Problem) -> f64 {
         let costs = problem.effectors.iter().zip(&self.tips).map(|(effector, tip)| {
-            let residual = tip.as_dvec3() - effector.target.as_dvec3();
+            let residual = tip.as_dvec3() - effector.destination(*tip).as_dvec3();
             0.5 * f64::from(effector.weight) * residual.length_squared()
         });
         let turned = || self.missing_turns(problem).map(|missing| missing.cost()).sum::<f64>();
@@ -171,7 +171,7 @@ impl Configuration {
     pub fn farthest(&self, problem: &Problem) -> f64 {
         let tips = problem.effectors.iter().zip(&self.tips);
         let placed = tips.filter(|(effector, _)| effector.weight > 0.0);
-        let distances = placed.map(|(effector, tip)| effector.target.distance(*tip));
+        let distances = placed.map(|(effector, tip)| effector.destination(*tip).distance(*tip));
         let farthest = f64::from(distances.fold(0.0, f32::max));
         farthest.max(problem.turn_length() * self.orientation_error(problem))
     }
@@ -197,7 +197,7 @@ impl Configuration {
     /// hide how much nearer the other tips are.
     pub fn mean_distance(&self, problem: &Problem) -> f64 {
         let of_effector = |(effector, tip): (&EndEffector, &Vec3A)| {
-            f64::from(effector.weight) * f64::from(effector.target.distance(*tip))
+            f64::from(effector.weight) * f64::from(effector.destination(*tip).distance(*tip))
         };
         let sum: f64 = problem.effectors.iter().zip(&self.tips).map(of_effector).sum();
         if !problem.orients {

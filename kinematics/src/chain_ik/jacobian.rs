@@ -28,13 +28,23 @@ use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton};
 ///
 /// If there is no such joint.
 pub fn jacobian(skeleton: &Skeleton, joint: JointId) -> Vec<[Vec3; 3]> {
+    jacobian_of_point(skeleton, joint, skeleton[joint].axis)
+}
+
+/// [`jacobian`] for another point of the joint than its tip, in the joint's space.
+///
+/// # Panics
+///
+/// If there is no such joint.
+pub fn jacobian_of_point(skeleton: &Skeleton, joint: JointId, point: Vec3) -> Vec<[Vec3; 3]> {
     let pose = skeleton.pose_in_skeleton();
+    let tip = pose.full(joint).transform_point3(point);
     let mut columns = vec![[Vec3::ZERO; 3]; skeleton.joints().len()];
     for index in skeleton.ancestors(joint) {
         let Some(above) = skeleton.joint(index) else { continue };
         let parent = above.parent.map_or(Mat3A::IDENTITY, |parent| pose.full(parent).matrix3);
         let axes = parent * Mat3A::from(above.frame) * JointAngles(above.rotation).axes();
-        let arm = Vec3A::from(pose.tip(joint) - pose.base(index));
+        let arm = Vec3A::from(tip - pose.base(index));
         columns[index.index()] =
             [axes.x_axis, axes.y_axis, axes.z_axis].map(|a| a.cross(arm).into());
     }
@@ -97,7 +107,8 @@ impl Wrenches {
     ) {
         let force = |index: usize| {
             let effector = &problem.effectors[index];
-            (effector.target - config.tips[index]) * effector.weight
+            let tip = config.tips[index];
+            (effector.destination(tip) - tip) * effector.weight
         };
         let moment = |index: usize| {
             let missing = config.missing_turn(&problem.effectors[index])?;

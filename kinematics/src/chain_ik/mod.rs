@@ -64,7 +64,7 @@ pub use diagnose::{diagnose, diagnose_targets};
 pub use inside::{
     AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
 };
-pub use jacobian::{Swing, jacobian};
+pub use jacobian::{Swing, jacobian, jacobian_of_point};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
 pub use problem::{ChainTarget, Orientation};

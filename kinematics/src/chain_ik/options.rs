@@ -167,20 +167,33 @@ pub enum SolveError {
     /// The skeleton has no joint with the index that a target names.
     #[error("the joint of a target must be one of the skeleton, got {0}")]
     NoJoint(JointId),
-    /// Two targets name the same joint.
+    /// Two targets name the same joint and the same grip.
     #[error("joint {0} must have one target, got more")]
     TwoTargets(JointId),
     /// A joint between a target and a root has another parent or lock than in the skeleton for
     /// which the solver was made.
     #[error("joint {0} must have the parent and the lock with which the solver was made")]
     OtherJoint(JointId),
-    /// The position of a target is not finite.
+    /// The position or the grip of a target is not finite.
     #[error("the target of joint {joint} must be finite, got {point}")]
     Point {
         /// The target's joint.
         joint: JointId,
         /// The position.
         point: Vec3,
+    },
+    /// The distances from a target at which it is reached are not finite, negative or swapped.
+    #[error(
+        "the distances of joint {joint}'s target must be finite, 0 or more and in order, got \
+         {least} to {most}"
+    )]
+    Distances {
+        /// The target's joint.
+        joint: JointId,
+        /// The least distance.
+        least: f32,
+        /// The greatest distance.
+        most: f32,
     },
     /// A weight of a target is not finite or negative, or none of them is above 0.
     #[error("the weight of joint {joint}'s target must be finite and above 0, got {weight}")]

@@ -105,7 +105,9 @@ fn path(problem: &Problem, effector: usize) -> impl Iterator<Item = usize> + Clo
 
 /// The longest end of a path that lies on one line: at least two links, or the only one.
 fn straight_end(problem: &Problem, config: &Configuration, effector: usize) -> Option<StraightEnd> {
-    let count = path(problem, effector).count();
+    // A shell is reached from many sides.
+    let count =
+        if problem.effectors[effector].has_shell() { 0 } else { path(problem, effector).count() };
     (2.min(count)..=count).rev().filter(|links| *links > 0).find_map(|links| {
         let base = config.bases[path(problem, effector).nth(links - 1)?];
         let points = path(problem, effector).take(links).map(|link| config.bases[link]);

@@ -54,8 +54,9 @@ impl Tracker {
         config.shifts.iter_mut().for_each(|shift| *shift *= scale);
         config.forward(problem);
         config.renew_orientations();
-        let residuals_before = before.residuals(tips_before);
-        let changes = problem.residuals(&config.tips).zip(residuals_before);
+        // Of a shell, the way of its middle, so that poses return to FK in it, too.
+        let offsets_before = before.offsets(tips_before);
+        let changes = problem.offsets(&config.tips).zip(offsets_before);
         let moved = changes.map(|(now, before)| now.distance(before)).fold(0.0, f64::max);
         let turns = config.missing_turns(problem).zip(&self.turns);
         let turned = turns.map(|(now, before)| f64::from(now.turn.distance(*before)));

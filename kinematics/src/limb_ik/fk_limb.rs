@@ -131,6 +131,33 @@ impl FkLimb {
     }
 }
 
+/// Distances of a limb's tip from its base, in units of the skeleton.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimbRange {
+    /// The least that the limits of the lower joint and the smallest elbow angle allow.
+    pub least: f64,
+    /// The greatest that the limits of the lower joint allow, without stretch.
+    pub most: f64,
+    /// The distance in the pose that the skeleton has.
+    pub present: f64,
+}
+
+impl LimbRange {
+    /// The range of a limb whose bones the skeleton's pose lengthens by `fk_stretch`; `None` for
+    /// missing joints.
+    pub fn of(
+        skeleton: &Skeleton,
+        limb: Limb,
+        soft_reach: SoftReach,
+        fk_stretch: f32,
+    ) -> Option<Self> {
+        let fk = FkLimb::new(skeleton, limb)?;
+        let present = fk.bend.tip(fk.angle).length();
+        let [least, most] = fk.unstretched(fk_stretch.into()).range(soft_reach);
+        Some(Self { least, most, present })
+    }
+}
+
 /// The bend of a lower joint with these Euler angles, the angle β that they give it, and the Euler
 /// angle that β is, if any.
 pub(super) fn bend_of(

@@ -51,6 +51,7 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 pub use carried::{CarriedLimb, LimbPosture};
 pub use elbow::LimbAim;
+pub use fk_limb::LimbRange;
 pub(crate) use solver::lengthen;
 pub use solver::{
     ElbowReference, LimbReach, LimbReport, LimbTarget, bends_to_several_sides, fk_twist, solve,

@@ -5,7 +5,7 @@ use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
-use crate::chain_ik::{ChainTarget, Orientation, Report, Root, SolveError};
+use crate::chain_ik::{ChainTarget, Method, Orientation, Report, Root, SolveError};
 use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::soft_reach::SoftReach;
@@ -19,6 +19,17 @@ pub struct EvaluatedSkeleton {
     pub solved: Shared<Skeleton>,
     /// Results for the rig's targets, in their order.
     pub targets: Vec<TargetReport>,
+    /// The reason why limb targets pull no body although it should [follow](SkeletonRig::body_follows):
+    /// the solver refuses it.
+    pub body_refused: Option<SolveError>,
+}
+
+/// The poses of a step, and what came of its targets.
+struct StepPose {
+    fk: Shared<Skeleton>,
+    solved: Shared<Skeleton>,
+    outcomes: Vec<TargetOutcome>,
+    body_refused: Option<SolveError>,
 }
 
 impl EvaluatedSkeleton {
@@ -102,7 +113,8 @@ impl SkeletonRig {
     /// before has carried. Returns what this step carries to the next. The rig may have changed
     /// since the step before, its targets and joints included.
     ///
-    /// The whole-body targets are solved together, from the FK pose; the limb targets then one
+    /// The whole-body targets are solved together, from the FK pose, and with
+    /// [`SkeletonRig::body_follows`] the bases that limb targets pull; the limb targets then one
     /// after the other, in the order of their joints, but each after those that move the joints
     /// that it is on. The work of the solver is bounded: see
     /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
@@ -117,7 +129,7 @@ impl SkeletonRig {
     }
 
     fn evaluated(&self, time: f64, carried: &mut Carried, of: StepUse) -> EvaluatedSkeleton {
-        let (fk, solved, outcomes) = self.posed(time, carried, of);
+        let StepPose { fk, solved, outcomes, body_refused } = self.posed(time, carried, of);
         let report = |(target, outcome): (&Target, TargetOutcome)| {
             let position = target.in_world(&solved, time);
             let end = |joint| match outcome {
@@ -132,7 +144,7 @@ impl SkeletonRig {
             TargetReport { position, pole, error, rotation_error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
-        EvaluatedSkeleton { fk, solved, targets }
+        EvaluatedSkeleton { fk, solved, targets, body_refused }
     }
 
     /// [`SkeletonRig::step`] without its pose and reports: changes `carried` to what the step
@@ -184,16 +196,10 @@ impl SkeletonRig {
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
     /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
-        self.posed(time, &mut Carried::default(), StepUse::Pose).1
+        self.posed(time, &mut Carried::default(), StepUse::Pose).solved
     }
 
-    /// The FK pose, the solved pose and the outcome for each target of a step.
-    fn posed(
-        &self,
-        time: f64,
-        carried: &mut Carried,
-        of: StepUse,
-    ) -> (Shared<Skeleton>, Shared<Skeleton>, Vec<TargetOutcome>) {
+    fn posed(&self, time: f64, carried: &mut Carried, of: StepUse) -> StepPose {
         let leads = |target: &Target| target.enabled && self.leads_path(target);
         let outcome =
             |target| if leads(target) { TargetOutcome::Leads } else { TargetOutcome::Off };
@@ -202,20 +208,23 @@ impl SkeletonRig {
         let mut solved = fk.clone();
         let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
         let poses = of != StepUse::State || has_limbs;
-        self.solve_whole_body(&mut solved, time, carried, poses, &mut outcomes);
+        let body_refused =
+            self.solve_body(&mut solved, time, carried, poses, &mut outcomes);
         let carried = (of != StepUse::Pose).then_some(carried);
         self.solve_limbs(&mut solved, time, carried, &mut outcomes);
-        (fk, solved, outcomes)
+        StepPose { fk, solved, outcomes, body_refused }
     }
 
-    fn solve_whole_body(
+    /// Solves the whole-body targets, and the bases that limb targets pull. Returns why these cannot
+    /// be pulled.
+    fn solve_body(
         &self,
         solved: &mut Shared<Skeleton>,
         time: f64,
         carried: &mut Carried,
         poses: bool,
         outcomes: &mut [TargetOutcome],
-    ) {
+    ) -> Option<SolveError> {
         let is_active =
             |target: &Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
         let active = self.targets.iter().filter(|it| is_active(it));
@@ -225,18 +234,28 @@ impl SkeletonRig {
                 influence: it.influence,
             })
             .collect();
-        if active.is_empty() {
-            return carried.forget_body();
+        let mut options = self.solver;
+        if active.is_empty() && options.method.is_closed_form() {
+            // Limbs pull more joints than the closed form has.
+            options.method = Method::DampedLeastSquares;
         }
-        let outcome = match carried.step_body(&self.solver, solved, &active, poses) {
-            Ok(report) => TargetOutcome::WholeBody(report),
-            Err(error) => TargetOutcome::Refused(error),
+        let pulled = self.base_targets(solved, time);
+        let is_pulled = !pulled.is_empty();
+        let targets = [active, pulled].concat();
+        if targets.is_empty() {
+            carried.forget_body();
+            return None;
+        }
+        let (outcome, refused) = match carried.step_body(&options, solved, &targets, poses) {
+            Ok(report) => (TargetOutcome::WholeBody(report), None),
+            Err(error) => (TargetOutcome::Refused(error.clone()), Some(error)),
         };
         for (target, slot) in self.targets.iter().zip(outcomes) {
             if is_active(target) {
                 *slot = outcome.clone();
             }
         }
+        refused.filter(|_| is_pulled)
     }
 
     fn solve_limbs(

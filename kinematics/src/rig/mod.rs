@@ -2,6 +2,7 @@
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
+mod body_follows;
 mod carried;
 mod crowd;
 mod diagnose;

@@ -15,7 +15,7 @@ use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::limb_frames::LimbFrames;
 use super::pop_cause::RigPopCause;
 use super::skeleton_rig::SkeletonRig;
-use super::target::{Target, TargetKind};
+use super::target::Target;
 use crate::pop::{self, ElbowStep, PosedLimb};
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::twist::{TwistReference, TwistReferenceKind};
@@ -72,8 +72,11 @@ impl<'a> RigMoment<'a> {
         let targets: Vec<usize> = (0..after.rig.targets.len()).filter(poses).collect();
         let (limbs, bodies): (Vec<usize>, Vec<usize>) =
             targets.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
-        let groups = limbs.iter().map(|index| vec![*index]).chain([bodies]);
-        groups.filter_map(|group| Step::new([self, after], &group, is_missed).pop(&group)).collect()
+        let pulling = limbs.iter().filter(|it| after.rig.pulls_body(&after.rig.targets[**it]));
+        let body: Vec<usize> = bodies.iter().chain(pulling).copied().collect();
+        let of_limb = |index: &usize| Step::of_limb([self, after], *index, is_missed).pop(&[*index]);
+        let of_body = Step::of_body([self, after], &body, is_missed).pop(&body);
+        limbs.iter().filter_map(of_limb).chain(of_body).collect()
     }
 }
 
@@ -91,19 +94,38 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// The step of the joints that targets turn together.
-    fn new(
+    /// The step of the joints of a target's limb.
+    fn of_limb(
+        [before, after]: [&RigMoment<'a>; 2],
+        target: usize,
+        is_missed: [&'a dyn Fn(usize) -> bool; 2],
+    ) -> Self {
+        let joints = after.rig.moved_by(&after.rig.targets[target]).turned;
+        let taken = taken_along(before, after, &joints);
+        let frames = |moment: &RigMoment<'_>| moment.rig.limb_frames(moment.evaluated, target);
+        let limb = frames(before).zip(frames(after)).map(<[LimbFrames; 2]>::from);
+        Self { before: *before, after: *after, joints, limb, taken, is_missed }
+    }
+
+    /// The step of the joints that whole-body targets turn together, and of those that limb targets
+    /// pull; the limbs of these are taken along, too.
+    fn of_body(
         [before, after]: [&RigMoment<'a>; 2],
         targets: &[usize],
         is_missed: [&'a dyn Fn(usize) -> bool; 2],
     ) -> Self {
         let turned = |index: &usize| after.rig.moved_by(&after.rig.targets[*index]).turned;
-        let joints: Vec<JointId> = targets.iter().flat_map(turned).collect();
-        let taken = taken_along(before, after, &joints);
-        let frames =
-            |moment: &RigMoment<'_>| moment.rig.limb_frames(moment.evaluated, *targets.first()?);
-        let limb = frames(before).zip(frames(after)).map(<[LimbFrames; 2]>::from);
-        Self { before: *before, after: *after, joints, limb, taken, is_missed }
+        let mut all: Vec<JointId> = targets.iter().flat_map(turned).collect();
+        let of_body = |index: &usize| -> Vec<JointId> {
+            match after.rig.targets[*index].limb_in(&after.rig.skeleton) {
+                Some(limb) => after.rig.body_of(limb).collect(),
+                None => turned(index),
+            }
+        };
+        let joints: Vec<JointId> = targets.iter().flat_map(of_body).collect();
+        all.extend(&joints);
+        let taken = taken_along(before, after, &all);
+        Self { before: *before, after: *after, joints, limb: None, taken, is_missed }
     }
 }
 
@@ -221,7 +243,7 @@ impl Step<'_> {
             [true, false] => Some(RigPopCause::Found),
             _ => None,
         };
-        let is_limb = self.after.rig.targets[farthest].kind != TargetKind::WholeBody;
+        let is_limb = self.limb.is_some();
         // A limb exceeds even a jump of its target only for one of these causes.
         if is_limb && let Some(cause) = self.cause_of_limb(farthest) {
             return lost_or_found.unwrap_or(cause);

@@ -34,6 +34,9 @@ pub struct SkeletonRig {
     /// True if each frame of a motion continues from the one before; false if each is solved by
     /// itself, from its FK pose.
     pub is_tracked: bool,
+    /// True if limb targets that are out of reach pull the rest of the body along: see
+    /// [`SkeletonRig::pulls_body`].
+    pub body_follows: bool,
     /// The posture with which the motion begins; `None` for the one that is solved from the FK
     /// pose.
     pub posture: Option<Shared<Posture>>,
@@ -55,6 +58,7 @@ impl SkeletonRig {
             follow_paths: Vec::new(),
             head_tracks: BTreeMap::new(),
             is_tracked: true,
+            body_follows: false,
             posture: None,
             skin: None,
         }
@@ -111,9 +115,12 @@ impl SkeletonRig {
     }
 
     /// True if the pose by a target depends on the pose before it: by a whole-body target, and by a
-    /// limb target that carries the elbow's direction or whose limb can bend to more than one side.
+    /// limb target that pulls the body, that carries the elbow's direction or whose limb can bend to more than one side.
     pub fn is_carried(&self, target: &Target) -> bool {
         let Some(settings) = target.limb() else { return !self.leads_path(target) };
+        if self.pulls_body(target) {
+            return true;
+        }
         let limb = Limb::ending_at(&self.skeleton, target.joint);
         settings.reference == TwistReferenceKind::Transport
             || limb.is_ok_and(|limb| limb_ik::bends_to_several_sides(&self.skeleton, limb))

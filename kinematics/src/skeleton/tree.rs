@@ -196,8 +196,17 @@ impl Skeleton {
     ///
     /// If there is no such joint.
     pub fn tip(&self, joint: JointId) -> Vec3 {
+        self.point_in_world(joint, self[joint].axis)
+    }
+
+    /// Position in the world of a point in a joint's space.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such joint.
+    pub fn point_in_world(&self, joint: JointId, point: Vec3) -> Vec3 {
         let in_parent = |point, joint: JointId| self[joint].local().transform_point3(point);
-        self.transform.transform_point3(self.ancestors(joint).fold(self[joint].axis, in_parent))
+        self.transform.transform_point3(self.ancestors(joint).fold(point, in_parent))
     }
 
     /// Rotation of the joint's own space in the world: that of the skeleton's transform, without

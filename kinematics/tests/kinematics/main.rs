@@ -12,6 +12,7 @@ mod ik;
 mod limb_frames;
 mod limb_ik;
 mod orientation;
+mod places;
 mod pop;
 mod skeleton;
 mod skin_from_bones;

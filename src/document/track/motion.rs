@@ -334,6 +334,7 @@ fn has_same_inputs(one: &SkeletonRig, other: &SkeletonRig) -> bool {
         && one.targets == other.targets
         && one.solver == other.solver
         && one.is_tracked == other.is_tracked
+        && one.body_follows == other.body_follows
         && one.follow_paths == other.follow_paths
         && one.head_tracks == other.head_tracks
 }

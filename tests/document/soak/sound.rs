@@ -49,6 +49,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         follow_paths,
         head_tracks: _,
         is_tracked: _,
+        body_follows: _,
         posture,
         skin,
     } = rig;

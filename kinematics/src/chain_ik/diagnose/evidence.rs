@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use crate::chain_ik::{
-    ChainSolver, ChainTarget, Report, Root, SolveError, SolverOptions, jacobian,
+    ChainSolver, ChainTarget, Report, Root, SolveError, SolverOptions, jacobian_of_point,
 };
 use crate::diagnosis::{Boundary, Cause, Remedy};
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
@@ -59,7 +59,7 @@ impl SettledPose {
     pub fn residual(&self, inputs: &SolveInputs, joint: JointId) -> f32 {
         inputs
             .target_of(joint)
-            .map_or(0.0, |target| self.skeleton.tip(joint).distance(target.point).min(f32::MAX))
+            .map_or(0.0, |target| target.distance_in(&self.skeleton))
     }
 }
 
@@ -171,10 +171,8 @@ pub(super) struct Pulls {
 
 impl Pulls {
     pub fn new(pose: &Skeleton, target: &ChainTarget) -> Self {
-        let to_skeleton = pose.transform().inverse();
-        let residual = to_skeleton.transform_vector3(target.point - pose.tip(target.joint));
-        let direction = residual.try_normalize().unwrap_or(Vec3::ZERO);
-        let columns = jacobian(pose, target.joint);
+        let direction = target.residual_in(pose).try_normalize().unwrap_or(Vec3::ZERO);
+        let columns = jacobian_of_point(pose, target.joint, target.grip_in(pose));
         let longest = columns.iter().flatten().map(|column| column.length()).fold(0.0, f32::max);
         let all = pose.ancestors(target.joint).flat_map(|joint| {
             RotationAxis::ALL.into_iter().zip(columns[joint.index()]).map(move |(axis, column)| {
@@ -234,10 +232,8 @@ impl Pull {
 /// joints that both turn.
 pub(super) fn opponent(inputs: &SolveInputs, pose: &Skeleton, joint: JointId) -> Option<JointId> {
     let moments = |target: &ChainTarget| -> Vec<Vec3> {
-        let to_skeleton = pose.transform().inverse();
-        let force =
-            to_skeleton.transform_vector3(target.point - pose.tip(target.joint)) * target.weight;
-        let columns = jacobian(pose, target.joint);
+        let force = target.residual_in(pose) * target.weight;
+        let columns = jacobian_of_point(pose, target.joint, target.grip_in(pose));
         let moment =
             |columns: &[Vec3; 3]| Vec3::from_array(columns.map(|column| column.dot(force)));
         columns.iter().map(moment).collect()

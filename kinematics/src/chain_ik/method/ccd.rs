@@ -39,6 +39,8 @@ pub(in crate::chain_ik) struct Ccd {
     /// Rotation of each link in this sweep; after the sweep, with the rotations of its ancestors.
     rotations: Vec<Quat>,
     pairs: Vec<PointPair>,
+    /// Where the tip of each end effector goes, as the last link found it.
+    destinations: Vec<Vec3A>,
     /// Orientation of each end effector's link, and position of the link's base, in this sweep;
     /// empty without wanted orientations.
     turned: Vec<(Quat, Vec3A)>,
@@ -50,6 +52,7 @@ impl Ccd {
             mounts: problem.mounts().collect(),
             rotations: vec![Quat::IDENTITY; problem.links.len()],
             pairs: Vec::with_capacity(4 * problem.effectors.len()),
+            destinations: vec![Vec3A::ZERO; problem.effectors.len()],
             turned: Vec::new(),
         }
     }
@@ -104,7 +107,7 @@ impl Ccd {
         part.update(problem, &mut turned);
         let link = &problem.links[index];
         let targets =
-            problem.below(link).iter().map(|effector| problem.effectors[*effector].target);
+            problem.below(link).iter().map(|effector| self.destinations[*effector]);
         let pairs = self.pairs.iter().zip(targets);
         let rotation = self.rotations[index];
         let base = config.bases[index];
@@ -118,11 +121,15 @@ impl Ccd {
         let (link, base) = (&problem.links[index], config.bases[index]);
         let below = problem.below(link);
         self.pairs.clear();
-        self.pairs.extend(below.iter().map(|effector| PointPair {
-            from: config.tips[*effector] - base,
-            to: problem.effectors[*effector].target - base,
-            weight: problem.effectors[*effector].weight,
-        }));
+        for effector in below {
+            let tip = config.tips[*effector];
+            let destination = problem.effectors[*effector].destination(tip);
+            self.destinations[*effector] = destination;
+            // A place in its shell is free to move.
+            let is_free = destination == tip && problem.effectors[*effector].has_shell();
+            let weight = if is_free { 0.0 } else { problem.effectors[*effector].weight };
+            self.pairs.push(PointPair { from: tip - base, to: destination - base, weight });
+        }
         if !self.turned.is_empty() {
             return self.rotate_with_orientations(problem, config, index);
         }
@@ -234,7 +241,7 @@ impl Ccd {
             let (orientation, at) = self.turned[*effector];
             let tip = base + rotation * (config.tips[*effector] - base);
             let effector = &problem.effectors[*effector];
-            let off = (tip - effector.target).as_dvec3().length_squared();
+            let off = (tip - effector.destination(tip)).as_dvec3().length_squared();
             let at = base + rotation * (at - base);
             let missing = MissingTurn::new(effector, rotation * orientation, at);
             0.5 * f64::from(effector.weight) * off + missing.map_or(0.0, |it| it.cost())
@@ -302,7 +309,7 @@ pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configurat
         for (effector, tip) in
             problem.effectors.iter().zip(&config.tips).filter(|(effector, _)| effector.tree == tree)
         {
-            sum += effector.weight * (effector.target - *tip);
+            sum += effector.weight * (effector.destination(*tip) - *tip);
             weights += effector.weight;
         }
         if weights == 0.0 {

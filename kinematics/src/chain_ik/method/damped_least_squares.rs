@@ -10,6 +10,10 @@
 //! too. Residuals are clamped to 0.3 of the chain's length, also those of turns. Angles that are at
 //! a limit and would cross it are fixed, and the step is solved again for the other angles.
 //!
+//! A place at several distances from a target counts only along the way to the nearest of them, and
+//! not at all while it is reached. A place that the step would move out of its shell is held along
+//! that way, and the step is solved again.
+//!
 //! # Sources
 //!
 //! Buss 2004, sections 6 and 10 (clamped targets); C. Wampler, *Manipulator inverse kinematic
@@ -22,9 +26,12 @@ use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
 use crate::chain_ik::orientation::MissingTurn;
-use crate::chain_ik::problem::{Link, Problem};
+use crate::chain_ik::problem::{EndEffector, Link, Problem};
+use crate::normalize;
 use crate::skeleton::RotationAxis;
 
+/// Distance beyond a shell that counts as on it, in chain lengths.
+const ROUNDING: f32 = 1e-6;
 /// Maximum length of a residual, in chain lengths; longer residuals are clamped.
 const MAX_RESIDUAL: f32 = 0.3;
 
@@ -45,6 +52,10 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
     axes: Vec<Mat3A>,
     /// The turns that joints miss in the configuration.
     missing: Vec<Option<MissingTurn>>,
+    /// The directions in which places count.
+    counted: Vec<Counted>,
+    /// The places that are held in their shells.
+    held: Vec<Held>,
     /// Space for the weighted columns of a link: for each block of three rows, the first row, and
     /// the columns of three coordinates.
     blocks: Vec<(usize, Mat3A)>,
@@ -69,6 +80,8 @@ impl DampedLeastSquares {
             velocities: Vec::new(),
             axes: Vec::new(),
             missing: Vec::new(),
+            counted: Vec::new(),
+            held: Vec::new(),
             blocks: Vec::new(),
             square: DMatrix::zeros(rows, rows),
             factored: DMatrix::zeros(rows, rows),
@@ -134,10 +147,14 @@ impl DampedLeastSquares {
         most: f32,
     ) {
         self.look(problem, config);
+        // Also places at or outside the borders of their shells may move inwards.
+        let shells = self.counted.iter_mut().filter(|it| **it != Counted::Everywhere);
+        shells.for_each(|counted| *counted = Counted::Nowhere);
         self.axes.clone_from(&config.axes);
         self.wanted.copy_from(config);
         wanted(&mut self.wanted);
         self.wanted.subtract(&self.before);
+        let mut factor;
         loop {
             self.multiply(problem, config);
             self.set_velocities_as_residuals(problem, config);
@@ -145,12 +162,13 @@ impl DampedLeastSquares {
                 return;
             }
             self.take_from_wanted(problem);
-            if !self.fix_angles(problem) {
+            let is_fixed = self.fix_angles(problem);
+            let norm = self.step.norm(problem.length);
+            factor = if norm > most { most / norm } else { 1.0 };
+            if !(self.hold_in_shells(problem, config, 1.0) || is_fixed) {
                 break;
             }
         }
-        let norm = self.step.norm(problem.length);
-        let factor = if norm > most { most / norm } else { 1.0 };
         advance(problem, &self.before, &self.step, factor, config);
     }
 
@@ -160,6 +178,11 @@ impl DampedLeastSquares {
         self.before.copy_from(config);
         self.missing.clear();
         self.missing.extend(problem.effectors.iter().map(|it| config.missing_turn(it)));
+        self.counted.clear();
+        let places = problem.effectors.iter().zip(&config.tips);
+        self.counted.extend(places.map(|(effector, tip)| Counted::new(effector, *tip)));
+        self.held.clear();
+        self.held.resize(problem.effectors.len(), Held::default());
         let rows = rows(problem);
         if self.square.nrows() != rows {
             self.square = DMatrix::zeros(rows, rows);
@@ -173,9 +196,15 @@ impl DampedLeastSquares {
         self.residuals.as_mut_slice()[row..][..3].copy_from_slice(&residual.to_array());
     }
 
-    /// Sets the residuals to J d, the weighted velocities of the tips and missing turns on the
-    /// wanted way.
-    fn set_velocities_as_residuals(&mut self, problem: &Problem, config: &Configuration) {
+    /// Sets the velocities of links for a motion, with shifts as `shift` makes them from those of
+    /// the motion.
+    fn set_velocities(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        motion: &Coordinates,
+        shift: f32,
+    ) {
         self.velocities.clear();
         for (index, link) in problem.links.iter().enumerate() {
             let (spin, velocity) = match link.parent {
@@ -183,26 +212,98 @@ impl DampedLeastSquares {
                     let (spin, velocity) = self.velocities[parent];
                     (spin, velocity + spin.cross(config.bases[index] - config.bases[parent]))
                 }
-                None => (Vec3A::ZERO, self.wanted.shifts[link.tree]),
+                None => (Vec3A::ZERO, shift * motion.shifts[link.tree]),
             };
-            let own = self.axes[index] * Vec3A::from(self.wanted.angles[index]);
+            let own = self.axes[index] * Vec3A::from(motion.angles[index]);
             self.velocities.push((spin + own, velocity));
         }
+    }
+
+    /// The velocity of the base of an end effector's link, its spin, and the base, for the
+    /// velocities of links; without a link, for the shift of the tree.
+    fn velocity_at(
+        &self,
+        config: &Configuration,
+        effector: &EndEffector,
+        shift: Vec3A,
+    ) -> (Vec3A, Vec3A, Vec3A) {
+        match effector.link {
+            Some(link) => {
+                let (spin, velocity) = self.velocities[link];
+                (spin, velocity, config.bases[link])
+            }
+            None => (Vec3A::ZERO, shift, Vec3A::ZERO),
+        }
+    }
+
+    /// Sets the residuals to J d, the weighted velocities of the tips and missing turns on the
+    /// wanted way.
+    fn set_velocities_as_residuals(&mut self, problem: &Problem, config: &Configuration) {
+        let wanted = std::mem::take(&mut self.wanted);
+        self.set_velocities(problem, config, &wanted, 1.0);
         for (index, effector) in problem.effectors.iter().enumerate() {
-            let (spin, velocity, base) = match effector.link {
-                Some(link) => {
-                    let (spin, velocity) = self.velocities[link];
-                    (spin, velocity, config.bases[link])
-                }
-                None => (Vec3A::ZERO, self.wanted.shifts[effector.tree], Vec3A::ZERO),
-            };
-            let of_tip = velocity + spin.cross(config.tips[index] - base);
-            self.set_residual(place_row(problem, index), of_tip * effector.weight.sqrt());
+            let shift = wanted.shifts[effector.tree];
+            let (spin, velocity, base) = self.velocity_at(config, effector, shift);
+            let velocity_of_tip = velocity + spin.cross(config.tips[index] - base);
+            let allowed = self.held[index].allowed.unwrap_or(Vec3A::ZERO);
+            let residual = self.counted[index].of(velocity_of_tip) - allowed;
+            self.set_residual(place_row(problem, index), residual * effector.weight.sqrt());
             if let Some(missing) = self.missing[index] {
                 let taken = missing.taken(spin, velocity + spin.cross(missing.at - base));
                 self.set_residual(turn_row(index), taken * missing.stiffness.sqrt());
             }
         }
+        self.wanted = wanted;
+    }
+
+    /// Holds places in their shells: those that the step would move out, in the direction that leads
+    /// out, with the room that is left; lets those go that the force on them would push out. A force
+    /// restrains a place from moving with its sign times `restrains`. Returns whether any is newly
+    /// held or let go.
+    fn hold_in_shells(
+        &mut self,
+        problem: &Problem,
+        config: &Configuration,
+        restrains: f32,
+    ) -> bool {
+        if !problem.has_shells {
+            return false;
+        }
+        let step = std::mem::take(&mut self.step);
+        let lever = problem.length * problem.length;
+        self.set_velocities(problem, config, &step, lever);
+        let mut any = false;
+        for (index, effector) in problem.effectors.iter().enumerate().filter(|it| it.1.has_shell()) {
+            let tip = config.tips[index];
+            let row = place_row(problem, index);
+            match (self.counted[index], self.held[index]) {
+                (Counted::Nowhere, held) if held.releases < Held::MOST_RELEASES => {
+                    let shift = lever * step.shifts[effector.tree];
+                    let (spin, velocity, base) = self.velocity_at(config, effector, shift);
+                    let velocity = velocity + spin.cross(tip - base);
+                    let Some(out) = effector.way_out(tip, velocity) else { continue };
+                    let room = effector.room(tip, out).max(0.0);
+                    if velocity.dot(out) > room + ROUNDING * problem.length {
+                        self.counted[index] = Counted::Along(out);
+                        self.held[index].allowed = Some(out * room);
+                        self.set_residual(row, out * room * effector.weight.sqrt());
+                        any = true;
+                    }
+                }
+                (Counted::Along(out), Held { allowed: Some(_), releases }) => {
+                    let force = Vec3A::from_slice(&self.forces.as_slice()[row..]);
+                    if restrains * force.dot(out) < 0.0 {
+                        self.counted[index] = Counted::Nowhere;
+                        self.held[index] = Held { allowed: None, releases: releases + 1 };
+                        self.set_residual(row, Vec3A::ZERO);
+                        any = true;
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.step = step;
+        any
     }
 
     /// Turns the step Jᵀ F into the rest of the wanted way; fixed angles do not move.
@@ -238,7 +339,8 @@ impl DampedLeastSquares {
         let most = MAX_RESIDUAL * problem.length;
         let most_turn = most / problem.turn_length() as f32;
         for (index, effector) in problem.effectors.iter().enumerate() {
-            let residual = (effector.target - config.tips[index]).clamp_length_max(most);
+            let tip = config.tips[index];
+            let residual = (effector.destination(tip) - tip).clamp_length_max(most);
             self.set_residual(place_row(problem, index), residual * effector.weight.sqrt());
             if let Some(missing) = self.missing[index] {
                 let turn = missing.turn.clamp_length_max(most_turn);
@@ -256,7 +358,8 @@ impl DampedLeastSquares {
             if !self.solve(problem, config) {
                 return false;
             }
-            if !self.fix_angles(problem) {
+            let is_fixed = self.fix_angles(problem);
+            if !(self.hold_in_shells(problem, config, -1.0) || is_fixed) {
                 return true;
             }
         }
@@ -272,7 +375,8 @@ impl DampedLeastSquares {
             for effector in problem.below(link) {
                 let arm =
                     (config.tips[*effector] - base) * problem.effectors[*effector].weight.sqrt();
-                let place = columns(axes, |axis| axis.cross(arm));
+                let counted = self.counted[*effector];
+                let place = columns(axes, |axis| counted.of(axis.cross(arm)));
                 self.blocks.push((place_row(problem, *effector), place));
                 if let Some(missing) = self.missing[*effector] {
                     let weight = missing.stiffness.sqrt();
@@ -295,8 +399,9 @@ impl DampedLeastSquares {
                 if effector.tree != tree {
                     continue;
                 }
-                let lever = Vec3::splat(problem.length * effector.weight.sqrt());
-                self.blocks.push((place_row(problem, index), Mat3A::from_diagonal(lever)));
+                let lever = problem.length * effector.weight.sqrt();
+                let place = columns(Mat3A::IDENTITY * lever, |axis| self.counted[index].of(axis));
+                self.blocks.push((place_row(problem, index), place));
                 if let Some(missing) = self.missing[index] {
                     let weight = problem.length * missing.stiffness.sqrt();
                     let [x, y, z] = missing.of_velocity().map(|column| column * weight);
@@ -340,7 +445,8 @@ impl DampedLeastSquares {
         let forces = self.forces.as_slice();
         let force = |effector: usize| {
             let weight = problem.effectors[effector].weight.sqrt();
-            Vec3A::from_slice(&forces[place_row(problem, effector)..]) * weight
+            let row = Vec3A::from_slice(&forces[place_row(problem, effector)..]);
+            self.counted[effector].of(row) * weight
         };
         let moment = |effector: usize| {
             let missing = self.missing[effector]?;
@@ -370,6 +476,51 @@ impl DampedLeastSquares {
             }
         }
         any
+    }
+}
+
+/// The directions in which the place of an end effector counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Counted {
+    /// All.
+    Everywhere,
+    /// A unit vector: the place is outside its shell, or at its border.
+    Along(Vec3A),
+    /// None: the place is in its shell.
+    Nowhere,
+}
+
+/// How a place is held in its shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Held {
+    /// The way that it may move until it is at the border; `None` if it is not held.
+    allowed: Option<Vec3A>,
+    /// How often it was let go.
+    releases: u8,
+}
+
+impl Held {
+    /// Releases after which a place is not held any more in a step, so that the search for the
+    /// places that must be held ends.
+    const MOST_RELEASES: u8 = 2;
+}
+
+impl Counted {
+    fn new(effector: &EndEffector, tip: Vec3A) -> Self {
+        if !effector.has_shell() {
+            return Self::Everywhere;
+        }
+        normalize(effector.destination(tip) - tip).map_or(Self::Nowhere, Self::Along)
+    }
+
+    /// The part of a velocity or force that counts.
+    #[inline]
+    fn of(self, vector: Vec3A) -> Vec3A {
+        match self {
+            Self::Everywhere => vector,
+            Self::Along(normal) => normal * normal.dot(vector),
+            Self::Nowhere => Vec3A::ZERO,
+        }
     }
 }
 

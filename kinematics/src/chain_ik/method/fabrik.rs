@@ -56,7 +56,7 @@ fn reach(points: &mut LinkPoints, problem: &Problem, config: &Configuration, lin
     let base = config.bases[link];
     let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
     for index in points.of_link(link) {
-        let destination = points.destination_of(problem, index);
+        let destination = points.destination_of(problem, config, index);
         points.destinations[index] = destination;
         let arm = points.posed_arm(config, link, index);
         points.arms[index] = arm;

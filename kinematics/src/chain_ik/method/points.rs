@@ -276,26 +276,40 @@ impl LinkPoints {
             return false;
         };
         let length: f32 = self.all.iter().map(|point| point.radius).sum();
-        effector.link.is_some() && effector.target.distance(config.bases[0]) >= length
+        effector.link.is_some()
+            && !effector.has_shell()
+            && effector.target.distance(config.bases[0]) >= length
     }
 
     /// Weighted mean of the destinations of a point's members.
-    pub fn destination_of(&self, problem: &Problem, index: usize) -> Vec3A {
+    pub fn destination_of(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+    ) -> Vec3A {
         let point = &self.all[index];
         if let [member] = point.members[..] {
-            return self.member_destination(problem, member.kind);
+            return self.member_destination(problem, config, member.kind);
         }
         let destinations = point.members.iter();
         let sum: Vec3A = destinations
-            .map(|member| member.weight * self.member_destination(problem, member.kind))
+            .map(|member| member.weight * self.member_destination(problem, config, member.kind))
             .sum();
         sum / point.weight
     }
 
-    fn member_destination(&self, problem: &Problem, member: MemberKind) -> Vec3A {
+    fn member_destination(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        member: MemberKind,
+    ) -> Vec3A {
         match member {
             MemberKind::Base(link) => self.base_destinations[link],
-            MemberKind::Tip(effector) => problem.effectors[effector].target,
+            MemberKind::Tip(effector) => {
+                problem.effectors[effector].destination(config.tips[effector])
+            }
         }
     }
 
@@ -345,7 +359,7 @@ impl LinkPoints {
         for (tree, ground) in self.grounds.iter().enumerate() {
             let weights: f32 = ground.iter().map(|member| member.weight).sum();
             let residual = |member: &PointMember| {
-                self.member_destination(problem, member.kind) - member.kind.position_in(config)
+                self.member_destination(problem, config, member.kind) - member.kind.position_in(config)
             };
             let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
             let shift = config.shifts[tree] + sum / weights;

@@ -119,7 +119,7 @@ impl RestoreLengths {
         let base = points.base_destinations[link];
         self.pairs.clear();
         for index in points.of_link(link) {
-            let destination = points.destination_of(problem, index);
+            let destination = points.destination_of(problem, config, index);
             points.destinations[index] = destination;
             self.pairs.push(PointPair {
                 from: points.posed_arm(config, link, index),

@@ -43,10 +43,12 @@
 //! safeguard); E. Birgin, J. Martínez, M. Raydan, *Nonmonotone spectral projected gradient methods
 //! on convex sets*, 2000 (P).
 
+use glam::Vec3A;
+
 use crate::chain_ik::configuration::{Configuration, Coordinates};
 use crate::chain_ik::inside::{Event, Recorder};
 use crate::chain_ik::jacobian::{Wrenches, advance};
-use crate::chain_ik::problem::Problem;
+use crate::chain_ik::problem::{EndEffector, Problem};
 
 /// The method with a fixed step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -124,6 +126,9 @@ pub(in crate::chain_ik) struct Transpose {
     last_descent: Coordinates,
     /// Coordinates before the last step.
     before: Coordinates,
+    /// The distances of tips from their shells before the step, 0 within a shell; empty without
+    /// shells.
+    gaps: Vec<f32>,
 }
 
 impl Transpose {
@@ -138,6 +143,7 @@ impl Transpose {
             descent: zero(),
             last_descent: zero(),
             before: zero(),
+            gaps: Vec::new(),
         };
         transpose.refit(problem);
         transpose.restart();
@@ -172,6 +178,14 @@ impl Transpose {
         self.costs[self.iterations % COSTS] = config.cost(problem);
         self.iterations += 1;
         self.before.copy_from(config);
+        self.gaps.clear();
+        if problem.has_shells {
+            let gap = |(effector, tip): (&EndEffector, &Vec3A)| match effector.has_shell() {
+                true => effector.destination(*tip).distance(*tip),
+                false => 0.0,
+            };
+            self.gaps.extend(problem.effectors.iter().zip(&config.tips).map(gap));
+        }
         recorder
             .record(config, || Event::Gradient { descent: self.descent.clone(), damping: None });
         self.search(problem, config, recorder)
@@ -213,7 +227,8 @@ impl Transpose {
             self.for_each_change(problem, config, |change, _, descent| {
                 expected += change * descent;
             });
-            if expected > 0.0 && config.cost(problem) <= greatest - DECREASE * expected {
+            let is_lower = config.cost(problem) <= greatest - DECREASE * expected;
+            if expected > 0.0 && is_lower && !self.is_deep_in_a_shell(problem, config) {
                 recorder.record(config, || Event::Step {
                     by: self.descent.clone(),
                     factor: self.step,
@@ -226,6 +241,17 @@ impl Transpose {
         }
         advance(problem, &self.before, &self.descent, 0.0, config);
         false
+    }
+
+    /// True if a tip that was outside its shell has come far into it, where nothing would stop or
+    /// take back a step that is too long.
+    fn is_deep_in_a_shell(&self, problem: &Problem, config: &Configuration) -> bool {
+        /// Depth that is allowed, as a part of the distance before.
+        const DEPTH: f32 = 0.1;
+        let tips = problem.effectors.iter().zip(&config.tips);
+        tips.zip(&self.gaps).any(|((effector, tip), gap)| {
+            *gap > 0.0 && effector.depth(*tip) > DEPTH * gap
+        })
     }
 
     /// Calls `add` for each coordinate that differs from `before`, with its change and with −g at

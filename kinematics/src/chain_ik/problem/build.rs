@@ -89,10 +89,11 @@ impl Builder {
         (problem.to_skeleton, problem.to_world, problem.unit) = (to_skeleton, to_world, unit);
         self.add_links(problem, skeleton);
         problem.add_effectors(skeleton, targets, &self.attachments, self.method);
+        problem.has_shells = problem.effectors.iter().any(EndEffector::has_shell);
         problem.list_below();
         problem.set_targets(targets);
         skeleton.write_bind_pose_in_skeleton(&mut self.bind);
-        problem.inertia = problem.bind_inertia(&self.bind);
+        problem.inertia = problem.bind_inertia(skeleton, targets, &self.bind);
         Ok(())
     }
 
@@ -169,7 +170,7 @@ impl Problem {
         self.heaviest = weights.fold(0.0, f32::max);
         for target in targets {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
-            let axis = self.scaled(skeleton[target.joint].axis);
+            let axis = self.scaled(target.grip_in(skeleton));
             let reach = attachment.path as f32 + axis.length();
             // Of a target out of reach only the direction counts, unless it loses the tip's
             // position to rounding or the method is not stable that far away.
@@ -186,6 +187,7 @@ impl Problem {
                 tip: attachment.to_link.transform_point3a(axis),
                 target: Vec3A::ZERO,
                 requested: DVec3::ZERO,
+                distances: target.distances.map(|it| (f64::from(it) * self.unit) as f32),
                 weight: match target.weight {
                     0.0 => 0.0,
                     weight => (weight / self.heaviest).max(f32::MIN_POSITIVE),
@@ -226,13 +228,20 @@ impl Problem {
         }
     }
 
-    fn bind_inertia(&self, bind: &SkeletonPose) -> f32 {
+    fn bind_inertia(
+        &self,
+        skeleton: &Skeleton,
+        targets: &[ChainTarget],
+        bind: &SkeletonPose,
+    ) -> f32 {
         let mut sum = 0.0;
         for link in &self.links {
             let compliance = f64::from(link.compliance.max_element());
             for effector in self.below(link) {
+                let target = &targets[*effector];
+                let tip = bind.full(target.joint).transform_point3(target.grip_in(skeleton));
                 let effector = &self.effectors[*effector];
-                let arm = bind.tip(effector.joint).as_dvec3() - bind.base(link.joint).as_dvec3();
+                let arm = tip.as_dvec3() - bind.base(link.joint).as_dvec3();
                 let of_place = f64::from(effector.weight) * (arm * self.unit).length_squared();
                 let of_turn = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
                 sum += compliance * (of_place + of_turn);
@@ -279,7 +288,7 @@ fn longest_path(skeleton: &Skeleton, targets: &[ChainTarget]) -> f64 {
         let inner =
             skeleton.ancestors(target.joint).filter(|joint| skeleton[*joint].parent.is_some());
         let offsets: f64 = inner.map(|joint| skeleton[joint].offset.as_dvec3().length()).sum();
-        offsets + skeleton[target.joint].axis.as_dvec3().length()
+        offsets + target.grip_in(skeleton).as_dvec3().length()
     };
     targets.iter().map(path).fold(0.0, f64::max)
 }
@@ -288,12 +297,15 @@ pub(super) fn check_targets(
     skeleton: &Skeleton,
     targets: &[ChainTarget],
 ) -> Result<(), SolveError> {
-    let mut targeted = vec![false; skeleton.joints().len()];
-    for target in targets {
+    let mut last = vec![None; skeleton.joints().len()];
+    for (index, target) in targets.iter().enumerate() {
         if skeleton.joint(target.joint).is_none() {
             return Err(SolveError::NoJoint(target.joint));
         }
-        if std::mem::replace(&mut targeted[target.joint.index()], true) {
+        // Several targets of a joint must have several grips.
+        let others = last[target.joint.index()].replace(index).map_or(0..0, |_| 0..index);
+        let is_same = |it: &ChainTarget| (it.joint, it.grip) == (target.joint, target.grip);
+        if targets[others].iter().any(is_same) {
             return Err(SolveError::TwoTargets(target.joint));
         }
         check_target(target)?;
@@ -301,12 +313,17 @@ pub(super) fn check_targets(
     Ok(())
 }
 
-/// Checks that a target's place and orientation are finite, and its weights finite and not
-/// negative, with one above 0.
+/// Checks that a target's place, grip and orientation are finite, its distances in order, and its
+/// weights finite and not negative, with one above 0.
 pub fn check_target(target: &ChainTarget) -> Result<(), SolveError> {
-    let &ChainTarget { joint, point, weight, orientation, orientation_weight } = target;
-    if !point.is_finite() {
+    let &ChainTarget { joint, point, grip, distances, weight, orientation, orientation_weight } =
+        target;
+    if let Some(point) = [Some(point), grip].into_iter().flatten().find(|it| !it.is_finite()) {
         return Err(SolveError::Point { joint, point });
+    }
+    let [least, most] = distances;
+    if !(least >= 0.0 && least <= most && most.is_finite()) {
+        return Err(SolveError::Distances { joint, least, most });
     }
     let is_weight = |weight: f32| weight.is_finite() && weight >= 0.0;
     let is_free = weight == 0.0 && (orientation.is_none() || orientation_weight == 0.0);

@@ -17,18 +17,25 @@ mod build;
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
-use crate::skeleton::{JointId, JointLimits, RotationAxis};
+use crate::normalize;
+use crate::skeleton::{JointId, JointLimits, RotationAxis, Skeleton};
 
 pub(super) use build::{Builder, check_target};
 
-/// A target for a joint: a place for the tip of its bone, and an orientation.
+/// A target for a joint: a place for the tip of its bone or another of its points, and an
+/// orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChainTarget {
     /// The joint.
     pub joint: JointId,
-    /// Place for the joint's tip, in the world.
+    /// Place for the joint's tip, or for its grip, in the world.
     pub point: Vec3,
+    /// Point in the joint's space that goes to the place; `None` for the tip of its bone.
+    pub grip: Option<Vec3>,
+    /// Least and greatest distance from the place, in skeleton units, at which it counts as
+    /// reached; `[0, 0]` for the place itself.
+    pub distances: [f32; 2],
     /// Weight of the place relative to other targets; 0 lets the tip be anywhere, if there is an
     /// orientation.
     pub weight: f32,
@@ -59,13 +66,57 @@ impl ChainTarget {
     /// A place for the tip of a joint, in the world, with the weight 1.
     #[must_use]
     pub const fn at(joint: JointId, point: Vec3) -> Self {
-        Self { joint, point, weight: 1.0, orientation: None, orientation_weight: 1.0 }
+        Self {
+            joint,
+            point,
+            grip: None,
+            distances: [0.0; 2],
+            weight: 1.0,
+            orientation: None,
+            orientation_weight: 1.0,
+        }
     }
 
     /// An orientation of a joint, with the weight 1, and any place for its tip.
     #[must_use]
     pub const fn turned(joint: JointId, orientation: Orientation) -> Self {
         Self { weight: 0.0, ..Self::at(joint, Vec3::ZERO).with_orientation(orientation) }
+    }
+
+    /// The point in the joint's space that goes to the place.
+    pub(super) fn grip_in(&self, skeleton: &Skeleton) -> Vec3 {
+        self.grip.unwrap_or(skeleton[self.joint].axis)
+    }
+
+    /// Distance in the world from the tip or grip in a pose to the nearest place at which the target
+    /// is reached; 0 for a free place.
+    pub(super) fn distance_in(&self, pose: &Skeleton) -> f32 {
+        pose.transform().transform_vector3(self.residual_in(pose)).length().min(f32::MAX)
+    }
+
+    /// Vector from the tip or grip in a pose to the nearest place at which the target is reached, in
+    /// skeleton space; zero for a free place.
+    pub(super) fn residual_in(&self, pose: &Skeleton) -> Vec3 {
+        let to_skeleton = pose.transform().inverse();
+        let tip = to_skeleton.transform_point3(pose.point_in_world(self.joint, self.grip_in(pose)));
+        let point = to_skeleton.transform_point3(self.point).as_dvec3();
+        let nearest = match self.distances {
+            [0.0, 0.0] => Some(point),
+            distances => nearest_in_shell(point, distances, tip.as_dvec3()),
+        };
+        nearest.map_or(Vec3::ZERO, |nearest| (nearest - tip.as_dvec3()).as_vec3())
+    }
+
+    /// This target for another point of the joint than the tip of its bone, in the joint's space.
+    #[must_use]
+    pub const fn with_grip(self, grip: Vec3) -> Self {
+        Self { grip: Some(grip), ..self }
+    }
+
+    /// This target reached at any of these distances from its place, in skeleton units.
+    #[must_use]
+    pub const fn with_distances(self, least: f32, most: f32) -> Self {
+        Self { distances: [least, most], ..self }
     }
 
     /// This target with another weight of the place.
@@ -134,14 +185,17 @@ pub struct EndEffector {
     /// Index of the link that moves the tip; `None` if the joint and all joints above are locked.
     pub link: Option<usize>,
     pub tree: usize,
-    /// Position of the tip in the link's space; without a link, relative to the tree's origin.
+    /// Position of the tip, or of the grip that stands for it, in the link's space; without a link,
+    /// relative to the tree's origin.
     pub tip: Vec3A,
     /// Position to which solvers move the tip, in problem space: `requested`, or, if that is
     /// farther than `max_distance` from the tree's origin, the point at `max_distance` in the same
-    /// direction.
+    /// direction. With `distances`, the middle of a shell: see [`EndEffector::destination`].
     pub target: Vec3A,
     /// Position of the caller's target, in problem space.
     pub requested: DVec3,
+    /// Least and greatest distance from the target at which it is reached, in the problem's units.
+    pub distances: [f32; 2],
     /// Weight of the place as a fraction of the greatest weight, at most 1; 0 if the place is free.
     pub weight: f32,
     /// The joint's space from the link's space; without a link, relative to the tree's origin.
@@ -149,6 +203,65 @@ pub struct EndEffector {
     pub orientation: Option<Orienting>,
     /// Maximum distance of `target` from the tree's origin, in the problem's units.
     pub max_distance: f64,
+}
+
+impl EndEffector {
+    /// True if the target is reached at several distances, so that its places form a shell.
+    pub fn has_shell(&self) -> bool {
+        self.distances != [0.0; 2]
+    }
+
+    /// The position to which methods move a tip: the target, or the place of its shell that is
+    /// nearest to the tip.
+    pub fn destination(&self, tip: Vec3A) -> Vec3A {
+        if !self.has_shell() {
+            return self.target;
+        }
+        let nearest = nearest_in_shell(self.target.as_dvec3(), self.distances, tip.as_dvec3());
+        nearest.map_or(tip, |it| it.clamp_length_max(self.max_distance).as_vec3a())
+    }
+
+    /// Distance from the border of the shell, of a tip within it.
+    pub fn depth(&self, tip: Vec3A) -> f32 {
+        let distance = tip.distance(self.target);
+        let [least, most] = self.distances;
+        // The inner border of a ball is a point, which is none.
+        let from_inside = if least > 0.0 { distance - least } else { most };
+        (most - distance).min(from_inside)
+    }
+
+    /// The radial direction in which a tip with this velocity comes nearer to a border of its shell;
+    /// `None` in the middle.
+    pub fn way_out(&self, tip: Vec3A, velocity: Vec3A) -> Option<Vec3A> {
+        let radial = normalize(tip - self.target)?;
+        let is_outwards = velocity.dot(radial) >= 0.0;
+        (is_outwards || self.distances[0] > 0.0).then_some(if is_outwards { radial } else { -radial })
+    }
+
+    /// Length of the way that is left to a tip in its shell until it leaves the shell in the
+    /// direction `out`, which is radial.
+    pub fn room(&self, tip: Vec3A, out: Vec3A) -> f32 {
+        let way = tip - self.target;
+        let [least, most] = self.distances;
+        if out.dot(way) >= 0.0 { most - way.length() } else { way.length() - least }
+    }
+
+    /// Vector from the nearest requested place to a tip, in problem space.
+    fn residual(&self, tip: Vec3A) -> DVec3 {
+        let tip = tip.as_dvec3();
+        if !self.has_shell() {
+            return tip - self.requested;
+        }
+        nearest_in_shell(self.requested, self.distances, tip).map_or(DVec3::ZERO, |it| tip - it)
+    }
+}
+
+/// The point of a shell that is nearest to a point outside it; `None` for a point of the shell.
+fn nearest_in_shell(middle: DVec3, [least, most]: [f32; 2], point: DVec3) -> Option<DVec3> {
+    let (way, distance) = (point - middle).normalize_and_length();
+    let nearest = distance.clamp(f64::from(least), f64::from(most));
+    let way = if distance > 0.0 { way } else { DVec3::Y };
+    (nearest != distance).then(|| middle + way * nearest)
 }
 
 /// The orientation that a target asks for, in problem space.
@@ -200,6 +313,8 @@ pub struct Problem {
     heaviest: f32,
     /// True if a target asks for an orientation.
     pub orients: bool,
+    /// True if a target is reached at several distances.
+    pub has_shells: bool,
     /// Sum of the weights of places and orientations, above 0.
     pub weights: f64,
 }
@@ -260,8 +375,16 @@ impl Problem {
         length / self.unit * self.scale()
     }
 
-    /// Vectors from all requested places to their tips, in the world; zero for free places.
+    /// Vectors from the nearest requested places to their tips, in the world; zero for free places.
     pub fn residuals<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
+        self.effectors.iter().zip(tips).map(|(effector, tip)| match effector.weight {
+            0.0 => DVec3::ZERO,
+            _ => self.to_world * (effector.residual(*tip) / self.unit),
+        })
+    }
+
+    /// Vectors from the points of all targets to their tips, in the world; zero for free places.
+    pub fn offsets<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
         self.effectors.iter().zip(tips).map(|(effector, tip)| match effector.weight {
             0.0 => DVec3::ZERO,
             _ => self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit),
@@ -284,7 +407,9 @@ impl Problem {
                 (self.to_skeleton.transform_point3(point.as_dvec3()) - origin) * self.unit
             };
             effector.requested = place(target.point);
-            effector.target = effector.requested.clamp_length_max(effector.max_distance).as_vec3a();
+            // The middle of a shell is not where its nearest place is.
+            let most = if effector.has_shell() { farthest } else { effector.max_distance };
+            effector.target = effector.requested.clamp_length_max(most).as_vec3a();
             effector.orientation = target.orientation.map(|orientation| Orienting {
                 wanted: match orientation {
                     Orientation::Rotation(rotation) => {
@@ -339,7 +464,7 @@ impl Problem {
         let of_tree = self.effectors.iter().zip(tips).filter(|(effector, _)| effector.tree == tree);
         let (sum, weight) = of_tree.fold((DVec3::ZERO, 0.0), |(sum, all), (effector, tip)| {
             let weight = f64::from(effector.weight);
-            (sum + (effector.requested - tip.as_dvec3()) * weight, all + weight)
+            (sum - effector.residual(*tip) * weight, all + weight)
         });
         if weight > 0.0 { sum / weight } else { DVec3::ZERO }
     }

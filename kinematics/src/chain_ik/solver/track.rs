@@ -265,9 +265,13 @@ fn hold_back(problem: &mut Problem, config: &Configuration, most: f32) -> bool {
     let mut is_held_back = false;
     let most_turn = most / problem.turn_length() as f32;
     for (effector, tip) in problem.effectors.iter_mut().zip(&config.tips) {
-        let way = effector.target - *tip;
+        let way = effector.destination(*tip) - *tip;
         if effector.weight > 0.0 && way.length() > most {
-            effector.target = *tip + way.clamp_length_max(most);
+            effector.target = if effector.has_shell() {
+                effector.target - (way - way.clamp_length_max(most))
+            } else {
+                *tip + way.clamp_length_max(most)
+            };
             is_held_back = true;
         }
         let turn = config.missing_turn(effector).map(|missing| missing.turn);

@@ -104,6 +104,8 @@ pub struct SolverFields {
     iterations_per_frame: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     track: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    body_follows: Option<bool>,
 }
 
 /// Adds the targets of a file to a rig, which must have its skeleton already.
@@ -311,6 +313,7 @@ impl SolverFields {
             root: Some(solver.root),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
             track: (!rig.is_tracked).then_some(false),
+            body_follows: rig.body_follows.then_some(true),
         }
     }
 
@@ -331,6 +334,7 @@ impl SolverFields {
             root: self.root.unwrap_or(default.root),
         };
         rig.is_tracked = self.track.unwrap_or(true);
+        rig.body_follows = self.body_follows.unwrap_or(false);
         rig.iterations_per_frame = value_or(self.iterations_per_frame, rig.iterations_per_frame);
         let count = rig.iterations_per_frame;
         if (1..=MOST).contains(&count) {

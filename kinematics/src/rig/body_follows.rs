@@ -1,0 +1,75 @@
+//! Whole body follows: limb targets that their limbs do not reach pull the rest of the body along.
+//!
+//! A limb target acts on the base of its limb, such as a shoulder or a hip: the base may be anywhere
+//! from which the limb reaches the target, and is brought to the nearest such place from elsewhere.
+//! The bases of all limbs are solved together with the whole-body targets; the limbs are solved
+//! after them. So the body moves as far as limbs cannot, and planted feet stay.
+
+use super::carried::BodyTarget;
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetSpace};
+use crate::chain_ik::{ChainTarget, Root};
+use crate::limb_ik::{Limb, LimbRange};
+use crate::skeleton::{JointId, Skeleton};
+
+/// The part of a limb's reach to which its base is brought: a little less than all of it, since the
+/// joints of a limb that becomes straight race.
+const REACH: f64 = 0.966;
+
+impl SkeletonRig {
+    /// True if a target pulls the body along by its limb, where the limb does not reach it:
+    /// [`SkeletonRig::body_follows`], and joints above the limb can turn. A target in the space of
+    /// a joint pulls none, since it moves with the body; nor does one whose limb is on another limb.
+    pub fn pulls_body(&self, target: &Target) -> bool {
+        self.body_follows
+            && self.is_solved_for(target)
+            && target.present_space() == TargetSpace::World
+            && target.limb_in(&self.skeleton).is_some_and(|limb| {
+                let mut body = self.body_of(limb);
+                body.next().is_some() && !self.is_on_limb(limb)
+            })
+    }
+
+    /// The joints above a limb that solvers turn, or move.
+    pub fn body_of(&self, limb: Limb) -> impl Iterator<Item = JointId> {
+        let root = self.solver.root;
+        let above = self.skeleton.ancestors(limb.upper).skip(1);
+        above.filter(move |joint| {
+            let joint = &self.skeleton[*joint];
+            match (joint.parent, root) {
+                (None, Root::Free) => true,
+                (None, Root::Locked) => false,
+                _ => !joint.locked,
+            }
+        })
+    }
+
+    /// True if a joint above a limb belongs to the limb of another solved target.
+    fn is_on_limb(&self, limb: Limb) -> bool {
+        let others = self.targets.iter().filter(|other| self.is_solved_for(other));
+        let mut joints = others.filter_map(|other| other.limb_in(&self.skeleton)).flat_map(|it| it.joints());
+        joints.any(|joint| {
+            joint != limb.upper && self.skeleton.ancestors(limb.upper).any(|above| above == joint)
+        })
+    }
+
+    /// The targets that pull the bases of limbs, for the FK pose at a time in seconds.
+    pub(super) fn base_targets(&self, fk: &Skeleton, time: f64) -> Vec<BodyTarget> {
+        let pulling = self.targets.iter().filter(|target| self.pulls_body(target));
+        pulling.filter_map(|target| self.base_target(target, fk, time)).collect()
+    }
+
+    fn base_target(&self, target: &Target, fk: &Skeleton, time: f64) -> Option<BodyTarget> {
+        let (settings, limb) = (target.limb()?, target.limb_in(fk)?);
+        let base = &fk[limb.upper];
+        let LimbRange { least, most, present } =
+            LimbRange::of(fk, limb, settings.soft_reach, settings.fk_stretch)?;
+        // A limb that the FK pose has straighter, such as a leg that stands, may stay so.
+        let most = (REACH * most).max(present.min(most));
+        let tip = ChainTarget::at(base.parent?, target.in_world(fk, time))
+            .with_grip(base.offset)
+            .with_distances(least.min(most) as f32, most as f32)
+            .with_weight(target.weight);
+        Some(BodyTarget { tip, influence: target.influence })
+    }
+}

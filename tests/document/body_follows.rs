@@ -1,0 +1,142 @@
+//! Whole body follows: what limbs do not reach pulls the rest of the body along.
+
+use glam::Vec3;
+use ik_arm::document::{Channel, Document, FramePop, Inspection, Track};
+use ik_arm::kinematics::chain_ik::{Method, SolveError};
+use ik_arm::kinematics::skeleton::JointId;
+use ik_arm::rig::TargetSpace;
+use pollster::block_on;
+
+use crate::common::Random;
+use crate::common::documents::example;
+
+const FEET: [&str; 2] = ["left_shin", "right_shin"];
+
+fn joint(document: &Document, name: &str) -> JointId {
+    document.skeleton().find(name).expect("a joint")
+}
+
+/// The Human, whose left hand goes from its place to a point and back, in two seconds each.
+fn reaching(method: Method, to: Vec3) -> Document {
+    let mut document = example("human");
+    document.rig.solver.method = method;
+    let hand = joint(&document, "left_forearm");
+    let home = document.rig.targets[document.rig.target(hand).expect("a target")].home;
+    for (time, point) in [(0.0, home), (2.0, to), (4.0, home)] {
+        document.keys.insert(Channel::Target(hand), time, point);
+    }
+    document
+}
+
+/// Largest distance of a tip of some joints in a pose from another one.
+fn moved(document: &Document, track: &Track, times: [f64; 2], names: &[&str]) -> f32 {
+    let [from, to] = times.map(|time| track.at(time));
+    let joints = names.iter().map(|name| joint(document, name));
+    joints.map(|it| from.skeleton().tip(it).distance(to.skeleton().tip(it))).fold(0.0, f32::max)
+}
+
+fn pops(track: &Track) -> Vec<FramePop> {
+    let timeline = track.document().timeline;
+    block_on(Inspection::new(track, timeline, false, async |_| true)).expect("not cancelled").pops
+}
+
+/// Points around a shoulder: in front of the body, from the hip to the top of the head.
+fn points_in_front(random: &mut Random, shoulder: Vec3, distance: f32) -> Vec3 {
+    loop {
+        let way = random.direction();
+        if way.z > 0.1 && (-0.8..0.3).contains(&way.y) {
+            return shoulder + way * distance;
+        }
+    }
+}
+
+fn shoulder() -> Vec3 {
+    let human = example("human");
+    let shoulder = joint(&human, "left_upper_arm");
+    human.at(0.0).skeleton().base(shoulder)
+}
+
+/// The length of the Human's arm without the hand.
+const ARM: f32 = 0.54;
+
+#[test]
+fn a_hand_beyond_its_reach_takes_the_body_along_smoothly_and_the_feet_stay() {
+    let (mut random, shoulder) = (Random(38), shoulder());
+    for method in [Method::DampedLeastSquares, Method::Transpose, Method::Ccd, Method::Fabrik] {
+        for _ in 0..8 {
+            let to = points_in_front(&mut random, shoulder, ARM + 0.2);
+            let mut document = reaching(method, to);
+            document.timeline.end = 4.0;
+            let track = Track::new(&document);
+            let case = format!("{method}, {}", to - shoulder);
+            let far = track.at(2.0);
+            assert!(far.targets()[0].error < 1e-4, "{case}: {}", far.targets()[0].error);
+            for part in ["pelvis", "chest"] {
+                let way = moved(&document, &track, [0.0, 2.0], &[part]);
+                assert!(way > 0.05, "{case}: {part} moved by {way}");
+            }
+            for frame in 0..=120 {
+                let posed = track.at(f64::from(frame) / 30.0);
+                for foot in FEET {
+                    let error = posed.target_report(joint(&document, foot)).expect("a report").error;
+                    assert!(error < 1e-6, "{case}: {foot} is off by {error}");
+                }
+            }
+            let back = moved(&document, &track, [0.0, 4.0], &["pelvis", "chest", "head"]);
+            assert!(back < 1e-4, "{case}: off by {back} after all");
+            assert_eq!(pops(&track), vec![], "{case}");
+        }
+    }
+}
+
+#[test]
+fn a_hand_within_its_reach_moves_the_arm_alone() {
+    let (mut random, shoulder) = (Random(39), shoulder());
+    for _ in 0..10 {
+        let to = points_in_front(&mut random, shoulder, 0.9 * ARM);
+        let document = reaching(Method::DampedLeastSquares, to);
+        let track = Track::new(&document);
+        for frame in 0..=40 {
+            let time = f64::from(frame) / 10.0;
+            let way = moved(&document, &track, [0.0, time], &["pelvis", "chest", "head"]);
+            assert!(way < 1e-6, "{way} at {time} s");
+        }
+    }
+}
+
+#[test]
+fn a_body_that_does_not_follow_lets_the_hand_miss() {
+    let mut document = reaching(Method::DampedLeastSquares, shoulder() + Vec3::Z * (ARM + 0.2));
+    document.rig.body_follows = false;
+    let track = Track::new(&document);
+    assert!((track.at(2.0).targets()[0].error - 0.2).abs() < 1e-3);
+    assert!(moved(&document, &track, [0.0, 2.0], &["pelvis", "chest"]) < 1e-6);
+}
+
+#[test]
+fn a_target_that_moves_with_the_body_does_not_pull_it() {
+    let mut document = example("human");
+    let (hand, chest) = (joint(&document, "left_forearm"), joint(&document, "chest"));
+    let pose = document.at(0.0).skeleton().clone();
+    let index = document.rig.target(hand).expect("a target");
+    let target = &mut document.rig.targets[index];
+    target.space = TargetSpace::Joint(chest);
+    *target = target.placed(&pose, 0.0, shoulder() + Vec3::Z);
+    let posed = document.at(0.0);
+    assert!(posed.targets()[index].error > 0.4);
+    assert!(posed.skeleton().tip(chest).distance(pose.tip(chest)) < 1e-6);
+}
+
+#[test]
+fn a_method_that_cannot_move_the_body_says_so() {
+    let mut document = example("human");
+    document.rig.solver.method = Method::Relaxation;
+    let pelvis = joint(&document, "pelvis");
+    let refused = document.at(0.0).evaluated_skeleton().body_refused.clone();
+    let expected =
+        SolveError::CannotStiffen { method: Method::Relaxation, joint: pelvis, per_angle: false };
+    assert_eq!(refused, Some(expected));
+    // The closed form is for limbs alone; the body then moves by least squares.
+    document.rig.solver.method = Method::TwoBone;
+    assert_eq!(document.at(0.0).evaluated_skeleton().body_refused, None);
+}
