@@ -210,6 +210,7 @@ fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
         Remedy::Lengthen { factor, .. } => {
             (Verb::Lengthen, format!("the bones by {}", percent(*factor - 1.0)))
         }
+        Remedy::FollowBody => (Verb::Let, "the whole body follow".to_owned()),
         Remedy::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
         Remedy::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
         Remedy::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),

@@ -158,6 +158,8 @@ pub enum Remedy {
     },
     /// Changes what solvers may do with roots.
     SetRoot(Root),
+    /// Lets the body follow limb targets that are out of reach.
+    FollowBody,
     /// Widens limits of angles.
     WidenLimits(Vec<WidenedLimit>),
     /// Lets solvers turn joints.

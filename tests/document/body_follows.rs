@@ -78,7 +78,8 @@ fn a_hand_beyond_its_reach_takes_the_body_along_smoothly_and_the_feet_stay() {
             for frame in 0..=120 {
                 let posed = track.at(f64::from(frame) / 30.0);
                 for foot in FEET {
-                    let error = posed.target_report(joint(&document, foot)).expect("a report").error;
+                    let error =
+                        posed.target_report(joint(&document, foot)).expect("a report").error;
                     assert!(error < 1e-6, "{case}: {foot} is off by {error}");
                 }
             }

@@ -6,7 +6,7 @@ use ik_arm::document::{
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::Shared;
-use ik_arm::kinematics::chain_ik::{Method, SolverOptions};
+use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
@@ -126,7 +126,7 @@ examples! {
             space: TargetSpace::Joint(JointId::new(INNER)),
         }];
         ApplyRemedy: [
-            remedy(Remedy::Unlock(vec![JointId::new(0)])),
+            remedy(Remedy::SetRoot(Root::Locked)),
             remedy(Remedy::MoveTarget { joint: JointId::new(AIMED), point: Vec3::ONE }),
             remedy(Remedy::Lengthen { joint: JointId::new(AIMED), factor: 1.5 }),
             remedy(Remedy::AllowIterations(77)),
@@ -137,6 +137,7 @@ examples! {
             SolverOptions::new(Method::Fabrik).with_damping(0.3),
         )];
         SetTracked: [SolverEdit::SetTracked(false)];
+        SetBodyFollows: [SolverEdit::SetBodyFollows(false)];
         ResetPosture: [SolverEdit::ResetPosture];
         SetPosture: [SolverEdit::SetPosture(Posture {
             joints: [(JointId::new(AIMED), PosturedJoint {

@@ -906,6 +906,7 @@ fn what_a_diagnosis_names_is_outlined() {
         ["left_hand", "left_forearm"].map(|it| rig.skeleton.find(it).expect("a joint"));
     let index = rig.target_of_end(hand).expect("a target");
     let target = Target { home: Vec3::new(0.8, 1.5, 0.5), ..rig.targets[index] };
+    session.apply(SolverEdit::SetBodyFollows(false));
     session.apply(TargetEdit::SetTarget(target));
     let found = session.why(true).first().expect("it is too far away");
     let said = words::cause(session.rig(), found);

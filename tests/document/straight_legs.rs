@@ -23,7 +23,7 @@ fn human() -> Skeleton {
         let name = json["name"].as_str().expect("name");
         let mut joint = Joint::new(name, parent, vector(&json["axis"]).expect("axis"));
         joint.offset = vector(&json["offset"]).unwrap_or(tip);
-        joint.locked = json["locked"].as_bool().unwrap_or(false);
+        joint.locked = parent.is_none();
         joint.limits = RotationAxis::ALL.map(|axis| limit(&json["limits"][axis.name()])).into();
         joints.push(joint);
     }

@@ -580,7 +580,7 @@ fn the_examples_hold_what_their_names_say() {
 fn the_human_stands_on_the_ground_within_its_limits() {
     let human = example("human").rig;
     let joints = human.skeleton.joints();
-    assert!(joints[0].locked && joints[0].axis == Vec3::ZERO);
+    assert!(human.body_follows && joints[0].axis == Vec3::ZERO);
     assert!(joints.iter().filter(|joint| joint.limits.is_limited()).count() >= 12);
     let heights: Vec<_> = human.skeleton.pose().points().map(|point| point.y).collect();
     let highest = heights.iter().copied().fold(f32::MIN, f32::max);

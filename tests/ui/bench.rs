@@ -317,7 +317,7 @@ impl Bench {
 
     /// A point of the viewport without handles.
     pub fn empty_point(&self) -> Pos2 {
-        self.viewport().left_top() + vec2(40.0, 40.0)
+        self.viewport().left_top() + vec2(40.0, 80.0)
     }
 }
 

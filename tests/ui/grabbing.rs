@@ -3,12 +3,12 @@
 use crate::common::arm::{ArmEdit, ArmPosed, ArmSession};
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use glam::Vec3;
-use ik_arm::document::{Overlay, Target};
+use ik_arm::document::{Camera, Overlay, Target};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::LimbPart;
 use ik_arm::session::{
-    DisplayEdit, Drag, Grip, GripRing, PoseMode, SelectAction, SkinEdit, TargetEdit,
-    TransactionAction,
+    DisplayEdit, Drag, Grip, GripRing, PoseMode, SelectAction, SkinEdit, SolverEdit, TargetEdit,
+    TransactionAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -17,6 +17,7 @@ const LEFT: PointerButton = PointerButton::Primary;
 
 fn human() -> Bench {
     let mut bench = Bench::example("human");
+    bench.apply([SolverEdit::SetBodyFollows(false)]);
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench
 }
@@ -44,7 +45,8 @@ fn icon(bench: &Bench) -> CursorIcon {
     bench.harness.output().platform_output.cursor_icon
 }
 
-/// Points of the viewport, clear of its edges and of the axes in its corner.
+/// Points of the viewport, clear of its edges, of the axes in one corner and of the switch in
+/// another.
 fn grid(bench: &Bench, step: f32) -> Vec<Pos2> {
     let room = bench.viewport().shrink(24.0);
     let corner = bench.viewport().right_bottom() - vec2(140.0, 140.0);
@@ -52,7 +54,9 @@ fn grid(bench: &Bench, step: f32) -> Vec<Pos2> {
     let rows = (room.height() / step) as usize;
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let points = cells.map(|(x, y)| room.left_top() + vec2(x as f32, y as f32) * step);
-    points.filter(|at| at.x < corner.x || at.y < corner.y).collect()
+    let switch = bench.viewport().left_top() + vec2(190.0, 50.0);
+    let is_clear = |at: &Pos2| at.x > switch.x || at.y > switch.y;
+    points.filter(|at| at.x < corner.x || at.y < corner.y).filter(is_clear).collect()
 }
 
 /// Presses at points of the viewport. At each, the cursor of a grip and the light are there exactly
@@ -174,6 +178,10 @@ fn a_point_of_a_limb_with_a_target_turns_about_the_pointer_under_the_mouse_and_t
         ("left_shin", "left_foot"),
     ] {
         let mut bench = human();
+        // From a side where no ring is seen edge-on.
+        let camera = *bench.session().camera();
+        let yaw = camera.yaw + if end == "right_hand" { 0.6 } else { 0.0 };
+        bench.apply([ViewAction::SetCamera(Camera { yaw, ..camera })]);
         let (joint, hand) = (bench.joint(bone), bench.joint(end));
         let rig = bench.session().rig();
         let target = rig.targets[rig.limb_target_of(hand).expect("a limb")].joint;
@@ -189,6 +197,7 @@ fn a_point_of_a_limb_with_a_target_turns_about_the_pointer_under_the_mouse_and_t
         bench.move_to(at);
         assert_eq!(bench.session().selection().hovered(), Some(joint));
         assert!(bench.says(&format!("left drag: drag the limb of {end}")));
+        assert!(at.distance(to) > 3.0, "{bone} is seen to turn");
         bench.drag_and_drop(LEFT, at, to);
         let (seen, after) = place(&bench);
         let seen = bench.on_screen(seen);

@@ -339,7 +339,8 @@ impl ChainSolver {
                 let offset = self.problem.root_offset(index, config.shifts[index]);
                 skeleton.write_local(tree.root, |root| root.offset = offset);
             }
-        } else if self.tracker.is_none() && config.is_same(&self.start) {
+        }
+        if self.tracker.is_none() && config.is_same(&self.start) {
             // Nothing has moved: writes the angles from before the run, bit for bit, also if other
             // angles have been written since.
             for link in &self.problem.links {

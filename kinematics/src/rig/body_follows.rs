@@ -21,13 +21,28 @@ impl SkeletonRig {
     /// [`SkeletonRig::body_follows`], and joints above the limb can turn. A target in the space of
     /// a joint pulls none, since it moves with the body; nor does one whose limb is on another limb.
     pub fn pulls_body(&self, target: &Target) -> bool {
-        self.body_follows
+        self.pulling_limb(target).is_some()
+    }
+
+    /// True if there is a limb target whose limb is on a body, which can follow it.
+    pub fn has_body_to_follow(&self) -> bool {
+        let mut limbs = self.targets.iter().filter_map(|target| target.limb_in(&self.skeleton));
+        limbs.any(|limb| self.body_of(limb).next().is_some())
+    }
+
+    /// The limb of a target that pulls the body.
+    pub(super) fn pulling_limb(&self, target: &Target) -> Option<Limb> {
+        let is_pulling = self.body_follows
             && self.is_solved_for(target)
-            && target.present_space() == TargetSpace::World
-            && target.limb_in(&self.skeleton).is_some_and(|limb| {
-                let mut body = self.body_of(limb);
-                body.next().is_some() && !self.is_on_limb(limb)
-            })
+            && target.present_space() == TargetSpace::World;
+        let limb = target.limb_in(&self.skeleton).filter(|_| is_pulling)?;
+        (self.body_of(limb).next().is_some() && !self.is_on_limb(limb)).then_some(limb)
+    }
+
+    /// True if a limb target pulls a joint along.
+    pub fn is_pulled(&self, joint: JointId) -> bool {
+        let mut limbs = self.targets.iter().filter_map(|target| self.pulling_limb(target));
+        limbs.any(|limb| self.body_of(limb).any(|of_body| of_body == joint))
     }
 
     /// The joints above a limb that solvers turn, or move.
@@ -47,7 +62,8 @@ impl SkeletonRig {
     /// True if a joint above a limb belongs to the limb of another solved target.
     fn is_on_limb(&self, limb: Limb) -> bool {
         let others = self.targets.iter().filter(|other| self.is_solved_for(other));
-        let mut joints = others.filter_map(|other| other.limb_in(&self.skeleton)).flat_map(|it| it.joints());
+        let mut joints =
+            others.filter_map(|other| other.limb_in(&self.skeleton)).flat_map(|it| it.joints());
         joints.any(|joint| {
             joint != limb.upper && self.skeleton.ancestors(limb.upper).any(|above| above == joint)
         })

@@ -208,8 +208,7 @@ impl SkeletonRig {
         let mut solved = fk.clone();
         let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
         let poses = of != StepUse::State || has_limbs;
-        let body_refused =
-            self.solve_body(&mut solved, time, carried, poses, &mut outcomes);
+        let body_refused = self.solve_body(&mut solved, time, carried, poses, &mut outcomes);
         let carried = (of != StepUse::Pose).then_some(carried);
         self.solve_limbs(&mut solved, time, carried, &mut outcomes);
         StepPose { fk, solved, outcomes, body_refused }

@@ -445,11 +445,14 @@ impl RootSpace {
         soft_reach: SoftReach,
         bones: TwoBone,
     ) -> TwoBonePose {
-        // The distance is clamped in f64, but a target at a limit is rounded to f32 in the world.
+        // The distance is clamped in f64, but a target at a limit is rounded to f32 in the world;
+        // by less than what lengths may be off.
         const ROUNDING: f64 = f32::EPSILON as f64;
         let (distance, wanted) = (solution.triangle.distance, solution.target.length());
         let length: f64 = solution.triangle.sides.iter().sum();
-        let rounding = ROUNDING * (length + self.to_world.translation.length() / self.scale);
+        const MOST: f64 = 4.0;
+        let coordinates = length + self.to_world.translation.length() / self.scale;
+        let rounding = ROUNDING * coordinates.min(MOST * length);
         let is_at_target = (distance - wanted).abs() <= rounding;
         let reach = match ik::reach(
             saturate(distance * self.scale),

@@ -74,7 +74,8 @@ impl<'a> RigMoment<'a> {
             targets.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
         let pulling = limbs.iter().filter(|it| after.rig.pulls_body(&after.rig.targets[**it]));
         let body: Vec<usize> = bodies.iter().chain(pulling).copied().collect();
-        let of_limb = |index: &usize| Step::of_limb([self, after], *index, is_missed).pop(&[*index]);
+        let of_limb =
+            |index: &usize| Step::of_limb([self, after], *index, is_missed).pop(&[*index]);
         let of_body = Step::of_body([self, after], &body, is_missed).pop(&body);
         limbs.iter().filter_map(of_limb).chain(of_body).collect()
     }

@@ -1,7 +1,9 @@
 //! Places of targets: for other points of a joint than its tip, and at several distances.
 
 use glam::Vec3;
-use ik_arm_kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SolveError, SolverOptions, solve};
+use ik_arm_kinematics::chain_ik::{
+    ChainSolver, ChainTarget, Method, SolveError, SolverOptions, solve,
+};
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 
 use crate::common::Random;
@@ -21,7 +23,8 @@ fn a_grip_is_solved_like_the_tip_of_a_locked_child() {
         let mut targets = [Vec::new(), Vec::new()];
         for index in 0..2 {
             let (joint, grip) = (tips[index], grips[index]);
-            let leaf = Joint { locked: true, ..Joint::new(&format!("leaf{index}"), Some(joint), grip) };
+            let leaf =
+                Joint { locked: true, ..Joint::new(&format!("leaf{index}"), Some(joint), grip) };
             let leaf = leaves.add(leaf).expect("a leaf");
             let place = ChainTarget::at(joint, points[index]);
             targets[0].push(place.with_grip(grip));
@@ -53,7 +56,8 @@ fn two_grips_of_a_joint_place_and_turn_it() {
                     ChainTarget::at(joint, point).with_grip(grip)
                 })
                 .to_vec();
-            let report = solve(&mut skeleton, &targets, &SolverOptions::new(method)).expect("solved");
+            let report =
+                solve(&mut skeleton, &targets, &SolverOptions::new(method)).expect("solved");
             reached += usize::from(report.converged());
         }
         assert!(reached >= 38, "{method}: {reached}");
@@ -95,7 +99,8 @@ fn a_tip_at_an_allowed_distance_moves_nothing() {
             let point = skeleton.tip(joint) + random.direction();
             let target = ChainTarget::at(joint, point).with_distances(0.5, 1.5);
             let before = skeleton.clone();
-            let report = solve(&mut skeleton, &[target], &SolverOptions::new(method)).expect("solved");
+            let report =
+                solve(&mut skeleton, &[target], &SolverOptions::new(method)).expect("solved");
             assert_eq!((report.iterations, report.error), (0, 0.0), "{method}, case {case}");
             assert_eq!(skeleton, before, "{method}, case {case}");
         }
@@ -159,7 +164,8 @@ fn held_places_give_way_only_as_far_as_they_may() {
             shake(&mut random, &mut posed);
             posed.set_rotation(root, skeleton[root].rotation).expect("angles");
             targets.push(ChainTarget::at(tip, posed.tip(tip) + random.vector(0.05)));
-            let options = SolverOptions::new(method).with_root(ik_arm_kinematics::chain_ik::Root::Free);
+            let options =
+                SolverOptions::new(method).with_root(ik_arm_kinematics::chain_ik::Root::Free);
             let report = solve(&mut skeleton, &targets, &options).expect("solved");
             let held = targets[..2].iter().all(|target| {
                 let at = skeleton.point_in_world(root, target.grip.expect("a grip"));
@@ -188,6 +194,9 @@ fn a_hinge_stops_where_its_tip_comes_into_the_shell() {
         let report = solve(&mut posed, &[target], &options).expect("solved");
         let turned = f64::from(posed[joint].rotation[RotationAxis::Z.index()]);
         assert!(report.converged(), "{method}: {report:?}");
-        assert!((turned - expected).abs() < 0.1 * expected, "{method}: {turned} instead of {expected}");
+        assert!(
+            (turned - expected).abs() < 0.1 * expected,
+            "{method}: {turned} instead of {expected}"
+        );
     }
 }

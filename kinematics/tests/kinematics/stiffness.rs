@@ -38,7 +38,8 @@ fn reachable(random: &mut Random) -> (Skeleton, ChainTarget) {
 
 /// The angle by which a joint is turned, radians.
 fn turn(before: &Skeleton, after: &Skeleton, joint: JointId) -> f32 {
-    let [before, after] = [before, after].map(|it| glam::Quat::from_mat3a(&it[joint].local_rotation()));
+    let [before, after] =
+        [before, after].map(|it| glam::Quat::from_mat3a(&it[joint].local_rotation()));
     before.angle_between(after)
 }
 
@@ -212,7 +213,8 @@ fn angles_of_different_stiffness_share_a_turn_by_it() {
     set_stiffness(&mut skeleton, joint, Vec3::new(0.9, 0.0, 0.0));
     let point = Vec3::new(0.01, 0.01, 1.0);
     let options = SolverOptions::new(Method::TransposeFixed);
-    let mut solver = ChainSolver::new(&skeleton, &[target(joint, point)], &options).expect("solver");
+    let mut solver =
+        ChainSolver::new(&skeleton, &[target(joint, point)], &options).expect("solver");
     solver.step();
     let mut posed = skeleton.clone();
     solver.write(&mut posed);

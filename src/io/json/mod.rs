@@ -10,8 +10,8 @@ use serde::de::{
 };
 
 pub use value::{
-    Above0, AtLeast0, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds, KeyRow, Whole,
-    to_styled_json, value_or,
+    Above0, AtLeast0, Fraction, JsonNumber, JsonNumbers, JsonObject, JsonPoint, JsonSeconds,
+    KeyRow, Whole, to_styled_json, value_or,
 };
 
 /// The path to a value in a JSON text.

@@ -70,8 +70,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
     let shows_stiffness = display.shows(Overlay::Stiffness);
-    let drawn =
-        DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale, shows_stiffness };
+    let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale, shows_stiffness };
     let skin = ShownSkin::new(rig, display);
     cylinders.clear();
     cylinders.resize(joints.len(), false);

@@ -215,6 +215,7 @@ fn remedy_label(remedy: &Remedy) -> &'static str {
         Remedy::MoveTarget { .. } => "Move target",
         Remedy::Lengthen { .. } => "Lengthen bones",
         Remedy::SetRoot(_) => "Change root",
+        Remedy::FollowBody => "Let body follow",
         Remedy::WidenLimits(_) => "Widen limits",
         Remedy::Unlock(_) => "Unlock joints",
         Remedy::SwitchOff(_) => "Switch off target",

@@ -15,6 +15,8 @@ pub enum SolverEdit {
     SetIterationsPerFrame(u32),
     /// Lets each frame of a motion continue from the one before, or solves each by itself.
     SetTracked(bool),
+    /// Lets the body follow limb targets that are out of reach, or stay.
+    SetBodyFollows(bool),
     /// Lets the motion begin with the pose that is solved from the joints' own angles, instead of
     /// the posture that drags have left.
     ResetPosture,
@@ -32,6 +34,8 @@ impl SolverEdit {
             Self::SetSolver(_) | Self::SetIterationsPerFrame(_) | Self::SetTracked(_) => {
                 "Change solver"
             }
+            Self::SetBodyFollows(true) => "Let body follow",
+            Self::SetBodyFollows(false) => "Keep body",
             Self::ResetPosture => "Reset posture",
             Self::SetPosture(_) => "Change posture",
             Self::ApplyPose => "Apply pose",
@@ -43,11 +47,9 @@ impl SolverEdit {
             Self::SetSolver(solver) if is_valid(&solver) => {
                 Outcome::change(session.shown(), |document| document.rig.solver = solver)
             }
-            Self::SetSolver(_) => {
-                Outcome::fail(
-                    "Tolerance, damping, step and iterations must be above 0, the posture rate 0 or more",
-                )
-            }
+            Self::SetSolver(_) => Outcome::fail(
+                "Tolerance, damping, step and iterations must be above 0, the posture rate 0 or more",
+            ),
             Self::SetIterationsPerFrame(iterations) => {
                 let iterations = iterations.clamp(1, SkeletonRig::MAX_ITERATIONS_PER_FRAME);
                 Outcome::change(session.shown(), |document| {
@@ -56,6 +58,9 @@ impl SolverEdit {
             }
             Self::SetTracked(is_tracked) => Outcome::change(session.shown(), |document| {
                 document.rig.is_tracked = is_tracked;
+            }),
+            Self::SetBodyFollows(follows) => Outcome::change(session.shown(), |document| {
+                document.rig.body_follows = follows;
             }),
             Self::ResetPosture => Outcome::from(Consequence::ResetPosture).and(Outcome::change(
                 session.shown(),

@@ -116,7 +116,10 @@ impl TourStep {
     ///
     /// Never fails: a test opens every scene.
     pub fn document(&self) -> Result<Document, OpenError> {
-        Ok(parse(self.title, self.scene, &OpenOptions::default())?.document)
+        let mut document = parse(self.title, self.scene, &OpenOptions::default())?.document;
+        // A body that follows would keep the targets within reach.
+        document.rig.body_follows &= self.goal != Goal::LeaveATargetOutOfReach;
+        Ok(document)
     }
 }
 

@@ -1,5 +1,5 @@
 //! Notes over the view: why a target is not reached, with a button that helps; the hint "Drag the
-//! hand"; the switch that lets heads follow the mouse.
+//! hand"; the switches that let heads follow the mouse and bodies their limbs.
 
 use egui::{
     Align2, Area, FontId, Frame, Id, Order, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
@@ -7,7 +7,7 @@ use egui::{
 };
 
 use crate::rig::LimbPart;
-use crate::session::{Actions, Session, TransactionAction};
+use crate::session::{Actions, Session, SolverEdit, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
 use crate::ui::{pose_summary, style, widgets};
 
@@ -105,6 +105,8 @@ fn moved_into(rect: Rect, room: Rect) -> Rect {
     rect.translate(least.max(Vec2::ZERO) + most.min(Vec2::ZERO))
 }
 
+/// Greatest width of the reason why a body cannot follow, in points.
+const REFUSAL: f32 = 240.0;
 /// Distance from the edges of the view, in points.
 const MARGIN: f32 = 12.0;
 
@@ -120,6 +122,28 @@ pub(super) fn follow_mouse(ui: &Ui, session: &Session, viewport: Rect, actions: 
                 "Let the heads follow the mouse and record it; a click in the view ends it";
             let changed = widgets::check_box(ui, "Follow the mouse", tooltip, follows, None);
             actions.extend(changed.map(TransactionAction::FollowMouse));
+        });
+    });
+}
+
+/// Shows the switch that lets the body follow limb targets, for a figure with such a body.
+pub(super) fn body_follows(ui: &Ui, session: &Session, viewport: Rect, actions: &mut Actions) {
+    let rig = session.rig();
+    if !rig.has_body_to_follow() || session.can_follow_mouse() {
+        return;
+    }
+    let area = Area::new(Id::unique("whole body follows")).order(Order::Middle);
+    area.fixed_pos(viewport.min + vec2(MARGIN, MARGIN)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            let tooltip = "Let the rest of the body follow a hand or foot that its target takes \
+                           beyond the limb's reach";
+            let follows = rig.body_follows;
+            let changed = widgets::check_box(ui, "Whole body follows", tooltip, follows, None);
+            actions.extend(changed.map(SolverEdit::SetBodyFollows));
+            if let Some(error) = &session.posed().evaluated_skeleton().body_refused {
+                ui.set_max_width(REFUSAL);
+                ui.colored_label(style::accent(ui), format!("Not solved: {error}"));
+            }
         });
     });
 }

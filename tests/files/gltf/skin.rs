@@ -601,10 +601,10 @@ fn a_mesh_that_cannot_be_read_is_left_out_with_the_reason() {
 
 /// The posed vertices of the corners of all triangles, in order.
 fn corners(document: &Document, time: f64) -> Vec<Vec3> {
-    let document = document.at(time).into_document();
-    let rig = &document.rig;
+    let at = document.at(time);
+    let rig = &at.document().rig;
     let mesh = &rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
-    let posed = mesh.posed(&mesh.pose(&rig.skeleton_at(time)), Skinning::Linear);
+    let posed = mesh.posed(&mesh.pose(at.skeleton()), Skinning::Linear);
     posed.triangles.as_flattened().iter().map(|corner| posed.positions[*corner as usize]).collect()
 }
 

@@ -57,9 +57,7 @@ impl SolveInputs {
 impl SettledPose {
     /// Distance in the world from a joint's tip to its target; 0 without a target.
     pub fn residual(&self, inputs: &SolveInputs, joint: JointId) -> f32 {
-        inputs
-            .target_of(joint)
-            .map_or(0.0, |target| target.distance_in(&self.skeleton))
+        inputs.target_of(joint).map_or(0.0, |target| target.distance_in(&self.skeleton))
     }
 }
 

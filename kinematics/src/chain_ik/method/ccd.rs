@@ -106,8 +106,7 @@ impl Ccd {
         let mut turned = config.clone();
         part.update(problem, &mut turned);
         let link = &problem.links[index];
-        let targets =
-            problem.below(link).iter().map(|effector| self.destinations[*effector]);
+        let targets = problem.below(link).iter().map(|effector| self.destinations[*effector]);
         let pairs = self.pairs.iter().zip(targets);
         let rotation = self.rotations[index];
         let base = config.bases[index];

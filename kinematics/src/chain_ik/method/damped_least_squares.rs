@@ -273,7 +273,8 @@ impl DampedLeastSquares {
         let lever = problem.length * problem.length;
         self.set_velocities(problem, config, &step, lever);
         let mut any = false;
-        for (index, effector) in problem.effectors.iter().enumerate().filter(|it| it.1.has_shell()) {
+        for (index, effector) in problem.effectors.iter().enumerate().filter(|it| it.1.has_shell())
+        {
             let tip = config.tips[index];
             let row = place_row(problem, index);
             match (self.counted[index], self.held[index]) {

@@ -271,7 +271,8 @@ impl LinkPoints {
     /// True if the problem is a chain without limits, with a fixed root, whose one target is out of
     /// reach.
     fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
-        let ([effector], false, false) = (&problem.effectors[..], self.turn_whole, problem.free_roots)
+        let ([effector], false, false) =
+            (&problem.effectors[..], self.turn_whole, problem.free_roots)
         else {
             return false;
         };
@@ -282,12 +283,7 @@ impl LinkPoints {
     }
 
     /// Weighted mean of the destinations of a point's members.
-    pub fn destination_of(
-        &self,
-        problem: &Problem,
-        config: &Configuration,
-        index: usize,
-    ) -> Vec3A {
+    pub fn destination_of(&self, problem: &Problem, config: &Configuration, index: usize) -> Vec3A {
         let point = &self.all[index];
         if let [member] = point.members[..] {
             return self.member_destination(problem, config, member.kind);
@@ -359,7 +355,8 @@ impl LinkPoints {
         for (tree, ground) in self.grounds.iter().enumerate() {
             let weights: f32 = ground.iter().map(|member| member.weight).sum();
             let residual = |member: &PointMember| {
-                self.member_destination(problem, config, member.kind) - member.kind.position_in(config)
+                self.member_destination(problem, config, member.kind)
+                    - member.kind.position_in(config)
             };
             let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
             let shift = config.shifts[tree] + sum / weights;

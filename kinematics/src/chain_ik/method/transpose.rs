@@ -249,9 +249,8 @@ impl Transpose {
         /// Depth that is allowed, as a part of the distance before.
         const DEPTH: f32 = 0.1;
         let tips = problem.effectors.iter().zip(&config.tips);
-        tips.zip(&self.gaps).any(|((effector, tip), gap)| {
-            *gap > 0.0 && effector.depth(*tip) > DEPTH * gap
-        })
+        tips.zip(&self.gaps)
+            .any(|((effector, tip), gap)| *gap > 0.0 && effector.depth(*tip) > DEPTH * gap)
     }
 
     /// Calls `add` for each coordinate that differs from `before`, with its change and with −g at
@@ -272,7 +271,8 @@ impl Transpose {
         for (link, angles) in config.angles.iter().enumerate() {
             let change = *angles - before.angles[link];
             let (from, to) = (from.angles[link], to.angles[link]);
-            for (i, compliance) in problem.links[link].compliance.to_array().into_iter().enumerate() {
+            for (i, compliance) in problem.links[link].compliance.to_array().into_iter().enumerate()
+            {
                 let lever = compliance.sqrt();
                 each(change[i] / lever, from[i] / lever, to[i] / lever);
             }

@@ -167,7 +167,8 @@ fn place_elbow(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
     let shoulder = config.bases[limb.upper];
     let (upper, hand) =
         (config.bases[limb.lower] - shoulder, config.tips[limb.effector] - shoulder);
-    let cursor = problem.effectors[limb.effector].destination(config.tips[limb.effector]) - shoulder;
+    let cursor =
+        problem.effectors[limb.effector].destination(config.tips[limb.effector]) - shoulder;
 
     let Some(along) = normalize(upper) else { return };
     let old_normal = normalize(hand.cross(upper));
@@ -189,8 +190,10 @@ fn place_elbow(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
 /// Rotates the lower bone towards the target.
 fn aim_hand(problem: &Problem, config: &mut Configuration, limb: LinkPair) {
     let elbow = config.bases[limb.lower];
-    let (lower, cursor) =
-        (config.tips[limb.effector] - elbow, problem.effectors[limb.effector].destination(config.tips[limb.effector]) - elbow);
+    let (lower, cursor) = (
+        config.tips[limb.effector] - elbow,
+        problem.effectors[limb.effector].destination(config.tips[limb.effector]) - elbow,
+    );
     rotate_link(problem, config, limb.lower, Mat3A::from_quat(rotation_between(lower, cursor)));
 }
 

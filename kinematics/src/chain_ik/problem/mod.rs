@@ -235,7 +235,11 @@ impl EndEffector {
     pub fn way_out(&self, tip: Vec3A, velocity: Vec3A) -> Option<Vec3A> {
         let radial = normalize(tip - self.target)?;
         let is_outwards = velocity.dot(radial) >= 0.0;
-        (is_outwards || self.distances[0] > 0.0).then_some(if is_outwards { radial } else { -radial })
+        (is_outwards || self.distances[0] > 0.0).then_some(if is_outwards {
+            radial
+        } else {
+            -radial
+        })
     }
 
     /// Length of the way that is left to a tip in its shell until it leaves the shell in the

@@ -22,9 +22,10 @@ struct LimbSpan {
 }
 
 impl LimbSpan {
-    fn new(pose: &Skeleton, limb: Limb, target: Vec3) -> Self {
-        let (base, elbow) = (pose.base(limb.upper), pose.base(limb.lower));
-        let lengths = [base.distance(elbow), elbow.distance(pose.tip(limb.lower))];
+    /// The span of a limb with its lengths in the FK pose, whose base is at `base`.
+    fn new(fk: &Skeleton, limb: Limb, base: Vec3, target: Vec3) -> Self {
+        let elbow = fk.base(limb.lower);
+        let lengths = [fk.base(limb.upper).distance(elbow), elbow.distance(fk.tip(limb.lower))];
         Self {
             upper: limb.upper,
             base,
@@ -68,7 +69,8 @@ impl RigCase<'_> {
         target: Vec3,
         fk: &Skeleton,
     ) -> Vec<Diagnosis> {
-        let span = LimbSpan::new(fk, limb, target);
+        let solved = self.full.step(self.time, self.before).0.solved;
+        let span = LimbSpan::new(fk, limb, solved.base(limb.upper), target);
         let found = self
             .limb_out_of_reach(limb, &span, target)
             .or_else(|| self.soft_limit(limb, &span, settings));
@@ -102,7 +104,9 @@ impl RigCase<'_> {
             max_stretch: 1.001 * distance / longest,
         });
         let point = base + inside * direction;
-        let remedies = [Some(Remedy::MoveTarget { joint, point }), stretch];
+        let body = (!self.rig.body_follows && self.full.body_of(limb).next().is_some())
+            .then_some(Remedy::FollowBody);
+        let remedies = [Some(Remedy::MoveTarget { joint, point }), body, stretch];
         let tried = remedies.into_iter().flatten().filter_map(|remedy| self.try_remedy(remedy));
         let tried = tried.collect();
         Some(self.diagnosis(span.cause(Boundary::Bones), limb.joints().collect(), tried))

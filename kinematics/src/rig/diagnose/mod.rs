@@ -160,6 +160,7 @@ impl SkeletonRig {
             Remedy::SetWeight { joint, weight } => {
                 self.change_target(joint, |target| target.weight = weight);
             }
+            Remedy::FollowBody => self.body_follows = true,
             Remedy::FullInfluence(joint) => self.change_target(joint, |it| it.influence = 1.0),
             Remedy::Stretch { joint, max_stretch } => {
                 self.change_soft_reach(joint, |soft| {

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::skeleton::joint;
 use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::json::{
-    Above0, AtField, AtLeast0, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole, value_or,
+    Above0, AtField, AtLeast0, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole,
+    value_or,
 };
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
 use crate::kinematics::soft_reach::{SoftReach, SoftReachField};

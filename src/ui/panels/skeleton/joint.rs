@@ -42,6 +42,8 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     {
         let how = if target.influence < 1.0 { "Blended with" } else { "Posed by" };
         ui.weak(format!("{how} the target of {end}; below are the FK angles."));
+    } else if session.rig().is_pulled(index) {
+        ui.weak("Follows hands and feet where they cannot reach; below are the FK angles.");
     }
     for axis in RotationAxis::ALL {
         let label = axis.name();
@@ -120,8 +122,12 @@ fn stiffness(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, acti
     let set = |stiffness| JointEdit::SetStiffness { joint: index, stiffness };
     let tooltip = "Let solvers turn this joint less than others, where others can do it";
     let of_all = joint.stiffness.max_element();
-    stiffness_slider(["Stiffness"; 2], tooltip, joint.locked, of_all)
-        .show(ui, session, actions, |value| set(Vec3::splat(within_stiffness(value))));
+    stiffness_slider(["Stiffness"; 2], tooltip, joint.locked, of_all).show(
+        ui,
+        session,
+        actions,
+        |value| set(Vec3::splat(within_stiffness(value))),
+    );
     widgets::named_folded_section(ui, "stiffness by angle", "Stiffness by angle", |ui| {
         for axis in RotationAxis::ALL {
             let names = [&*format!("Stiffness {axis}"), &format!("About {axis}")];

@@ -96,6 +96,9 @@ pub(in crate::ui) fn selected(
     if target.limb().is_none() {
         turn::show(ui, session, target, step, actions);
         weight(ui, session, target, actions);
+        softness(ui, session, target, actions);
+    } else if session.rig().pulls_body(&target) {
+        weight(ui, session, target, actions);
     }
     path(ui, target, actions);
     if target.motion.path != TargetPath::Still {
@@ -131,10 +134,13 @@ fn weight(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions)
         unit: "",
         step: 0.1,
         digits: 2,
-        tooltip: "Weigh this target against the other whole-body targets",
+        tooltip: "Weigh this target against the others that pose the body",
     };
     let set = |weight| TargetEdit::SetTarget(Target { weight, ..target });
     weight.row(ui, session, "Weight", actions, set);
+}
+
+fn softness(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
     let softness = Slider {
         name: "Target softness",
         label: "Softness",
