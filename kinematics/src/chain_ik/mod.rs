@@ -51,6 +51,7 @@ mod diagnose;
 mod inside;
 mod jacobian;
 mod method;
+mod null_space_drag;
 mod options;
 mod orientation;
 mod perturb;
@@ -66,6 +67,7 @@ pub use inside::{
 };
 pub use jacobian::{Swing, jacobian, jacobian_of_point};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
+pub use null_space_drag::{DragReport, NullSpaceDrag};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
 pub use problem::{ChainTarget, Orientation};
 pub use report::{Report, Status};

@@ -63,7 +63,7 @@ impl SkeletonRig {
     fn is_on_limb(&self, limb: Limb) -> bool {
         let others = self.targets.iter().filter(|other| self.is_solved_for(other));
         let mut joints =
-            others.filter_map(|other| other.limb_in(&self.skeleton)).flat_map(|it| it.joints());
+            others.filter_map(|other| other.limb_in(&self.skeleton)).flat_map(Limb::joints);
         joints.any(|joint| {
             joint != limb.upper && self.skeleton.ancestors(limb.upper).any(|above| above == joint)
         })

@@ -11,6 +11,7 @@ mod fk;
 mod ik;
 mod limb_frames;
 mod limb_ik;
+mod null_space_drag;
 mod orientation;
 mod places;
 mod pop;

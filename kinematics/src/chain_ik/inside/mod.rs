@@ -180,7 +180,7 @@ pub struct Ellipsoid {
 
 impl Ellipsoid {
     /// The ellipsoid of a tip whose velocities, one for each angle, are `columns`.
-    fn of(tip: JointId, centre: Vec3, columns: impl Iterator<Item = Vec3>) -> Self {
+    pub(super) fn of(tip: JointId, centre: Vec3, columns: impl Iterator<Item = Vec3>) -> Self {
         let mut square = Matrix3::<f64>::zeros();
         for column in columns {
             let by = Vector3::from(column.as_dvec3().to_array());

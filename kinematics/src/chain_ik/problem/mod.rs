@@ -484,6 +484,11 @@ impl Problem {
         clamp_to_f32(offset).as_vec3()
     }
 
+    /// A point of a tree in problem space, in skeleton space.
+    pub fn point_in_skeleton(&self, tree: usize, point: Vec3A) -> DVec3 {
+        self.trees[tree].origin + point.as_dvec3() / self.unit
+    }
+
     /// Shift of a tree that brings its root to an offset in skeleton space.
     pub fn shift_to(&self, tree: usize, offset: Vec3) -> Vec3A {
         ((offset.as_dvec3() - self.trees[tree].origin) * self.unit).as_vec3a()
