@@ -122,16 +122,16 @@ impl NullSpaceDrag {
         /// their places.
         const ROUNDING: f64 = 1e-5;
         /// Longest way to the place that a step sees, in chain lengths.
-        const MOST_WAY: f64 = 0.3;
-        /// Way of the point in a step, as a part of the way that it saw, below which the point has
+        const MOST_SIGHT: f64 = 0.3;
+        /// Way of the point in a step, as a part of the way that it sees, below which the point has
         /// come as near as it can.
-        const RESTS: f64 = 2e-6;
+        const RESTS: f64 = 3e-7;
         /// Damping, in chain lengths, with which steps are below rounding.
         const MOST: f64 = 1e3;
         let length = f64::from(self.problem.length);
         self.restore();
         let (mut distance, mut damping, mut steps) = (self.distance(), CUT, 0);
-        let mut sight = MOST_WAY;
+        let mut sight = MOST_SIGHT;
         let mut before = self.config.clone();
         let mut last_way = DVec3::ZERO;
         while steps < STEPS && damping < MOST && distance > HELD * length {
@@ -156,7 +156,7 @@ impl NullSpaceDrag {
             // The farther a place is from the surface on which the point can be, the more do steps
             // along the surface lead too far: the point goes to and fro.
             let returns = way.dot(last_way) < 0.0;
-            sight = if returns { 0.5 * sight } else { (1.5 * sight).min(MOST_WAY) };
+            sight = if returns { 0.5 * sight } else { (1.5 * sight).min(MOST_SIGHT) };
             last_way = way;
         }
         let held_error = saturate(self.config.error(&self.problem));
