@@ -1,14 +1,15 @@
 use core::fmt::Display;
 use std::path::PathBuf;
 
-use super::drag::grip::Drag;
+use super::drag::grip::{Drag, DragLimit};
 use super::files::action::{Export, FileAction, FileContents, PathDialog};
 use super::parts::{Key, SelectedKeys};
 use super::preferences::{PanelTab, Preferences};
 use crate::document::{Bake, Camera, Channel, Document, Keys, Ray, SkeletonRig};
 use crate::io::OpenOptions;
+use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Joint, JointId, JointRemap, RotationAxis, SkeletonError};
-use crate::rig::LimbFrames;
+use crate::rig::{LimbFrames, Posture};
 use crate::session::dialog::{Dialog, Message};
 
 /// A request from the session to the program around it.
@@ -101,6 +102,10 @@ pub(super) enum Consequence {
     SetCamera(Camera),
     /// Lets the motion begin with the FK pose, instead of a posture, after the next change.
     ResetPosture,
+    /// Lets the motion begin with a posture, or with the FK pose, after the next change.
+    ChoosePosture(Option<Shared<Posture>>),
+    /// Notes how the targets of the body limit the open drag.
+    LimitDrag(Box<DragLimit>),
     /// Moves the camera smoothly.
     GlideTo(Camera),
     /// Frames all smoothly.

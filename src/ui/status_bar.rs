@@ -14,8 +14,8 @@ use super::{labels, pose_summary};
 use crate::kinematics::chain_ik::Swing;
 use crate::kinematics::skeleton::Joint;
 use crate::session::{
-    Actions, Drag, ExportJob, FileAction, Grip, JointEdit, Navigation, PointDrag, Session,
-    ShellAction, TurnDrag, WiggleTarget, WiggleView,
+    Actions, Drag, DragLimit, ExportJob, FileAction, Grip, JointEdit, Navigation, PointDrag,
+    Session, ShellAction, TurnDrag, WiggleTarget, WiggleView,
 };
 
 /// Height in points.
@@ -134,13 +134,14 @@ fn describe_wiggle(session: &Session, wiggle: &WiggleView) -> String {
 
 fn describe_drag(session: &Session, drag: &Drag) -> String {
     match (drag.point(), drag.turn()) {
-        (Some(point), _) => describe_move(session, drag.grip(), point),
+        (Some(point), _) => describe_move(session, drag, point),
         (_, Some(turn)) => describe_turn(session, drag.grip(), turn),
         (None, None) => String::new(),
     }
 }
 
-fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
+fn describe_move(session: &Session, whole: &Drag, drag: &PointDrag) -> String {
+    let grip = whole.grip();
     let moved = drag.moved();
     let how = drag.constraint().map_or("freely".to_owned(), |constraint| constraint.to_string());
     let name = labels::grip(session, grip);
@@ -166,10 +167,21 @@ fn describe_move(session: &Session, grip: Grip, drag: &PointDrag) -> String {
             format!("{way:+.digits$}")
         }
     });
+    let held = whole.limit().map_or_else(String::new, |limit| held(session, limit));
     format!(
-        "{verb} {how}: {x}, {y}, {z}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",
+        "{verb} {how}: {x}, {y}, {z}{held}{}     Shift precise · Ctrl snap · X Y Z lock · digits type · Enter accept · Esc cancel",
         typed(drag.typed()),
     )
+}
+
+/// Says that the targets of a body keep the dragged point from the mouse; empty if they do not.
+fn held(session: &Session, limit: &DragLimit) -> String {
+    /// Distance, as a part of the figure's reach, that can be seen.
+    const SEEN: f32 = 2e-3;
+    if limit.short <= SEEN * session.rig().reach() {
+        return String::new();
+    }
+    format!(" · its targets hold it {} short", text::short(limit.short))
 }
 
 /// Describes a rotation: the applied angle, which at a joint limit is less than the angle of the

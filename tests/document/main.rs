@@ -13,6 +13,7 @@ mod elbow_circle;
 mod examples;
 mod framing;
 mod gallery;
+mod grab;
 mod inspection;
 mod keys;
 mod leg_pops;

@@ -222,7 +222,7 @@ fn a_segment_without_a_target_poses_the_joints_above_it() {
 }
 
 #[test]
-fn bones_that_a_target_poses_alone_drag_the_target() {
+fn a_bone_that_a_target_poses_is_dragged_and_the_target_stays() {
     let mut bench = Bench::example("two-targets");
     let target = bench.session().rig().targets[0];
     bench.apply([TargetEdit::SetTarget(Target { enabled: true, influence: 1.0, ..target })]);
@@ -233,8 +233,20 @@ fn bones_that_a_target_poses_alone_drag_the_target() {
     bench.move_to(at);
     bench.press(LEFT);
     let grip = bench.session().history().drag().map(Drag::grip);
-    assert!(matches!(grip, Some(Grip::Target(joint, _)) if joint == target), "{bone}: {grip:?}");
+    assert_eq!(grip, Some(Grip::Bone(bench.joint(&bone))));
     bench.release(LEFT);
+    let (place, before) = (bench.session().posed().skeleton().tip(target), bench.tip(&bone));
+    bench.drag_and_drop(LEFT, at, at + vec2(20.0, -12.0));
+    assert!(
+        bench.tip(&bone).distance(before) > 0.02,
+        "{bone} moves from {before} to {}, {:?}",
+        bench.tip(&bone),
+        bench.session().shell().message()
+    );
+    let missed = bench.session().posed().skeleton().tip(target).distance(place);
+    assert!(missed < 1e-3, "the tip is {missed} from where it was");
+    bench.apply([TransactionAction::Undo]);
+    assert_eq!(bench.tip(&bone), before, "one undo step");
 }
 
 #[test]

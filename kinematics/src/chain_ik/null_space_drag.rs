@@ -189,6 +189,13 @@ impl NullSpaceDrag {
         self.problem.links.iter().zip(&self.config.angles).map(|(link, it)| (link.joint, *it))
     }
 
+    /// The joints that the drag turns or moves.
+    pub fn joints(&self) -> impl Iterator<Item = JointId> {
+        let roots = self.problem.trees.iter().filter(|_| self.problem.free_roots);
+        let links = self.problem.links.iter().map(|link| link.joint);
+        links.chain(roots.map(|tree| tree.root))
+    }
+
     /// Writes the Euler angles of the joints that the drag turns, and the offsets of free roots,
     /// into `skeleton`, which must be the one for which the drag was made.
     pub fn write(&self, skeleton: &mut Skeleton) {

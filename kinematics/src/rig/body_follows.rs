@@ -72,20 +72,31 @@ impl SkeletonRig {
     /// The targets that pull the bases of limbs, for the FK pose at a time in seconds.
     pub(super) fn base_targets(&self, fk: &Skeleton, time: f64) -> Vec<BodyTarget> {
         let pulling = self.targets.iter().filter(|target| self.pulls_body(target));
-        pulling.filter_map(|target| self.base_target(target, fk, time)).collect()
+        let of_target = |target: &Target| {
+            let tip = self.base_target(target, fk, time)?;
+            Some(BodyTarget { tip, influence: target.influence })
+        };
+        pulling.filter_map(of_target).collect()
     }
 
-    fn base_target(&self, target: &Target, fk: &Skeleton, time: f64) -> Option<BodyTarget> {
-        let (settings, limb) = (target.limb()?, target.limb_in(fk)?);
+    /// The places of the base of a target's limb from which the limb reaches the target; `None` for
+    /// a target that pulls no body.
+    pub(super) fn base_target(
+        &self,
+        target: &Target,
+        fk: &Skeleton,
+        time: f64,
+    ) -> Option<ChainTarget> {
+        let (settings, limb) = (target.limb()?, self.pulling_limb(target)?);
         let base = &fk[limb.upper];
         let LimbRange { least, most, present } =
             LimbRange::of(fk, limb, settings.soft_reach, settings.fk_stretch)?;
         // A limb that the FK pose has straighter, such as a leg that stands, may stay so.
         let most = (REACH * most).max(present.min(most));
-        let tip = ChainTarget::at(base.parent?, target.in_world(fk, time))
+        let place = ChainTarget::at(base.parent?, target.in_world(fk, time))
             .with_grip(base.offset)
             .with_distances(least.min(most) as f32, most as f32)
             .with_weight(target.weight);
-        Some(BodyTarget { tip, influence: target.influence })
+        Some(place)
     }
 }

@@ -6,6 +6,7 @@ mod body_follows;
 mod carried;
 mod crowd;
 mod diagnose;
+mod drag;
 mod evaluate;
 mod follow_path;
 mod limb_frames;

@@ -5,7 +5,7 @@ use super::point::PointHandle;
 use super::turn::GripRing;
 use crate::document::{Overlay, PathKind, Posed, Ray, SkeletonRig};
 use crate::kinematics::limb_ik::Limb;
-use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::rig::{EvaluatedSkeleton, LimbFrames, LimbPart, TaperedCylinder, Target};
 
 /// Radius of the shape that the mouse hits around the fingers, for a limb of length 500.
@@ -21,8 +21,7 @@ impl Grip {
     /// | root without a bone, such as a pelvis | the root |
     /// | end of a target, such as a hand or foot | the target |
     /// | bone of a target's limb | the limb, about its Pointer; the target of a straight limb |
-    /// | other bone that a target turns | the target |
-    /// | other bone | the pressed point, by FK angles |
+    /// | other bone | the pressed point, while all that targets hold stays |
     pub fn of_part(posed: &Posed, joint: JointId) -> Option<Self> {
         let (rig, free) = (&posed.document().rig, PointHandle::Free);
         if rig.is_joint_on_path(joint, posed.time()) {
@@ -101,12 +100,7 @@ impl Grip {
         if posing.is_some_and(|it| it.joint == joint || is_elbow(&rig.skeleton, it, joint)) {
             return true;
         }
-        let influences = rig.influences();
-        let can_turn = |joint: &Joint| {
-            !joint.locked && RotationAxis::ALL.into_iter().any(|axis| !joint.limits.is_fixed(axis))
-        };
-        let mut above = rig.skeleton.ancestors(joint);
-        above.any(|joint| influences[joint.index()] == 0.0 && can_turn(&rig.skeleton[joint]))
+        rig.can_drag(joint)
     }
 
     /// The target whose limb a drag of the bone of `joint` turns about its Pointer; `None` if the
@@ -138,9 +132,9 @@ enum Role {
     End(JointId),
     /// A bone of a bent limb that a target alone poses.
     OfLimb,
-    /// Turned by the target of a joint.
+    /// A bone of a straight limb, turned by the target of a joint.
     Led(JointId),
-    /// Posed by its own angles.
+    /// Can go where targets let it.
     Free,
     /// A joint without a bone, by its parent.
     WithoutBone(JointId),
@@ -158,8 +152,8 @@ fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
     }
     match rig.target_that_turns(joint) {
         Some(_) if Grip::turned_limb(posed, joint).is_some() => Some(Role::OfLimb),
-        Some(target) => Some(Role::Led(target.joint)),
-        None => Grip::can_drag_tip(posed, joint).then_some(Role::Free),
+        Some(target) if target.limb().is_some() => Some(Role::Led(target.joint)),
+        _ => Grip::can_drag_tip(posed, joint).then_some(Role::Free),
     }
 }
 

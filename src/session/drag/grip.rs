@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::point::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn::TurnDrag;
+use crate::kinematics::chain_ik::Ellipsoid;
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 
 /// A part of a gizmo that can be dragged in the viewport.
@@ -59,6 +60,16 @@ pub struct Drag {
     kind: DragKind,
     /// Points in the world through which the head of a skeleton was dragged.
     waypoints: Vec<Vec3>,
+    limit: Option<DragLimit>,
+}
+
+/// What the targets of a body leave to a drag of one of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DragLimit {
+    /// Distance in the world from the point to where it is dragged.
+    pub short: f32,
+    /// Velocities that the point can have.
+    pub freedom: Ellipsoid,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -84,11 +95,11 @@ pub(in crate::session) enum Dragged {
 
 impl Drag {
     pub(in crate::session) fn of_point(grip: Grip, drag: PointDrag) -> Self {
-        Self { grip, kind: DragKind::Point(drag), waypoints: Vec::new() }
+        Self { grip, kind: DragKind::Point(drag), waypoints: Vec::new(), limit: None }
     }
 
     pub(in crate::session) fn of_ring(grip: Grip, drag: TurnDrag) -> Self {
-        Self { grip, kind: DragKind::Turn(drag), waypoints: Vec::new() }
+        Self { grip, kind: DragKind::Turn(drag), waypoints: Vec::new(), limit: None }
     }
 
     /// Computes where the grip is now. The path of a head keeps points that are `spacing` apart.
@@ -127,6 +138,15 @@ impl Drag {
         if drag.has_moved() {
             self.waypoints.push(drag.point());
         }
+    }
+
+    /// What the targets of the body leave to the drag; `None` for a drag that they do not limit.
+    pub fn limit(&self) -> Option<&DragLimit> {
+        self.limit.as_ref()
+    }
+
+    pub(in crate::session) fn set_limit(&mut self, limit: DragLimit) {
+        self.limit = Some(limit);
     }
 
     /// The part of a gizmo that is dragged.

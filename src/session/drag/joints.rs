@@ -2,16 +2,16 @@ use glam::Vec3;
 
 use crate::document::{Channel, Document, PathKind, Posed, Ray, Target, Track};
 use crate::kinematics::angle;
-use crate::kinematics::chain_ik::{self, ChainTarget, Method, SolveError, SolverOptions};
+use crate::kinematics::chain_ik::{ChainTarget, Root};
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
-use crate::rig::TargetSpace;
+use crate::rig::{Posture, TargetSpace};
 use crate::session::drag::body::is_elbow;
-use crate::session::drag::grip::{Drag, Dragged, Grip};
+use crate::session::drag::grip::{Drag, DragLimit, Dragged, Grip};
 use crate::session::drag::point::{Constraint, PointDrag, PointHandle};
 use crate::session::drag::turn::{GripRing, TurnDrag};
 use crate::session::keys;
-use crate::session::outcome::Outcome;
+use crate::session::outcome::{Consequence, Outcome};
 use crate::session::session::Session;
 use crate::session::skeleton::targets;
 
@@ -143,8 +143,9 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         }
         (Grip::Head(root, _), Dragged::Point { .. }) => drag_head(session, root),
         (_, Dragged::Point { has_moved: false, .. }) => {
-            let camera = session.shown().camera;
-            Outcome::write(Document { camera, ..session.history().shown_before().clone() })
+            let (camera, before) = (session.shown().camera, session.history().shown_before());
+            let posture = Consequence::ChoosePosture(before.rig.posture.clone());
+            Outcome::from(posture).and(Outcome::write(Document { camera, ..before.clone() }))
         }
         (Grip::Target(joint, _), Dragged::Point { to, .. }) => drag_target(session, joint, to),
         (Grip::LimbPole(joint, _), Dragged::Point { to, .. }) => drag_limb_pole(session, joint, to),
@@ -223,23 +224,21 @@ fn target(session: &Session, joint: JointId) -> Option<Target> {
     Some(rig.targets[rig.target(joint)?])
 }
 
-/// Maximum number of iterations per frame of a drag.
-const ITERATIONS: u32 = 64;
-
 /// Moves the tip of `joint` by `moved` since the press, to `to`, both in the world. The drag starts
 /// from the state at the press; targets stay in force:
 ///
-/// - a root without a bone moves;
+/// - a root without a bone moves, a free one as far as targets let it;
 /// - a tip with a target moves the target;
 /// - an elbow that a limb's target poses turns the limb's twist;
-/// - any other tip is solved for by the FK angles of the joints that no target poses alone.
+/// - any other tip goes where the targets let it.
 fn drag_tip(session: &Session, joint: JointId, to: Vec3, moved: Vec3) -> Outcome {
     let start = session.history().posed_before();
     let before = &start.document().rig;
     let Some(dragged) = before.skeleton.joint(joint) else {
         return Outcome::default();
     };
-    if dragged.is_root_point() {
+    let is_held = before.solver.root == Root::Free && before.holds_body();
+    if dragged.is_root_point() && !is_held {
         let moved = before.skeleton.transform().inverse().transform_vector3(moved);
         let offset = dragged.offset + moved;
         return Outcome::edit_joint(session.shown(), joint, |joint| joint.offset = offset);
@@ -252,19 +251,20 @@ fn drag_tip(session: &Session, joint: JointId, to: Vec3, moved: Vec3) -> Outcome
         Some(target) if is_elbow(&before.skeleton, &target, joint) => {
             drag_elbow(session, &start, target, moved)
         }
-        _ => drag_fk(session, &start, joint, 1.0, moved),
+        _ => {
+            let start = session.history().pressed_pose();
+            let tip = start.skeleton().tip(joint);
+            drag_point(session, start, ChainTarget::at(joint, tip + moved))
+        }
     }
 }
 
 /// Moves a point of the bone of `joint` by `moved` since the press, when it was at `pressed`, both
 /// in the world.
 fn drag_bone(session: &Session, joint: JointId, pressed: Vec3, moved: Vec3) -> Outcome {
-    let start = session.history().posed_before();
-    let pose = start.skeleton();
-    let [base, tip] = [pose.base(joint), pose.tip(joint)];
-    let part = (pressed - base).length() / (tip - base).length();
-    let part = if part.is_finite() { part.clamp(NEAREST, 1.0) } else { 1.0 };
-    drag_fk(session, &start, joint, part, moved)
+    let start = session.history().pressed_pose();
+    let grip = start.skeleton().full_transform(joint).inverse().transform_point3(pressed);
+    drag_point(session, start, ChainTarget::at(joint, pressed + moved).with_grip(grip))
 }
 
 /// Turns a limb about the line from its base to its tip, as far as the elbow moves around it.
@@ -293,49 +293,61 @@ fn drag_elbow(session: &Session, before: &Posed, mut target: Target, moved: Vec3
     targets::set_target(session, target)
 }
 
-/// Solves for the point at a `part` of the bone of `joint`, from 0 at its base to 1 at its tip, and
-/// writes the angles of the joints that no target poses alone.
-fn drag_fk(session: &Session, posed: &Posed, joint: JointId, part: f32, moved: Vec3) -> Outcome {
-    let mut start = fk_start(session.history().track(), posed);
-    start.write_local(joint, |joint| joint.axis *= part);
-    let before = &posed.document().rig;
-    let chain = before.skeleton.ancestors(joint);
-    if chain.into_iter().all(|joint| start[joint].locked) {
+/// Moves a point of a body while all that its targets hold stays, from the state at the press. Joints
+/// that no whole-body target turns get their angles, with keys if they have some; the others keep
+/// the pose as posture, or get angles, too, if the document has a motion.
+fn drag_point(session: &Session, start: &Posed, dragged: ChainTarget) -> Outcome {
+    let full = full_influence(start);
+    let rig = &full.document().rig;
+    if !rig.can_drag(dragged.joint) {
         return Outcome::say("A target poses this bone; drag the target instead");
     }
-    let target = ChainTarget::at(joint, start.tip(joint) + moved);
-    let method = before.solver.method;
-    let method = if method.is_closed_form() { Method::default() } else { method };
-    let options = SolverOptions { method, iterations: Some(ITERATIONS), ..before.solver };
-    Outcome::edit(session.shown(), |document| {
-        let mut solved = start.clone();
-        chain_ik::solve(&mut solved, &[target], &options)?;
-        let mut skeleton = Skeleton::clone(&before.skeleton);
-        for joint in start.ids() {
-            let after = &solved[joint];
-            if *after != start[joint] {
-                skeleton.write_local(joint, |joint| {
-                    (joint.rotation, joint.offset) = (after.rotation, after.offset);
-                });
-            }
-        }
-        *document.skeleton_mut() = skeleton;
-        Ok::<_, SolveError>(())
-    })
-}
-
-/// The pose from which a drag solves for FK angles: that of FK and of the targets with full
-/// influence, with the joints that such a target turns locked.
-fn fk_start(track: &Track, before: &Posed) -> Skeleton {
-    let mut document = before.document().clone();
-    document.rig.targets.retain(|target| target.influence >= 1.0);
-    let full = track.pose(document, before.time());
-    let mut pose = Skeleton::clone(full.skeleton());
-    let influences = full.document().rig.influences();
-    for (joint, influence) in pose.ids().zip(influences) {
-        if influence > 0.0 {
-            pose.write_local(joint, |joint| joint.locked = true);
+    let mut drag = match rig.drag(full.evaluated_skeleton(), full.time(), dragged) {
+        Ok(drag) => drag,
+        Err(error) => return Outcome::fail(error.to_string()),
+    };
+    let report = drag.run();
+    let limit = DragLimit { short: report.distance, freedom: drag.freedom() };
+    let mut posed = Skeleton::clone(full.skeleton());
+    drag.write(&mut posed);
+    let document = start.document();
+    let has_motion = document.is_animated();
+    let mut skeleton = Skeleton::clone(&document.rig.skeleton);
+    for joint in drag.joints() {
+        let (own, before) = (&posed[joint], &full.skeleton()[joint]);
+        let has_moved = (own.rotation, own.offset) != (before.rotation, before.offset);
+        if has_moved && (has_motion || !rig.is_turned_by_body_target(joint)) {
+            skeleton.write_local(joint, |joint| {
+                (joint.rotation, joint.offset) = (own.rotation, own.offset);
+            });
         }
     }
-    pose
+    let posture = posture_with(&full, &posed).filter(|_| !has_motion);
+    let chosen = posture.map(|posture| Consequence::ChoosePosture(Some(posture.into())));
+    let written = Outcome::change(session.shown(), |document| *document.skeleton_mut() = skeleton);
+    Outcome::from(chosen).and(Consequence::LimitDrag(Box::new(limit))).and(written)
+}
+
+/// The posture of a pose with the joints of its body as another pose has them; `None` for a pose
+/// without a body that targets move.
+fn posture_with(full: &Posed, posed: &Skeleton) -> Option<Posture> {
+    let before = full.carried()?;
+    let (_, carried) = full.document().rig.step(full.time(), &before);
+    let mut posture = carried.to_posture();
+    for (joint, of) in &mut posture.joints {
+        let own = posed.joint(*joint)?;
+        of.rotation = of.rotation.map(|_| own.rotation);
+        of.offset = of.offset.map(|_| own.offset);
+    }
+    (!posture.joints.is_empty()).then_some(posture)
+}
+
+/// The pose from which a point is dragged: that of FK and of the targets with full influence.
+fn full_influence(before: &Posed) -> Posed {
+    if before.document().rig.targets.iter().all(|target| !target.is_blended()) {
+        return before.clone();
+    }
+    let mut document = before.document().clone();
+    document.rig.targets.retain(|target| target.influence >= 1.0);
+    Track::new(&document).pose(document, before.time())
 }

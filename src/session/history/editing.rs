@@ -2,9 +2,11 @@ mod write;
 
 use super::steps::{History, Overrides, Snapshot, TreeChange};
 use crate::document::{Camera, Channel, Document, Posed, Ray, Track};
+use crate::kinematics::Shared;
 use crate::kinematics::angle::wrapped;
+use crate::rig::Posture;
 use crate::session::drag::follow_mouse::FollowMouse;
-use crate::session::drag::grip::Drag;
+use crate::session::drag::grip::{Drag, DragLimit};
 use crate::session::drag::point::PointDrag;
 
 /// Label of a transaction without edits.
@@ -25,8 +27,8 @@ pub struct Editing {
     known_track: Track,
     /// The document posed at the playhead, with unkeyed edits.
     posed: Posed,
-    /// True if the next change of the document begins with the FK pose instead of a posture.
-    resets_posture: bool,
+    /// The posture of the next change of the document.
+    next_posture: NextPosture,
     /// Unkeyed edits, discarded when the time changes.
     overrides: Overrides,
     transaction: Option<Transaction>,
@@ -42,6 +44,18 @@ pub struct Editing {
     saved_content: u64,
 }
 
+/// The posture with which the motion begins after a change of the document.
+#[derive(Clone, Debug, Default, PartialEq)]
+enum NextPosture {
+    /// One with which the motion continues from the present pose.
+    #[default]
+    Continued,
+    /// None: the motion begins with the FK pose.
+    Reset,
+    /// This one.
+    Chosen(Option<Shared<Posture>>),
+}
+
 /// Edits between press and release that become one undo step.
 #[derive(Clone, Debug, PartialEq)]
 struct Transaction {
@@ -50,6 +64,8 @@ struct Transaction {
     /// The document from which drags start: as shown before the transaction, with later changes
     /// that a drag does not revert.
     shown: Document,
+    /// The pose before the transaction.
+    posed: Posed,
     /// The label of the latest edit; `None` before the first edit.
     label: Option<&'static str>,
     drag: Option<Drag>,
@@ -66,7 +82,7 @@ impl Editing {
             has_threads: false,
             known_track: track.clone(),
             track,
-            resets_posture: false,
+            next_posture: NextPosture::default(),
             document,
             overrides: Overrides::default(),
             transaction: None,
@@ -164,6 +180,11 @@ impl Editing {
             }
             None => self.posed.clone(),
         }
+    }
+
+    /// The pose at the press, as shown before the open transaction; as shown now if none is open.
+    pub(in crate::session) fn pressed_pose(&self) -> &Posed {
+        self.transaction.as_ref().map_or(&self.posed, |transaction| &transaction.posed)
     }
 
     /// The drag in the viewport; `None` if nothing is dragged.
@@ -320,7 +341,19 @@ impl Editing {
 
     /// Lets the motion begin with the FK pose after the next change of the document.
     pub(in crate::session) fn reset_posture(&mut self) {
-        self.resets_posture = true;
+        self.next_posture = NextPosture::Reset;
+    }
+
+    /// Lets the motion begin with this posture after the next change of the document.
+    pub(in crate::session) fn choose_posture(&mut self, posture: Option<Shared<Posture>>) {
+        self.next_posture = NextPosture::Chosen(posture);
+    }
+
+    /// Notes how the targets of the body limit the open drag.
+    pub(in crate::session) fn limit_drag(&mut self, limit: DragLimit) {
+        if let Some(drag) = self.transaction.as_mut().and_then(|it| it.drag.as_mut()) {
+            drag.set_limit(limit);
+        }
     }
 
     /// The present state, for undo; `time` is the playhead in seconds.
@@ -371,15 +404,22 @@ impl Editing {
     }
 
     pub(in crate::session) fn begin(&mut self, drag: Option<Drag>, time: f64) {
-        let (before, shown) = (self.state(time), self.shown().clone());
-        self.transaction =
-            Some(Transaction { before, shown, label: None, drag, follow_mouse: None });
+        self.transaction = Some(Transaction {
+            before: self.state(time),
+            shown: self.shown().clone(),
+            posed: self.posed.clone(),
+            label: None,
+            drag,
+            follow_mouse: None,
+        });
     }
 
     /// Closes the transaction, if one is open, with an undo step.
     pub(in crate::session) fn commit(&mut self, time: f64) {
         if let Some(transaction) = self.transaction.take() {
-            if transaction.before.differs_in_motion_start_alone(&self.document) {
+            let chooses_posture = transaction.drag.as_ref().is_some_and(|it| it.limit().is_some());
+            if !chooses_posture && transaction.before.differs_in_motion_start_alone(&self.document)
+            {
                 // A drag that has returned leaves no posture.
                 self.document = transaction.before.document(&self.document);
                 self.evaluate(time);

@@ -124,6 +124,8 @@ impl Session {
 
             Consequence::Write(after) => self.write(*after),
             Consequence::ResetPosture => self.editing.reset_posture(),
+            Consequence::ChoosePosture(posture) => self.editing.choose_posture(posture),
+            Consequence::LimitDrag(limit) => self.editing.limit_drag(*limit),
             Consequence::Refresh => self.refresh(),
             Consequence::DiscardUnkeyed => self.editing.clear_overrides(),
             Consequence::ForgetUnkeyed(channels) => {

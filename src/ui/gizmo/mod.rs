@@ -5,5 +5,5 @@ pub(in crate::ui) mod screen;
 mod skeleton;
 mod twist_ring;
 
-pub(in crate::ui) use screen::{aims, locked_axis};
+pub(in crate::ui) use screen::{aims, freedom, locked_axis};
 pub(in crate::ui) use skeleton::Gizmo;

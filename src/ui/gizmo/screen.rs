@@ -1,10 +1,13 @@
 //! The screen that gizmos are painted on: projection from world to screen, distances and colours,
 //! and the lines of a locked axis and of aims.
 
+use core::f32::consts::TAU;
+
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::Vec3;
 
 use crate::document::{Camera, Projection, Ray};
+use crate::kinematics::chain_ik::Ellipsoid;
 use crate::session::{Constraint, Drag, Session};
 use crate::ui::style;
 
@@ -110,6 +113,47 @@ pub(in crate::ui) fn aims(
         let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
         painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
         painter.circle_stroke(to, 5.0, stroke);
+    }
+}
+
+/// Draws where the dragged point of a body can go while all that its targets hold stays: a line, the
+/// outline of a plane or three outlines of a space, as long as the point can be fast there. Nothing
+/// for a point that can go everywhere as well.
+pub(in crate::ui) fn freedom(
+    painter: &Painter,
+    ui: &Ui,
+    screen: &ScreenProjection,
+    session: &Session,
+) {
+    /// Radius of the longest outline on screen, in points.
+    const RADIUS: f32 = 56.0;
+    const POINTS: u16 = 48;
+    let limit = session.history().drag().and_then(Drag::limit);
+    let Some(Ellipsoid { centre, axes, values, .. }) = limit.map(|limit| limit.freedom) else {
+        return;
+    };
+    if values[0] <= 0.0 {
+        return;
+    }
+    let stroke = Stroke::new(1.5, style::accent(ui));
+    let longest = RADIUS * screen.units_per_point(centre);
+    let reach = [0, 1, 2].map(|axis| axes[axis] * (longest * values[axis] / values[0]));
+    if values[1] == 0.0 {
+        let ends = [centre - reach[0], centre + reach[0]].map(|end| screen.place(end));
+        if let [Some(from), Some(to)] = ends {
+            painter.line_segment([from, to], stroke);
+        }
+    }
+    for (one, other) in [(0, 1), (0, 2), (1, 2)] {
+        if values[one] == 0.0 || values[other] == 0.0 {
+            continue;
+        }
+        let at = |point: u16| {
+            let (sin, cos) = (TAU * f32::from(point) / f32::from(POINTS)).sin_cos();
+            screen.place(centre + cos * reach[one] + sin * reach[other])
+        };
+        let outline: Option<Vec<Pos2>> = (0..=POINTS).map(at).collect();
+        painter.extend(outline.map(|outline| Shape::line(outline, stroke)));
     }
 }
 

@@ -11,7 +11,7 @@ use egui::{
 };
 
 use super::gizmo::screen::ScreenProjection;
-use super::gizmo::{Gizmo, aims, locked_axis};
+use super::gizmo::{Gizmo, aims, freedom, locked_axis};
 use super::keyboard::{self, focus};
 use super::{commands, pose_summary, status_bar};
 use crate::kinematics::skeleton::JointId;
@@ -57,6 +57,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     notes::drag_the_hand(ui, session, &screen);
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     aims(&ui.painter().with_clip_rect(rect), ui, &screen, session);
+    freedom(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes(ui, rect, session, actions);
     notes::why_not_reached(ui, session, &screen, actions);

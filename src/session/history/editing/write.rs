@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Editing;
+use super::{Editing, NextPosture};
 use crate::document::{Channel, Document, Keys, PathKind, Track};
 use crate::rig::Target;
 use crate::session::history::steps::TreeChange;
@@ -25,8 +25,10 @@ impl Editing {
         mut after: Document,
         playback: &Playback,
     ) -> Option<WriteOutcome> {
-        let resets_posture = std::mem::take(&mut self.resets_posture);
-        if after == *self.shown() {
+        let next_posture = std::mem::take(&mut self.next_posture);
+        let present = &self.document.rig.posture;
+        let moves = matches!(&next_posture, NextPosture::Chosen(chosen) if chosen != present);
+        if after == *self.shown() && !moves {
             return None;
         }
         let [joints_before, joints] = [self.shown(), &after].map(|it| it.skeleton().joints().len());
@@ -45,7 +47,7 @@ impl Editing {
         if !self.is_editing() {
             after.rig.refresh_skin();
         }
-        self.update_posture(&mut after, change, resets_posture);
+        self.update_posture(&mut after, change, next_posture);
         self.document = after;
         self.evaluate(playback.time());
         self.update_transaction(has_other_joints);
@@ -54,9 +56,10 @@ impl Editing {
 
     /// Sets the posture of an edited document, so that its motion continues from the present one,
     /// and the time at which the motion begins.
-    fn update_posture(&self, after: &mut Document, change: TreeChange, is_reset: bool) {
+    fn update_posture(&self, after: &mut Document, change: TreeChange, next: NextPosture) {
         let before = &self.document;
-        if !is_reset
+        let is_reset = next == NextPosture::Reset;
+        if next == NextPosture::Continued
             && after.rig == before.rig
             && after.keys == before.keys
             && after.timeline == before.timeline
@@ -70,6 +73,8 @@ impl Editing {
         let posture = after.rig.posture.take();
         after.rig.posture = if is_reset {
             None
+        } else if let NextPosture::Chosen(chosen) = next {
+            chosen
         } else if !is_same_tree {
             posture.and_then(|posture| Track::posture_near(after, &posture))
         } else if !is_drag && posture != self.document.rig.posture {

@@ -1,0 +1,104 @@
+use super::evaluate::EvaluatedSkeleton;
+use super::skeleton_rig::SkeletonRig;
+use super::target::{Target, TargetKind};
+use crate::chain_ik::{ChainTarget, NullSpaceDrag, Root, SolveError};
+use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+
+/// Drags of points of bodies.
+impl SkeletonRig {
+    /// A drag of a point of a joint from a pose that this rig has at a time in seconds. All that
+    /// targets hold stays: whole-body targets of full influence, where they are reached or as far
+    /// from it as they are, and with [`SkeletonRig::body_follows`] the hands and feet of limb
+    /// targets. The limbs themselves do not turn; solve them again for the dragged pose.
+    ///
+    /// # Errors
+    ///
+    /// See [`SolveError`].
+    pub fn drag(
+        &self,
+        evaluated: &EvaluatedSkeleton,
+        time: f64,
+        dragged: ChainTarget,
+    ) -> Result<NullSpaceDrag, SolveError> {
+        let mut pose = Skeleton::clone(&evaluated.solved);
+        for joint in self.limb_joints_of_targets() {
+            pose.write_local(joint, |joint| joint.locked = true);
+        }
+        let held = self.held_targets(evaluated, time);
+        let is_root = pose.joint(dragged.joint).is_some_and(|joint| joint.parent.is_none());
+        // A body that nothing holds would be carried away.
+        let root = match self.solver.root {
+            Root::Free if held.is_empty() && !is_root => Root::Turns,
+            root => root,
+        };
+        NullSpaceDrag::new(&pose, &held, dragged, root)
+    }
+
+    /// True if a drag of a point of a joint can turn the joint or one above it, or move the root.
+    pub fn can_drag(&self, joint: JointId) -> bool {
+        let turns = |joint: &Joint| {
+            let is_movable = RotationAxis::ALL.into_iter().any(|axis| !joint.limits.is_fixed(axis));
+            match (joint.parent, self.solver.root) {
+                (None, Root::Locked) => false,
+                (None, Root::Free) => true,
+                _ => !joint.locked && is_movable,
+            }
+        };
+        let of_limbs: Vec<JointId> = self.limb_joints_of_targets().collect();
+        let mut above = self.skeleton.ancestors(joint);
+        above.any(|joint| !of_limbs.contains(&joint) && turns(&self.skeleton[joint]))
+    }
+
+    /// True if targets of full influence hold the body: whole-body targets, or limb targets that it
+    /// follows.
+    pub fn holds_body(&self) -> bool {
+        let mut full = self.full_targets();
+        full.any(|it| it.kind == TargetKind::WholeBody || self.pulls_body(it))
+    }
+
+    /// True if a whole-body target of full influence turns a joint.
+    pub fn is_turned_by_body_target(&self, joint: JointId) -> bool {
+        let mut targets = self.full_targets().filter(|it| it.kind == TargetKind::WholeBody);
+        targets.any(|target| self.moved_by(target).turned.contains(&joint))
+    }
+
+    fn full_targets(&self) -> impl Iterator<Item = &Target> {
+        self.targets.iter().filter(|it| self.is_solved_for(it) && it.influence >= 1.0)
+    }
+
+    /// The joints that limb targets of full influence turn.
+    fn limb_joints_of_targets(&self) -> impl Iterator<Item = JointId> {
+        let limbs = self.full_targets().filter(|target| target.limb().is_some());
+        limbs.flat_map(|target| self.moved_by(target).turned)
+    }
+
+    /// The places and orientations that targets of full influence hold in a pose.
+    fn held_targets(&self, evaluated: &EvaluatedSkeleton, time: f64) -> Vec<ChainTarget> {
+        let EvaluatedSkeleton { fk, solved, targets, .. } = evaluated;
+        let full = |target: &Target| self.is_solved_for(target) && target.influence >= 1.0;
+        let mut held = Vec::new();
+        for (target, report) in self.targets.iter().zip(targets).filter(|(it, _)| full(it)) {
+            if target.kind == TargetKind::WholeBody {
+                let mut of_target = self.tip_target(target, fk, time);
+                if report.error > self.tolerance() {
+                    of_target.point = solved.tip(target.joint);
+                }
+                if report.misses_rotation() {
+                    of_target.orientation = None;
+                }
+                if of_target.weight > 0.0 || of_target.orientation.is_some() {
+                    held.push(of_target);
+                }
+            } else if let Some(mut base) = self.base_target(target, fk, time) {
+                // A base from which the limb does not reach its target goes no farther away.
+                let at = base.grip.map_or(base.point, |it| solved.point_in_world(base.joint, it));
+                let scale = solved.transform().matrix3.determinant().abs().cbrt();
+                let [least, most] = base.distances;
+                let present = at.distance(base.point) / scale;
+                base.distances = [least.min(present), most.max(present)];
+                held.push(base);
+            }
+        }
+        held
+    }
+}
