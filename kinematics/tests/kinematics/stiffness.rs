@@ -66,9 +66,9 @@ fn a_step_of_least_squares_is_that_of_the_metric() {
         let damping = f64::from(DAMPING * length(&skeleton, &[target.joint]));
         let mut square = DMat3::IDENTITY * damping.powi(2);
         for joint in skeleton.ids().filter(|joint| !skeleton[*joint].locked) {
-            for axis in 0..3 {
-                let column = columns[joint.index()][axis].as_dvec3();
-                let compliance = 1.0 - f64::from(skeleton[joint].stiffness[axis]);
+            let stiffness = skeleton[joint].stiffness.to_array();
+            for (column, stiffness) in columns[joint.index()].into_iter().zip(stiffness) {
+                let (column, compliance) = (column.as_dvec3(), 1.0 - f64::from(stiffness));
                 square += DMat3::from_cols(column * column.x, column * column.y, column * column.z)
                     * compliance;
             }
