@@ -31,8 +31,11 @@ pub enum Channel {
     Pinned(JointId),
     /// Influence of a joint's target, from 0 (FK pose) to 1 (solved pose).
     TargetInfluence(JointId),
-    /// Euler angles in radians, unwrapped, of the hand in the space of a limb's target.
+    /// Euler angles in radians, unwrapped, of the hand of a limb or of the joint of a whole-body
+    /// target, in the target's space.
     TargetOrientation(JointId),
+    /// The point at which a joint's target aims the joint, in the target's space.
+    TargetAim(JointId),
     /// Angle in radians, unwrapped, by which the elbow of a limb's target is turned.
     TargetTwist(JointId),
     /// The pole of a limb's target, in the pole's space.
@@ -87,13 +90,14 @@ impl Channel {
     }
 
     /// The channels of the target of a joint.
-    pub fn of_target(joint: JointId) -> [Self; 9] {
+    pub fn of_target(joint: JointId) -> [Self; 10] {
         [
             Self::Target(joint),
             Self::Pinned(joint),
             Self::Pin(joint),
             Self::TargetInfluence(joint),
             Self::TargetOrientation(joint),
+            Self::TargetAim(joint),
             Self::TargetTwist(joint),
             Self::TargetPole(joint),
             Self::Stretch(joint),

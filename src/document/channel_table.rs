@@ -133,6 +133,12 @@ impl Channel {
                 Rotation,
             )
             .of_target(joint, |it| it.orientation, set_orientation, |_| true),
+            Self::TargetAim(joint) => named("target_aim", "target aim", Point).of_target(
+                joint,
+                |it| it.aim.map(|aim| aim.point),
+                set_aim,
+                |it| it.aim.is_some(),
+            ),
             Self::TargetTwist(joint) => named("target_twist", "Socket twist", Angle).of_target(
                 joint,
                 |it| Some(number(it.limb()?.twist)),
@@ -319,6 +325,12 @@ fn has_twist(limb: &LimbSettings) -> bool {
 fn set_orientation(target: &mut Target, angles: Vec3) {
     if let Some(orientation) = &mut target.orientation {
         *orientation = angles;
+    }
+}
+
+fn set_aim(target: &mut Target, point: Vec3) {
+    if let Some(aim) = &mut target.aim {
+        aim.point = point;
     }
 }
 

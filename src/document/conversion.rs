@@ -18,7 +18,8 @@ impl Document {
     /// keeps its orientation, at `time`, at which this document is evaluated, and at each of their
     /// keys.
     pub fn set_target_space(&mut self, joint: JointId, space: TargetSpace, time: f64) {
-        let channels = [Channel::Target(joint), Channel::TargetOrientation(joint)];
+        let channels =
+            [Channel::Target(joint), Channel::TargetOrientation(joint), Channel::TargetAim(joint)];
         self.convert_target(joint, channels, time, |target, pose, time, near| {
             target.in_space(space, pose, time, near)
         });
@@ -220,6 +221,7 @@ impl Document {
         }
         if let Some(aim) = target.aim.as_mut().filter(|_| is_in_world) {
             aim.point = TURN * aim.point;
+            turned.push(Channel::TargetAim(joint));
         }
         if let Some(angles) = target.orientation.as_mut().filter(|_| is_in_world) {
             *angles = turned_angles(frame, *angles, *angles);

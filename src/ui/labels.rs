@@ -21,6 +21,7 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
         Grip::Tip(joint, _) | Grip::Bone(joint) | Grip::Ring(joint, _) => name(joint).to_owned(),
         Grip::Target(joint, _) => format!("the target of {}", of_joint(joint)),
         Grip::Orientation(joint, _) => of_joint(joint).to_owned(),
+        Grip::Aim(joint, _) => format!("the aim of {}", of_joint(joint)),
         Grip::LimbTwist(joint) => format!("the limb of {}", of_joint(joint)),
         _ => String::new(),
     }

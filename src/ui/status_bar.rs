@@ -155,6 +155,7 @@ fn describe_move(session: &Session, whole: &Drag, drag: &PointDrag) -> String {
         Grip::Target(..) => "Target".to_owned(),
         Grip::Head(..) => "Head".to_owned(),
         Grip::LimbPole(..) => "Pole".to_owned(),
+        Grip::Aim(..) => "Aim".to_owned(),
         _ => "Move".to_owned(),
     };
     // A figure is measured in metres, a measured limb in smaller units.
@@ -288,7 +289,9 @@ fn drag_of(grip: Grip, name: &str) -> Cow<'static, str> {
         Grip::LimbPole(..) => "drag the Pole",
         Grip::Ring(..) | Grip::Orientation(..) => return format!("rotate {name}").into(),
         Grip::LimbTwist(_) => return format!("turn {name} about its Pointer").into(),
-        Grip::Tip(..) | Grip::Bone(_) | Grip::Target(..) => return format!("drag {name}").into(),
+        Grip::Tip(..) | Grip::Bone(_) | Grip::Target(..) | Grip::Aim(..) => {
+            return format!("drag {name}").into();
+        }
         Grip::Head(..) => "drag the head",
     };
     effect.into()

@@ -471,6 +471,36 @@ fn a_whole_body_target_can_aim_an_axis_of_its_joint() {
 }
 
 #[test]
+fn the_point_of_an_aim_is_dragged_in_the_view_and_keyed() {
+    let mut bench = with_head_target();
+    let head = bench.joint("head");
+    choose(&mut bench, "Target turns", "Aims at a point");
+    let point = |bench: &Bench| target(bench, "head").aim.expect("an aim").point;
+    let before = point(&bench);
+    let at = bench.on_screen(before);
+    bench.move_to(at);
+    assert!(bench.says("left drag: drag the aim of head"));
+    bench.drag_and_drop(LEFT, at, at + vec2(60.0, -20.0));
+    let after = point(&bench);
+    assert!(bench.on_screen(after).distance(at + vec2(60.0, -20.0)) < 1.0, "under the mouse");
+    let pose = bench.session().posed().skeleton().clone();
+    let looks = pose.rotation_in_world(head).as_quat() * Vec3::Z;
+    assert!(looks.angle_between(after - pose.base(head)) < 2e-3, "the head follows");
+    assert_eq!(bench.session().history().undo_label(), Some("Move aim"));
+    bench.reveal(Role::Button, "Key Aim x");
+    bench.click(Role::Button, "Key Aim x");
+    let keys = &bench.session().document().keys;
+    assert!(keys.has(Channel::TargetAim(head)));
+
+    // A match moves the point to where the joint looks by its angles.
+    bench.reveal(Role::Button, "Target to FK");
+    bench.click(Role::Button, "Target to FK");
+    let pose = bench.session().posed().evaluated_skeleton().fk.clone();
+    let looks = pose.rotation_in_world(head).as_quat() * Vec3::Z;
+    assert!(looks.angle_between(point(&bench) - pose.base(head)) < 2e-3, "{}", point(&bench));
+}
+
+#[test]
 fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     let mut bench = human();
     select(&mut bench, "left_hand");

@@ -212,6 +212,16 @@ impl Target {
         Some(self.present_space().to_world(pose).transform_point3(self.aim?.point))
     }
 
+    /// The point, in [`Target::present_space`], that is as far from the joint as the point of the aim
+    /// and at which the joint aims in a pose of the skeleton; `None` without an aim.
+    pub(super) fn aimed_ahead(&self, pose: &Skeleton) -> Option<Vec3> {
+        let (aim, joint) = (self.aim?, pose.joint(self.joint).map(|_| self.joint)?);
+        let base = pose.base(joint);
+        let distance = self.aim_point_in_world(pose)?.distance(base);
+        let axis = pose.full_transform(joint).transform_vector3(aim.axis).try_normalize()?;
+        Some(self.present_space().point_from_world(pose, base + axis * distance))
+    }
+
     /// The orientation in the world, for a pose of the skeleton; `None` without one.
     pub fn orientation_in_world(&self, pose: &Skeleton) -> Option<Quat> {
         let Vec3 { x, y, z } = self.orientation?;

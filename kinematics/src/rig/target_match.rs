@@ -36,6 +36,10 @@ impl SkeletonRig {
             let rotation = pose.rotation_in_world(joint).as_quat();
             target.orientation = Some(target.orientation_angles(pose, rotation, angles));
         }
+        let aimed = target.aimed_ahead(pose);
+        if let (Some(aim), Some(point)) = (&mut target.aim, aimed) {
+            aim.point = point;
+        }
         let limb = Limb::ending_at(pose, target.joint);
         if let (Some(settings), Ok(limb)) = (target.limb_mut(), limb) {
             settings.match_elbow(pose, limb);

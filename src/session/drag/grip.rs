@@ -12,6 +12,8 @@ pub enum Grip {
     Target(JointId, PointHandle),
     /// The pole of a limb's target, by the target's joint.
     LimbPole(JointId, PointHandle),
+    /// The point at which the target of a joint aims the joint.
+    Aim(JointId, PointHandle),
     /// The ring of the twist of a limb's target, about the Pointer, by the target's joint.
     LimbTwist(JointId),
     /// The head of a skeleton that follows a path; dragging it pulls the chain.
@@ -33,6 +35,7 @@ impl Grip {
         match self {
             Self::Target(_, handle)
             | Self::LimbPole(_, handle)
+            | Self::Aim(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
             Self::Bone(_) | Self::Ring(..) | Self::Orientation(..) | Self::LimbTwist(_) => true,
@@ -45,6 +48,7 @@ impl Grip {
             Self::LimbTwist(_) => "Set Socket twist",
             Self::Target(..) => "Move target",
             Self::LimbPole(..) => "Move pole",
+            Self::Aim(..) => "Move aim",
             Self::Head(..) => "Move head",
             Self::Tip(..) | Self::Bone(_) => "Pose joints",
             Self::Ring(..) => "Turn joint",

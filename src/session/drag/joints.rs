@@ -30,6 +30,10 @@ pub(in crate::session) fn grab(
     let (handle, at) = match grip {
         Grip::Target(joint, handle) => (handle, grabbed_target(session, joint, handle, ray)?),
         Grip::LimbPole(joint, handle) => (handle, report(joint)?.pole?),
+        Grip::Aim(joint, handle) => {
+            let pose = session.posed().skeleton();
+            (handle, target(session, joint)?.aim_point_in_world(pose)?)
+        }
         Grip::Tip(joint, handle) => (handle, free_tip(session, joint)?),
         Grip::Bone(joint) => {
             let point = point_on_bone(session.posed().skeleton(), joint, ray)?;
@@ -74,7 +78,9 @@ pub(in crate::session) fn grab(
 /// The origin of the coordinates that panels show of a dragged point.
 fn snapped_from(session: &Session, grip: Grip) -> Vec3 {
     let space = match grip {
-        Grip::Target(joint, _) => target(session, joint).map(|it| it.present_space()),
+        Grip::Target(joint, _) | Grip::Aim(joint, _) => {
+            target(session, joint).map(|it| it.present_space())
+        }
         Grip::LimbPole(joint, _) => {
             target(session, joint).and_then(|it| Some(it.limb()?.pole_space))
         }
@@ -149,6 +155,7 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         }
         (Grip::Target(joint, _), Dragged::Point { to, .. }) => drag_target(session, joint, to),
         (Grip::LimbPole(joint, _), Dragged::Point { to, .. }) => drag_limb_pole(session, joint, to),
+        (Grip::Aim(joint, _), Dragged::Point { to, .. }) => drag_aim(session, joint, to),
         (Grip::Tip(joint, _), Dragged::Point { to, moved, .. }) => {
             drag_tip(session, joint, to, moved)
         }
@@ -177,6 +184,18 @@ fn drag_limb_pole(session: &Session, joint: JointId, to: Vec3) -> Outcome {
     };
     let pole = limb.pole_space.point_from_world(&session.posed().evaluated_skeleton().solved, to);
     limb.pole = Some(pole);
+    targets::set_target(session, target)
+}
+
+/// Moves the point at which the target of a joint aims the joint.
+fn drag_aim(session: &Session, joint: JointId, to: Vec3) -> Outcome {
+    let Some(mut target) = target(session, joint) else {
+        return Outcome::default();
+    };
+    let space = target.present_space();
+    if let Some(aim) = &mut target.aim {
+        aim.point = space.point_from_world(&session.posed().evaluated_skeleton().solved, to);
+    }
     targets::set_target(session, target)
 }
 

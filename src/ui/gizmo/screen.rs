@@ -112,7 +112,6 @@ pub(in crate::ui) fn aims(
         let weak = ui.visuals().weak_text_color();
         let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
         painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
-        painter.circle_stroke(to, 5.0, stroke);
     }
 }
 

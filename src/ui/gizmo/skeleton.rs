@@ -71,7 +71,7 @@ impl Gizmo {
         }
         Self {
             bones: bones(screen, session),
-            marks: targets(screen, session).into_iter().chain(heads(screen, session)).collect(),
+            marks: marks(screen, session),
             handles: handles(screen, session),
             rings: rings(screen, session),
             twist: twist_ring(screen, session),
@@ -181,6 +181,7 @@ impl JointHandles {
     fn handle(&self, grip: Grip) -> Option<PointHandle> {
         let (Grip::Target(_, handle)
         | Grip::LimbPole(_, handle)
+        | Grip::Aim(_, handle)
         | Grip::Head(_, handle)
         | Grip::Tip(_, handle)) = grip
         else {
@@ -209,6 +210,22 @@ fn bones(screen: &ScreenProjection, session: &Session) -> Vec<ScreenBone> {
         }
     };
     pose.ids().map(bone).collect()
+}
+
+fn marks(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
+    let targets = targets(screen, session).into_iter();
+    targets.chain(aims(screen, session)).chain(heads(screen, session)).collect()
+}
+
+/// The circles of the points at which targets aim their joints.
+fn aims(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
+    let pose = &session.posed().evaluated_skeleton().solved;
+    let mark = |target: &Target| {
+        let at = screen.place(target.aim_point_in_world(pose)?)?;
+        let grip = Grip::Aim(target.joint, PointHandle::Free);
+        Some(Mark { grip, at, enabled: target.is_posing() })
+    };
+    session.rig().targets.iter().filter_map(mark).collect()
 }
 
 fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
@@ -253,9 +270,14 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let report = target.and_then(|joint| session.posed().target_report(joint));
     let head = Grip::draggable_heads(session.rig()).find(|head| *head == selected);
     let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
-    let points: [(JointId, GripOfJoint, Option<Vec3>); 4] = [
+    let aim = target.and_then(|joint| rig.target(joint)).and_then(|index| {
+        let pose = &session.posed().evaluated_skeleton().solved;
+        rig.targets[index].aim_point_in_world(pose)
+    });
+    let points: [(JointId, GripOfJoint, Option<Vec3>); 5] = [
         (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
+        (target.unwrap_or(selected), Grip::Aim, aim),
         (selected, Grip::Tip, root),
         (selected, Grip::Head, head.map(|head| session.posed().evaluated_skeleton().fk.base(head))),
     ];

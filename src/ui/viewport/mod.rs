@@ -222,7 +222,7 @@ fn select(
 ) {
     let modifiers = ui.input(|input| input.modifiers);
     let joint = match gizmo.at(mouse) {
-        Some(Grip::Target(joint, PointHandle::Free)) => {
+        Some(Grip::Target(joint, PointHandle::Free) | Grip::Aim(joint, _)) => {
             session.rig().end_of_target(joint).or(Some(joint))
         }
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
@@ -396,7 +396,10 @@ fn under_finger(ui: &Ui, gizmo: &Gizmo, at: Pos2) -> Option<Pos2> {
     let places = RADII.into_iter().flat_map(around);
     let is_point = |grip: Grip| {
         use PointHandle::Free;
-        matches!(grip, Grip::Target(_, Free) | Grip::Head(_, Free) | Grip::Tip(_, Free))
+        matches!(
+            grip,
+            Grip::Target(_, Free) | Grip::Aim(_, Free) | Grip::Head(_, Free) | Grip::Tip(_, Free)
+        )
     };
     let handles = places.filter_map(|place| Some((place, is_point(gizmo.at(place)?))));
     Some(handles.min_by_key(|(_, is_point)| !is_point)?.0)

@@ -62,7 +62,7 @@ impl Values<'_> {
 
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
-        match self.random.below(15) {
+        match self.random.below(16) {
             0 | 1 => Grip::Target(LOWER, self.handle()),
             2 => Grip::LimbPole(LOWER, self.handle()),
             3 => Grip::Ring(UPPER, self.rotation_axis()),
@@ -75,6 +75,7 @@ impl Values<'_> {
             10 => Grip::Tip(UPPER, PointHandle::Free),
             11 => Grip::Tip(UPPER, PointHandle::Free),
             12 => Grip::Ring(WRIST, self.rotation_axis()),
+            14 => Grip::Aim(self.aimed(), self.handle()),
             13 => Grip::Orientation(self.aimed(), self.rotation_axis()),
             _ => Grip::Ring(joint, self.rotation_axis()),
         }

@@ -111,7 +111,7 @@ fn point(
         step,
         tooltip: "Move the point that the axis is aimed at",
         disabled: None,
-        channel: None,
+        channel: Some(Channel::TargetAim(target.joint)),
     };
     sliders.show(ui, session, actions, |point| set(Aim { point, ..aim }));
 }
