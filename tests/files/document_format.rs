@@ -364,7 +364,8 @@ fn an_invalid_value_is_named_with_the_rule() {
         ),
         (
             aimed("{\"joint\":0,\"home\":[0,0,0],\"weight\":0}"),
-            "line 4, column 47: targets[0].weight: must be above 0, got 0",
+            "line 4, column 47: targets[0].weight: must be above 0, or 0 with a rotation or an aim, got \
+             0",
         ),
         (
             aimed("{\"joint\":0,\"home\":[0,0,0],\"motion\":{\"path\":\"circle\",\"period\":-1}}"),

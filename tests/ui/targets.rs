@@ -471,6 +471,27 @@ fn a_whole_body_target_can_aim_an_axis_of_its_joint() {
 }
 
 #[test]
+fn a_target_that_turns_a_joint_can_leave_its_place_free() {
+    let mut bench = with_head_target();
+    assert!(!bench.shows(Role::CheckBox, "Free place"), "a target that turns nothing has a place");
+    choose(&mut bench, "Target turns", "Aims at a point");
+    bench.reveal(Role::CheckBox, "Free place");
+    bench.click(Role::CheckBox, "Free place");
+    assert!(target(&bench, "head").has_free_place());
+    assert!(!bench.shows(Role::Slider, "Target x"), "there is no place to set");
+    let head = bench.joint("head");
+    let report = bench.session().posed().target_report(head).expect("a report").clone();
+    assert_eq!(report.error, 0.0);
+    bench.reveal(Role::Slider, "Aim x");
+    bench.enter("Aim x", "0.9");
+    let aimed = bench.session().posed().target_report(head).expect("a report").clone();
+    assert!(aimed.rotation_error.expect("an aim") < 2e-3);
+
+    choose(&mut bench, "Target turns", "Free");
+    assert_eq!(target(&bench, "head").weight, 1.0, "it has a place again");
+}
+
+#[test]
 fn the_point_of_an_aim_is_dragged_in_the_view_and_keyed() {
     let mut bench = with_head_target();
     let head = bench.joint("head");

@@ -64,7 +64,7 @@ pub struct TargetReport {
     /// Position of the limb's pole, in the world; `None` for another elbow reference.
     pub pole: Option<Vec3>,
     /// Distance from the tip to the target in the evaluated pose, in the world; from the base of a
-    /// head that the target leads.
+    /// head that the target leads; 0 for a target whose place is free.
     pub error: f32,
     /// Angle in radians from the rotation of the target's [oriented
     /// joint](Target::oriented_joint) to that which the target asks for, or from the axis of its aim
@@ -136,9 +136,11 @@ impl SkeletonRig {
                 TargetOutcome::Leads => solved.base(joint),
                 _ => solved.tip(joint),
             };
-            let error = solved
-                .joint(target.joint)
-                .map_or(0.0, |_| end(target.joint).distance(position).min(f32::MAX));
+            let is_placed = solved.joint(target.joint).is_some() && !target.has_free_place();
+            let error = match is_placed {
+                true => end(target.joint).distance(position).min(f32::MAX),
+                false => 0.0,
+            };
             let pole = target.limb().and_then(|settings| settings.pole_in_world(&solved));
             let rotation_error = self.rotation_error(target, &solved);
             TargetReport { position, pole, error, rotation_error, outcome }

@@ -179,6 +179,8 @@ impl Step<'_> {
         let place = |report: &TargetReport| report.position.as_dvec3();
         let taken = self.taken[after.0.joint.index()][1] - tip(&self.before);
         let way = ((place(after.1) - place(before.1)) - taken).length();
+        let way = if after.0.has_free_place() { 0.0 } else { way };
+        let of_turn = self.wanted_turn(index) * self.length(index) / 2.0;
         let influence = f64::from((after.0.influence - before.0.influence).abs());
         let of_influence = influence * self.distance_from_fk(after.0);
         let twist = |target: &Target| target.limb().map_or(0.0, |limb| f64::from(limb.twist));
@@ -191,7 +193,28 @@ impl Step<'_> {
             Some([Some(before), Some(after)]) => before.distance(after),
             _ => 0.0,
         };
-        way.max(of_influence).max(of_twist).max(of_pole)
+        way.max(of_influence).max(of_twist).max(of_pole).max(of_turn)
+    }
+
+    /// Angle in radians by which the rotation that a whole-body target asks for, or the direction of
+    /// its aim, turns; 0 without either.
+    fn wanted_turn(&self, index: usize) -> f64 {
+        let [before, after] = self.both(index).map(|(target, _)| target);
+        if !(before.turns_joint() && after.turns_joint()) {
+            return 0.0;
+        }
+        let [from, to] = [self.before, self.after].map(|moment| &moment.evaluated.solved);
+        let rotations = before.orientation_in_world(from).zip(after.orientation_in_world(to));
+        let of_rotation = rotations.map(|(from, to)| from.angle_between(to));
+        let sight = |target: &Target, pose: &Skeleton| {
+            Some(
+                target.aim_point_in_world(pose)?
+                    - from.joint(target.joint).map(|_| from.base(target.joint))?,
+            )
+        };
+        let sights = sight(before, from).zip(sight(after, to));
+        let of_aim = sights.map(|(from, to)| from.angle_between(to));
+        f64::from(of_rotation.or(of_aim).filter(|angle| angle.is_finite()).unwrap_or_default())
     }
 
     /// Largest distance of a joint that a target turns from its place in the FK pose, per

@@ -35,7 +35,8 @@ pub struct Target {
     pub orientation_weight: f32,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
     pub influence: f32,
-    /// Weight relative to the other whole-body targets, above 0.
+    /// Weight of the place relative to the other targets of the body, above 0; 0 leaves the place
+    /// free, for a whole-body target that asks for a rotation or an aim.
     pub weight: f32,
     /// How a whole-body target slows its tip before the chain is straight, from 0, not at all, to
     /// less than 1; see [`SkeletonRig::softened`](super::SkeletonRig::softened).
@@ -132,6 +133,16 @@ impl Target {
     /// True if the target poses the skeleton.
     pub fn is_posing(&self) -> bool {
         self.enabled && self.influence > 0.0
+    }
+
+    /// True if the target asks for no place: for a rotation or an aim alone.
+    pub fn has_free_place(&self) -> bool {
+        self.weight == 0.0
+    }
+
+    /// True if the target asks for a rotation or an aim of the joint of a whole body.
+    pub fn turns_joint(&self) -> bool {
+        self.limb().is_none() && (self.orientation.is_some() || self.aim.is_some())
     }
 
     /// True if the target poses the skeleton between its FK pose and the solved one.

@@ -139,7 +139,10 @@ impl<'a> PoseLine<'a> {
             |target: &Target| posed.limb_frames(target.joint).filter(|_| answer.is_evaluated);
         let targets = enabled.map(|target| {
             let (point, tip) = (target.in_world(skeleton, time), pose.tip(target.joint));
-            let error = point.as_dvec3().distance(tip.as_dvec3());
+            let error = match target.has_free_place() {
+                true => 0.0,
+                false => point.as_dvec3().distance(tip.as_dvec3()),
+            };
             let missing = rig.rotation_error(target, skeleton).map(f32::to_degrees);
             TargetLine {
                 joint: index_of[target.joint.index()],

@@ -31,10 +31,11 @@ pub enum SetTargetsError {
     #[error("joint {0:?} must be given one target, got two")]
     Two(String),
     #[error(
-        "the target of joint {0:?} must turn a joint: a limb's turns the one joint at its tip, if \
-         there is one, and aims at nothing"
+        "the target of joint {0:?} poses a limb without one joint at its tip, so it turns none"
     )]
-    NotThere(String),
+    NoHand(String),
+    #[error("the target of joint {0:?} poses a limb, which is aimed at nothing; aim another joint")]
+    LimbAim(String),
 }
 
 impl FromStr for GivenTarget {
@@ -69,13 +70,18 @@ pub fn with_targets(
             let skeleton = posed.document().skeleton();
             let joint = find(name, skeleton, order)?;
             let name = || skeleton[joint].name.clone();
+            let count = posed.document().rig.targets.len();
             let (mut document, index) = with_target(&posed, joint);
             if set.contains(&index) {
                 return Err(SetTargetsError::Two(name()));
             }
             set.push(index);
-            if !set_on(&mut document.rig.targets[index], &posed, *numbers) {
-                return Err(SetTargetsError::NotThere(name()));
+            let set_one = set_on(&mut document.rig.targets[index], &posed, *numbers);
+            set_one.map_err(|refused| refused(name()))?;
+            let target = &mut document.rig.targets[index];
+            if index == count && target.turns_joint() {
+                // Only its rotation was given.
+                target.weight = 0.0;
             }
             posed = track.pose(document, time);
         }
@@ -83,24 +89,26 @@ pub fn with_targets(
     Ok(posed)
 }
 
-fn set_place(target: &mut Target, posed: &Posed, point: Vec3) -> bool {
+/// The error for a target that cannot be set, by the name of its joint.
+type Refused = fn(String) -> SetTargetsError;
+
+fn set_place(target: &mut Target, posed: &Posed, point: Vec3) -> Result<(), Refused> {
     *target = target.placed(posed.skeleton(), posed.time(), point);
-    true
+    Ok(())
 }
 
-/// Returns whether the target turns a joint.
-fn set_rotation(target: &mut Target, posed: &Posed, degrees: Vec3) -> bool {
+fn set_rotation(target: &mut Target, posed: &Posed, degrees: Vec3) -> Result<(), Refused> {
     target.orientation = Some(degrees.map(f32::to_radians));
     target.aim = None;
-    target.oriented_joint(posed.skeleton()).is_some()
+    let has_hand = target.oriented_joint(posed.skeleton()).is_some();
+    if has_hand { Ok(()) } else { Err(SetTargetsError::NoHand) }
 }
 
-/// Returns whether the target can aim its joint.
-fn set_aim(target: &mut Target, _: &Posed, point: Vec3) -> bool {
+fn set_aim(target: &mut Target, _: &Posed, point: Vec3) -> Result<(), Refused> {
     let axis = target.aim.map_or(Vec3::Z, |aim| aim.axis);
     target.aim = Some(Aim { axis, point });
     target.orientation = None;
-    target.limb().is_none()
+    if target.limb().is_none() { Ok(()) } else { Err(SetTargetsError::LimbAim) }
 }
 
 /// The document with an enabled target of the joint in the world, where it is at present; a new one

@@ -125,8 +125,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     }
     if display.shows(Overlay::Cursor) {
         let targets = rig.targets.iter().zip(posed.targets());
-        // Cylinders have their targets.
-        for (target, report) in targets.filter(|(it, _)| !cylinders[it.joint.index()]) {
+        // Cylinders have their targets; a free place has none.
+        let is_drawn = |it: &Target| !cylinders[it.joint.index()] && !it.has_free_place();
+        for (target, report) in targets.filter(|(it, _)| is_drawn(it)) {
             drawn.add_target(scene, target, report);
             if target.enabled && target.is_moving() && !rig.leads_path(target) {
                 add_trail(scene, target, posed.skeleton(), posed.time());

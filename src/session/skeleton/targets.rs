@@ -284,8 +284,11 @@ fn fault(target: &Target) -> Option<String> {
         Some(format!("The position of a target must be finite, got {home}"))
     } else if !pin.is_finite() {
         Some(format!("The position of a pinned target must be finite, got {pin}"))
-    } else if !above_0(weight) {
-        Some(format!("The weight of a target must be finite and above 0, got {weight}"))
+    } else if !(above_0(weight) || weight == 0.0 && target.turns_joint()) {
+        Some(format!(
+            "The weight of a target must be finite and above 0, or 0 for one that turns a joint, got \
+             {weight}"
+        ))
     } else if !(above_0(motion.period) && motion.radius.is_finite()) {
         Some("The path of a target must have a period above 0 and a finite radius".to_owned())
     } else if !(0.0..=1.0).contains(&influence) {

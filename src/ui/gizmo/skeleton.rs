@@ -237,7 +237,9 @@ fn targets(screen: &ScreenProjection, session: &Session) -> Vec<Mark> {
     };
     let rig = session.rig();
     // A figure that is one limb has handles at its target instead.
-    let has_mark = |target: &Target| rig.sole_limb().is_none() || !target.is_posing();
+    let has_mark = |target: &Target| {
+        !target.has_free_place() && (rig.sole_limb().is_none() || !target.is_posing())
+    };
     let targets = rig.targets.iter().zip(reports);
     targets.filter(|(target, _)| has_mark(target)).filter_map(mark).collect()
 }
@@ -268,6 +270,9 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
     let of_end = rig.target_of_end(selected).map(|index| rig.targets[index].joint);
     let target = of_end.or(sole.map(|target| target.joint));
     let report = target.and_then(|joint| session.posed().target_report(joint));
+    let is_placed =
+        |joint| rig.target(joint).is_some_and(|index| !rig.targets[index].has_free_place());
+    let place = report.filter(|_| target.is_some_and(is_placed)).map(|report| report.position);
     let head = Grip::draggable_heads(session.rig()).find(|head| *head == selected);
     let root = is_dragged_root(session, selected).then(|| session.skeleton_pose().base(selected));
     let aim = target.and_then(|joint| rig.target(joint)).and_then(|index| {
@@ -275,7 +280,7 @@ fn handles(screen: &ScreenProjection, session: &Session) -> Vec<JointHandles> {
         rig.targets[index].aim_point_in_world(pose)
     });
     let points: [(JointId, GripOfJoint, Option<Vec3>); 5] = [
-        (target.unwrap_or(selected), Grip::Target, report.map(|report| report.position)),
+        (target.unwrap_or(selected), Grip::Target, place),
         (target.unwrap_or(selected), Grip::LimbPole, report.and_then(|report| report.pole)),
         (target.unwrap_or(selected), Grip::Aim, aim),
         (selected, Grip::Tip, root),

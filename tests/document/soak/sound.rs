@@ -151,7 +151,10 @@ fn target(target: &Target, joints: usize) -> Result<(), Broken> {
     hold!((0.0..1.0).contains(softness), "the softness is from 0 to less than 1: {softness}");
     hold!(*joint < JointId::new(joints), "a target is of a joint: {joint} of {joints}");
     let is_placed = home.is_finite() && pin.is_finite();
-    hold!(is_placed && is_above_0(*weight), "a target can be aimed at: {target:?}");
+    hold!(
+        is_placed && (is_above_0(*weight) || *weight == 0.0 && target.turns_joint()),
+        "a target can be aimed at: {target:?}"
+    );
     hold!((0.0..=1.0).contains(influence), "influence is a fraction: {target:?}");
     hold!(motion.radius.is_finite() && is_above_0(motion.period), "a target goes: {target:?}");
     Ok(())

@@ -97,6 +97,9 @@ impl ChainTarget {
     /// Vector from the tip or grip in a pose to the nearest place at which the target is reached, in
     /// skeleton space; zero for a free place.
     pub(super) fn residual_in(&self, pose: &Skeleton) -> Vec3 {
+        if self.weight == 0.0 {
+            return Vec3::ZERO;
+        }
         let to_skeleton = pose.transform().inverse();
         let tip = to_skeleton.transform_point3(pose.point_in_world(self.joint, self.grip_in(pose)));
         let point = to_skeleton.transform_point3(self.point).as_dvec3();

@@ -41,7 +41,7 @@ pub struct TargetFields {
     rotation_weight: Option<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
     influence: Option<Fraction>,
-    weight: Option<Above0>,
+    weight: Option<AtLeast0>,
     #[serde(skip_serializing_if = "Option::is_none")]
     softness: Option<JsonNumber>,
     enabled: Option<bool>,
@@ -180,6 +180,11 @@ impl TargetFields {
             return Err(format!("must be 0 or more, got {orientation_weight}"))
                 .at("rotation_weight");
         }
+        let weight = value_or(self.weight, default.weight);
+        let turns = kind == TargetKind::WholeBody && (orientation.is_some() || aim.is_some());
+        if weight == 0.0 && !turns {
+            return Err("must be above 0, or 0 with a rotation or an aim, got 0").at("weight");
+        }
         let motion = self.motion.map(|JsonObject(fields)| fields.motion(default.motion));
         let softness = value_or(self.softness, default.softness);
         if !(0.0..1.0).contains(&softness) {
@@ -194,7 +199,7 @@ impl TargetFields {
             aim,
             orientation_weight,
             influence: value_or(self.influence, default.influence),
-            weight: value_or(self.weight, default.weight),
+            weight,
             softness,
             enabled: self.enabled.unwrap_or(default.enabled),
             motion: motion.unwrap_or(default.motion),

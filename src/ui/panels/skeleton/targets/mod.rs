@@ -90,13 +90,17 @@ pub(in crate::ui) fn selected(
     let step = session.shown().grid_cell() * 0.1;
     limb::influence(ui, session, &target, actions);
     space::kind(ui, session, target, actions);
-    place(ui, session, target, step, actions);
+    if !target.has_free_place() {
+        place(ui, session, target, step, actions);
+    }
     ui.horizontal(|ui| limb::pin(ui, session, &target, actions));
     space::of_target(ui, session, &target, actions);
     if target.limb().is_none() {
         turn::show(ui, session, target, step, actions);
-        weight(ui, session, target, actions);
-        softness(ui, session, target, actions);
+        if !target.has_free_place() {
+            weight(ui, session, target, actions);
+            softness(ui, session, target, actions);
+        }
     } else if session.rig().pulls_body(&target) {
         weight(ui, session, target, actions);
     }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::document::{Channel, Target};
 use crate::rig::Aim;
 use crate::session::{Actions, Session, TargetEdit};
-use crate::ui::widgets::{AXES, Choice, NumberField, PointSliders, euler_sliders};
+use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, euler_sliders};
 
 /// Axes that can be aimed, with their names.
 const AIMED: [(Vec3, &str, &str); 6] = [
@@ -38,7 +38,14 @@ pub(super) fn show(
     if let Some(aim) = target.aim {
         point(ui, session, (target, aim), step, actions);
     }
-    if target.orientation.is_some() || target.aim.is_some() {
+    if target.turns_joint() {
+        let tooltip = "Let the tip be anywhere, and turn the joint alone";
+        let is_free = target.has_free_place();
+        let changed = widgets::check_box(ui, "Free place", tooltip, is_free, None);
+        actions.extend(changed.map(|is_free| {
+            let weight = if is_free { 0.0 } else { 1.0 };
+            TargetEdit::SetTarget(Target { weight, ..target })
+        }));
         let weight = NumberField {
             name: "Turn weight",
             value: target.orientation_weight,
@@ -68,8 +75,10 @@ fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
         tooltip: "Choose what the target does with the joint's rotation",
         shown,
     };
-    let mut set = |orientation, aim| {
-        actions.push(TargetEdit::SetTarget(Target { orientation, aim, ..target }));
+    let mut set = |orientation: Option<Vec3>, aim: Option<Aim>| {
+        let is_free = orientation.is_none() && aim.is_none() && target.has_free_place();
+        let weight = if is_free { 1.0 } else { target.weight };
+        actions.push(TargetEdit::SetTarget(Target { orientation, aim, weight, ..target }));
     };
     choice.show(ui, |list| {
         let is_free = target.orientation.is_none() && target.aim.is_none();
