@@ -73,6 +73,8 @@ pub enum Overlay {
     CompareSkinning,
     /// The bones, through the skin, coloured by the stiffness of their joints.
     Stiffness,
+    /// The centre of mass, and what the figure stands on.
+    Balance,
 }
 
 impl Overlay {
@@ -107,6 +109,7 @@ impl Overlay {
             Self::SkinWeights => "skin_weights",
             Self::CompareSkinning => "compare_skinning",
             Self::Stiffness => "stiffness",
+            Self::Balance => "balance",
         }
     }
 
@@ -130,7 +133,7 @@ impl Overlay {
         [Self::Cylinders, Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Other poses, the skin, and properties of joints.
-    pub const POSE: [Self; 8] = [
+    pub const POSE: [Self; 9] = [
         Self::FkPose,
         Self::ByItself,
         Self::Skin,
@@ -139,6 +142,7 @@ impl Overlay {
         Self::SkinWeights,
         Self::CompareSkinning,
         Self::Stiffness,
+        Self::Balance,
     ];
 
     /// Overlays that show motion over time.

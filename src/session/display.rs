@@ -109,6 +109,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Wireframe => "Toggle wireframe",
         Overlay::SkinWeights => "Toggle skin weights",
         Overlay::Stiffness => "Toggle stiffness",
+        Overlay::Balance => "Toggle balance",
         Overlay::CompareSkinning => "Toggle comparison of skinning",
         Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",

@@ -92,6 +92,9 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Wireframe => ("Wireframe", "Show the edges of the skin's triangles"),
         Overlay::SkinWeights => ("Weights", "Colour the skin by the weights of the selected joint"),
         Overlay::Stiffness => ("Stiffness", "Colour the bones by the stiffness of their joints"),
+        Overlay::Balance => {
+            ("Balance", "Show the centre of mass above the ground and what the figure stands on")
+        }
         Overlay::CompareSkinning => {
             ("Compare", "Show the skin three times, once for each way of blending")
         }

@@ -1,12 +1,12 @@
 //! Parts of a skeleton in a scene: bones, shadows and onion skins.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Target, Theme};
-use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
-use ik_arm::scene::Scene;
+use ik_arm::kinematics::skeleton::{Balance, Joint, JointId, Skeleton};
+use ik_arm::scene::{Line, Scene};
 use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
 
-use crate::common::documents::open_example;
+use crate::common::documents::{self, open_example};
 
 /// A vertical chain of bones, two units long, with a target for its tip.
 fn chain(bones: usize) -> Document {
@@ -100,4 +100,46 @@ fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
         let stick = 0.008 * shown.rig().reach();
         assert!(broadest > 1.2 * stick, "the knee has {broadest}, a stick {stick}");
     }
+}
+
+#[test]
+fn the_balance_is_drawn_as_it_is_and_told() {
+    let mut document = documents::example("human");
+    document.display = document.display.with(Overlay::Balance, true);
+    let texts = |document: &Document| {
+        let scene = scene(document);
+        scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
+    };
+    let balance = Balance::of(document.at(0.0).skeleton()).expect("a balance");
+    let margin = balance.margin().expect("it stands");
+    assert!(margin > 0.02, "the figure stands on both feet: {margin}");
+    let told = format!("Balanced: {margin:.4} inside");
+    assert!(texts(&document).contains(&told), "{:?} {told}", texts(&document));
+    let scene = scene(&document);
+    let guide = scene.palette.guide;
+    for [from, to] in balance.edges() {
+        let is_edge =
+            |line: &&Line| [line.from, line.to].map(|it| Vec2::new(it.x, it.z)) == [from, to];
+        let line = scene.lines.iter().find(is_edge).expect("an edge");
+        assert_eq!(line.colour, guide);
+    }
+    assert!(scene.guide_balls.iter().any(|ball| ball.centre == balance.centre));
+
+    // Without targets, the legs go where the pelvis goes: the figure is above the ground.
+    document.rig.targets.clear();
+    let skeleton = document.rig.skeleton.make_mut();
+    skeleton.change(JointId::new(0), |pelvis| pelvis.offset.y += 0.5).expect("an offset");
+    assert!(texts(&document).contains(&"Stands on nothing".to_owned()));
+    lean(&mut document);
+    assert!(texts(&document).iter().any(|text| text.starts_with("Tips over: ")));
+}
+
+/// Tilts the figure forward about its pelvis, with its feet at the ground.
+fn lean(document: &mut Document) {
+    let skeleton = document.rig.skeleton.make_mut();
+    let tilted = |pelvis: &mut Joint| {
+        pelvis.offset.y = 0.85;
+        pelvis.rotation.x += 0.4;
+    };
+    skeleton.change(JointId::new(0), tilted).expect("a pelvis");
 }

@@ -40,6 +40,7 @@
 //!
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2a.
 
+mod balance;
 mod edit;
 pub mod exact_angles;
 mod joint;
@@ -48,6 +49,7 @@ mod limits;
 mod pose;
 mod tree;
 
+pub use balance::Balance;
 pub use joint::{Joint, JointField, JointId, JointRemap, SkeletonError};
 pub use joint_angles::nearest_angles;
 pub use limits::{JointLimits, Limit, RotationAxis};

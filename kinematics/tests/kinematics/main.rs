@@ -1,5 +1,6 @@
 //! The library of kinematics against independent twins: f64, finite differences, matrix products.
 
+mod balance;
 mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]

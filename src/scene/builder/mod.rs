@@ -1,5 +1,6 @@
 //! Fills a scene from a document, with one file for each group of parts.
 
+mod balance;
 mod cylinders;
 mod drawn_skeleton;
 mod figure;

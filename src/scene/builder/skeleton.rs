@@ -145,6 +145,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     if shows_stiffness {
         drawn.add_stiffness(scene);
     }
+    if display.shows(Overlay::Balance) {
+        drawn.add_balance(scene, posed);
+    }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);
     }

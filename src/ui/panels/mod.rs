@@ -69,7 +69,7 @@ fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) 
 }
 
 /// Guides of a figure.
-const FIGURE_GUIDES: [Overlay; 8] = [
+const FIGURE_GUIDES: [Overlay; 9] = [
     Overlay::Cursor,
     Overlay::Pointer,
     Overlay::InnerLimit,
@@ -78,6 +78,7 @@ const FIGURE_GUIDES: [Overlay; 8] = [
     Overlay::FkPose,
     Overlay::ByItself,
     Overlay::Stiffness,
+    Overlay::Balance,
 ];
 
 fn resets(ui: &mut Ui, actions: &mut Actions) {

@@ -1,0 +1,183 @@
+use core::f32::consts::TAU;
+use core::f64::consts::PI;
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use super::{Joint, JointId, Skeleton, SkeletonPose};
+
+/// Where the weight of a posed skeleton is, and what it stands on.
+///
+/// The world's y is up, and the ground is the plane y = 0. Bones are solids of the same density,
+/// whose overlaps count twice: a round cone from [`Joint::radius`] at the base to the radius of the
+/// thinnest child on the tip, if that is smaller. A joint without a bone is a ball. If no bone has a
+/// radius, bones weigh by their lengths.
+///
+/// Both ends of each bone can stand on the ground, and so can the heel: the point of a bone that is
+/// under its base and as high as its tip in the bind pose. A point stands if its height is at most
+/// 1.5 times the bone's radius.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balance {
+    /// Centre of mass in the world.
+    pub centre: Vec3,
+    /// x and z in the world of the corners of the convex hull of what stands on the ground, in the
+    /// order of positive rotation from x to z; empty if nothing does.
+    pub support: Vec<Vec2>,
+}
+
+impl Balance {
+    /// The balance of a skeleton in its pose; `None` if no bone has a radius or a length, and if
+    /// coordinates are out of the range of numbers.
+    pub fn of(skeleton: &Skeleton) -> Option<Self> {
+        let pose = skeleton.pose();
+        let centre = centre_of_mass(skeleton, &pose)?;
+        let mut standing = Vec::new();
+        for (joint, it) in skeleton.iter() {
+            add_standing(skeleton.transform(), it, pose.full(joint), &mut standing);
+        }
+        Some(Self { centre, support: convex_hull(standing) })
+    }
+
+    /// x and z of the centre of mass, in the world.
+    pub fn centre_on_ground(&self) -> Vec2 {
+        Vec2::new(self.centre.x, self.centre.z)
+    }
+
+    /// Distance on the ground from the centre of mass to the edge of the support: positive inside,
+    /// negative outside, where the body tips over. `None` without support.
+    pub fn margin(&self) -> Option<f32> {
+        let centre = self.centre_on_ground();
+        let nearest = self.edges().map(|[from, to]| distance_to_segment(centre, from, to));
+        let distance = nearest.min_by(f32::total_cmp)?;
+        let is_left = |[from, to]: [Vec2; 2]| (to - from).perp_dot(centre - from) >= 0.0;
+        let is_inside = self.support.len() > 2 && self.edges().all(is_left);
+        Some(if is_inside { distance } else { -distance })
+    }
+
+    /// The edges of the support, each as its two ends.
+    pub fn edges(&self) -> impl Iterator<Item = [Vec2; 2]> + '_ {
+        let next = self.support.iter().cycle().skip(1);
+        self.support.iter().zip(next).map(|(from, to)| [*from, *to])
+    }
+}
+
+fn centre_of_mass(skeleton: &Skeleton, pose: &SkeletonPose) -> Option<Vec3> {
+    let by_volume = || skeleton.iter().map(|(joint, _)| RoundCone::of(skeleton, joint).mass());
+    let by_length = || skeleton.iter().map(|(_, it)| (f64::from(it.axis.length()), 0.5));
+    let centre = |masses: &mut dyn Iterator<Item = (f64, f64)>| {
+        let mut total = (0.0, glam::DVec3::ZERO);
+        for (joint, (mass, along)) in pose.ids().zip(masses) {
+            let [base, tip] = [pose.base(joint), pose.tip(joint)].map(Vec3::as_dvec3);
+            total.0 += mass;
+            total.1 += mass * base.lerp(tip, along);
+        }
+        let centre = (total.1 / total.0).as_vec3();
+        (total.0 > 0.0 && centre.is_finite()).then_some(centre)
+    };
+    centre(&mut by_volume()).or_else(|| centre(&mut by_length()))
+}
+
+/// The convex hull of two balls, the first at the origin.
+struct RoundCone {
+    length: f64,
+    base_radius: f64,
+    tip_radius: f64,
+}
+
+impl RoundCone {
+    fn of(skeleton: &Skeleton, joint: JointId) -> Self {
+        let joints = skeleton.joints();
+        let it = &joints[joint.index()];
+        let on_tip = skeleton.children(joint).map(|child| &joints[child.index()]);
+        let radii = on_tip.filter(|child| child.offset == it.axis).map(|child| child.radius);
+        let tip_radius = radii.fold(it.radius, f32::min);
+        let [length, base_radius, tip_radius] =
+            [it.axis.length(), it.radius, tip_radius].map(f64::from);
+        Self { length, base_radius, tip_radius }
+    }
+
+    /// Volume, and position of the centre of mass as a fraction of the length.
+    fn mass(&self) -> (f64, f64) {
+        let Self { length, base_radius: wide, tip_radius: narrow } = *self;
+        if length <= wide - narrow {
+            return (4.0 / 3.0 * PI * wide.powi(3), 0.0);
+        }
+        // The side of the cone touches the balls in circles this far from their centres, measured
+        // along the axis, as a fraction of their radii.
+        let sine = (wide - narrow) / length;
+        let cosine = (1.0 - sine * sine).sqrt();
+        let (low, high) = (wide * sine, length + narrow * sine);
+        let base = ball_below(wide, low);
+        let side = cone(wide * cosine, narrow * cosine, high - low);
+        let tip = ball_below(narrow, -narrow * sine);
+        let volume = base.0 + side.0 + tip.0;
+        let moment = base.1 + (side.1 + low * side.0) + (length * tip.0 - tip.1);
+        (volume, if volume > 0.0 { moment / (volume * length) } else { 0.5 })
+    }
+}
+
+/// Volume and moment, about its centre, of the part of a ball below the height `top`.
+fn ball_below(radius: f64, top: f64) -> (f64, f64) {
+    let volume = PI * (radius * radius * (top + radius) - (top.powi(3) + radius.powi(3)) / 3.0);
+    let moment = PI * (radius * radius * top * top / 2.0 - (top.powi(4) + radius.powi(4)) / 4.0);
+    (volume, moment)
+}
+
+/// Volume and moment, about its base, of a truncated cone.
+fn cone(base: f64, tip: f64, height: f64) -> (f64, f64) {
+    let volume = PI * height * (base * base + base * tip + tip * tip) / 3.0;
+    let moment = PI * height * height * (base * base + 2.0 * base * tip + 3.0 * tip * tip) / 12.0;
+    (volume, moment)
+}
+
+/// Adds the rims of what stands on the ground: of the base, the tip and the heel of a bone.
+fn add_standing(to_world: Affine3A, joint: &Joint, full: Affine3A, standing: &mut Vec<Vec2>) {
+    // Ratio of a standing point's greatest height to the radius, and corners of a rim.
+    const HEIGHT: f32 = 1.5;
+    const CORNERS: u8 = 16;
+    let radius = joint.radius * to_world.matrix3.determinant().abs().cbrt();
+    let below = to_world.transform_vector3(joint.axis).y;
+    let heel = to_world.matrix3.inverse() * Vec3::new(0.0, below, 0.0);
+    let ends = [Some(Vec3::ZERO), Some(joint.axis), (below < 0.0).then_some(heel)];
+    for end in ends.into_iter().flatten().map(|end| full.transform_point3(end)) {
+        if end.is_finite() && end.y <= HEIGHT * radius {
+            let turns = (0..CORNERS).map(|corner| TAU * f32::from(corner) / f32::from(CORNERS));
+            let at = Vec2::new(end.x, end.z);
+            standing.extend(turns.map(|angle| at + radius * Vec2::from_angle(angle)));
+        }
+    }
+}
+
+/// The corners of the convex hull, in the order of positive rotation, by Andrew's monotone chain.
+fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let mut hull: Vec<Vec2> = half_hull(points.iter().copied());
+    hull.extend(half_hull(points.iter().rev().copied()));
+    hull
+}
+
+/// One side of the hull of sorted points, without its last corner.
+fn half_hull(points: impl Iterator<Item = Vec2>) -> Vec<Vec2> {
+    let mut side: Vec<Vec2> = Vec::new();
+    for point in points {
+        while let [.., before, last] = side[..] {
+            if (last - before).perp_dot(point - last) > 0.0 {
+                break;
+            }
+            side.pop();
+        }
+        side.push(point);
+    }
+    side.pop();
+    side
+}
+
+fn distance_to_segment(point: Vec2, from: Vec2, to: Vec2) -> f32 {
+    let along = to - from;
+    let part = (point - from).dot(along) / along.length_squared();
+    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(from + along * part)
+}

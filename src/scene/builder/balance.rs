@@ -1,0 +1,53 @@
+use glam::{Vec2, Vec3};
+
+use super::drawn_skeleton::DrawnSkeleton;
+use crate::document::{LengthFormat, Posed};
+use crate::kinematics::skeleton::Balance;
+use crate::scene::{Ball, Label, LabelSide, Line, Palette, Scene};
+
+/// Radius of the ball at the centre of mass, and height of lines above the ground, so that it does
+/// not hide them, as fractions of the reach.
+const BALL: f32 = 0.012;
+const ABOVE_GROUND: f32 = 2e-3;
+
+impl DrawnSkeleton<'_> {
+    /// Adds the centre of mass, the point under it on the ground, and the edge of what the figure
+    /// stands on: as guides while it is balanced, and in the colour of danger while it is not.
+    pub fn add_balance(&self, scene: &mut Scene, posed: &Posed) {
+        let Some(balance) = Balance::of(posed.skeleton()) else { return };
+        let is_held = self.joints.iter().all(|joint| joint.parent.is_some() || joint.locked);
+        let margin = balance.margin().filter(|_| !is_held);
+        let colour = match margin {
+            Some(margin) if margin < 0.0 => scene.palette.gain(Palette::MAX_GAIN).with_opacity(1.0),
+            _ => scene.palette.guide,
+        };
+        let on_ground = |at: Vec2| Vec3::new(at.x, ABOVE_GROUND * self.reach, at.y);
+        let edge = |[from, to]: [Vec2; 2]| [on_ground(from), on_ground(to)];
+        let mut add_line =
+            |[from, to]: [Vec3; 2], dashed| scene.lines.push(Line { from, to, colour, dashed });
+        balance.edges().for_each(|it| add_line(edge(it), false));
+        let (centre, below) = (balance.centre, on_ground(balance.centre_on_ground()));
+        add_line([centre, below], true);
+        let radius = BALL * self.reach;
+        for arm in [Vec3::X, Vec3::Z].map(|axis| 2.0 * radius * axis) {
+            add_line([below - arm, below + arm], false);
+        }
+        scene.guide_balls.push(Ball { centre, radius, colour });
+        let label = |at| Label::new(at, radius, LabelSide::Below, colour);
+        scene.add_label(label(centre), format_args!("Centre of mass"));
+        if is_held {
+            return;
+        }
+        let format = LengthFormat::of_length(self.reach);
+        let shown = |margin: f32| format.show(margin.abs());
+        match margin {
+            None => scene.add_label(label(below), format_args!("Stands on nothing")),
+            Some(it) if it < 0.0 => {
+                scene.add_label(label(below), format_args!("Tips over: {} outside", shown(it)))
+            }
+            Some(it) => {
+                scene.add_label(label(below), format_args!("Balanced: {} inside", shown(it)))
+            }
+        }
+    }
+}
