@@ -66,6 +66,19 @@ pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
                     "{target} is {degrees}° short of its target's rotation: {limits} in the way"
                 )
             }
+            Cause::Turn { missing, is_had_alone } => {
+                let index = rig.target(found.target);
+                let is_aim = index.is_some_and(|index| rig.targets[index].aim.is_some());
+                let turn = if is_aim { "aim" } else { "rotation" };
+                if is_had_alone {
+                    format!("{target} reaches its target's place or has its {turn}, but not both")
+                } else {
+                    let degrees = significant(missing.to_degrees());
+                    format!(
+                        "{target} can be at its target, but stays {degrees}° short of its {turn}"
+                    )
+                }
+            }
             Cause::Locked => {
                 let verb = if found.joints.len() == 1 { "is" } else { "are" };
                 format!(
@@ -221,6 +234,12 @@ fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
             let weight = significant(*weight);
             (Verb::Set, format!("the weight of the target of {} to {weight}", tip(joint)))
         }
+        Remedy::FreeTurn(joint) => {
+            (Verb::Free, format!("the turn of the target of {}", tip(joint)))
+        }
+        Remedy::FreePlace(joint) => {
+            (Verb::Free, format!("the place of the target of {}", tip(joint)))
+        }
         Remedy::UseMethod(method) => (Verb::Set, format!("the solver to {}", method.title())),
         Remedy::StartFrom(Start { is_bend: true, .. }) => {
             (Verb::Bend, "the chain a little".to_owned())
@@ -241,6 +260,7 @@ fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
 enum Verb {
     Allow,
     Bend,
+    Free,
     Lengthen,
     Let,
     Lock,
@@ -256,6 +276,7 @@ impl Verb {
         match self {
             Self::Allow => "Allow",
             Self::Bend => "Bend",
+            Self::Free => "Free",
             Self::Lengthen => "Lengthen",
             Self::Let => "Let",
             Self::Lock => "Lock",
@@ -271,6 +292,7 @@ impl Verb {
         match self {
             Self::Allow => "Allowed",
             Self::Bend => "Bent",
+            Self::Free => "Freed",
             Self::Lengthen => "Lengthened",
             Self::Lock => "Locked",
             Self::Move => "Moved",

@@ -81,6 +81,14 @@ pub enum Cause {
         /// The angles of the joint, x, y and z, whose limits are in the way.
         axes: [bool; 3],
     },
+    /// The tip reaches the place of its target, but not together with the rotation or aim that the
+    /// target asks for.
+    Turn {
+        /// Angle in radians that is missing.
+        missing: f32,
+        /// True if the rotation or aim can be had at another place.
+        is_had_alone: bool,
+    },
     /// The target pulls joints that are locked.
     Locked,
     /// The tip reaches its target alone, but not together with the tip of another joint.
@@ -128,6 +136,7 @@ impl Cause {
             Self::OutOfReach { .. } => "out_of_reach",
             Self::Limits => "limits",
             Self::RotationLimits { .. } => "rotation_limits",
+            Self::Turn { .. } => "turn",
             Self::Locked => "locked",
             Self::Conflict { .. } => "conflict",
             Self::Stalled => "stalled",
@@ -173,6 +182,10 @@ pub enum Remedy {
         /// The new weight.
         weight: f32,
     },
+    /// Lets the target of a joint ask for a place alone, not for a rotation or an aim.
+    FreeTurn(JointId),
+    /// Lets the target of a joint ask for a rotation or an aim alone, not for a place.
+    FreePlace(JointId),
     /// Solves by another method.
     UseMethod(Method),
     /// Solves from other joint angles.
@@ -258,6 +271,8 @@ impl Remedy {
             Self::MoveTarget { joint, point } => change(*joint, &|target| target.point = *point),
             Self::SetWeight { joint, weight } => change(*joint, &|target| target.weight = *weight),
             Self::SwitchOff(joint) => targets.retain(|target| target.joint != *joint),
+            Self::FreeTurn(joint) => change(*joint, &|target| target.orientation = None),
+            Self::FreePlace(joint) => change(*joint, &|target| target.weight = 0.0),
             _ => {}
         }
     }

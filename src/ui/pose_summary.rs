@@ -3,7 +3,7 @@
 use egui::{Label, RichText, Ui};
 
 use crate::document::{PathKind, ShownLength};
-use crate::kinematics::diagnosis::{Cause, Diagnosis, TriedRemedy};
+use crate::kinematics::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy};
 use crate::kinematics::soft_reach::ReachLimits;
 use crate::kinematics::two_bone::Reach;
 use crate::rig::{Crowd, SkeletonRig};
@@ -178,7 +178,9 @@ pub(in crate::ui) fn remedies(
 /// The error that a remedy of a diagnosis leaves between the tip or the hand and its target.
 fn left(session: &Session, found: &Diagnosis, tried: &TriedRemedy) -> String {
     let TriedRemedy { residual, rotation_residual, .. } = *tried;
-    if let Cause::RotationLimits { .. } = found.cause {
+    let is_about_turn = matches!(found.cause, Cause::RotationLimits { .. })
+        || matches!(tried.remedy, Remedy::FreePlace(_));
+    if is_about_turn {
         return if rotation_residual <= SkeletonRig::ROTATION_TOLERANCE {
             "it is then turned as its target asks".to_owned()
         } else {

@@ -220,6 +220,8 @@ fn remedy_label(remedy: &Remedy) -> &'static str {
         Remedy::Unlock(_) => "Unlock joints",
         Remedy::SwitchOff(_) => "Switch off target",
         Remedy::SetWeight { .. } => "Change weight",
+        Remedy::FreeTurn(_) => "Free turn",
+        Remedy::FreePlace(_) => "Free place",
         Remedy::UseMethod(_) => "Change solver",
         Remedy::StartFrom(_) => "Change start",
         Remedy::AllowIterations(_) => "Allow iterations",

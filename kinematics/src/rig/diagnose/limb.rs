@@ -5,7 +5,6 @@ use glam::Vec3;
 use super::RigCase;
 use crate::diagnosis::{
     Angle, Boundary, Cause, Diagnosis, Remedy, TriedRemedy, is_fixed, limited_angles,
-    remove_limits, widen_to_contain,
 };
 use crate::limb_ik::{Limb, LimbReach};
 use crate::rig::evaluate::{TargetOutcome, TargetReport};
@@ -170,14 +169,6 @@ impl RigCase<'_> {
 
     fn widen(&self, angles: &[(JointId, RotationAxis)]) -> Option<TriedRemedy> {
         self.try_remedy(self.widened(angles)?)
-    }
-
-    /// The limits of angles, widened to contain the pose that the rig has without them.
-    fn widened(&self, angles: &[Angle]) -> Option<Remedy> {
-        let mut free = self.full.clone();
-        remove_limits(free.skeleton_mut(), angles);
-        let pose = free.step(self.time, self.before).0.solved;
-        widen_to_contain(&self.full.skeleton, &pose, angles)
     }
 
     fn limb_locked(&self, limb: Limb) -> Option<Diagnosis> {

@@ -1,6 +1,7 @@
 //! Why the tips of a rig are not at their targets, and its hands not turned as these ask.
 
 mod limb;
+mod turn;
 
 use thiserror::Error;
 
@@ -9,7 +10,9 @@ use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
 use crate::chain_ik::{self, ChainTarget, SolveError};
-use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy, in_turn};
+use crate::diagnosis::{
+    Angle, Cause, Diagnosis, Remedy, TriedRemedy, in_turn, remove_limits, widen_to_contain,
+};
 use crate::skeleton::{JointId, SkeletonError};
 use crate::soft_reach::{SoftReach, SoftReachError};
 
@@ -78,9 +81,13 @@ impl SkeletonRig {
                 if is_lost(index) {
                     found.push(case.diagnosis(Cause::Lost, Vec::new(), Vec::new()));
                 }
+                let report = &evaluated_full.targets[index];
                 let of_target = whole_body.iter().filter(|it| it.target == case.target.joint);
-                found.extend(of_target.map(|it| case.tried_again(it)));
-                found.extend(case.limb(&evaluated_full.targets[index]));
+                match case.turn(report) {
+                    Some(turn) => found.push(turn),
+                    None => found.extend(of_target.map(|it| case.tried_again(it))),
+                }
+                found.extend(case.limb(report));
             }
             case.sorted(found)
         };
@@ -160,6 +167,16 @@ impl SkeletonRig {
             Remedy::SetWeight { joint, weight } => {
                 self.change_target(joint, |target| target.weight = weight);
             }
+            Remedy::FreeTurn(joint) => self.change_target(joint, |target| {
+                if !target.has_free_place() {
+                    (target.orientation, target.aim) = (None, None);
+                }
+            }),
+            Remedy::FreePlace(joint) => self.change_target(joint, |target| {
+                if target.turns_joint() {
+                    target.weight = 0.0;
+                }
+            }),
             Remedy::FollowBody => self.body_follows = true,
             Remedy::FullInfluence(joint) => self.change_target(joint, |it| it.influence = 1.0),
             Remedy::Stretch { joint, max_stretch } => {
@@ -282,6 +299,14 @@ impl RigCase<'_> {
         }
         let TargetReport { error, rotation_error, .. } = solved.targets[index];
         Some(Left { distance: error, angle: rotation_error.unwrap_or_default() })
+    }
+
+    /// The limits of angles, widened to contain the pose that the rig has without them.
+    pub fn widened(&self, angles: &[Angle]) -> Option<Remedy> {
+        let mut free = self.full.clone();
+        remove_limits(free.skeleton_mut(), angles);
+        let pose = free.settle(self.time, self.before).0.solved;
+        widen_to_contain(&self.full.skeleton, &pose, angles)
     }
 
     pub fn diagnosis(
