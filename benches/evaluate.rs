@@ -1,5 +1,5 @@
-//! Time of evaluating the Human with limb targets and with whole-body targets, of a trail over 240
-//! frames, and of baking the Walk.
+//! Time of evaluating the Human with limb targets and with whole-body targets, of frames in which
+//! a hand is dragged and the body follows, and of a trail over 240 frames.
 
 use core::hint::black_box;
 
@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use ik_arm::document::{Document, SkeletonRig, Target};
 use ik_arm::io::Example;
-use ik_arm::rig::TargetKind;
+use ik_arm::rig::{Aim, Carried, TargetKind};
 
 fn example(name: &str) -> Document {
     Example::find(name).expect("an example").open().expect("valid").document
@@ -29,6 +29,34 @@ fn human(kind: impl Fn(Target) -> Target) -> SkeletonRig {
     rig
 }
 
+/// The Human with six targets: hands, feet with their rotations, a place of the pelvis, and an aim
+/// of the head.
+fn six_targets() -> SkeletonRig {
+    let mut rig = example("human").rig;
+    let pose = rig.skeleton_at(0.0);
+    let [pelvis, head] = ["pelvis", "head"].map(|name| rig.skeleton.find(name).expect("a joint"));
+    let place = rig.new_target(pelvis, &pose).expect("no target yet");
+    let home = place.home - 0.03 * Vec3::Y;
+    rig.targets.push(Target { home, influence: 1.0, ..place });
+    let look = rig.new_target(head, &pose).expect("no target yet");
+    let aim = Some(Aim { axis: Vec3::Z, point: Vec3::new(0.2, 1.2, 1.0) });
+    rig.targets.push(Target { weight: 0.0, influence: 1.0, aim, ..look });
+    rig
+}
+
+/// Steps of a drag of the left hand to `way` from its place, and back.
+fn drag(rig: &mut SkeletonRig, way: Vec3) -> Carried {
+    const STEPS: u8 = 60;
+    let home = rig.targets[0].home;
+    let mut carried = Carried::default();
+    for step in (0..STEPS).chain((0..STEPS).rev()) {
+        rig.targets[0].home = home + way * (f32::from(step) / f32::from(STEPS));
+        carried = black_box(&*rig).step(0.0, &carried).1;
+    }
+    rig.targets[0].home = home;
+    carried
+}
+
 fn evaluate(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("evaluate");
     let limbs = human(|target| target);
@@ -39,6 +67,15 @@ fn evaluate(criterion: &mut Criterion) {
     group.bench_function(name, |it| it.iter(|| black_box(&bodies).evaluate(0.0)));
     let fk = human(|target| Target { influence: 0.0, ..target });
     group.bench_function("human, FK alone", |it| it.iter(|| black_box(&fk).evaluate(0.0)));
+
+    let mut six = six_targets();
+    let (near, far) = (Vec3::new(0.1, 0.1, 0.1), Vec3::new(0.4, 0.2, 0.3));
+    group.bench_function("human, six targets, 120 frames of a drag within reach", |it| {
+        it.iter(|| drag(&mut six, near));
+    });
+    group.bench_function("human, six targets, 120 frames of a drag beyond reach", |it| {
+        it.iter(|| drag(&mut six, far));
+    });
 
     let walk = example("walk");
     let hand = walk.skeleton().find("left_hand").expect("a hand");
