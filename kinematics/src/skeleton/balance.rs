@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::{Joint, JointId, Skeleton, SkeletonPose};
+use super::{Joint, Skeleton, SkeletonPose};
 
 /// Where the weight of a posed skeleton is, and what it stands on.
 ///
@@ -15,26 +15,41 @@ use super::{Joint, JointId, Skeleton, SkeletonPose};
 /// Both ends of each bone can stand on the ground, and so can the heel: the point of a bone that is
 /// under its base and as high as its tip in the bind pose. A point stands if its height is at most
 /// 1.5 times the bone's radius.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Centre of mass in the world.
     pub centre: Vec3,
     /// x and z in the world of the corners of the convex hull of what stands on the ground, in the
     /// order of positive rotation from x to z; empty if nothing does.
     pub support: Vec<Vec2>,
+    /// x and z of all rims that stand on the ground, in the order of their positions.
+    standing: Vec<Vec2>,
+    /// Radius of each bone at its tip.
+    tip_radii: Vec<f32>,
 }
 
 impl Balance {
     /// The balance of a skeleton in its pose; `None` if no bone has a radius or a length, and if
     /// coordinates are out of the range of numbers.
     pub fn of(skeleton: &Skeleton) -> Option<Self> {
-        let pose = skeleton.pose();
-        let centre = centre_of_mass(skeleton, &pose)?;
-        let mut standing = Vec::new();
+        let mut balance = Self::default();
+        balance.renew(skeleton, &skeleton.pose()).then_some(balance)
+    }
+
+    /// Replaces the balance by that of a skeleton in `pose`, which is in the world, and reuses its
+    /// memory. Returns false where [`Balance::of`] returns `None`; the balance is then meaningless.
+    pub fn renew(&mut self, skeleton: &Skeleton, pose: &SkeletonPose) -> bool {
+        write_tip_radii(skeleton, &mut self.tip_radii);
+        let Some(centre) = centre_of_mass(skeleton, pose, &self.tip_radii) else { return false };
+        self.centre = centre;
+        self.standing.clear();
         for (joint, it) in skeleton.iter() {
-            add_standing(skeleton.transform(), it, pose.full(joint), &mut standing);
+            add_standing(skeleton.transform(), it, pose.full(joint), &mut self.standing);
         }
-        Some(Self { centre, support: convex_hull(standing) })
+        self.standing.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        self.standing.dedup();
+        write_convex_hull(&self.standing, &mut self.support);
+        true
     }
 
     /// x and z of the centre of mass, in the world.
@@ -60,8 +75,24 @@ impl Balance {
     }
 }
 
-fn centre_of_mass(skeleton: &Skeleton, pose: &SkeletonPose) -> Option<Vec3> {
-    let by_volume = || skeleton.iter().map(|(joint, _)| RoundCone::of(skeleton, joint).mass());
+/// Sets the radius of each bone at its tip.
+fn write_tip_radii(skeleton: &Skeleton, tip_radii: &mut Vec<f32>) {
+    let joints = skeleton.joints();
+    tip_radii.clear();
+    tip_radii.extend(joints.iter().map(|joint| joint.radius));
+    for joint in joints {
+        if let Some(parent) = joint.parent.filter(|it| joints[it.index()].axis == joint.offset) {
+            let radius = &mut tip_radii[parent.index()];
+            *radius = radius.min(joint.radius);
+        }
+    }
+}
+
+fn centre_of_mass(skeleton: &Skeleton, pose: &SkeletonPose, tip_radii: &[f32]) -> Option<Vec3> {
+    let by_volume = || {
+        let bones = skeleton.joints().iter().zip(tip_radii);
+        bones.map(|(joint, tip_radius)| RoundCone::new(joint, *tip_radius).mass())
+    };
     let by_length = || skeleton.iter().map(|(_, it)| (f64::from(it.axis.length()), 0.5));
     let centre = |masses: &mut dyn Iterator<Item = (f64, f64)>| {
         let mut total = (0.0, glam::DVec3::ZERO);
@@ -84,14 +115,9 @@ struct RoundCone {
 }
 
 impl RoundCone {
-    fn of(skeleton: &Skeleton, joint: JointId) -> Self {
-        let joints = skeleton.joints();
-        let it = &joints[joint.index()];
-        let on_tip = skeleton.children(joint).map(|child| &joints[child.index()]);
-        let radii = on_tip.filter(|child| child.offset == it.axis).map(|child| child.radius);
-        let tip_radius = radii.fold(it.radius, f32::min);
+    fn new(joint: &Joint, tip_radius: f32) -> Self {
         let [length, base_radius, tip_radius] =
-            [it.axis.length(), it.radius, tip_radius].map(f64::from);
+            [joint.axis.length(), joint.radius, tip_radius].map(f64::from);
         Self { length, base_radius, tip_radius }
     }
 
@@ -147,32 +173,30 @@ fn add_standing(to_world: Affine3A, joint: &Joint, full: Affine3A, standing: &mu
     }
 }
 
-/// The corners of the convex hull, in the order of positive rotation, by Andrew's monotone chain.
-fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
+/// Writes the corners of the convex hull of sorted points, in the order of positive rotation, by
+/// Andrew's monotone chain.
+fn write_convex_hull(points: &[Vec2], hull: &mut Vec<Vec2>) {
+    hull.clear();
     if points.len() < 3 {
-        return points;
+        return hull.extend_from_slice(points);
     }
-    let mut hull: Vec<Vec2> = half_hull(points.iter().copied());
-    hull.extend(half_hull(points.iter().rev().copied()));
-    hull
+    add_side(points.iter().copied(), hull);
+    add_side(points.iter().rev().copied(), hull);
 }
 
-/// One side of the hull of sorted points, without its last corner.
-fn half_hull(points: impl Iterator<Item = Vec2>) -> Vec<Vec2> {
-    let mut side: Vec<Vec2> = Vec::new();
+/// Adds one side of the hull of sorted points, without its last corner.
+fn add_side(points: impl Iterator<Item = Vec2>, hull: &mut Vec<Vec2>) {
+    let start = hull.len();
     for point in points {
-        while let [.., before, last] = side[..] {
+        while let [.., before, last] = hull[start..] {
             if (last - before).perp_dot(point - last) > 0.0 {
                 break;
             }
-            side.pop();
+            hull.pop();
         }
-        side.push(point);
+        hull.push(point);
     }
-    side.pop();
-    side
+    hull.pop();
 }
 
 fn distance_to_segment(point: Vec2, from: Vec2, to: Vec2) -> f32 {

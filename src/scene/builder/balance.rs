@@ -1,8 +1,8 @@
 use glam::{Vec2, Vec3};
 
 use super::drawn_skeleton::DrawnSkeleton;
-use crate::document::{LengthFormat, Posed};
-use crate::kinematics::skeleton::Balance;
+use crate::document::{LengthFormat, ShownLength};
+use crate::kinematics::skeleton::{Balance, Skeleton};
 use crate::scene::{Ball, Label, LabelSide, Line, Palette, Scene};
 
 /// Radius of the ball at the centre of mass, and height of lines above the ground, so that it does
@@ -13,8 +13,10 @@ const ABOVE_GROUND: f32 = 2e-3;
 impl DrawnSkeleton<'_> {
     /// Adds the centre of mass, the point under it on the ground, and the edge of what the figure
     /// stands on: as guides while it is balanced, and in the colour of danger while it is not.
-    pub fn add_balance(&self, scene: &mut Scene, posed: &Posed) {
-        let Some(balance) = Balance::of(posed.skeleton()) else { return };
+    pub fn add_balance(&self, scene: &mut Scene, skeleton: &Skeleton, balance: &mut Balance) {
+        if !balance.renew(skeleton, self.pose) {
+            return;
+        }
         let is_held = self.joints.iter().all(|joint| joint.parent.is_some() || joint.locked);
         let margin = balance.margin().filter(|_| !is_held);
         let colour = match margin {
@@ -38,8 +40,8 @@ impl DrawnSkeleton<'_> {
         if is_held {
             return;
         }
-        let format = LengthFormat::of_length(self.reach);
-        let shown = |margin: f32| format.show(margin.abs());
+        let decimals = LengthFormat::of_length(self.reach).decimals();
+        let shown = |margin: f32| ShownLength { length: margin.abs(), decimals };
         match margin {
             None => scene.add_label(label(below), format_args!("Stands on nothing")),
             Some(it) if it < 0.0 => {

@@ -8,7 +8,7 @@ use crate::document::{
     FollowPath, Overlay, PathKind, Posed, ShownLength, SkeletonRig, Target, TwistReferenceKind,
 };
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+use crate::kinematics::skeleton::{Balance, Joint, JointId, Skeleton, SkeletonPose};
 use crate::rig::TargetReport;
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
 use crate::session::Overlays;
@@ -43,6 +43,7 @@ pub(super) struct Scratch {
     pub labelled: Vec<JointId>,
     /// For each joint, true if cylinders stand for it.
     pub cylinders: Vec<bool>,
+    pub balance: Balance,
 }
 
 /// Centre and radius of the ground, and width of a grid cell, in world units. The radius is the
@@ -61,8 +62,17 @@ const BY_ITSELF_FADED: f32 = 0.3;
 /// the followed path, and labels.
 pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch: &mut Scratch) {
     let (rig, display) = (&posed.document().rig, posed.document().display);
-    let Scratch { pose, fk_pose, influences, distances, depths, are_leaves, labelled, cylinders } =
-        scratch;
+    let Scratch {
+        pose,
+        fk_pose,
+        influences,
+        distances,
+        depths,
+        are_leaves,
+        labelled,
+        cylinders,
+        balance,
+    } = scratch;
     let skeleton = &*rig.skeleton;
     posed.skeleton().write_pose(pose);
     read_tree(skeleton.joints(), depths, are_leaves);
@@ -146,7 +156,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         drawn.add_stiffness(scene);
     }
     if display.shows(Overlay::Balance) {
-        drawn.add_balance(scene, posed);
+        drawn.add_balance(scene, skeleton, balance);
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);
