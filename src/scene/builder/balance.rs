@@ -1,3 +1,5 @@
+use core::fmt::Arguments;
+
 use glam::{Vec2, Vec3};
 
 use super::drawn_skeleton::DrawnSkeleton;
@@ -42,14 +44,11 @@ impl DrawnSkeleton<'_> {
         }
         let decimals = LengthFormat::of_length(self.reach).decimals();
         let shown = |margin: f32| ShownLength { length: margin.abs(), decimals };
+        let mut tell = |text: Arguments<'_>| scene.add_label(label(below), text);
         match margin {
-            None => scene.add_label(label(below), format_args!("Stands on nothing")),
-            Some(it) if it < 0.0 => {
-                scene.add_label(label(below), format_args!("Tips over: {} outside", shown(it)))
-            }
-            Some(it) => {
-                scene.add_label(label(below), format_args!("Balanced: {} inside", shown(it)))
-            }
+            None => tell(format_args!("Stands on nothing")),
+            Some(it) if it < 0.0 => tell(format_args!("Tips over: {} outside", shown(it))),
+            Some(it) => tell(format_args!("Balanced: {} inside", shown(it))),
         }
     }
 }
