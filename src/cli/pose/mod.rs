@@ -35,9 +35,9 @@ The file is not changed. The output is one line of JSON, in world space:
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
 foot, or of a whole-body target's joint, to that which the target asks for; aim_error_deg is the
-angle from the axis that is aimed to its point. Both are null if the target asks for none. Limb has the
-figures of a limb's target in the evaluated pose: the place of its base, the unit vector from there to the hand, the
-angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
+angle from the axis that is aimed to its point. Both are null if the target asks for none. Limb has
+the figures of a limb's target in the evaluated pose: the place of its base, the unit vector from
+there to the hand, the angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
 the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
 for other targets, and with --fk and --solver. The report is that of --solver, or
 of the solver of the whole-body targets, else null, also if there is nothing to solve. Why lists the
@@ -68,13 +68,13 @@ pub struct PoseArgs {
     #[arg(long = "target", value_name = "JOINT=x,y,z")]
     targets: Vec<GivenTarget>,
     /// Turn the joint of a target to these angles in degrees, as those of a joint, R_z·R_y·R_x, in
-    /// the world; repeatable. Of a limb it is the hand or foot. A joint without a target gets one
-    /// where it is
+    /// the world; repeatable. Of a limb it is the hand or foot. A joint without a target gets one:
+    /// of a limb with a place where it is, of any other joint with a free place
     #[arg(long = "rotation", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     rotations: Vec<GivenTarget>,
     /// Aim the joint of a whole-body target at a point in the world; repeatable. The axis is that of
     /// the target's aim, else z of the joint's own space, where faces look. A joint without a target
-    /// gets one where it is
+    /// gets one with a free place: its tip may go anywhere
     #[arg(long = "aim", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     aims: Vec<GivenTarget>,
     /// Solve all enabled targets together from the FK pose with this solver, at full influence

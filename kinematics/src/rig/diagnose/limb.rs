@@ -68,8 +68,7 @@ impl RigCase<'_> {
         target: Vec3,
         fk: &Skeleton,
     ) -> Vec<Diagnosis> {
-        let solved = self.full.step(self.time, self.before).0.solved;
-        let span = LimbSpan::new(fk, limb, solved.base(limb.upper), target);
+        let span = LimbSpan::new(fk, limb, self.solved.base(limb.upper), target);
         let found = self
             .limb_out_of_reach(limb, &span, target)
             .or_else(|| self.soft_limit(limb, &span, settings));

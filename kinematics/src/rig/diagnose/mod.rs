@@ -13,7 +13,7 @@ use crate::chain_ik::{self, ChainTarget, SolveError};
 use crate::diagnosis::{
     Angle, Cause, Diagnosis, Remedy, TriedRemedy, in_turn, remove_limits, widen_to_contain,
 };
-use crate::skeleton::{JointId, SkeletonError};
+use crate::skeleton::{JointId, Skeleton, SkeletonError};
 use crate::soft_reach::{SoftReach, SoftReachError};
 
 impl SkeletonRig {
@@ -69,6 +69,7 @@ impl SkeletonRig {
             let case = RigCase {
                 rig: self,
                 full: &full,
+                solved: &evaluated_full.solved,
                 time,
                 before,
                 tolerance,
@@ -227,6 +228,8 @@ struct RigCase<'a> {
     pub rig: &'a SkeletonRig,
     /// The rig with full influence of all missed targets.
     pub full: &'a SkeletonRig,
+    /// The pose of `full`.
+    pub solved: &'a Skeleton,
     pub time: f64,
     pub before: &'a Carried,
     pub tolerance: f32,

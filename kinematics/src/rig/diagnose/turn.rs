@@ -1,4 +1,4 @@
-use super::{Left, RigCase};
+use super::RigCase;
 use crate::chain_ik::{Method, Status};
 use crate::diagnosis::{Cause, Diagnosis, Remedy, TriedRemedy, limited_angles};
 use crate::rig::evaluate::{TargetOutcome, TargetReport};
@@ -26,7 +26,7 @@ impl RigCase<'_> {
         let free_place = free_place.filter(is_turned);
         let cause = Cause::Turn { missing, is_had_alone: free_place.is_some() };
         let remedies = self.wider().into_iter().chain(freed).chain(free_place).collect();
-        Some(Diagnosis { remedies, ..self.diagnosis(cause, vec![joint], Vec::new()) })
+        Some(self.diagnosis(cause, vec![joint], remedies))
     }
 
     /// The diagnosis of a solver that misses what more iterations or another method reach.
@@ -62,7 +62,7 @@ impl RigCase<'_> {
     }
 
     fn left(&self, remedy: Remedy) -> Option<TriedRemedy> {
-        self.left_by(self.full, &remedy).map(|left: Left| left.by(remedy))
+        self.left_by(self.full, &remedy).map(|left| left.by(remedy))
     }
 }
 
