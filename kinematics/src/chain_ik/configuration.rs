@@ -1,7 +1,7 @@
 use glam::{DVec3, Mat3A, Quat, Vec3, Vec3A};
 
 use super::orientation::MissingTurn;
-use super::problem::{EndEffector, Link, Problem};
+use super::problem::{EndEffector, Link, MassOnLink, Masses, Problem};
 use crate::skeleton::{JointAngles, nearest_angles};
 
 /// Angles of all links, shifts of all trees, and the positions that follow from both, in problem
@@ -22,6 +22,8 @@ pub(super) struct Configuration {
     pub bases: Vec<Vec3A>,
     /// Position of each end effector's tip.
     pub tips: Vec<Vec3A>,
+    /// S of each link: see [`Masses`](super::problem::Masses). Empty without a centre of mass.
+    pub moments: Vec<Vec3A>,
 }
 
 impl Configuration {
@@ -35,6 +37,7 @@ impl Configuration {
             orientations: Vec::new(),
             bases: vec![Vec3A::ZERO; links],
             tips: vec![Vec3A::ZERO; problem.effectors.len()],
+            moments: Vec::new(),
         };
         config.forward(problem);
         config
@@ -61,6 +64,54 @@ impl Configuration {
                 Some(link) => self.bases[link] + self.frames[link] * effector.tip,
                 None => self.shifts[effector.tree] + effector.tip,
             };
+        }
+        // Of the frames: orientations may be those from before.
+        let orientations = std::mem::take(&mut self.orientations);
+        self.update_centre(problem);
+        self.orientations = orientations;
+    }
+
+    /// Updates the centre of mass and `moments` from the positions and rotations of links.
+    pub fn update_centre(&mut self, problem: &Problem) {
+        let Some(masses) = &problem.masses else { return };
+        let mut moments = std::mem::take(&mut self.moments);
+        moments.clear();
+        moments.extend((0..problem.links.len()).map(|link| self.own_moment(masses, link)));
+        let shift = self.shifts[problem.effectors[masses.effector].tree];
+        let mut centre = masses.fixed + masses.fixed_mass * shift;
+        for (index, link) in problem.links.iter().enumerate().rev() {
+            match link.parent {
+                Some(parent) => {
+                    let moment = moments[index];
+                    moments[parent] += moment;
+                }
+                None => centre += moments[index],
+            }
+        }
+        self.tips[masses.effector] = centre;
+        self.moments = moments;
+    }
+
+    /// Σ m c of the bones that are rigidly attached to a link.
+    pub fn own_moment(&self, masses: &Masses, link: usize) -> Vec3A {
+        let MassOnLink { mass, moment, .. } = masses.on_links[link];
+        let turned = match self.orientations.get(link) {
+            Some(orientation) => *orientation * moment,
+            None => self.frames[link] * moment,
+        };
+        mass * self.bases[link] + turned
+    }
+
+    /// The point about which a link turns a tip: the link's base, or its counterpart for the centre
+    /// of mass.
+    #[inline]
+    pub fn pivot(&self, problem: &Problem, link: usize, effector: usize) -> Vec3A {
+        match &problem.masses {
+            Some(masses) if masses.effector == effector => {
+                let arm = self.moments[link] - masses.on_links[link].below * self.bases[link];
+                self.tips[effector] - arm
+            }
+            _ => self.bases[link],
         }
     }
 
@@ -151,18 +202,18 @@ impl Configuration {
     /// Σ w r² with the distances r from joints to the tips below them, in the problem's units, and
     /// what orientations add; as [`Problem::inertia`] in this pose.
     pub fn inertia(&self, problem: &Problem) -> f32 {
-        let of_link = |(link, base): (&Link, &Vec3A)| {
+        let of_link = |(at, link): (usize, &Link)| {
             let squares = problem.below(link).iter().map(|index| {
                 let effector = &problem.effectors[*index];
-                let arm = self.tips[*index] - *base;
+                let arm = self.tips[*index] - self.pivot(problem, at, *index);
                 let of_turn = self.missing_turn(effector).map_or(0.0, |missing| {
-                    missing.stiffness * missing.longest_column(*base).powi(2)
+                    missing.stiffness * missing.longest_column(self.bases[at]).powi(2)
                 });
                 effector.weight * arm.length_squared() + of_turn
             });
             link.compliance.max_element() * squares.sum::<f32>()
         };
-        let turning: f32 = problem.links.iter().zip(&self.bases).map(of_link).sum();
+        let turning: f32 = problem.links.iter().enumerate().map(of_link).sum();
         turning + problem.inertia_of_shifts()
     }
 
@@ -235,6 +286,7 @@ impl Configuration {
         }
         self.bases.clone_from(&from.bases);
         self.tips.clone_from(&from.tips);
+        self.moments.clone_from(&from.moments);
     }
 }
 

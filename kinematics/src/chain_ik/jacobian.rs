@@ -18,7 +18,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 
 use super::configuration::{Configuration, Coordinates};
 use super::orientation::MissingTurn;
-use super::problem::Problem;
+use super::problem::{MassOnLink, Problem};
 use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton};
 
 /// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
@@ -137,7 +137,13 @@ impl Wrenches {
         for (index, effector) in problem.effectors.iter().enumerate() {
             let force = force(index);
             shifts[effector.tree] += force;
-            if let Some(link) = effector.link {
+            let masses = problem.masses.as_ref().filter(|masses| masses.effector == index);
+            if let Some(masses) = masses {
+                for (link, MassOnLink { mass, .. }) in masses.on_links.iter().enumerate() {
+                    let moment = config.own_moment(masses, link).cross(force);
+                    self.add(link, *mass * force, moment);
+                }
+            } else if let Some(link) = effector.link {
                 self.add(link, force, config.tips[index].cross(force));
             }
             if let Some((missing, moment)) = moment(index) {

@@ -29,7 +29,7 @@ use super::configuration::{Configuration, Coordinates};
 use super::inside::{Ellipsoid, Recorder};
 use super::jacobian::advance;
 use super::method::DampedLeastSquares;
-use super::problem::{Builder, EndEffector, Problem};
+use super::problem::{Builder, EndEffector, Link, Problem};
 use super::{ChainTarget, Method, Root, SolveError, SolverOptions};
 use crate::normalize;
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
@@ -253,8 +253,12 @@ impl NullSpaceDrag {
     /// or beyond none, so that they may move inwards.
     fn counted(&self) -> Vec<Counted> {
         let held = &self.problem.effectors[..self.index()];
-        let whole = Counted::Whole;
-        held.iter().map(|it| if it.has_shell() { Counted::Free } else { whole }).collect()
+        let of_held = |it: &EndEffector| match it {
+            it if it.has_shell() => Counted::Free,
+            it if it.is_of_mass() => Counted::Across(it.free_direction.as_dvec3()),
+            _ => Counted::Whole,
+        };
+        held.iter().map(of_held).collect()
     }
 
     /// The step with the damping μ towards a place at most `sight` away, both in the problem's units;
@@ -312,6 +316,8 @@ fn fix_angles(
 enum Counted {
     /// All.
     Whole,
+    /// All but that of a unit vector.
+    Across(DVec3),
     /// A unit vector, with the way that is left in it.
     Along(DVec3, f64),
     /// None.
@@ -352,19 +358,19 @@ impl Rows {
         for (index, effector) in problem.effectors.iter().enumerate() {
             let missing = config.missing_turn(effector);
             let mut turn = missing.map(|_| zero());
-            let mut above = effector.link;
-            while let Some(link) = above {
+            let moves = |(_, link): &(usize, &Link)| problem.below(link).contains(&index);
+            for (link, _) in problem.links.iter().enumerate().filter(moves) {
                 let (base, axes) = (config.bases[link], axes[link]);
+                let arm = config.tips[index] - config.pivot(problem, link, index);
                 for axis in 0..3 {
                     let (at, about) = (3 * link + axis, axes.col(axis));
-                    let place = about.cross(config.tips[index] - base);
+                    let place = about.cross(arm);
                     set_column(&mut places[index], at, place, units[at]);
                     if let (Some(turn), Some(missing)) = (&mut turn, missing) {
                         let weight = f64::from(missing.stiffness).sqrt();
                         set_column(turn, at, missing.column(about, base), weight * units[at]);
                     }
                 }
-                above = problem.links[link].parent;
             }
             if problem.free_roots {
                 let from = turning + 3 * effector.tree;
@@ -396,6 +402,13 @@ impl Rows {
                 Counted::Whole => {
                     rows.extend((0..3).map(|row| place.row(row).into_owned()));
                     ways.extend([0.0; 3]);
+                }
+                Counted::Across(normal) => {
+                    let (one, other) = normal.any_orthonormal_pair();
+                    for way in [one, other] {
+                        rows.push(nalgebra::RowVector3::new(way.x, way.y, way.z) * place);
+                        ways.push(0.0);
+                    }
                 }
                 Counted::Along(normal, room) => {
                     let normal = nalgebra::RowVector3::new(normal.x, normal.y, normal.z);

@@ -167,7 +167,7 @@ pub enum SolveError {
     /// The skeleton has no joint with the index that a target names.
     #[error("the joint of a target must be one of the skeleton, got {0}")]
     NoJoint(JointId),
-    /// Two targets name the same joint and the same grip.
+    /// Two targets name the same joint and the same effector, or both a centre of mass.
     #[error("joint {0} must have one target, got more")]
     TwoTargets(JointId),
     /// A joint between a target and a root has another parent or lock than in the skeleton for
@@ -203,7 +203,7 @@ pub enum SolveError {
         /// The weight.
         weight: f32,
     },
-    /// An orientation is not finite, or its rotation or axis is zero.
+    /// An orientation is not finite, its rotation or axis is zero, or it is asked of a centre of mass.
     #[error("the orientation of joint {joint} must be finite and not zero, got {orientation:?}")]
     Orientation {
         /// The target's joint.
@@ -221,6 +221,12 @@ pub enum SolveError {
         method: Method,
         /// The target's joint.
         joint: JointId,
+    },
+    /// The method cannot move a centre of mass.
+    #[error("{method} cannot balance a body; {} can", crate::chain_ik::method::balancing_methods())]
+    CannotBalance {
+        /// The method.
+        method: Method,
     },
     /// The method cannot give the joint its stiffness, or one of its own to each of its angles.
     #[error(

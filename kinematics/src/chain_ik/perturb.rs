@@ -105,9 +105,10 @@ fn path(problem: &Problem, effector: usize) -> impl Iterator<Item = usize> + Clo
 
 /// The longest end of a path that lies on one line: at least two links, or the only one.
 fn straight_end(problem: &Problem, config: &Configuration, effector: usize) -> Option<StraightEnd> {
-    // A shell is reached from many sides.
-    let count =
-        if problem.effectors[effector].has_shell() { 0 } else { path(problem, effector).count() };
+    // A shell or a line is reached from many sides.
+    let is_point =
+        !problem.effectors[effector].has_shell() && !problem.effectors[effector].is_of_mass();
+    let count = if is_point { path(problem, effector).count() } else { 0 };
     (2.min(count)..=count).rev().filter(|links| *links > 0).find_map(|links| {
         let base = config.bases[path(problem, effector).nth(links - 1)?];
         let points = path(problem, effector).take(links).map(|link| config.bases[link]);

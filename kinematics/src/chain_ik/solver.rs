@@ -485,8 +485,12 @@ impl ChainSolver {
     }
 }
 
-/// Checks that a method can turn joints to the orientations that targets ask for.
+/// Checks that a method can move a centre of mass, and turn joints to orientations, if targets ask
+/// for them.
 fn check_method(method: Method, targets: &[ChainTarget]) -> Result<(), SolveError> {
+    if !method.can_balance() && targets.iter().any(ChainTarget::is_of_mass) {
+        return Err(SolveError::CannotBalance { method });
+    }
     let oriented = targets.iter().find(|target| target.orientation.is_some());
     match oriented.filter(|_| !method.can_orient()) {
         Some(ChainTarget { joint, .. }) => Err(SolveError::CannotOrient { method, joint: *joint }),

@@ -91,7 +91,7 @@ impl SkeletonRig {
                 }
             } else if let Some(mut base) = self.base_target(target, fk, time) {
                 // A base from which the limb does not reach its target goes no farther away.
-                let at = base.grip.map_or(base.point, |it| solved.point_in_world(base.joint, it));
+                let at = base.effector_in(solved);
                 let scale = solved.transform().matrix3.determinant().abs().cbrt();
                 let [least, most] = base.distances;
                 let present = at.distance(base.point) / scale;

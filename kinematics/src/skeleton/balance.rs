@@ -1,9 +1,9 @@
 use core::f32::consts::TAU;
 use core::f64::consts::PI;
 
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, DVec3, Vec2, Vec3};
 
-use super::{Joint, Skeleton, SkeletonPose};
+use super::{Joint, JointId, Skeleton, SkeletonPose};
 
 /// Where the weight of a posed skeleton is, and what it stands on.
 ///
@@ -88,23 +88,51 @@ fn write_tip_radii(skeleton: &Skeleton, tip_radii: &mut Vec<f32>) {
     }
 }
 
-fn centre_of_mass(skeleton: &Skeleton, pose: &SkeletonPose, tip_radii: &[f32]) -> Option<Vec3> {
-    let by_volume = || {
-        let bones = skeleton.joints().iter().zip(tip_radii);
-        bones.map(|(joint, tip_radius)| RoundCone::new(joint, *tip_radius).mass())
-    };
-    let by_length = || skeleton.iter().map(|(_, it)| (f64::from(it.axis.length()), 0.5));
-    let centre = |masses: &mut dyn Iterator<Item = (f64, f64)>| {
-        let mut total = (0.0, glam::DVec3::ZERO);
-        for (joint, (mass, along)) in pose.ids().zip(masses) {
-            let [base, tip] = [pose.base(joint), pose.tip(joint)].map(Vec3::as_dvec3);
+/// The mass of each bone, and its centre as a fraction of the way from the bone's base to its tip.
+fn masses(skeleton: &Skeleton, tip_radii: &[f32]) -> impl Iterator<Item = (f64, f64)> {
+    let by_volume = skeleton.joints().iter().zip(tip_radii);
+    let by_volume = by_volume.map(|(joint, tip_radius)| RoundCone::new(joint, *tip_radius).mass());
+    let has_volume = by_volume.clone().any(|(volume, _)| volume > 0.0);
+    by_volume.zip(skeleton.joints()).map(move |(of_volume, joint)| match has_volume {
+        true => of_volume,
+        false => (f64::from(joint.axis.length()), 0.5),
+    })
+}
+
+/// The centre of mass, in the world, of a joint's bone and all bones below it; the joint's base if they
+/// have no mass.
+pub(crate) fn centre_of_mass_below(skeleton: &Skeleton, top: JointId) -> Vec3 {
+    let pose = skeleton.pose();
+    let mut is_below = vec![false; skeleton.joints().len()];
+    let mut total = (0.0, DVec3::ZERO);
+    for ((id, joint), (mass, centre)) in skeleton.iter().zip(bone_masses(skeleton)) {
+        let is_parent_below = joint.parent.is_some_and(|parent| is_below[parent.index()]);
+        is_below[id.index()] = id == top || is_parent_below;
+        if is_below[id.index()] {
             total.0 += mass;
-            total.1 += mass * base.lerp(tip, along);
+            total.1 += mass * pose.full(id).transform_point3(centre.as_vec3()).as_dvec3();
         }
-        let centre = (total.1 / total.0).as_vec3();
-        (total.0 > 0.0 && centre.is_finite()).then_some(centre)
-    };
-    centre(&mut by_volume()).or_else(|| centre(&mut by_length()))
+    }
+    if total.0 > 0.0 { (total.1 / total.0).as_vec3() } else { pose.base(top) }
+}
+
+/// The mass of each bone of a skeleton, relative to the others, and its centre in the joint's space.
+pub(crate) fn bone_masses(skeleton: &Skeleton) -> Vec<(f64, DVec3)> {
+    let mut tip_radii = Vec::new();
+    write_tip_radii(skeleton, &mut tip_radii);
+    let bones = skeleton.joints().iter().zip(masses(skeleton, &tip_radii));
+    bones.map(|(joint, (mass, along))| (mass, along * joint.axis.as_dvec3())).collect()
+}
+
+fn centre_of_mass(skeleton: &Skeleton, pose: &SkeletonPose, tip_radii: &[f32]) -> Option<Vec3> {
+    let mut total = (0.0, DVec3::ZERO);
+    for (joint, (mass, along)) in pose.ids().zip(masses(skeleton, tip_radii)) {
+        let [base, tip] = [pose.base(joint), pose.tip(joint)].map(Vec3::as_dvec3);
+        total.0 += mass;
+        total.1 += mass * base.lerp(tip, along);
+    }
+    let centre = (total.1 / total.0).as_vec3();
+    (total.0 > 0.0 && centre.is_finite()).then_some(centre)
 }
 
 /// The convex hull of two balls, the first at the origin.

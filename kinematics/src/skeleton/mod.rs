@@ -56,5 +56,6 @@ pub use limits::{JointLimits, Limit, RotationAxis};
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 
+pub(crate) use balance::{bone_masses, centre_of_mass_below};
 pub(crate) use joint::AnglesWithin;
 pub(crate) use joint_angles::{JointAngles, angle_triples, equivalent_triples};

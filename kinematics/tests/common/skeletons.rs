@@ -1,7 +1,7 @@
 //! Random skeletons and targets, the same on every run.
 
 use glam::{Affine3A, DMat3, DMat4, DVec3, Mat3, Vec3};
-use ik_arm_kinematics::chain_ik::{ChainTarget, Method};
+use ik_arm_kinematics::chain_ik::{ChainTarget, Effector, Method};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
 
 use super::Random;
@@ -19,6 +19,14 @@ pub const ITERATIVE: [Method; 6] = [
 /// A target of weight 1.
 pub fn target(joint: JointId, point: Vec3) -> ChainTarget {
     ChainTarget::at(joint, point)
+}
+
+/// The point of its joint that a target brings to its place.
+pub fn grip(target: &ChainTarget) -> Vec3 {
+    match target.effector {
+        Effector::Grip(point) => point,
+        other => panic!("a grip, not {other:?}"),
+    }
 }
 
 /// A locked root and a chain of `joints`, straight or crooked, with bones 0.5 to 1.5 units long.

@@ -1,6 +1,7 @@
 //! The library of kinematics against independent twins: f64, finite differences, matrix products.
 
 mod balance;
+mod balance_target;
 mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]

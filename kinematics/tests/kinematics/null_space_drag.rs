@@ -5,7 +5,7 @@ use ik_arm_kinematics::chain_ik::{ChainTarget, NullSpaceDrag, Orientation, Root}
 use ik_arm_kinematics::skeleton::{JointId, JointLimits, Limit, Skeleton};
 
 use crate::common::Random;
-use crate::common::skeletons::{chain, length, shake, transform, tree};
+use crate::common::skeletons::{chain, grip, length, shake, transform, tree};
 
 /// The point of the circle of elbows of two bones that is nearest to a place.
 fn nearest_on_circle(base: DVec3, elbow: DVec3, hand: DVec3, place: DVec3) -> DVec3 {
@@ -193,7 +193,7 @@ fn a_trunk_goes_as_far_as_its_branches_let_it() {
         let mut posed = skeleton.clone();
         drag.write(&mut posed);
         for target in held {
-            let at = posed.point_in_world(trunk, target.grip.expect("a grip"));
+            let at = posed.point_in_world(trunk, grip(&target));
             let distance = at.distance(target.point);
             assert!((0.2 - 1e-4..1.0 + 1e-4).contains(&distance), "case {case}: {distance}");
         }

@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, ChainTarget, Method, SolveError, SolverOptions, solve,
+    ChainSolver, ChainTarget, Effector, Method, SolveError, SolverOptions, solve,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 
 use crate::common::Random;
-use crate::common::skeletons::{ITERATIVE, chain, shake, transform, tree};
+use crate::common::skeletons::{ITERATIVE, chain, grip, shake, transform, tree};
 
 #[test]
 fn a_grip_is_solved_like_the_tip_of_a_locked_child() {
@@ -79,7 +79,7 @@ fn targets_of_the_same_point_and_distances_out_of_order_are_refused() {
         let refused = SolveError::Distances { joint, least, most };
         assert_eq!(refusal(&[place.with_distances(least, most)]), Some(refused));
     }
-    let nowhere = ChainTarget { grip: Some(Vec3::NAN), ..place };
+    let nowhere = ChainTarget { effector: Effector::Grip(Vec3::NAN), ..place };
     assert!(matches!(refusal(&[nowhere]), Some(SolveError::Point { .. })));
 }
 
@@ -168,7 +168,7 @@ fn held_places_give_way_only_as_far_as_they_may() {
                 SolverOptions::new(method).with_root(ik_arm_kinematics::chain_ik::Root::Free);
             let report = solve(&mut skeleton, &targets, &options).expect("solved");
             let held = targets[..2].iter().all(|target| {
-                let at = skeleton.point_in_world(root, target.grip.expect("a grip"));
+                let at = skeleton.point_in_world(root, grip(target));
                 (0.1 - 1e-3..1.0 + 1e-3).contains(&at.distance(target.point))
             });
             reached += usize::from(report.converged() && held);

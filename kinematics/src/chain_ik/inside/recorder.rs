@@ -188,8 +188,8 @@ impl World<'_> {
         for (index, link) in self.problem.links.iter().enumerate() {
             for effector in self.problem.below(link) {
                 let tip = config.tips[*effector];
+                let arm = tip - config.pivot(self.problem, index, *effector);
                 let effector = &self.problem.effectors[*effector];
-                let arm = tip - config.bases[index];
                 for axis in RotationAxis::ALL {
                     columns.push(Column {
                         joint: link.joint,
@@ -211,7 +211,8 @@ impl World<'_> {
         for (index, link) in self.problem.links.iter().enumerate() {
             let turn = config.axes[index] * Vec3A::from(by.angles[index] * factor);
             for effector in self.problem.below(link) {
-                tips[*effector] += turn.cross(config.tips[*effector] - config.bases[index]);
+                tips[*effector] += turn
+                    .cross(config.tips[*effector] - config.pivot(self.problem, index, *effector));
             }
         }
         if self.problem.free_roots {

@@ -41,6 +41,9 @@ pub(in crate::chain_ik) struct Ccd {
     pairs: Vec<PointPair>,
     /// Where the tip of each end effector goes, as the last link found it.
     destinations: Vec<Vec3A>,
+    /// S of each link in this sweep, with the rotations of the links below it; empty without a centre
+    /// of mass.
+    moments: Vec<Vec3A>,
     /// Orientation of each end effector's link, and position of the link's base, in this sweep;
     /// empty without wanted orientations.
     turned: Vec<(Quat, Vec3A)>,
@@ -53,6 +56,7 @@ impl Ccd {
             rotations: vec![Quat::IDENTITY; problem.links.len()],
             pairs: Vec::with_capacity(4 * problem.effectors.len()),
             destinations: vec![Vec3A::ZERO; problem.effectors.len()],
+            moments: Vec::new(),
             turned: Vec::new(),
         }
     }
@@ -77,8 +81,14 @@ impl Ccd {
             };
             self.turned.extend(problem.effectors.iter().map(link_of));
         }
+        self.moments.clear();
+        if let Some(masses) = &problem.masses {
+            let links = 0..problem.links.len();
+            self.moments.extend(links.map(|link| config.own_moment(masses, link)));
+        }
         for index in (0..problem.links.len()).rev() {
             self.rotations[index] = self.rotate(problem, config, index);
+            self.carry_moment(problem, config, index);
             self.record(problem, config, index, recorder);
         }
         self.update(problem, config);
@@ -87,6 +97,34 @@ impl Ccd {
             recorder.record(config, || Event::MoveRoots);
         }
         true
+    }
+
+    /// Adds the moment of a link, with its rotation, to that of its parent.
+    fn carry_moment(&mut self, problem: &Problem, config: &Configuration, index: usize) {
+        if let Some(masses) = &problem.masses {
+            let of_base = masses.on_links[index].below * config.bases[index];
+            let turned = of_base + self.rotations[index] * (self.moments[index] - of_base);
+            if let Some(parent) = problem.links[index].parent {
+                self.moments[parent] += turned;
+            }
+        }
+    }
+
+    /// The point about which a link turns a tip in this sweep.
+    fn pivot(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+        effector: usize,
+    ) -> Vec3A {
+        match &problem.masses {
+            Some(masses) if masses.effector == effector => {
+                let of_base = masses.on_links[index].below * config.bases[index];
+                config.tips[effector] - (self.moments[index] - of_base)
+            }
+            _ => config.bases[index],
+        }
     }
 
     /// Records the rotation of a link, with the configuration in which the links before it in the
@@ -109,15 +147,17 @@ impl Ccd {
         let targets = problem.below(link).iter().map(|effector| self.destinations[*effector]);
         let pairs = self.pairs.iter().zip(targets);
         let rotation = self.rotations[index];
-        let base = config.bases[index];
-        let pairs = pairs.map(|(pair, target)| [base + rotation.inverse() * pair.from, target]);
+        let bases = problem.below(link).iter().map(|it| self.pivot(problem, config, index, *it));
+        let pairs = pairs.zip(bases);
+        let pairs =
+            pairs.map(|((pair, target), base)| [base + rotation.inverse() * pair.from, target]);
         recorder.record(&turned, || Event::Turn { link: index, rotation, pairs: pairs.collect() });
     }
 
     /// Finds the rotation of one link that brings the tips below it nearest to their targets,
     /// applies it to these tips, and returns it.
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) -> Quat {
-        let (link, base) = (&problem.links[index], config.bases[index]);
+        let link = &problem.links[index];
         let below = problem.below(link);
         self.pairs.clear();
         for effector in below {
@@ -127,9 +167,10 @@ impl Ccd {
             // A place in its shell is free to move.
             let is_free = destination == tip && problem.effectors[*effector].has_shell();
             let weight = if is_free { 0.0 } else { problem.effectors[*effector].weight };
-            self.pairs.push(PointPair { from: tip - base, to: destination - base, weight });
+            let pivot = self.pivot(problem, config, index, *effector);
+            self.pairs.push(PointPair { from: tip - pivot, to: destination - pivot, weight });
         }
-        if !self.turned.is_empty() {
+        if !self.turned.is_empty() || problem.masses.is_some() {
             return self.rotate_with_orientations(problem, config, index);
         }
         let rotation = if link.limits.is_limited() {
@@ -142,13 +183,13 @@ impl Ccd {
             rotation
         };
         for (effector, pair) in below.iter().zip(&self.pairs) {
-            config.tips[*effector] = base + pair.from;
+            config.tips[*effector] = config.bases[index] + pair.from;
         }
         rotation
     }
 
-    /// As [`Ccd::rotate`], with the pairs of the places made, for links below which orientations are
-    /// wanted.
+    /// As [`Ccd::rotate`], with the pairs of the places made, for problems with orientations or a
+    /// centre of mass.
     fn rotate_with_orientations(
         &mut self,
         problem: &Problem,
@@ -189,7 +230,11 @@ impl Ccd {
         }
         let base = config.bases[index];
         for (effector, pair) in problem.below(link).iter().zip(&self.pairs[..places]) {
-            config.tips[*effector] = base + rotation * pair.from;
+            let pivot = self.pivot(problem, config, index, *effector);
+            config.tips[*effector] = pivot + rotation * pair.from;
+            if self.turned.is_empty() {
+                continue;
+            }
             let (orientation, at) = &mut self.turned[*effector];
             *orientation = rotation * *orientation;
             *at = base + rotation * (*at - base);
@@ -202,7 +247,7 @@ impl Ccd {
     /// Adds the pairs that stand for the wanted orientations below a link.
     fn add_pairs_of_turns(&mut self, problem: &Problem, index: usize) {
         for effector in problem.below(&problem.links[index]) {
-            let (orientation, base) = self.turned[*effector];
+            let Some((orientation, base)) = self.turned.get(*effector).copied() else { continue };
             let effector = &problem.effectors[*effector];
             let Some(Orienting { wanted, stiffness }) = effector.orientation else { continue };
             match wanted {
@@ -236,13 +281,16 @@ impl Ccd {
         rotation: Quat,
     ) -> f64 {
         let base = config.bases[index];
-        let of_effector = |effector: &usize| {
-            let (orientation, at) = self.turned[*effector];
-            let tip = base + rotation * (config.tips[*effector] - base);
-            let effector = &problem.effectors[*effector];
+        let of_effector = |at: &usize| {
+            let effector = &problem.effectors[*at];
+            let pivot = self.pivot(problem, config, index, *at);
+            let tip = pivot + rotation * (config.tips[*at] - pivot);
             let off = (tip - effector.destination(tip)).as_dvec3().length_squared();
-            let at = base + rotation * (at - base);
-            let missing = MissingTurn::new(effector, rotation * orientation, at);
+            let turned = self.turned.get(*at);
+            let missing = turned.and_then(|(orientation, at)| {
+                let at = base + rotation * (*at - base);
+                MissingTurn::new(effector, rotation * *orientation, at)
+            });
             0.5 * f64::from(effector.weight) * off + missing.map_or(0.0, |it| it.cost())
         };
         problem.below(&problem.links[index]).iter().map(of_effector).sum()
@@ -298,6 +346,7 @@ fn update_points(problem: &Problem, config: &mut Configuration) {
             None => config.shifts[effector.tree] + effector.tip,
         };
     }
+    config.update_centre(problem);
 }
 
 /// Shifts each tree by the weighted mean vector from its tips to their targets, unless that
@@ -323,5 +372,6 @@ pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configurat
         bases.filter(|(link, _)| link.tree == tree).for_each(|(_, base)| *base += by);
         let tips = problem.effectors.iter().zip(&mut config.tips);
         tips.filter(|(effector, _)| effector.tree == tree).for_each(|(_, tip)| *tip += by);
+        config.update_centre(problem);
     }
 }

@@ -148,8 +148,9 @@ impl DampedLeastSquares {
     ) {
         self.look(problem, config);
         // Also places at or outside the borders of their shells may move inwards.
-        let shells = self.counted.iter_mut().filter(|it| **it != Counted::Everywhere);
-        shells.for_each(|counted| *counted = Counted::Nowhere);
+        let places = self.counted.iter_mut().zip(&problem.effectors);
+        let shells = places.filter(|(_, effector)| effector.has_shell());
+        shells.for_each(|(counted, _)| *counted = Counted::Nowhere);
         self.axes.clone_from(&config.axes);
         self.wanted.copy_from(config);
         wanted(&mut self.wanted);
@@ -219,6 +220,27 @@ impl DampedLeastSquares {
         }
     }
 
+    /// The velocity of the tip of an end effector, for the velocities of links and the shift of its
+    /// tree.
+    fn velocity_of_tip(
+        &self,
+        problem: &Problem,
+        config: &Configuration,
+        index: usize,
+        shift: Vec3A,
+    ) -> Vec3A {
+        if let Some(masses) = problem.masses.as_ref().filter(|masses| masses.effector == index) {
+            let of_links = masses.on_links.iter().enumerate().map(|(link, on_link)| {
+                let (spin, velocity) = self.velocities[link];
+                let arm = config.own_moment(masses, link) - on_link.mass * config.bases[link];
+                on_link.mass * velocity + spin.cross(arm)
+            });
+            return masses.fixed_mass * shift + of_links.sum::<Vec3A>();
+        }
+        let (spin, velocity, base) = self.velocity_at(config, &problem.effectors[index], shift);
+        velocity + spin.cross(config.tips[index] - base)
+    }
+
     /// The velocity of the base of an end effector's link, its spin, and the base, for the
     /// velocities of links; without a link, for the shift of the tree.
     fn velocity_at(
@@ -244,7 +266,7 @@ impl DampedLeastSquares {
         for (index, effector) in problem.effectors.iter().enumerate() {
             let shift = wanted.shifts[effector.tree];
             let (spin, velocity, base) = self.velocity_at(config, effector, shift);
-            let velocity_of_tip = velocity + spin.cross(config.tips[index] - base);
+            let velocity_of_tip = self.velocity_of_tip(problem, config, index, shift);
             let allowed = self.held[index].allowed.unwrap_or(Vec3A::ZERO);
             let residual = self.counted[index].of(velocity_of_tip) - allowed;
             self.set_residual(place_row(problem, index), residual * effector.weight.sqrt());
@@ -280,8 +302,7 @@ impl DampedLeastSquares {
             match (self.counted[index], self.held[index]) {
                 (Counted::Nowhere, held) if held.releases < Held::MOST_RELEASES => {
                     let shift = lever * step.shifts[effector.tree];
-                    let (spin, velocity, base) = self.velocity_at(config, effector, shift);
-                    let velocity = velocity + spin.cross(tip - base);
+                    let velocity = self.velocity_of_tip(problem, config, index, shift);
                     let Some(out) = effector.way_out(tip, velocity) else { continue };
                     let room = effector.room(tip, out).max(0.0);
                     if velocity.dot(out) > room + ROUNDING * problem.length {
@@ -374,8 +395,9 @@ impl DampedLeastSquares {
             let axes = scaled(self.axes[index], link.compliance);
             self.blocks.clear();
             for effector in problem.below(link) {
+                let pivot = config.pivot(problem, index, *effector);
                 let arm =
-                    (config.tips[*effector] - base) * problem.effectors[*effector].weight.sqrt();
+                    (config.tips[*effector] - pivot) * problem.effectors[*effector].weight.sqrt();
                 let counted = self.counted[*effector];
                 let place = columns(axes, |axis| counted.of(axis.cross(arm)));
                 self.blocks.push((place_row(problem, *effector), place));
@@ -485,6 +507,8 @@ impl DampedLeastSquares {
 enum Counted {
     /// All.
     Everywhere,
+    /// All but that of a unit vector, the vertical of a centre of mass.
+    Across(Vec3A),
     /// A unit vector: the place is outside its shell, or at its border.
     Along(Vec3A),
     /// None: the place is in its shell.
@@ -509,7 +533,10 @@ impl Held {
 impl Counted {
     fn new(effector: &EndEffector, tip: Vec3A) -> Self {
         if !effector.has_shell() {
-            return Self::Everywhere;
+            return match effector.is_of_mass() {
+                true => Self::Across(effector.free_direction),
+                false => Self::Everywhere,
+            };
         }
         normalize(effector.destination(tip) - tip).map_or(Self::Nowhere, Self::Along)
     }
@@ -519,6 +546,7 @@ impl Counted {
     fn of(self, vector: Vec3A) -> Vec3A {
         match self {
             Self::Everywhere => vector,
+            Self::Across(normal) => vector - normal * normal.dot(vector),
             Self::Along(normal) => normal * normal.dot(vector),
             Self::Nowhere => Vec3A::ZERO,
         }

@@ -1,8 +1,10 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
-use super::{EndEffector, KinematicTree, Link, Problem};
-use crate::chain_ik::{ChainTarget, Method, Orientation, Root, SolveError, SolverOptions};
-use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+use super::{EndEffector, KinematicTree, Link, Masses, Problem};
+use crate::chain_ik::{
+    ChainTarget, Effector, Method, Orientation, Root, SolveError, SolverOptions,
+};
+use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose, bone_masses};
 
 /// The space of a joint, relative to the link to which it is attached or, without a link, to its
 /// tree.
@@ -89,12 +91,43 @@ impl Builder {
         (problem.to_skeleton, problem.to_world, problem.unit) = (to_skeleton, to_world, unit);
         self.add_links(problem, skeleton);
         problem.add_effectors(skeleton, targets, &self.attachments, self.method);
+        problem.masses = self.masses(problem, skeleton, targets);
         problem.has_shells = problem.effectors.iter().any(EndEffector::has_shell);
         problem.list_below();
         problem.set_targets(targets);
         skeleton.write_bind_pose_in_skeleton(&mut self.bind);
         problem.inertia = problem.bind_inertia(skeleton, targets, &self.bind);
         Ok(())
+    }
+
+    /// What the centre of mass of a target depends on: attaches the joints below that are on no path
+    /// to those above.
+    fn masses(
+        &mut self,
+        problem: &Problem,
+        skeleton: &Skeleton,
+        targets: &[ChainTarget],
+    ) -> Option<Masses> {
+        let effector = targets.iter().position(ChainTarget::is_of_mass)?;
+        for (id, joint) in skeleton.iter() {
+            let parent = joint.parent.and_then(|parent| self.attachments[parent.index()]);
+            if let (None, Some(parent)) = (self.attachments[id.index()], parent) {
+                let base = problem.at_offset(joint, parent);
+                self.attachments[id.index()] = Some(Problem::fuse_joint(joint, base));
+            }
+        }
+        let mut masses = Masses::new(effector, problem.links.len());
+        let mut is_below = vec![false; skeleton.joints().len()];
+        for ((id, joint), (mass, centre)) in skeleton.iter().zip(bone_masses(skeleton)) {
+            let is_parent_below = joint.parent.is_some_and(|parent| is_below[parent.index()]);
+            is_below[id.index()] = id == targets[effector].joint || is_parent_below;
+            if let (true, Some(at)) = (is_below[id.index()], self.attachments[id.index()]) {
+                let centre = at.to_link.transform_point3a((centre * problem.unit).as_vec3a());
+                masses.add(at.link, mass, centre);
+            }
+        }
+        masses.sum_up(&problem.links);
+        Some(masses)
     }
 
     fn add_links(&mut self, problem: &mut Problem, skeleton: &Skeleton) {
@@ -171,7 +204,10 @@ impl Problem {
         for target in targets {
             let Some(attachment) = attachments[target.joint.index()] else { continue };
             let axis = self.scaled(target.grip_in(skeleton));
-            let reach = attachment.path as f32 + axis.length();
+            let reach = match target.is_of_mass() {
+                true => self.length,
+                false => attachment.path as f32 + axis.length(),
+            };
             // Of a target out of reach only the direction counts, unless it loses the tip's
             // position to rounding or the method is not stable that far away.
             let stable_distance = method.row().stable_distance;
@@ -185,6 +221,7 @@ impl Problem {
                 link: attachment.link,
                 tree: attachment.tree,
                 tip: attachment.to_link.transform_point3a(axis),
+                free_direction: if target.is_of_mass() { self.vertical() } else { Vec3A::ZERO },
                 target: Vec3A::ZERO,
                 requested: DVec3::ZERO,
                 distances: target.distances.map(|it| (f64::from(it) * self.unit) as f32),
@@ -199,17 +236,17 @@ impl Problem {
         }
     }
 
+    /// The world's y as a unit vector in problem space.
+    fn vertical(&self) -> Vec3A {
+        self.to_skeleton.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3a()
+    }
+
     /// Lists the end effectors at each link and below, in their order.
     fn list_below(&mut self) {
-        let Self { links, effectors, below, .. } = self;
+        let Self { links, effectors, below, masses, .. } = self;
+        let masses = masses.as_ref();
         // Counts them first, in place of the end of each list.
-        for effector in effectors.iter() {
-            let mut above = effector.link;
-            while let Some(link) = above {
-                links[link].below.1 += 1;
-                above = links[link].parent;
-            }
-        }
+        for_each_moved(effectors, masses, links, |link, _| link.below.1 += 1);
         let mut from = 0;
         for link in links.iter_mut() {
             let count = link.below.1;
@@ -218,14 +255,10 @@ impl Problem {
         }
         below.clear();
         below.resize(from, 0);
-        for (index, effector) in effectors.iter().enumerate() {
-            let mut above = effector.link;
-            while let Some(link) = above {
-                below[links[link].below.1] = index;
-                links[link].below.1 += 1;
-                above = links[link].parent;
-            }
-        }
+        for_each_moved(effectors, masses, links, |link, effector| {
+            below[link.below.1] = effector;
+            link.below.1 += 1;
+        });
     }
 
     fn bind_inertia(
@@ -235,14 +268,16 @@ impl Problem {
         bind: &SkeletonPose,
     ) -> f32 {
         let mut sum = 0.0;
-        for link in &self.links {
+        for (index, link) in self.links.iter().enumerate() {
             let compliance = f64::from(link.compliance.max_element());
             for effector in self.below(link) {
+                let of_mass = self.masses.as_ref().and_then(|it| it.longest_arm(*effector, index));
                 let target = &targets[*effector];
                 let tip = bind.full(target.joint).transform_point3(target.grip_in(skeleton));
                 let effector = &self.effectors[*effector];
-                let arm = tip.as_dvec3() - bind.base(link.joint).as_dvec3();
-                let of_place = f64::from(effector.weight) * (arm * self.unit).length_squared();
+                let arm = (tip.as_dvec3() - bind.base(link.joint).as_dvec3()) * self.unit;
+                let arm = of_mass.map_or(arm.length(), f64::from);
+                let of_place = f64::from(effector.weight) * arm * arm;
                 let of_turn = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
                 sum += compliance * (of_place + of_turn);
             }
@@ -254,6 +289,27 @@ impl Problem {
     pub fn inertia_of_shifts(&self) -> f32 {
         let weights: f32 = self.effectors.iter().map(|effector| effector.weight).sum();
         if self.free_roots { weights * self.length * self.length } else { 0.0 }
+    }
+}
+
+/// Calls `each` with every link and the index of every end effector that it moves.
+fn for_each_moved(
+    effectors: &[EndEffector],
+    masses: Option<&Masses>,
+    links: &mut [Link],
+    mut each: impl FnMut(&mut Link, usize),
+) {
+    for (index, effector) in effectors.iter().enumerate() {
+        if let Some(masses) = masses.filter(|masses| masses.effector == index) {
+            let moved = links.iter_mut().enumerate().filter(|(link, _)| masses.is_moved_by(*link));
+            moved.for_each(|(_, link)| each(link, index));
+            continue;
+        }
+        let mut above = effector.link;
+        while let Some(link) = above {
+            each(&mut links[link], index);
+            above = links[link].parent;
+        }
     }
 }
 
@@ -284,13 +340,19 @@ fn path(skeleton: &Skeleton, targets: impl Iterator<Item = JointId>, root: Root)
 
 /// Length of the longest path from a root to a tip, in skeleton units.
 fn longest_path(skeleton: &Skeleton, targets: &[ChainTarget]) -> f64 {
-    let path = |target: &ChainTarget| {
-        let inner =
-            skeleton.ancestors(target.joint).filter(|joint| skeleton[*joint].parent.is_some());
-        let offsets: f64 = inner.map(|joint| skeleton[joint].offset.as_dvec3().length()).sum();
-        offsets + target.grip_in(skeleton).as_dvec3().length()
+    let to_base = |joint: JointId| {
+        let inner = skeleton.ancestors(joint).filter(|joint| skeleton[*joint].parent.is_some());
+        inner.map(|joint| skeleton[joint].offset.as_dvec3().length()).sum::<f64>()
     };
-    targets.iter().map(path).fold(0.0, f64::max)
+    let path =
+        |target: &ChainTarget| to_base(target.joint) + target.grip_in(skeleton).as_dvec3().length();
+    let longest = targets.iter().map(path).fold(0.0, f64::max);
+    if longest > 0.0 || !targets.iter().any(ChainTarget::is_of_mass) {
+        return longest;
+    }
+    // Nothing but a centre of mass is moved.
+    let paths = skeleton.iter().map(|(id, joint)| to_base(id) + joint.axis.as_dvec3().length());
+    paths.fold(0.0, f64::max)
 }
 
 pub(super) fn check_targets(
@@ -302,10 +364,11 @@ pub(super) fn check_targets(
         if skeleton.joint(target.joint).is_none() {
             return Err(SolveError::NoJoint(target.joint));
         }
-        // Several targets of a joint must have several grips.
+        // Several targets of a joint must have several effectors.
         let others = last[target.joint.index()].replace(index).map_or(0..0, |_| 0..index);
-        let is_same = |it: &ChainTarget| (it.joint, it.grip) == (target.joint, target.grip);
-        if targets[others].iter().any(is_same) {
+        let is_same = |it: &ChainTarget| (it.joint, it.effector) == (target.joint, target.effector);
+        let is_second = |it: &ChainTarget| it.is_of_mass() && target.is_of_mass();
+        if targets[others].iter().any(is_same) || targets[..index].iter().any(is_second) {
             return Err(SolveError::TwoTargets(target.joint));
         }
         check_target(target)?;
@@ -316,9 +379,10 @@ pub(super) fn check_targets(
 /// Checks that a target's place, grip and orientation are finite, its distances in order, and its
 /// weights finite and not negative, with one above 0.
 pub fn check_target(target: &ChainTarget) -> Result<(), SolveError> {
-    let &ChainTarget { joint, point, grip, distances, weight, orientation, orientation_weight } =
-        target;
-    if let Some(point) = [Some(point), grip].into_iter().flatten().find(|it| !it.is_finite()) {
+    let &ChainTarget { joint, point, effector, distances, weight, .. } = target;
+    let &ChainTarget { orientation, orientation_weight, .. } = target;
+    let grip = if let Effector::Grip(grip) = effector { grip } else { Vec3::ZERO };
+    if let Some(point) = [point, grip].into_iter().find(|it| !it.is_finite()) {
         return Err(SolveError::Point { joint, point });
     }
     let [least, most] = distances;
@@ -339,7 +403,7 @@ pub fn check_target(target: &ChainTarget) -> Result<(), SolveError> {
         }
     };
     match orientation {
-        Some(orientation) if !is_orientation(orientation) => {
+        Some(orientation) if !is_orientation(orientation) || target.is_of_mass() => {
             Err(SolveError::Orientation { joint, orientation })
         }
         Some(_) if !is_weight(orientation_weight) => {

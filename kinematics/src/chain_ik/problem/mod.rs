@@ -14,25 +14,28 @@
 //! solve like others.
 
 mod build;
+mod masses;
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
 use crate::normalize;
+use crate::skeleton::centre_of_mass_below;
 use crate::skeleton::{JointId, JointLimits, RotationAxis, Skeleton};
 
 pub(super) use build::{Builder, check_target};
+pub(super) use masses::{MassOnLink, Masses};
 
-/// A target for a joint: a place for the tip of its bone or another of its points, and an
-/// orientation.
+/// A target for a joint: a place for the tip of its bone, another of its points or the centre of
+/// mass below it, and an orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChainTarget {
     /// The joint.
     pub joint: JointId,
-    /// Place for the joint's tip, or for its grip, in the world.
+    /// The place, in the world.
     pub point: Vec3,
-    /// Point in the joint's space that goes to the place; `None` for the tip of its bone.
-    pub grip: Option<Vec3>,
+    /// What goes to the place.
+    pub effector: Effector,
     /// Least and greatest distance from the place, in skeleton units, at which it counts as
     /// reached; `[0, 0]` for the place itself.
     pub distances: [f32; 2],
@@ -44,6 +47,26 @@ pub struct ChainTarget {
     /// Weight of the orientation relative to other weights, 0 or more. A turn by 1 radian counts
     /// like a distance of a quarter of the chain's length.
     pub orientation_weight: f32,
+}
+
+/// The point of a joint that goes to the place of a target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Effector {
+    /// The tip of its bone.
+    #[default]
+    Tip,
+    /// A point in the joint's space.
+    Grip(Vec3),
+    /// The centre of mass of the joint's bone and all bones below it, as
+    /// [`Balance`](crate::skeleton::Balance) weighs them. It goes above or below the place: along
+    /// the world's y it may be anywhere. Bones whose joints are not between a target and a root move
+    /// rigidly with those above.
+    CentreOfMass,
 }
 
 /// An orientation that a joint is to have.
@@ -69,7 +92,7 @@ impl ChainTarget {
         Self {
             joint,
             point,
-            grip: None,
+            effector: Effector::Tip,
             distances: [0.0; 2],
             weight: 1.0,
             orientation: None,
@@ -83,26 +106,56 @@ impl ChainTarget {
         Self { weight: 0.0, ..Self::at(joint, Vec3::ZERO).with_orientation(orientation) }
     }
 
-    /// The point in the joint's space that goes to the place.
-    pub(super) fn grip_in(&self, skeleton: &Skeleton) -> Vec3 {
-        self.grip.unwrap_or(skeleton[self.joint].axis)
+    /// A place above or below which the centre of mass of a joint and all joints below it is, with
+    /// the weight 1: the balance of a body on the ground.
+    #[must_use]
+    pub const fn balanced(joint: JointId, over: Vec3) -> Self {
+        Self { effector: Effector::CentreOfMass, ..Self::at(joint, over) }
     }
 
-    /// Distance in the world from the tip or grip in a pose to the nearest place at which the target
-    /// is reached; 0 for a free place.
+    /// True if the centre of mass goes to the place.
+    pub(super) fn is_of_mass(&self) -> bool {
+        self.effector == Effector::CentreOfMass
+    }
+
+    /// The point in the joint's space that goes to the place; for the centre of mass, the joint's
+    /// base.
+    pub(super) fn grip_in(&self, skeleton: &Skeleton) -> Vec3 {
+        match self.effector {
+            Effector::Tip => skeleton[self.joint].axis,
+            Effector::Grip(point) => point,
+            Effector::CentreOfMass => Vec3::ZERO,
+        }
+    }
+
+    /// The point that goes to the place, in a pose, in the world.
+    pub(crate) fn effector_in(&self, pose: &Skeleton) -> Vec3 {
+        match self.effector {
+            Effector::CentreOfMass => centre_of_mass_below(pose, self.joint),
+            _ => pose.point_in_world(self.joint, self.grip_in(pose)),
+        }
+    }
+
+    /// Distance in the world from the effector in a pose to the nearest place at which the target is
+    /// reached; 0 for a free place.
     pub(super) fn distance_in(&self, pose: &Skeleton) -> f32 {
         pose.transform().transform_vector3(self.residual_in(pose)).length().min(f32::MAX)
     }
 
-    /// Vector from the tip or grip in a pose to the nearest place at which the target is reached, in
+    /// Vector from the effector in a pose to the nearest place at which the target is reached, in
     /// skeleton space; zero for a free place.
     pub(super) fn residual_in(&self, pose: &Skeleton) -> Vec3 {
         if self.weight == 0.0 {
             return Vec3::ZERO;
         }
         let to_skeleton = pose.transform().inverse();
-        let tip = to_skeleton.transform_point3(pose.point_in_world(self.joint, self.grip_in(pose)));
-        let point = to_skeleton.transform_point3(self.point).as_dvec3();
+        let effector = self.effector_in(pose);
+        let mut place = self.point;
+        if self.is_of_mass() {
+            place.y = effector.y;
+        }
+        let tip = to_skeleton.transform_point3(effector);
+        let point = to_skeleton.transform_point3(place).as_dvec3();
         let nearest = match self.distances {
             [0.0, 0.0] => Some(point),
             distances => nearest_in_shell(point, distances, tip.as_dvec3()),
@@ -113,7 +166,7 @@ impl ChainTarget {
     /// This target for another point of the joint than the tip of its bone, in the joint's space.
     #[must_use]
     pub const fn with_grip(self, grip: Vec3) -> Self {
-        Self { grip: Some(grip), ..self }
+        Self { effector: Effector::Grip(grip), ..self }
     }
 
     /// This target reached at any of these distances from its place, in skeleton units.
@@ -185,12 +238,15 @@ impl Link {
 #[derive(Clone, Debug, PartialEq)]
 pub struct EndEffector {
     pub joint: JointId,
-    /// Index of the link that moves the tip; `None` if the joint and all joints above are locked.
+    /// Index of the link of the joint; `None` if the joint and all joints above are locked.
     pub link: Option<usize>,
     pub tree: usize,
     /// Position of the tip, or of the grip that stands for it, in the link's space; without a link,
-    /// relative to the tree's origin.
+    /// relative to the tree's origin. A centre of mass has none: see [`Masses`].
     pub tip: Vec3A,
+    /// The direction in which the tip may be anywhere, a unit vector: the vertical of a centre of
+    /// mass; zero for others.
+    pub free_direction: Vec3A,
     /// Position to which solvers move the tip, in problem space: `requested`, or, if that is
     /// farther than `max_distance` from the tree's origin, the point at `max_distance` in the same
     /// direction. With `distances`, the middle of a shell: see [`EndEffector::destination`].
@@ -214,9 +270,27 @@ impl EndEffector {
         self.distances != [0.0; 2]
     }
 
-    /// The position to which methods move a tip: the target, or the place of its shell that is
-    /// nearest to the tip.
+    /// True if a centre of mass goes to the target.
+    pub fn is_of_mass(&self) -> bool {
+        self.free_direction != Vec3A::ZERO
+    }
+
+    /// A vector without its part in the direction in which the tip may be anywhere.
+    pub fn counted(&self, vector: DVec3) -> DVec3 {
+        if !self.is_of_mass() {
+            return vector;
+        }
+        vector.reject_from_normalized(self.free_direction.as_dvec3().normalize())
+    }
+
+    /// The position to which methods move a tip: the target, or the place that is nearest to the tip
+    /// of those at which it is reached.
     pub fn destination(&self, tip: Vec3A) -> Vec3A {
+        if self.is_of_mass() {
+            let way = self.counted((tip - self.target).as_dvec3());
+            let nearest = nearest_in_shell(DVec3::ZERO, self.distances, way);
+            return nearest.map_or(tip, |it| tip + (it - way).as_vec3a());
+        }
         if !self.has_shell() {
             return self.target;
         }
@@ -253,13 +327,19 @@ impl EndEffector {
         if out.dot(way) >= 0.0 { most - way.length() } else { way.length() - least }
     }
 
+    /// Vector from the requested point to a tip, in problem space.
+    fn offset(&self, tip: Vec3A) -> DVec3 {
+        self.counted(tip.as_dvec3() - self.requested)
+    }
+
     /// Vector from the nearest requested place to a tip, in problem space.
     fn residual(&self, tip: Vec3A) -> DVec3 {
-        let tip = tip.as_dvec3();
+        let offset = self.offset(tip);
         if !self.has_shell() {
-            return tip - self.requested;
+            return offset;
         }
-        nearest_in_shell(self.requested, self.distances, tip).map_or(DVec3::ZERO, |it| tip - it)
+        let nearest = nearest_in_shell(DVec3::ZERO, self.distances, offset);
+        nearest.map_or(DVec3::ZERO, |it| offset - it)
     }
 }
 
@@ -322,6 +402,8 @@ pub struct Problem {
     pub orients: bool,
     /// True if a target is reached at several distances.
     pub has_shells: bool,
+    /// What the centre of mass depends on; `None` if no target asks for it.
+    pub masses: Option<Masses>,
     /// Sum of the weights of places and orientations, above 0.
     pub weights: f64,
 }
@@ -386,7 +468,7 @@ impl Problem {
     pub fn residuals<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
         self.effectors.iter().zip(tips).map(|(effector, tip)| match effector.weight {
             0.0 => DVec3::ZERO,
-            _ => self.to_world * (effector.residual(*tip) / self.unit),
+            _ => self.in_world(effector, effector.residual(*tip)),
         })
     }
 
@@ -394,8 +476,14 @@ impl Problem {
     pub fn offsets<'a>(&'a self, tips: &'a [Vec3A]) -> impl Iterator<Item = DVec3> + 'a {
         self.effectors.iter().zip(tips).map(|(effector, tip)| match effector.weight {
             0.0 => DVec3::ZERO,
-            _ => self.to_world * ((tip.as_dvec3() - effector.requested) / self.unit),
+            _ => self.in_world(effector, effector.offset(*tip)),
         })
+    }
+
+    /// A vector of problem space in the world; without its vertical part for a centre of mass.
+    fn in_world(&self, effector: &EndEffector, vector: DVec3) -> DVec3 {
+        let in_world = self.to_world * (vector / self.unit);
+        if effector.is_of_mass() { in_world.with_y(0.0) } else { in_world }
     }
 
     /// Keeps the ways of free roots from their offsets in the FK pose in a problem before this one,
@@ -413,7 +501,8 @@ impl Problem {
             let place = |point: Vec3| {
                 (self.to_skeleton.transform_point3(point.as_dvec3()) - origin) * self.unit
             };
-            effector.requested = place(target.point);
+            // Of the points on a vertical line, that which is nearest to the origin.
+            effector.requested = effector.counted(place(target.point));
             // The middle of a shell is not where its nearest place is.
             let most = if effector.has_shell() { farthest } else { effector.max_distance };
             effector.target = effector.requested.clamp_length_max(most).as_vec3a();
