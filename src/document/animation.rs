@@ -11,7 +11,7 @@ use crate::kinematics::angle;
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
 use crate::kinematics::spline::Knot;
 use crate::kinematics::two_bone::TwoBone;
-use crate::rig::{FollowPath, LimbFrames, LimbPart, PathKind, SkeletonRig, Target};
+use crate::rig::{BalanceTarget, FollowPath, LimbFrames, LimbPart, PathKind, SkeletonRig, Target};
 
 /// Motion.
 impl Document {
@@ -54,7 +54,18 @@ impl Document {
     /// [`SkeletonRig::is_carried`].
     pub fn is_tracked(&self) -> bool {
         let rig = &self.rig;
-        rig.is_tracked && rig.targets.iter().any(|it| rig.is_carried(it) && self.can_pose(it))
+        let carries = |target: &Target| rig.is_carried(target) && self.can_pose(target);
+        rig.is_tracked && (self.can_balance() || rig.targets.iter().any(carries))
+    }
+
+    /// True if the balance poses the skeleton at some time.
+    fn can_balance(&self) -> bool {
+        let has_influence = |balance: BalanceTarget| {
+            let keyed = self.keys.track(Channel::BalanceInfluence);
+            let keyed = keyed.map(|keys| keys.knots().iter().any(|it| it.value.x > 0.0));
+            keyed.unwrap_or(balance.is_posing())
+        };
+        self.rig.solver.method.can_balance() && self.rig.balance.is_some_and(has_influence)
     }
 
     /// True if keys of the channel pose the rig.

@@ -16,6 +16,8 @@ use crate::kinematics::skeleton::{JointId, JointRemap};
 pub enum Channel {
     /// Position of the skeleton's origin in the world.
     Translation,
+    /// Influence of the balance, from 0 (without) to 1 (balanced).
+    BalanceInfluence,
     /// Euler angles of a joint in radians, unwrapped.
     Rotation(JointId),
     /// Vector from the base of a joint's parent to the joint's base, in the parent's space; from
@@ -109,8 +111,8 @@ impl Channel {
     /// channel belongs to one. `None` if the name is unknown, or the joint or overlay is missing.
     pub fn named(name: &str, joint: Option<JointId>, overlay: Option<Overlay>) -> Option<Self> {
         let of_joint = joint.into_iter().flat_map(Self::of_joint);
-        let mut channels =
-            [Self::Translation].into_iter().chain(of_joint).chain(overlay.map(Self::Overlay));
+        let of_rig = [Self::Translation, Self::BalanceInfluence].into_iter();
+        let mut channels = of_rig.chain(of_joint).chain(overlay.map(Self::Overlay));
         channels.find(|channel| channel.name() == name)
     }
 
@@ -136,7 +138,7 @@ impl Channel {
 /// A text that names no channel.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "channel must be translation, a name and a joint's index such as \"rotation 3\", or \
+    "channel must be translation, balance_influence, a name and a joint's index such as \"rotation 3\", or \
      \"overlay\" and an overlay's name, got {0:?}"
 )]
 pub struct UnknownChannel(String);
@@ -175,7 +177,8 @@ mod tests {
     fn every_channel_reads_back_from_its_text() {
         let joint = JointId::new(12);
         let of_owners = Overlay::all().map(Channel::Overlay).chain(Channel::of_joint(joint));
-        for channel in [Channel::Translation].into_iter().chain(of_owners) {
+        let of_rig = [Channel::Translation, Channel::BalanceInfluence];
+        for channel in of_rig.into_iter().chain(of_owners) {
             assert_eq!(channel.to_string().parse(), Ok(channel), "{channel}");
         }
         assert_eq!(Channel::Rotation(joint).to_string(), "rotation 12");

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Document;
 use super::channel::{Channel, Quantity, is_on};
 use super::display::Overlay;
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target};
 
@@ -26,8 +26,9 @@ struct Heading {
 
 /// The part of a document that holds a channel's value, and the functions that read and write it.
 enum Access {
-    Skeleton {
-        get: fn(&Skeleton) -> Vec3,
+    Rig {
+        /// `None` if the rig has no such setting.
+        get: fn(&SkeletonRig) -> Option<Vec3>,
         set: fn(&mut SkeletonRig, Vec3),
     },
     Joint {
@@ -52,12 +53,12 @@ fn named(name: &'static str, label: &'static str, quantity: Quantity) -> Heading
 }
 
 impl Heading {
-    fn of_skeleton(
+    fn of_rig(
         self,
-        get: fn(&Skeleton) -> Vec3,
+        get: fn(&SkeletonRig) -> Option<Vec3>,
         set: fn(&mut SkeletonRig, Vec3),
     ) -> ChannelRow {
-        ChannelRow { heading: self, access: Access::Skeleton { get, set } }
+        ChannelRow { heading: self, access: Access::Rig { get, set } }
     }
 
     fn of_joint(
@@ -90,7 +91,9 @@ impl Channel {
         use Quantity::{Angle, Fraction, Length, Point, Rotation, Switch};
         match self {
             Self::Translation => named("translation", "Skeleton translation", Point)
-                .of_skeleton(|skeleton| skeleton.transform().translation.into(), translate),
+                .of_rig(|rig| Some(rig.skeleton.transform().translation.into()), translate),
+            Self::BalanceInfluence => named("balance_influence", "Balance influence", Fraction)
+                .of_rig(|rig| Some(number(rig.balance?.influence)), set_balance),
             Self::Rotation(joint) => named("rotation", "rotation", Rotation).of_joint(
                 joint,
                 |it| Some(it.rotation),
@@ -199,7 +202,7 @@ impl Channel {
     pub fn joint(self) -> Option<JointId> {
         match self.access() {
             Access::Joint { joint, .. } | Access::Target { joint, .. } => Some(joint),
-            Access::Skeleton { .. } | Access::Overlay(_) => None,
+            Access::Rig { .. } | Access::Overlay(_) => None,
         }
     }
 
@@ -224,13 +227,15 @@ impl Channel {
         rig.target(joint).is_some_and(|index| self != Self::of_point(&rig.targets[index]))
     }
 
-    /// Channels that affect the pose: the skeleton's translation, the offsets of its roots, the
-    /// rotations of its joints, and of each target those that matter with its present settings.
+    /// Channels that affect the pose: the skeleton's translation, the balance, the offsets of its
+    /// roots, the rotations of its joints, and of each target those that matter with its present
+    /// settings.
     pub fn of_rig(document: &Document) -> Vec<Self> {
-        let SkeletonRig { skeleton, targets, .. } = &document.rig;
+        let SkeletonRig { skeleton, targets, balance, .. } = &document.rig;
         let joints = skeleton.iter();
         let roots = joints.clone().filter(|(_, joint)| joint.parent.is_none());
         let mut channels = vec![Self::Translation];
+        channels.extend(balance.map(|_| Self::BalanceInfluence));
         channels.extend(roots.map(|(joint, _)| Self::Offset(joint)));
         channels.extend(joints.map(|(joint, _)| Self::Rotation(joint)));
         channels.extend(targets.iter().flat_map(|target| {
@@ -276,7 +281,7 @@ impl Channel {
     pub fn value(self, document: &Document) -> Option<Vec3> {
         let Document { rig, display, .. } = document;
         match self.access() {
-            Access::Skeleton { get, .. } => Some(get(&rig.skeleton)),
+            Access::Rig { get, .. } => get(rig),
             Access::Joint { joint, get, .. } => rig.skeleton.joint(joint).and_then(get),
             Access::Target { joint, get, .. } => get(&rig.targets[rig.target(joint)?]),
             Access::Overlay(overlay) => Some(switch(display.shows(overlay))),
@@ -292,7 +297,7 @@ impl Channel {
             return;
         }
         match self.access() {
-            Access::Skeleton { set, .. } => set(rig, value),
+            Access::Rig { set, .. } => set(rig, value),
             Access::Joint { joint, set, .. } => set(rig, joint, value),
             Access::Target { joint, set, .. } => {
                 if let Some(index) = rig.target(joint) {
@@ -320,6 +325,12 @@ fn fraction(value: Vec3) -> f32 {
 /// of the FK pose, or is not 0.
 fn has_twist(limb: &LimbSettings) -> bool {
     limb.reference != TwistReferenceKind::Fk || limb.twist != 0.0
+}
+
+fn set_balance(rig: &mut SkeletonRig, influence: Vec3) {
+    if let Some(balance) = &mut rig.balance {
+        balance.influence = fraction(influence);
+    }
 }
 
 fn set_orientation(target: &mut Target, angles: Vec3) {

@@ -27,7 +27,8 @@ use crate::kinematics::two_bone::TwoBone;
 
 pub use crate::kinematics::twist::TwistReferenceKind;
 pub use crate::rig::{
-    FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion, TargetPath, WavyRing,
+    BalanceOver, BalanceTarget, FollowPath, PathKind, SkeletonRig, Skin, Target, TargetMotion,
+    TargetPath, WavyRing,
 };
 pub use bake::{Bake, BakeError, Baked, ShortenedBone};
 pub use camera::{AxisView, Camera};

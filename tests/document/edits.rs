@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use ik_arm::document::{
-    Baked, Channel, Overlay, PathKind, Target, Timeline, TwistReferenceKind, WavyRing,
+    Baked, BalanceTarget, Channel, Overlay, PathKind, Target, Timeline, TwistReferenceKind,
+    WavyRing,
 };
 use ik_arm::io::to_json;
 use ik_arm::kinematics::Shared;
@@ -138,6 +139,7 @@ examples! {
         )];
         SetTracked: [SolverEdit::SetTracked(false)];
         SetBodyFollows: [SolverEdit::SetBodyFollows(false)];
+        SetBalance: [SolverEdit::SetBalance(Some(BalanceTarget::default()))];
         ResetPosture: [SolverEdit::ResetPosture];
         SetPosture: [SolverEdit::SetPosture(Posture {
             joints: [(JointId::new(AIMED), PosturedJoint {

@@ -104,7 +104,7 @@ fn correlation(one: &[f32], other: &[f32]) -> f32 {
 #[test]
 fn the_human_stands_at_its_targets_by_its_own_angles() {
     let human = opened("human");
-    let EvaluatedSkeleton { fk, solved, targets, body_refused } = evaluated(&human, 0.0);
+    let EvaluatedSkeleton { fk, solved, targets, body_refused, .. } = evaluated(&human, 0.0);
     assert_eq!(body_refused, None);
     for joint in fk.ids() {
         assert!(fk.tip(joint).distance(solved.tip(joint)) < 1e-5, "{}", fk[joint].name);

@@ -2,6 +2,7 @@
 
 mod arm_figures;
 mod bake;
+mod balance;
 mod body_follows;
 mod bones;
 #[path = "../common/mod.rs"]

@@ -77,8 +77,9 @@ impl Configuration {
         let mut moments = std::mem::take(&mut self.moments);
         moments.clear();
         moments.extend((0..problem.links.len()).map(|link| self.own_moment(masses, link)));
-        let shift = self.shifts[problem.effectors[masses.effector].tree];
-        let mut centre = masses.fixed + masses.fixed_mass * shift;
+        let tree = problem.effectors[masses.effector].tree;
+        let held = masses.held_from(&problem.trees[tree], problem.unit());
+        let mut centre = held + masses.fixed + masses.fixed_mass * self.shifts[tree];
         for (index, link) in problem.links.iter().enumerate().rev() {
             match link.parent {
                 Some(parent) => {

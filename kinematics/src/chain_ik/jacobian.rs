@@ -136,7 +136,7 @@ impl Wrenches {
 
         for (index, effector) in problem.effectors.iter().enumerate() {
             let force = force(index);
-            shifts[effector.tree] += force;
+            shifts[effector.tree] += force * problem.part_of_shift(index);
             let masses = problem.masses.as_ref().filter(|masses| masses.effector == index);
             if let Some(masses) = masses {
                 for (link, MassOnLink { mass, .. }) in masses.on_links.iter().enumerate() {

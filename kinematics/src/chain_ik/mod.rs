@@ -69,6 +69,7 @@ pub use jacobian::{Swing, jacobian, jacobian_of_point};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use null_space_drag::{DragReport, NullSpaceDrag};
 pub use options::{OptionField, Root, SolveError, SolverOptions};
+pub(crate) use problem::HeldLimb;
 pub use problem::{ChainTarget, Effector, Orientation};
 pub use report::{Report, Status};
 pub use solver::{ChainSolver, TrackStep, solve};

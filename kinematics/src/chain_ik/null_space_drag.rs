@@ -375,7 +375,8 @@ impl Rows {
             if problem.free_roots {
                 let from = turning + 3 * effector.tree;
                 for (axis, unit) in Vec3A::AXES.into_iter().enumerate() {
-                    set_column(&mut places[index], from + axis, unit, length);
+                    let part = f64::from(problem.part_of_shift(index));
+                    set_column(&mut places[index], from + axis, unit, part * length);
                     if let (Some(turn), Some(missing)) = (&mut turn, missing) {
                         let weight = f64::from(missing.stiffness).sqrt();
                         let by = missing.of_velocity()[axis];

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::configuration::Configuration;
 use super::inside::{Event, Recorder, SubStep, sub_steps};
 use super::method::{MethodInputs, MethodState};
-use super::problem::{self, Builder, Problem};
+use super::problem::{self, Builder, HeldLimb, Problem};
 use super::report::{Report, Status};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
@@ -69,7 +69,7 @@ impl ChainSolver {
         targets: &[ChainTarget],
         options: &SolverOptions,
     ) -> Result<Self, SolveError> {
-        let (builder, problem) = Self::problem(skeleton, targets, options)?;
+        let (builder, problem) = Self::problem(skeleton, targets, &[], options)?;
         Self::of_problem(builder, problem, skeleton, targets, options)
     }
 
@@ -86,7 +86,18 @@ impl ChainSolver {
         options: &SolverOptions,
         work: u64,
     ) -> Result<Self, SolveError> {
-        let (builder, problem) = Self::problem(skeleton, targets, options)?;
+        Self::bounded_with_limbs(skeleton, targets, &[], options, work)
+    }
+
+    /// [`ChainSolver::bounded`] for a centre of mass of a body with limbs whose tips are held.
+    pub(crate) fn bounded_with_limbs(
+        skeleton: &Skeleton,
+        targets: &[ChainTarget],
+        limbs: &[HeldLimb],
+        options: &SolverOptions,
+        work: u64,
+    ) -> Result<Self, SolveError> {
+        let (builder, problem) = Self::problem(skeleton, targets, limbs, options)?;
         let (method, of_iteration) = (options.method, (options.method.row().work)(&problem));
         if of_iteration > work {
             let (targets, links) = (targets.len(), problem.links.len());
@@ -100,11 +111,13 @@ impl ChainSolver {
     fn problem(
         skeleton: &Skeleton,
         targets: &[ChainTarget],
+        limbs: &[HeldLimb],
         options: &SolverOptions,
     ) -> Result<(Builder, Problem), SolveError> {
         options.check()?;
         check_method(options.method, targets)?;
         let mut builder = Builder::new(skeleton, targets, options)?;
+        builder.held_limbs.extend_from_slice(limbs);
         let mut problem = Problem::default();
         builder.fill(&mut problem, skeleton, targets)?;
         check_stiffness(options.method, &problem)?;
@@ -308,6 +321,11 @@ impl ChainSolver {
     /// The joints of the targets, in their order.
     pub fn target_joints(&self) -> impl Iterator<Item = JointId> {
         self.problem.effectors.iter().map(|effector| effector.joint)
+    }
+
+    /// The joints of the targets, in their order, and whether the centre of mass goes to each.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = (JointId, bool)> {
+        self.problem.effectors.iter().map(|it| (it.joint, it.is_of_mass()))
     }
 
     /// Euler angles in radians of the joints that the solver turns, within their limits.

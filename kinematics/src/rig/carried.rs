@@ -2,8 +2,11 @@ use std::collections::BTreeMap;
 
 use glam::{DQuat, Vec3};
 
+use super::balance_target::Footing;
 use crate::Shared;
-use crate::chain_ik::{ChainSolver, ChainTarget, Report, SolveError, SolverOptions, TrackStep};
+use crate::chain_ik::{
+    ChainSolver, ChainTarget, HeldLimb, Report, SolveError, SolverOptions, TrackStep,
+};
 use crate::limb_ik::{CarriedLimb, LimbPosture};
 use crate::skeleton::{JointId, JointRemap, Skeleton};
 
@@ -25,6 +28,8 @@ pub struct Carried {
     bodies: Vec<Body>,
     /// By the joint of a limb's target.
     limbs: BTreeMap<JointId, CarriedLimb>,
+    /// Of a figure that is balanced, what the last step has left.
+    footing: Option<Footing>,
 }
 
 /// The configuration with which a motion begins, as a document keeps it: the state before its first
@@ -118,6 +123,7 @@ impl Carried {
             relaxes: false,
             bodies: Vec::new(),
             limbs: limbs.collect(),
+            footing: None,
         }
     }
 
@@ -171,12 +177,35 @@ impl Carried {
         self.limbs.retain(|joint, _| is_posing(*joint));
     }
 
+    /// What the last step has left for the balance; `None` before the first one.
+    pub(super) fn take_footing(&mut self) -> Option<Footing> {
+        self.footing.take()
+    }
+
+    pub(super) fn set_footing(&mut self, footing: Footing) {
+        self.footing = Some(footing);
+    }
+
+    /// The FK pose, or the posture with which the first step begins.
+    pub(super) fn first_pose(&self, fk: &Skeleton) -> Skeleton {
+        self.posture.as_ref().map_or_else(|| fk.clone(), |posture| posture.posed(fk))
+    }
+
+    /// The states of limbs, to be restored before a step is repeated.
+    pub(super) fn limbs(&self) -> &BTreeMap<JointId, CarriedLimb> {
+        &self.limbs
+    }
+
+    pub(super) fn restore_limbs(&mut self, limbs: &BTreeMap<JointId, CarriedLimb>) {
+        self.limbs.clone_from(limbs);
+    }
+
     pub(super) fn limb(&mut self, joint: JointId) -> &mut CarriedLimb {
         self.limbs.entry(joint).or_default()
     }
 
-    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one; without
-    /// `poses`, it may leave the pose. Returns the report of the solve for all of them.
+    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one, while the
+    /// tips of `limbs` stay in place; without `poses`, it may leave the pose. Returns the report of the solve for all of them.
     ///
     /// # Errors
     ///
@@ -186,6 +215,7 @@ impl Carried {
         options: &SolverOptions,
         pose: &mut Shared<Skeleton>,
         targets: &[BodyTarget],
+        limbs: &[HeldLimb],
         poses: bool,
     ) -> Result<Report, SolveError> {
         let mut influences: Vec<f32> = targets.iter().map(|target| target.influence).collect();
@@ -202,7 +232,7 @@ impl Carried {
         let body = |(index, least): (usize, &f32)| {
             let tips = targets.iter().filter(|target| target.influence >= *least);
             let tips: Vec<ChainTarget> = tips.map(|target| target.tip).collect();
-            before.step(options, pose, &tips, index == last)
+            before.step(options, pose, &tips, limbs, index == last)
         };
         self.bodies = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
         let report = self.bodies[last].solver.report();
@@ -237,24 +267,25 @@ impl Before {
         options: &SolverOptions,
         fk: &Skeleton,
         tips: &[ChainTarget],
+        limbs: &[HeldLimb],
         has_all_targets: bool,
     ) -> Result<Body, SolveError> {
         let is_same = |body: &Option<Body>| {
             let solver = body.as_ref().map(|body| &body.solver);
             solver.is_some_and(|it| {
                 it.options() == options
-                    && it.target_joints().eq(tips.iter().map(|target| target.joint))
+                    && it.targets().eq(tips.iter().map(|tip| (tip.joint, tip.is_of_mass())))
             })
         };
         let same = self.bodies.iter_mut().find(|it| is_same(it));
         if let Some(mut body) = same.and_then(Option::take) {
-            if let Ok(step) = body.solver.track(tips, fk) {
+            if let Ok(step) = body.solver.track_with_limbs(tips, limbs, fk) {
                 body.step = Some(step);
                 return Ok(body);
             }
             self.bodies.push(Some(body));
         }
-        self.begin(options, fk, tips, has_all_targets)
+        self.begin(options, fk, tips, limbs, has_all_targets)
     }
 
     /// A body that begins with this step, with the angles that its joints had in another body.
@@ -263,9 +294,12 @@ impl Before {
         options: &SolverOptions,
         fk: &Skeleton,
         tips: &[ChainTarget],
+        limbs: &[HeldLimb],
         has_all_targets: bool,
     ) -> Result<Body, SolveError> {
-        let mut solver = ChainSolver::bounded(fk, tips, options, self.work)?;
+        let mut solver = ChainSolver::bounded_with_limbs(fk, tips, limbs, options, self.work)?;
+        // True if targets of less influence do not pull the joints any more.
+        let mut is_released = false;
         let rests = self.posture.is_some() && self.rests_at_posture && has_all_targets;
         match &self.posture {
             Some(posture) if rests => solver.rest_at(&posture.posed(fk)),
@@ -277,12 +311,13 @@ impl Before {
                 };
                 if let Some(nearest) = self.bodies.iter().flatten().max_by_key(common) {
                     solver.begin_from(&nearest.posed(fk));
+                    is_released = !has_all_targets;
                 }
             }
         }
         if !rests {
             solver.run();
-            if self.relaxes {
+            if self.relaxes || is_released {
                 solver.relax();
             }
         }

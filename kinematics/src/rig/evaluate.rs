@@ -1,6 +1,7 @@
 use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
+use super::balance_target::{BalanceReport, Footing};
 use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
@@ -22,6 +23,8 @@ pub struct EvaluatedSkeleton {
     /// The reason why limb targets pull no body although it should [follow](SkeletonRig::body_follows):
     /// the solver refuses it.
     pub body_refused: Option<SolveError>,
+    /// Result for the rig's [balance](SkeletonRig::balance); `None` without one.
+    pub balance: Option<BalanceReport>,
 }
 
 /// The poses of a step, and what came of its targets.
@@ -146,7 +149,8 @@ impl SkeletonRig {
             TargetReport { position, pole, error, rotation_error, outcome }
         };
         let targets = self.targets.iter().zip(outcomes).map(report).collect();
-        EvaluatedSkeleton { fk, solved, targets, body_refused }
+        let balance = self.balance_report(&solved);
+        EvaluatedSkeleton { fk, solved, targets, body_refused, balance }
     }
 
     /// [`SkeletonRig::step`] without its pose and reports: changes `carried` to what the step
@@ -202,30 +206,74 @@ impl SkeletonRig {
     }
 
     fn posed(&self, time: f64, carried: &mut Carried, of: StepUse) -> StepPose {
+        let fk = self.fk_at(time);
+        if self.active_balance().is_some() {
+            return self.balanced(fk, time, carried, of);
+        }
+        let mut step = self.begin_step(fk);
+        let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
+        let poses = of != StepUse::State || has_limbs;
+        self.solve_body(&mut step, None, time, carried, poses);
+        let carried = (of != StepUse::Pose).then_some(carried);
+        self.solve_limbs(&mut step, time, carried);
+        step
+    }
+
+    /// A step that begins with the FK pose.
+    fn begin_step(&self, fk: Shared<Skeleton>) -> StepPose {
         let leads = |target: &Target| target.enabled && self.leads_path(target);
         let outcome =
             |target| if leads(target) { TargetOutcome::Leads } else { TargetOutcome::Off };
-        let mut outcomes: Vec<_> = self.targets.iter().map(outcome).collect();
-        let fk = self.fk_at(time);
-        let mut solved = fk.clone();
-        let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
-        let poses = of != StepUse::State || has_limbs;
-        let body_refused = self.solve_body(&mut solved, time, carried, poses, &mut outcomes);
-        let carried = (of != StepUse::Pose).then_some(carried);
-        self.solve_limbs(&mut solved, time, carried, &mut outcomes);
-        StepPose { fk, solved, outcomes, body_refused }
+        let outcomes = self.targets.iter().map(outcome).collect();
+        StepPose { solved: fk.clone(), fk, outcomes, body_refused: None }
     }
 
-    /// Solves the whole-body targets, and the bases that limb targets pull. Returns why these cannot
-    /// be pulled.
+    /// The step of a figure that is balanced: body and limbs by turns, until the centre of mass is
+    /// where it should be or does not come much nearer.
+    fn balanced(
+        &self,
+        fk: Shared<Skeleton>,
+        time: f64,
+        carried: &mut Carried,
+        of: StepUse,
+    ) -> StepPose {
+        const MOST_TURNS: usize = 4;
+        /// Part of the distance of the centre of mass that a turn must leave at most to be worth
+        /// another one.
+        const WORTH: f32 = 0.7;
+        let limbs_before = carried.limbs().clone();
+        let mut footing = carried.take_footing().unwrap_or_else(|| {
+            let mut first = self.begin_step(Shared::from(carried.first_pose(&fk)));
+            self.solve_limbs(&mut first, time, None);
+            self.footing(&first.solved)
+        });
+        let (mut left, mut turns) = (f32::INFINITY, 0);
+        loop {
+            carried.restore_limbs(&limbs_before);
+            let mut step = self.begin_step(fk.clone());
+            self.solve_body(&mut step, Some(&footing), time, carried, true);
+            self.solve_limbs(&mut step, time, (of != StepUse::Pose).then_some(&mut *carried));
+            footing = self.footing(&step.solved);
+            turns += 1;
+            let error = self.balance_report(&step.solved).map_or(0.0, |report| report.error());
+            if turns == MOST_TURNS || error <= self.tolerance() || error > WORTH * left {
+                carried.set_footing(footing);
+                return step;
+            }
+            left = error;
+        }
+    }
+
+    /// Solves the whole-body targets, the bases that limb targets pull, and the balance.
     fn solve_body(
         &self,
-        solved: &mut Shared<Skeleton>,
+        step: &mut StepPose,
+        footing: Option<&Footing>,
         time: f64,
         carried: &mut Carried,
         poses: bool,
-        outcomes: &mut [TargetOutcome],
-    ) -> Option<SolveError> {
+    ) {
+        let StepPose { solved, outcomes, body_refused, .. } = step;
         let is_active =
             |target: &Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
         let active = self.targets.iter().filter(|it| is_active(it));
@@ -242,12 +290,13 @@ impl SkeletonRig {
         }
         let pulled = self.base_targets(solved, time);
         let is_pulled = !pulled.is_empty();
-        let targets = [active, pulled].concat();
+        let balance = footing.and_then(|footing| self.body_target_of_balance(footing));
+        let limbs = footing.map_or(&[][..], |footing| &footing.limbs);
+        let targets = [active, pulled, Vec::from_iter(balance)].concat();
         if targets.is_empty() {
-            carried.forget_body();
-            return None;
+            return carried.forget_body();
         }
-        let (outcome, refused) = match carried.step_body(&options, solved, &targets, poses) {
+        let (outcome, refused) = match carried.step_body(&options, solved, &targets, limbs, poses) {
             Ok(report) => (TargetOutcome::WholeBody(report), None),
             Err(error) => (TargetOutcome::Refused(error.clone()), Some(error)),
         };
@@ -256,16 +305,11 @@ impl SkeletonRig {
                 *slot = outcome.clone();
             }
         }
-        refused.filter(|_| is_pulled)
+        *body_refused = refused.filter(|_| is_pulled);
     }
 
-    fn solve_limbs(
-        &self,
-        solved: &mut Shared<Skeleton>,
-        time: f64,
-        mut carried: Option<&mut Carried>,
-        outcomes: &mut [TargetOutcome],
-    ) {
+    fn solve_limbs(&self, step: &mut StepPose, time: f64, mut carried: Option<&mut Carried>) {
+        let StepPose { solved, outcomes, .. } = step;
         let is_limb = |index: &usize| {
             let target = &self.targets[*index];
             self.is_solved_for(target) && target.limb().is_some()

@@ -2,6 +2,7 @@
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
+mod balance_target;
 mod body_follows;
 mod carried;
 mod crowd;
@@ -21,6 +22,7 @@ mod target;
 mod target_match;
 mod up_axis;
 
+pub use balance_target::{BalanceOver, BalanceReport, BalanceTarget};
 pub use carried::{Carried, Posture, PosturedJoint};
 pub use crowd::{Crowd, CrowdArrays, CrowdTimes, Processor};
 pub use diagnose::RemedyError;

@@ -2,6 +2,7 @@ use std::collections::BTreeMap;
 
 use glam::{Vec3, Vec3A};
 
+use super::balance_target::BalanceTarget;
 use super::carried::Posture;
 use super::follow_path::{FollowPath, PathKind};
 use super::skin::Skin;
@@ -37,6 +38,8 @@ pub struct SkeletonRig {
     /// True if limb targets that are out of reach pull the rest of the body along: see
     /// [`SkeletonRig::pulls_body`].
     pub body_follows: bool,
+    /// Where the centre of mass of the figure should be; `None` for anywhere.
+    pub balance: Option<BalanceTarget>,
     /// The posture with which the motion begins; `None` for the one that is solved from the FK
     /// pose.
     pub posture: Option<Shared<Posture>>,
@@ -59,6 +62,7 @@ impl SkeletonRig {
             head_tracks: BTreeMap::new(),
             is_tracked: true,
             body_follows: false,
+            balance: None,
             posture: None,
             skin: None,
         }
@@ -197,7 +201,7 @@ impl SkeletonRig {
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, time: f64, pose: &mut SkeletonPose) {
         let is_solved = self.targets.iter().any(|target| self.is_solved_for(target));
-        if is_solved || self.fk_stretches().next().is_some() {
+        if is_solved || self.active_balance().is_some() || self.fk_stretches().next().is_some() {
             self.skeleton_at(time).write_pose(pose);
         } else {
             self.write_fk(time, pose);

@@ -52,6 +52,26 @@ impl Balance {
         true
     }
 
+    /// x and z of the middle of what stands on the ground, and how firmly it stands, from 0 to 1.
+    /// Both change without jumps while feet are lifted: an end or heel counts fully up to the height
+    /// at which it stands, less above, and not at all from four times that height on. `None` if
+    /// nothing counts.
+    pub fn middle_of_feet(posed: &Skeleton) -> Option<(Vec2, f32)> {
+        let pose = posed.pose();
+        let (mut sum, mut weights) = (Vec2::ZERO, 0.0);
+        for (id, joint) in posed.iter() {
+            for (end, height) in ends_on_ground(posed.transform(), joint, pose.full(id)) {
+                let weight = ((4.0 - height) / 3.0).clamp(0.0, 1.0);
+                if weight > 0.0 {
+                    sum += weight * Vec2::new(end.x, end.z);
+                    weights += weight;
+                }
+            }
+        }
+        let middle = sum / weights;
+        (weights > 0.0 && middle.is_finite()).then(|| (middle, weights.min(1.0)))
+    }
+
     /// x and z of the centre of mass, in the world.
     pub fn centre_on_ground(&self) -> Vec2 {
         Vec2::new(self.centre.x, self.centre.z)
@@ -185,20 +205,35 @@ fn cone(base: f64, tip: f64, height: f64) -> (f64, f64) {
 
 /// Adds the rims of what stands on the ground: of the base, the tip and the heel of a bone.
 fn add_standing(to_world: Affine3A, joint: &Joint, full: Affine3A, standing: &mut Vec<Vec2>) {
-    // Ratio of a standing point's greatest height to the radius, and corners of a rim.
-    const HEIGHT: f32 = 1.5;
     const CORNERS: u8 = 16;
-    let radius = joint.radius * to_world.matrix3.determinant().abs().cbrt();
+    let radius = radius_in_world(to_world, joint);
+    for (end, _) in ends_on_ground(to_world, joint, full).filter(|(_, height)| *height <= 1.0) {
+        let turns = (0..CORNERS).map(|corner| TAU * f32::from(corner) / f32::from(CORNERS));
+        let at = Vec2::new(end.x, end.z);
+        standing.extend(turns.map(|angle| at + radius * Vec2::from_angle(angle)));
+    }
+}
+
+/// The base, the tip and the heel of a bone in the world, each with its height as a multiple of the
+/// height up to which it stands; 1 if it stands.
+fn ends_on_ground(
+    to_world: Affine3A,
+    joint: &Joint,
+    full: Affine3A,
+) -> impl Iterator<Item = (Vec3, f32)> {
+    /// Ratio of a standing point's greatest height to the radius.
+    const HEIGHT: f32 = 1.5;
+    let stands = HEIGHT * radius_in_world(to_world, joint);
     let below = to_world.transform_vector3(joint.axis).y;
     let heel = to_world.matrix3.inverse() * Vec3::new(0.0, below, 0.0);
     let ends = [Some(Vec3::ZERO), Some(joint.axis), (below < 0.0).then_some(heel)];
-    for end in ends.into_iter().flatten().map(|end| full.transform_point3(end)) {
-        if end.is_finite() && end.y <= HEIGHT * radius {
-            let turns = (0..CORNERS).map(|corner| TAU * f32::from(corner) / f32::from(CORNERS));
-            let at = Vec2::new(end.x, end.z);
-            standing.extend(turns.map(|angle| at + radius * Vec2::from_angle(angle)));
-        }
-    }
+    let ends = ends.into_iter().flatten().map(move |end| full.transform_point3(end));
+    let height = move |end: Vec3| if end.y <= stands { 1.0 } else { end.y / stands };
+    ends.filter(|end| end.is_finite()).map(move |end| (end, height(end)))
+}
+
+fn radius_in_world(to_world: Affine3A, joint: &Joint) -> f32 {
+    joint.radius * to_world.matrix3.determinant().abs().cbrt()
 }
 
 /// Writes the corners of the convex hull of sorted points, in the order of positive rotation, by

@@ -11,7 +11,7 @@ use crate::kinematics::chain_ik::{self, Report, SolveError, SolverOptions, Statu
 use crate::kinematics::diagnosis::Diagnosis;
 use crate::kinematics::skeleton::{JointId, Skeleton, is_within_numbers};
 use crate::kinematics::two_bone::Reach;
-use crate::rig::{LimbFrames, LimbPart, Target, TargetKind, TargetOutcome};
+use crate::rig::{BalanceReport, LimbFrames, LimbPart, Target, TargetKind, TargetOutcome};
 use crate::words;
 
 /// Output of the command: one line of JSON.
@@ -19,6 +19,8 @@ use crate::words;
 pub struct PoseLine<'a> {
     joints: Vec<JointLine<'a>>,
     targets: Vec<TargetLine>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balance: Option<BalanceLine>,
     report: Option<ReportLine>,
     why: Vec<WhyLine<'a>>,
 }
@@ -45,6 +47,21 @@ struct TargetLine {
     rotation_error_deg: Option<f32>,
     aim_error_deg: Option<f32>,
     limb: Option<LimbLine>,
+}
+
+/// Where the centre of mass is, as x and z, and where it should be.
+#[derive(Serialize)]
+struct BalanceLine {
+    over: Option<[f32; 2]>,
+    centre: [f32; 2],
+    error: f32,
+}
+
+impl BalanceLine {
+    fn new(report: &BalanceReport) -> Self {
+        let over = report.over.map(|over| over.to_array());
+        Self { over, centre: report.centre.to_array(), error: report.error() }
+    }
 }
 
 /// The figures of a limb, in the words of its page in the program.
@@ -162,7 +179,9 @@ impl<'a> PoseLine<'a> {
         let targets = targets.collect();
         let report = answer.report.as_ref().map(ReportLine::new);
         let why = answer.why.iter().map(|found| WhyLine::new(found, rig)).collect();
-        Ok(Self { joints, targets, report, why })
+        let balance = posed.evaluated_skeleton().balance.as_ref().filter(|_| answer.is_evaluated);
+        let balance = balance.map(BalanceLine::new);
+        Ok(Self { joints, targets, balance, report, why })
     }
 }
 

@@ -24,7 +24,7 @@ use core::ops::RangeInclusive;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::document::{Channel, Document, Timeline, Track};
+use crate::document::{Document, Timeline, Track};
 use motion::{BakedFrames, BakedTrack, Motion};
 use reduction::Reduction;
 
@@ -185,8 +185,7 @@ fn baked(track: &Track, frames: &BakedFrames, motion: &Motion, tracks: &[BakedTr
     for baked_track in tracks {
         baked.keys.set_track(baked_track.channel, baked_track.spline.clone());
     }
-    for target in &motion.posed {
-        let channel = Channel::TargetInfluence(*target);
+    for channel in motion.influences.iter().copied() {
         let mut spline = frames.surroundings(track, channel);
         for frame in [0, frames.count() - 1] {
             spline.insert(frames.time(frame), Vec3::ZERO);

@@ -3,7 +3,6 @@ use glam::{Affine3A, Mat3A, Vec3};
 use crate::document::{Channel, Posed, Timeline, Track};
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::spline::Spline;
-use crate::rig::Target;
 
 /// Rotation and offset of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +34,8 @@ pub(super) struct Motion {
     pub ends: Vec<Ends>,
     /// Largest distance in the world between each joint's evaluated tip and that in `ends`.
     lengthened: Vec<f32>,
-    /// Joints of the targets that pose the skeleton at any frame.
-    pub posed: Vec<JointId>,
+    /// Channels of the influences of targets and of the balance that pose the skeleton at any frame.
+    pub influences: Vec<Channel>,
     follows_path: bool,
 }
 
@@ -66,7 +65,7 @@ impl Motion {
             solved: Vec::with_capacity(frames.frames() * joints),
             ends: Vec::with_capacity(frames.frames() * joints),
             lengthened: vec![0.0; joints],
-            posed: Vec::new(),
+            influences: Vec::new(),
             follows_path: track.document().follows_path(),
         };
         for frame in 0..frames.frames() {
@@ -91,16 +90,18 @@ impl Motion {
             *most = most.max(lost.length());
         }
         let posing = rig.targets.iter().filter(|target| target.is_posing());
-        for Target { joint, .. } in posing {
-            if !self.posed.contains(joint) {
-                self.posed.push(*joint);
+        let of_targets = posing.map(|target| Channel::TargetInfluence(target.joint));
+        let of_balance = rig.active_balance().map(|_| Channel::BalanceInfluence);
+        for channel in of_targets.chain(of_balance) {
+            if !self.influences.contains(&channel) {
+                self.influences.push(channel);
             }
         }
     }
 
     /// True if anything but keys and angles poses the skeleton.
     pub fn is_posed(&self) -> bool {
-        self.follows_path || !self.posed.is_empty()
+        self.follows_path || !self.influences.is_empty()
     }
 
     /// Bones that evaluation lengthens.

@@ -335,6 +335,7 @@ fn has_same_inputs(one: &SkeletonRig, other: &SkeletonRig) -> bool {
         && one.solver == other.solver
         && one.is_tracked == other.is_tracked
         && one.body_follows == other.body_follows
+        && one.balance == other.balance
         && one.follow_paths == other.follow_paths
         && one.head_tracks == other.head_tracks
 }

@@ -1,5 +1,5 @@
 use super::run::SolverRun;
-use crate::document::SkeletonRig;
+use crate::document::{BalanceTarget, Channel, SkeletonRig};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::SolverOptions;
 use crate::rig::Posture;
@@ -17,6 +17,8 @@ pub enum SolverEdit {
     SetTracked(bool),
     /// Lets the body follow limb targets that are out of reach, or stay.
     SetBodyFollows(bool),
+    /// Balances the figure, or leaves its centre of mass anywhere.
+    SetBalance(Option<BalanceTarget>),
     /// Lets the motion begin with the pose that is solved from the joints' own angles, instead of
     /// the posture that drags have left.
     ResetPosture,
@@ -36,6 +38,8 @@ impl SolverEdit {
             }
             Self::SetBodyFollows(true) => "Let body follow",
             Self::SetBodyFollows(false) => "Keep body",
+            Self::SetBalance(Some(_)) => "Balance",
+            Self::SetBalance(None) => "Remove balance",
             Self::ResetPosture => "Reset posture",
             Self::SetPosture(_) => "Change posture",
             Self::ApplyPose => "Apply pose",
@@ -62,6 +66,15 @@ impl SolverEdit {
             Self::SetBodyFollows(follows) => Outcome::change(session.shown(), |document| {
                 document.rig.body_follows = follows;
             }),
+            Self::SetBalance(balance) => {
+                let balance = balance.filter(BalanceTarget::is_valid);
+                Outcome::change(session.shown(), |document| {
+                    document.rig.balance = balance;
+                    if balance.is_none() {
+                        document.keys.clear(Channel::BalanceInfluence);
+                    }
+                })
+            }
             Self::ResetPosture => Outcome::from(Consequence::ResetPosture).and(Outcome::change(
                 session.shown(),
                 |document| {

@@ -158,6 +158,7 @@ kinds! {
         SetSolver: Solve 3, |v| SolverEdit::SetSolver(v.options());
         SetTracked: Solve 1, |v| SolverEdit::SetTracked(v.coin());
         SetBodyFollows: Solve 2, |v| SolverEdit::SetBodyFollows(v.coin());
+        SetBalance: Solve 2, |v| SolverEdit::SetBalance(v.balance());
         ResetPosture: Solve 1, |_| SolverEdit::ResetPosture;
         SetPosture: Solve 1, |v| SolverEdit::SetPosture(v.posture().into());
         SetIterationsPerFrame: Solve 1, |v| SolverEdit::SetIterationsPerFrame(v.iterations_per_frame());

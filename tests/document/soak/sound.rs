@@ -50,6 +50,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
         head_tracks: _,
         is_tracked: _,
         body_follows: _,
+        balance,
         posture,
         skin,
     } = rig;
@@ -74,6 +75,7 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     if let Some(skin) = skin {
         self::skin(skin, skeleton)?;
     }
+    hold!(balance.is_none_or(|it| it.is_valid()), "the balance is sound: {balance:?}");
     let SolverOptions { iterations, tolerance, damping, step, posture_rate, .. } = *solver;
     hold!(posture_rate.is_finite() && posture_rate >= 0.0, "a posture rate: {posture_rate}");
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");

@@ -217,8 +217,9 @@ impl World<'_> {
         }
         if self.problem.free_roots {
             let lever = factor * self.problem.length * self.problem.length;
-            for (effector, tip) in self.problem.effectors.iter().zip(&mut tips) {
-                *tip += lever * by.shifts[effector.tree];
+            let effectors = self.problem.effectors.iter().enumerate();
+            for ((index, effector), tip) in effectors.zip(&mut tips) {
+                *tip += lever * self.problem.part_of_shift(index) * by.shifts[effector.tree];
             }
         }
         tips

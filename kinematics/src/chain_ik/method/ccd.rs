@@ -354,11 +354,13 @@ fn update_points(problem: &Problem, config: &mut Configuration) {
 pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configuration) {
     for tree in 0..problem.trees.len() {
         let (mut sum, mut weights) = (Vec3A::ZERO, 0.0);
-        for (effector, tip) in
-            problem.effectors.iter().zip(&config.tips).filter(|(effector, _)| effector.tree == tree)
-        {
-            sum += effector.weight * (effector.destination(*tip) - *tip);
-            weights += effector.weight;
+        for (index, (effector, tip)) in problem.effectors.iter().zip(&config.tips).enumerate() {
+            if effector.tree != tree {
+                continue;
+            }
+            let part = problem.part_of_shift(index);
+            sum += part * effector.weight * (effector.destination(*tip) - *tip);
+            weights += part * part * effector.weight;
         }
         if weights == 0.0 {
             continue;

@@ -422,7 +422,8 @@ impl DampedLeastSquares {
                 if effector.tree != tree {
                     continue;
                 }
-                let lever = problem.length * effector.weight.sqrt();
+                let part = problem.part_of_shift(index);
+                let lever = part * problem.length * effector.weight.sqrt();
                 let place = columns(Mat3A::IDENTITY * lever, |axis| self.counted[index].of(axis));
                 self.blocks.push((place_row(problem, index), place));
                 if let Some(missing) = self.missing[index] {

@@ -1,6 +1,6 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
-use super::{EndEffector, KinematicTree, Link, Masses, Problem};
+use super::{EndEffector, HeldLimb, KinematicTree, Link, Masses, Problem};
 use crate::chain_ik::{
     ChainTarget, Effector, Method, Orientation, Root, SolveError, SolverOptions,
 };
@@ -26,6 +26,8 @@ pub struct Builder {
     path: Vec<PathJoint>,
     /// The spaces of all joints; `None` for joints on no path.
     attachments: Vec<Option<Attachment>>,
+    /// The limbs whose tips are held in place, for a centre of mass.
+    pub held_limbs: Vec<HeldLimb>,
     bind: SkeletonPose,
 }
 
@@ -117,10 +119,17 @@ impl Builder {
             }
         }
         let mut masses = Masses::new(effector, problem.links.len());
+        for limb in &self.held_limbs {
+            if let Some(base) = self.base_of(problem, skeleton, limb.upper) {
+                masses.add(base.link, limb.with_base, base.to_link.translation);
+                masses.hold(limb.held, limb.moment);
+            }
+        }
         let mut is_below = vec![false; skeleton.joints().len()];
         for ((id, joint), (mass, centre)) in skeleton.iter().zip(bone_masses(skeleton)) {
             let is_parent_below = joint.parent.is_some_and(|parent| is_below[parent.index()]);
-            is_below[id.index()] = id == targets[effector].joint || is_parent_below;
+            let is_held = self.held_limbs.iter().any(|limb| limb.upper == id);
+            is_below[id.index()] = (id == targets[effector].joint || is_parent_below) && !is_held;
             if let (true, Some(at)) = (is_below[id.index()], self.attachments[id.index()]) {
                 let centre = at.to_link.transform_point3a((centre * problem.unit).as_vec3a());
                 masses.add(at.link, mass, centre);
@@ -128,6 +137,18 @@ impl Builder {
         }
         masses.sum_up(&problem.links);
         Some(masses)
+    }
+
+    /// The space of a joint's base; `None` for a root.
+    fn base_of(
+        &self,
+        problem: &Problem,
+        skeleton: &Skeleton,
+        joint: JointId,
+    ) -> Option<Attachment> {
+        let joint = &skeleton[joint];
+        let parent = self.attachments[joint.parent?.index()]?;
+        Some(problem.at_offset(joint, parent))
     }
 
     fn add_links(&mut self, problem: &mut Problem, skeleton: &Skeleton) {

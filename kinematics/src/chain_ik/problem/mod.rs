@@ -23,6 +23,7 @@ use crate::skeleton::centre_of_mass_below;
 use crate::skeleton::{JointId, JointLimits, RotationAxis, Skeleton};
 
 pub(super) use build::{Builder, check_target};
+pub(crate) use masses::HeldLimb;
 pub(super) use masses::{MassOnLink, Masses};
 
 /// A target for a joint: a place for the tip of its bone, another of its points or the centre of
@@ -114,7 +115,7 @@ impl ChainTarget {
     }
 
     /// True if the centre of mass goes to the place.
-    pub(super) fn is_of_mass(&self) -> bool {
+    pub(crate) fn is_of_mass(&self) -> bool {
         self.effector == Effector::CentreOfMass
     }
 
@@ -432,6 +433,13 @@ impl Problem {
     /// ℓ in world units.
     pub fn turn_length_in_world(&self) -> f64 {
         TURN_LENGTH * self.world_length()
+    }
+
+    /// The part of a shift of its tree by which an end effector moves: all of it, but for a centre of
+    /// mass of which a part stays in place.
+    pub fn part_of_shift(&self, effector: usize) -> f32 {
+        let masses = self.masses.as_ref().filter(|masses| masses.effector == effector);
+        masses.map_or(1.0, Masses::part_of_shift)
     }
 
     /// Indices of the end effectors at a link and below.

@@ -20,7 +20,7 @@ use glam::{Quat, Vec3A};
 use super::ChainSolver;
 use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::Recorder;
-use crate::chain_ik::problem::{EndEffector, Problem, Wanted};
+use crate::chain_ik::problem::{EndEffector, HeldLimb, Problem, Wanted};
 use crate::chain_ik::report::{Report, Status};
 use crate::chain_ik::tracker::Tracker;
 use crate::chain_ik::{ChainTarget, SolveError, SolverOptions};
@@ -133,6 +133,18 @@ impl ChainSolver {
         let step = self.track_with(&mut tracker, targets, fk);
         self.tracker = Some(tracker);
         step
+    }
+
+    /// [`ChainSolver::track`] for a centre of mass of a body with limbs whose tips are held.
+    pub(crate) fn track_with_limbs(
+        &mut self,
+        targets: &[ChainTarget],
+        limbs: &[HeldLimb],
+        fk: &Skeleton,
+    ) -> Result<TrackStep, SolveError> {
+        self.builder.held_limbs.clear();
+        self.builder.held_limbs.extend_from_slice(limbs);
+        self.track(targets, fk)
     }
 
     /// Brings the configuration as near to the FK pose as the targets allow, if they are reached:

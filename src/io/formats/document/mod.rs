@@ -35,7 +35,7 @@ use keys::{ChannelFields, TimelineFields, keys};
 use posture::PostureFields;
 use skeleton::SkeletonFields;
 use skin::SkinFields;
-use targets::{SolverFields, TargetFields, add_targets};
+use targets::{BalanceFields, SolverFields, TargetFields, add_targets};
 use version_2::{ArmFields, RigFields, RigName};
 
 /// The key by which a file is recognized.
@@ -161,6 +161,8 @@ struct DocumentFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     skin: Option<JsonObject<SkinFields>>,
     targets: Option<Vec<JsonObject<TargetFields>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    balance: Option<JsonObject<BalanceFields>>,
     solver: Option<JsonObject<SolverFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     posture: Option<JsonObject<PostureFields>>,
@@ -184,7 +186,8 @@ struct DocumentFields {
 
 impl DocumentFields {
     fn new(document: &Document) -> Self {
-        let SkeletonRig { skeleton, skin, targets, follow_paths, posture, .. } = &document.rig;
+        let SkeletonRig { skeleton, skin, targets, balance, follow_paths, posture, .. } =
+            &document.rig;
         let posture = posture.as_ref().map(|posture| PostureFields::new(posture));
         let channels = (!document.keys.is_empty()).then(|| ChannelFields::all(&document.keys));
         Self {
@@ -195,6 +198,7 @@ impl DocumentFields {
             skeleton: Some(JsonObject(SkeletonFields::new(skeleton))),
             skin: skin.as_ref().map(SkinFields::new).map(JsonObject),
             targets: Some(targets.iter().map(TargetFields::new).map(JsonObject).collect()),
+            balance: balance.as_ref().map(BalanceFields::new).map(JsonObject),
             solver: Some(JsonObject(SolverFields::new(&document.rig))),
             posture: posture.map(JsonObject),
             track_start: document.track_start.map(JsonSeconds::from),
@@ -220,6 +224,9 @@ impl DocumentFields {
             rig.skin = Some(fields.skin(&rig.skeleton).at("skin")?);
         }
         add_targets(&mut rig, self.targets.unwrap_or_default()).at("targets")?;
+        if let Some(JsonObject(fields)) = self.balance {
+            rig.balance = Some(fields.balance().at("balance")?);
+        }
         if let Some(JsonObject(fields)) = self.solver {
             fields.set(&mut rig).at("solver")?;
         }

@@ -4,11 +4,11 @@
 use core::f32::consts::PI;
 use std::collections::HashSet;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::skeleton::joint;
-use crate::document::{SkeletonRig, Target, TargetMotion, TargetPath};
+use crate::document::{BalanceOver, BalanceTarget, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::io::json::{
     Above0, AtField, AtLeast0, FieldError, Fraction, JsonNumber, JsonObject, JsonPoint, Whole,
     value_or,
@@ -107,6 +107,53 @@ pub struct SolverFields {
     track: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     body_follows: Option<bool>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct BalanceFields {
+    influence: Option<JsonNumber>,
+    weight: Option<Above0>,
+    over: Option<OverFields>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum OverFields {
+    Feet(Feet),
+    Point([JsonNumber; 2]),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Feet {
+    Feet,
+}
+
+impl BalanceFields {
+    pub fn new(balance: &BalanceTarget) -> Self {
+        let over = match balance.over {
+            BalanceOver::Feet => OverFields::Feet(Feet::Feet),
+            BalanceOver::Point(Vec2 { x, y }) => OverFields::Point([x, y].map(JsonNumber::from)),
+        };
+        Self {
+            influence: Some(balance.influence.into()),
+            weight: Some(balance.weight.into()),
+            over: Some(over),
+        }
+    }
+
+    pub fn balance(self) -> Result<BalanceTarget, FieldError> {
+        let default = BalanceTarget::default();
+        let over = match self.over {
+            None | Some(OverFields::Feet(_)) => BalanceOver::Feet,
+            Some(OverFields::Point(point)) => BalanceOver::Point(Vec2::from(point.map(f32::from))),
+        };
+        let influence = value_or(self.influence, default.influence);
+        if !(0.0..=1.0).contains(&influence) {
+            return Err(format!("must be from 0 to 1, got {influence}")).at("influence");
+        }
+        Ok(BalanceTarget { influence, weight: value_or(self.weight, default.weight), over })
+    }
 }
 
 /// Adds the targets of a file to a rig, which must have its skeleton already.

@@ -1,7 +1,9 @@
 //! Joints, targets, solver options and path following.
 
-use glam::{Affine3A, Vec3};
-use ik_arm::document::{PathKind, Target, TargetMotion, TargetPath, WavyRing};
+use glam::{Affine3A, Vec2, Vec3};
+use ik_arm::document::{
+    BalanceOver, BalanceTarget, PathKind, Target, TargetMotion, TargetPath, WavyRing,
+};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
@@ -237,6 +239,13 @@ impl Values<'_> {
                 period: self.above_0(6.0),
             })
         })
+    }
+
+    pub fn balance(&mut self) -> Option<BalanceTarget> {
+        let (influence, weight) = (self.number(1.0), self.above_0(3.0));
+        let Vec3 { x, z, .. } = self.small_point();
+        let over = self.one_of(&[BalanceOver::Feet, BalanceOver::Point(Vec2::new(x, z))]);
+        self.chance(0.7).then_some(BalanceTarget { influence, weight, over })
     }
 
     pub fn options(&mut self) -> SolverOptions {

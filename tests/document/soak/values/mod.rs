@@ -95,7 +95,8 @@ impl Values<'_> {
     pub fn length(&mut self) -> f32 {
         if self.chance(0.2) {
             let joints = self.session.skeleton().joints();
-            let lengths: Vec<f32> = joints.iter().map(|joint| joint.axis.length()).collect();
+            let lengths = joints.iter().map(|joint| joint.axis.length()).chain([1.0]);
+            let lengths: Vec<f32> = lengths.collect();
             let own = self.one_of(&lengths);
             return self.one_of(&[own, own, 200.0, 300.0, 1e-2, 0.0, -1.0]);
         }

@@ -48,6 +48,7 @@ impl Values<'_> {
             }
             5 => Channel::Overlay(self.layer()),
             6 => Channel::Translation,
+            7 => Channel::BalanceInfluence,
             _ => self.one_of(&channels::ALL),
         }
     }
