@@ -1,10 +1,11 @@
 //! Random documents, built-in examples, and a snake with keys.
 
 use super::arm::{Arm, Cursor, HandOrientation, HandSpace};
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 use ik_arm::document::{
-    Camera, Channel, Display, Document, Keys, Overlay, PathKind, Quantity, SkeletonRig, Target,
-    TargetMotion, TargetPath, Timeline, TwistReferenceKind, WavyRing,
+    BalanceOver, BalanceTarget, Camera, Channel, Display, Document, Keys, Overlay, PathKind,
+    Quantity, SkeletonRig, Target, TargetMotion, TargetPath, Timeline, TwistReferenceKind,
+    WavyRing,
 };
 use ik_arm::io::{Example, OpenOptions, parse};
 use ik_arm::kinematics::Shared;
@@ -83,6 +84,8 @@ pub fn document(random: &mut Random) -> Document {
             rig.with_path(root, random.one_of(&[None, kinds[0], kinds[1], kinds[2]]));
     }
     rig.is_tracked = random.coin();
+    rig.body_follows = random.coin();
+    rig.balance = random.coin().then(|| balance(random));
     rig.posture =
         random.coin().then(|| posture(random, &rig)).filter(|it| !it.is_empty()).map(Shared::from);
     let keys = keys(random, &rig);
@@ -192,6 +195,13 @@ fn cursor(random: &mut Random) -> Cursor {
 }
 
 /// Puts some targets and poles on joints, where they can be evaluated.
+fn balance(random: &mut Random) -> BalanceTarget {
+    let (influence, weight) = (random.within(0.0..1.0), random.positive());
+    let point = BalanceOver::Point(Vec2::new(random.finite(), random.finite()));
+    let over = random.one_of(&[BalanceOver::Feet, point]);
+    BalanceTarget { influence, weight, over }
+}
+
 fn put_on_joints(random: &mut Random, rig: &mut SkeletonRig) {
     let joints: Vec<JointId> = rig.skeleton.ids().collect();
     for index in 0..rig.targets.len() {
@@ -215,6 +225,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| Channel::of_target(it.joint));
     let all = overlays.chain([Channel::Translation]);
+    let all = all.chain(rig.balance.map(|_| Channel::BalanceInfluence));
     let mut keys = Keys::default();
     for channel in all.chain(joints).chain(targets) {
         if random.below(3) > 0 {

@@ -1,10 +1,10 @@
 //! Grab anywhere: a drag of any point of a body leaves what its targets hold where it is.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, Ray, SkeletonRig, Target};
+use ik_arm::document::{BalanceTarget, Channel, Document, Ray, SkeletonRig, Target};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::session::{
-    DragInput, Grip, KeysEdit, PlaybackAction, PointHandle, Preferences, Session,
+    DragInput, Grip, KeysEdit, PlaybackAction, PointHandle, Preferences, Session, SolverEdit,
     TransactionAction, ViewAction,
 };
 
@@ -190,5 +190,31 @@ fn the_target_of_a_chain_stays_while_a_joint_of_it_is_dragged() {
         assert!(pose(&session).tip(middle).distance(dragged) < 1e-3, "case {case}");
         assert_eq!(session.skeleton()[middle].rotation, angles, "the pose is a posture");
         assert!(session.document().rig.posture.is_some());
+    }
+}
+
+#[test]
+fn the_balance_of_a_body_that_is_dragged_holds() {
+    for (bone, right, up) in [("chest", 0.1, -0.05), ("spine", -0.06, 0.0), ("head", 0.12, -0.02)] {
+        let mut session = human();
+        session.apply(SolverEdit::SetBalance(Some(BalanceTarget::default())));
+        let part = joint(&session, bone);
+        let ends = ENDS.map(|name| pose(&session).tip(joint(&session, name)));
+        let at = press(&mut session, part);
+        let before = pose(&session).tip(part);
+        let way = across(&session, right, up);
+        for step in 1..=20_u8 {
+            move_to(&mut session, at + way * (f32::from(step) / 20.0));
+            let balance = session.posed().evaluated_skeleton().balance.clone().expect("a balance");
+            assert!(balance.error() < 2e-3, "{bone} step {step}: {balance:?}");
+            for (name, before) in ENDS.into_iter().zip(ends) {
+                let off = pose(&session).tip(joint(&session, name)).distance(before);
+                assert!(off < 1e-3, "{bone} step {step}: {name} is off by {off}");
+            }
+        }
+        assert!(pose(&session).tip(part).distance(before) > 0.02, "{bone} moves");
+        session.apply(TransactionAction::Commit);
+        let balance = session.posed().evaluated_skeleton().balance.clone().expect("a balance");
+        assert!(balance.error() < 2e-3, "{bone}, let go: {balance:?}");
     }
 }

@@ -350,6 +350,14 @@ fn an_invalid_value_is_named_with_the_rule() {
             "line 2, column 26: solver.posture_rate: must be 0 or more, got -1",
         ),
         (
+            "\"balance\":{\"influence\":1.5}".to_owned(),
+            "line 2, column 24: balance.influence: must be from 0 to 1, got 1.5",
+        ),
+        (
+            "\"balance\":{\"over\":\"hands\"}".to_owned(),
+            "line 2, column 19: balance.over: must be \"feet\" or two numbers, x and z of a point",
+        ),
+        (
             joints(limit),
             "line 4, column 15: skeleton.joints[0].limits.y: the limit of joint 0 about y must be \
              finite, the lower bound first, got 1 to 0",

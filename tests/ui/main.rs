@@ -7,6 +7,7 @@ mod arm_handles;
 mod arm_pin;
 mod arm_posing;
 mod bake;
+mod balance;
 mod bench;
 #[path = "../common/mod.rs"]
 mod common;

@@ -78,7 +78,7 @@ impl Configuration {
         moments.clear();
         moments.extend((0..problem.links.len()).map(|link| self.own_moment(masses, link)));
         let tree = problem.effectors[masses.effector].tree;
-        let held = masses.held_from(&problem.trees[tree], problem.unit());
+        let held = masses.held_from(problem.trees[tree].origin, problem.unit());
         let mut centre = held + masses.fixed + masses.fixed_mass * self.shifts[tree];
         for (index, link) in problem.links.iter().enumerate().rev() {
             match link.parent {

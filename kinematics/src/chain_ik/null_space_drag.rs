@@ -29,7 +29,7 @@ use super::configuration::{Configuration, Coordinates};
 use super::inside::{Ellipsoid, Recorder};
 use super::jacobian::advance;
 use super::method::DampedLeastSquares;
-use super::problem::{Builder, EndEffector, Link, Problem};
+use super::problem::{Builder, EndEffector, HeldLimb, Link, Problem};
 use super::{ChainTarget, Method, Root, SolveError, SolverOptions};
 use crate::normalize;
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
@@ -101,11 +101,24 @@ impl NullSpaceDrag {
         dragged: ChainTarget,
         root: Root,
     ) -> Result<Self, SolveError> {
+        Self::with_limbs(skeleton, held, &[], dragged, root)
+    }
+
+    /// [`NullSpaceDrag::new`] for a held centre of mass of a body with limbs whose tips are held.
+    pub(crate) fn with_limbs(
+        skeleton: &Skeleton,
+        held: &[ChainTarget],
+        limbs: &[HeldLimb],
+        dragged: ChainTarget,
+        root: Root,
+    ) -> Result<Self, SolveError> {
         let dragged = ChainTarget { weight: 1.0, orientation: None, ..dragged };
         let targets = [held, &[dragged]].concat();
         let options = SolverOptions::new(Method::DampedLeastSquares).with_root(root);
         let mut problem = Problem::default();
-        Builder::new(skeleton, &targets, &options)?.fill(&mut problem, skeleton, &targets)?;
+        let mut builder = Builder::new(skeleton, &targets, &options)?;
+        builder.held_limbs.extend_from_slice(limbs);
+        builder.fill(&mut problem, skeleton, &targets)?;
         let place = problem.effectors[held.len()].target.as_dvec3();
         problem.effectors[held.len()].weight = 0.0;
         let (config, to_world) = (Configuration::new(&problem), skeleton.transform().as_daffine3());

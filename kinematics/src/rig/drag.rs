@@ -1,3 +1,6 @@
+use glam::Vec3;
+
+use super::balance_target::Footing;
 use super::evaluate::EvaluatedSkeleton;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
@@ -24,14 +27,16 @@ impl SkeletonRig {
         for joint in self.limb_joints_of_targets() {
             pose.write_local(joint, |joint| joint.locked = true);
         }
-        let held = self.held_targets(evaluated, time);
+        let footing = self.footing(&evaluated.solved);
+        let mut held = self.held_targets(evaluated, time);
+        held.extend(self.held_balance(evaluated, &footing));
         let is_root = pose.joint(dragged.joint).is_some_and(|joint| joint.parent.is_none());
         // A body that nothing holds would be carried away.
         let root = match self.solver.root {
             Root::Free if held.is_empty() && !is_root => Root::Turns,
             root => root,
         };
-        NullSpaceDrag::new(&pose, &held, dragged, root)
+        NullSpaceDrag::with_limbs(&pose, &held, &footing.limbs, dragged, root)
     }
 
     /// True if a drag of a point of a joint can turn the joint or one above it, or move the root.
@@ -70,6 +75,22 @@ impl SkeletonRig {
     fn limb_joints_of_targets(&self) -> impl Iterator<Item = JointId> {
         let limbs = self.full_targets().filter(|target| target.limb().is_some());
         limbs.flat_map(|target| self.moved_by(target).turned)
+    }
+
+    /// The place above which a balance of full influence holds the centre of mass: that which it asks
+    /// for, or where the centre is if it is not there.
+    fn held_balance(
+        &self,
+        evaluated: &EvaluatedSkeleton,
+        footing: &Footing,
+    ) -> Option<ChainTarget> {
+        let balance = self.body_target_of_balance(footing).filter(|it| it.influence >= 1.0)?;
+        let report = evaluated.balance.as_ref()?;
+        let place = match report.error() > self.tolerance() {
+            true => Vec3::new(report.centre.x, 0.0, report.centre.y),
+            false => balance.tip.point,
+        };
+        Some(ChainTarget { point: place, ..balance.tip })
     }
 
     /// The places and orientations that targets of full influence hold in a pose.

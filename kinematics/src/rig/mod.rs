@@ -2,6 +2,7 @@
 //! guides, the skeleton with its targets and its skin, and crowds of arms.
 
 mod arm;
+mod balance;
 mod balance_target;
 mod body_follows;
 mod carried;

@@ -29,6 +29,7 @@ The file is not changed. The output is one line of JSON, in world space:
     "limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
     "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
     "along":H,"out":O,"shoulder_angle_deg":A,"elbow_angle_deg":A}|null}, …],
+   "balance":{"over":[x,z]|null,"centre":[x,z],"error":E},
    "report":{"solver":"…","iterations":N,"error":E,"converged":true|false},
    "why":[{"cause":"…","target":"JOINT","joints":["…"],"sentence":"…","remedy":"…",
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
@@ -39,7 +40,8 @@ angle from the axis that is aimed to its point. Both are null if the target asks
 the figures of a limb's target in the evaluated pose: the place of its base, the unit vector from
 there to the hand, the angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
 the elbow's distances along and from the Pointer, and the angles at the base and at the elbow; null
-for other targets, and with --fk and --solver. The report is that of --solver, or
+for other targets, and with --fk and --solver. Balance is there for a document with one: where its
+centre of mass is on the ground, and where it should be. The report is that of --solver, or
 of the solver of the whole-body targets, else null, also if there is nothing to solve. Why lists the
 causes for which targets are not reached, the most likely first, each with the remedy that helps
 most and the distance from tip to target and the angle that it leaves, or null if no remedy was

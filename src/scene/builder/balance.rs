@@ -1,3 +1,4 @@
+use core::f32::consts::TAU;
 use core::fmt::Arguments;
 
 use glam::{Vec2, Vec3};
@@ -11,11 +12,20 @@ use crate::scene::{Ball, Label, LabelSide, Line, Palette, Scene};
 /// not hide them, as fractions of the reach.
 const BALL: f32 = 0.012;
 const ABOVE_GROUND: f32 = 2e-3;
+/// Corners of the ring around the goal.
+const GOAL_CORNERS: u8 = 24;
 
 impl DrawnSkeleton<'_> {
     /// Adds the centre of mass, the point under it on the ground, and the edge of what the figure
-    /// stands on: as guides while it is balanced, and in the colour of danger while it is not.
-    pub fn add_balance(&self, scene: &mut Scene, skeleton: &Skeleton, balance: &mut Balance) {
+    /// stands on: as guides while it is balanced, and in the colour of danger while it is not. A ring
+    /// is around the goal of the centre.
+    pub fn add_balance(
+        &self,
+        scene: &mut Scene,
+        skeleton: &Skeleton,
+        goal: Option<Vec2>,
+        balance: &mut Balance,
+    ) {
         if !balance.renew(skeleton, self.pose) {
             return;
         }
@@ -35,6 +45,15 @@ impl DrawnSkeleton<'_> {
         let radius = BALL * self.reach;
         for arm in [Vec3::X, Vec3::Z].map(|axis| 2.0 * radius * axis) {
             add_line([below - arm, below + arm], false);
+        }
+        if let Some(goal) = goal {
+            let corner = |at: u8| {
+                let turn = TAU * f32::from(at) / f32::from(GOAL_CORNERS);
+                on_ground(goal + 2.0 * radius * Vec2::from_angle(turn))
+            };
+            let colour = scene.palette.accent;
+            let side = |at| Line { from: corner(at), to: corner(at + 1), colour, dashed: false };
+            scene.lines.extend((0..GOAL_CORNERS).map(side));
         }
         scene.guide_balls.push(Ball { centre, radius, colour });
         let label = |at| Label::new(at, radius, LabelSide::Below, colour);

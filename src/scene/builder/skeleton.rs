@@ -156,7 +156,8 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         drawn.add_stiffness(scene);
     }
     if display.shows(Overlay::Balance) {
-        drawn.add_balance(scene, skeleton, balance);
+        let goal = posed.evaluated_skeleton().balance.as_ref().and_then(|it| it.over);
+        drawn.add_balance(scene, skeleton, goal, balance);
     }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);

@@ -66,15 +66,15 @@ impl SolverEdit {
             Self::SetBodyFollows(follows) => Outcome::change(session.shown(), |document| {
                 document.rig.body_follows = follows;
             }),
-            Self::SetBalance(balance) => {
-                let balance = balance.filter(BalanceTarget::is_valid);
-                Outcome::change(session.shown(), |document| {
-                    document.rig.balance = balance;
-                    if balance.is_none() {
-                        document.keys.clear(Channel::BalanceInfluence);
-                    }
-                })
-            }
+            Self::SetBalance(Some(balance)) if !balance.is_valid() => Outcome::fail(
+                "The influence of the balance must be from 0 to 1, its weight above 0, its point finite",
+            ),
+            Self::SetBalance(balance) => Outcome::change(session.shown(), |document| {
+                document.rig.balance = balance;
+                if balance.is_none() {
+                    document.keys.clear(Channel::BalanceInfluence);
+                }
+            }),
             Self::ResetPosture => Outcome::from(Consequence::ResetPosture).and(Outcome::change(
                 session.shown(),
                 |document| {

@@ -135,7 +135,8 @@ impl Builder {
                 masses.add(at.link, mass, centre);
             }
         }
-        masses.sum_up(&problem.links);
+        let parents = problem.links.iter().map(|link| (link.parent, link.pivot.length()));
+        masses.sum_up(&parents.collect::<Vec<_>>());
         Some(masses)
     }
 

@@ -1,6 +1,5 @@
 use glam::{DVec3, Vec3A};
 
-use super::{KinematicTree, Link};
 use crate::skeleton::{JointId, Skeleton, bone_masses};
 
 /// The mass of a limb whose tip a later step holds in place while the body moves the limb's base.
@@ -97,9 +96,10 @@ impl Masses {
         self.held += moment;
     }
 
-    /// Makes fractions of the masses, and sums up what is below each link. Without any mass, the
-    /// centre is the tree's origin.
-    pub fn sum_up(&mut self, links: &[Link]) {
+    /// Makes fractions of the masses, and sums up what is below each link. `parents` has the parent of
+    /// each link and the distance of its base from the parent's. Without any mass, the centre is the
+    /// tree's origin.
+    pub fn sum_up(&mut self, parents: &[(Option<usize>, f32)]) {
         let on_links = self.on_links.iter().map(|it| it.mass).sum::<f32>();
         let all = on_links + self.fixed_mass + self.held_mass as f32;
         let all = all.max(f32::MIN_POSITIVE);
@@ -112,19 +112,20 @@ impl Masses {
             it.moment /= all;
             (it.below, it.longest_arm) = (it.mass, it.moment.length());
         }
-        for (index, link) in links.iter().enumerate().rev() {
-            if let Some(parent) = link.parent {
+        for (index, (parent, pivot)) in parents.iter().enumerate().rev() {
+            if let Some(parent) = *parent {
                 let MassOnLink { below, longest_arm, .. } = self.on_links[index];
                 let parent = &mut self.on_links[parent];
                 parent.below += below;
-                parent.longest_arm += longest_arm + below * link.pivot.length();
+                parent.longest_arm += longest_arm + below * pivot;
             }
         }
     }
 
-    /// The moment of what stays in place, relative to a tree's origin and in the problem's units.
-    pub fn held_from(&self, tree: &KinematicTree, unit: f64) -> Vec3A {
-        ((self.held - self.held_mass * tree.origin) * unit).as_vec3a()
+    /// The moment of what stays in place, relative to an origin in skeleton space and in the problem's
+    /// units, of which `unit` are a skeleton unit.
+    pub fn held_from(&self, origin: DVec3, unit: f64) -> Vec3A {
+        ((self.held - self.held_mass * origin) * unit).as_vec3a()
     }
 
     /// The part of a shift of the root by which the centre of mass moves.

@@ -117,7 +117,7 @@ pub struct BalanceFields {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "must be \"feet\" or two numbers, x and z of a point")]
 enum OverFields {
     Feet(Feet),
     Point([JsonNumber; 2]),

@@ -1,6 +1,7 @@
 //! The joints, targets, skin and path of the skeleton. A path is a wavy ring, or the path of the
 //! chain's head or of the head's target.
 
+mod balance;
 mod joint;
 mod outliner;
 mod skin;
@@ -45,7 +46,10 @@ pub(in crate::ui) fn folded(ui: &mut Ui, session: &Session, actions: &mut Action
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
     selected(ui, session, actions);
-    widgets::section(ui, "Targets", |ui| targets::list(ui, session, actions));
+    widgets::section(ui, "Targets", |ui| {
+        targets::list(ui, session, actions);
+        balance::ui(ui, session, actions);
+    });
     widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
     widgets::section(ui, "Translation", |ui| place(ui, session, actions));
     widgets::section(ui, "Path", |ui| path(ui, session, actions));
