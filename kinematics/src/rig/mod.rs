@@ -16,6 +16,8 @@ mod mesh_skin;
 mod path_following;
 mod pop_cause;
 mod pops;
+mod reach_grid;
+mod reach_region;
 mod skeleton_rig;
 mod skin;
 mod tapered_cylinder;
@@ -35,6 +37,7 @@ pub use mesh_skin::{
 };
 pub use pop_cause::RigPopCause;
 pub use pops::{RigMoment, RigPop};
+pub use reach_region::{ReachRegion, ReachSearch};
 pub use skeleton_rig::SkeletonRig;
 pub use skin::{BoneSkin, Skin, SkinMeshError, SkinSource};
 pub use tapered_cylinder::TaperedCylinder;

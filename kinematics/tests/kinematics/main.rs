@@ -17,6 +17,7 @@ mod null_space_drag;
 mod orientation;
 mod places;
 mod pop;
+mod reach_region;
 mod skeleton;
 mod skin_from_bones;
 mod skinning;
