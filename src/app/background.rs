@@ -18,7 +18,7 @@ use crate::render::{self, Gpu, PictureRenderer};
 use crate::rig::SkinSource;
 use crate::scene::Scene;
 use crate::session::{
-    Action, BakeJob, Export, ExportJob, FileAction, InspectionJob, Overlays, PathDialog,
+    Action, BakeJob, Export, ExportJob, FileAction, InspectionJob, Overlays, PathDialog, ReachJob,
     ShellAction,
 };
 
@@ -85,6 +85,14 @@ pub(super) fn inspect(job: InspectionJob, proxy: EventLoopProxy<UserEvent>) {
             Some(ended) => send(&proxy, UserEvent::Inspected(Box::new(ended))),
             None => log::error!("the inspection of a motion panicked"),
         }
+    });
+}
+
+/// Starts a search for a reach region.
+pub(super) fn find_reach(job: ReachJob, proxy: EventLoopProxy<UserEvent>) {
+    platform::spawn(async move || match caught(job.run()).await {
+        Some(ended) => send(&proxy, UserEvent::FoundReach(Box::new(ended))),
+        None => log::error!("the search for a reach region panicked"),
     });
 }
 

@@ -8,7 +8,7 @@ use super::platform::PlatformEvent;
 use crate::document::Baked;
 use crate::io::{OpenError, OpenOptions, Opened};
 use crate::rig::{MeshSkin, SkinFile, SkinFileError};
-use crate::session::{BakeJob, InspectAction, PathDialog};
+use crate::session::{BakeJob, InspectAction, PathDialog, ReachAction};
 
 /// Events that do not come from the window.
 #[derive(Debug)]
@@ -21,6 +21,8 @@ pub enum UserEvent {
     Baked(BakeJob, Result<Box<Baked>, String>),
     /// End of an inspection of the motion.
     Inspected(Box<InspectAction>),
+    /// A search for a reach region has ended.
+    FoundReach(Box<ReachAction>),
     /// Message or error of a finished export.
     Exported(Result<String, String>),
     /// The backup of unsaved changes was written, or the graphics device failed: the next frame sees

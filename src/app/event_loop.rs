@@ -257,6 +257,9 @@ impl ApplicationHandler<UserEvent> for App {
             UserEvent::Inspected(ended) => {
                 self.session.apply(*ended);
             }
+            UserEvent::FoundReach(ended) => {
+                self.session.apply(*ended);
+            }
             UserEvent::Exported(result) => {
                 self.session.apply(FileAction::ExportEnded(result));
             }

@@ -13,7 +13,7 @@ use super::platform;
 use super::present::Presented;
 use super::window::{AppWindow, Repaint};
 use crate::scene::Scene;
-use crate::session::{Actions, Effect, InspectAction, Session};
+use crate::session::{Actions, Effect, InspectAction, ReachAction, Session};
 use crate::ui::{self, FrameTime, style};
 
 /// Time between frames while only counts of earlier frames are missing.
@@ -45,6 +45,10 @@ impl AppWindow {
         if let Some(job) = session.next_inspection() {
             session.apply(InspectAction::Started(job.clone()));
             background::inspect(job, proxy.clone());
+        }
+        if let Some(job) = session.next_reach_region() {
+            session.apply(ReachAction::Started(job.clone()));
+            background::find_reach(job, proxy.clone());
         }
         self.update_title(session);
         let system = std::mem::take(&mut output.platform_output);

@@ -75,6 +75,8 @@ pub enum Overlay {
     Stiffness,
     /// The centre of mass, and what the figure stands on.
     Balance,
+    /// The places at which the target of the selected joint is reached.
+    ReachRegion,
 }
 
 impl Overlay {
@@ -110,6 +112,7 @@ impl Overlay {
             Self::CompareSkinning => "compare_skinning",
             Self::Stiffness => "stiffness",
             Self::Balance => "balance",
+            Self::ReachRegion => "reach_region",
         }
     }
 
@@ -133,7 +136,7 @@ impl Overlay {
         [Self::Cylinders, Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Other poses, the skin, and properties of joints.
-    pub const POSE: [Self; 9] = [
+    pub const POSE: [Self; 10] = [
         Self::FkPose,
         Self::ByItself,
         Self::Skin,
@@ -143,6 +146,7 @@ impl Overlay {
         Self::CompareSkinning,
         Self::Stiffness,
         Self::Balance,
+        Self::ReachRegion,
     ];
 
     /// Overlays that show motion over time.

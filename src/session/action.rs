@@ -5,6 +5,7 @@ use crate::session::inspections::InspectAction;
 use crate::session::keys::{BakeAction, KeysEdit};
 use crate::session::outcome::Outcome;
 use crate::session::playback::PlaybackAction;
+use crate::session::reach_regions::ReachAction;
 use crate::session::selection::SelectAction;
 use crate::session::session::Session;
 use crate::session::shell::ShellAction;
@@ -37,6 +38,8 @@ pub enum Action {
     Bake(BakeAction),
     /// Starts and ends inspections of the motion.
     Inspect(InspectAction),
+    /// Starts and ends searches for reach regions.
+    Reach(ReachAction),
     /// Opens, saves and exports.
     File(FileAction),
     /// Changes dialogs, messages or preferences.
@@ -64,6 +67,7 @@ from_payload! {
     Solver(SolverAction),
     Bake(BakeAction),
     Inspect(InspectAction),
+    Reach(ReachAction),
     File(FileAction),
     Shell(ShellAction),
     Tour(TourAction),

@@ -110,6 +110,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::SkinWeights => "Toggle skin weights",
         Overlay::Stiffness => "Toggle stiffness",
         Overlay::Balance => "Toggle balance",
+        Overlay::ReachRegion => "Toggle reach region",
         Overlay::CompareSkinning => "Toggle comparison of skinning",
         Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",

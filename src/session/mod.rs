@@ -19,6 +19,7 @@ mod playback;
 mod pop_fix;
 mod pops;
 mod preferences;
+mod reach_regions;
 mod selection;
 #[expect(clippy::module_inception, reason = "the type that names the module has a file of its own")]
 mod session;
@@ -56,6 +57,7 @@ pub use playback::{Playback, PlaybackAction};
 pub use pop_fix::PopFix;
 pub use pops::{PopSample, PopSampleKind, Pops, Spike, TransportPath};
 pub use preferences::{FrameBudget, Navigation, PanelTab, Preferences};
+pub use reach_regions::{ReachAction, ReachJob, ShownRegion};
 pub use selection::{SelectAction, Selection};
 pub use session::Session;
 pub use shell::{Shell, ShellAction};

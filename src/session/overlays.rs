@@ -10,6 +10,7 @@ use crate::rig::{Crowd, LimbFrames};
 use crate::session::limb::ShownLimb;
 use crate::session::parts::LimbFigure;
 use crate::session::pops::TransportPath;
+use crate::session::reach_regions::ShownRegion;
 use crate::session::session::Session;
 use crate::session::solver::iterates::InsideLayers;
 use crate::session::solver::run::SolverRun;
@@ -40,6 +41,8 @@ pub struct Overlays {
     pub trail: Vec<Vec3>,
     /// The rig in frames before and after the playhead.
     pub onion_skins: Vec<OnionSkin>,
+    /// The reach region of the selected target; `None` if it is hidden or not known.
+    pub reach_region: Option<ShownRegion>,
     /// True if handles are drawn over the picture. Names that they would cover are left out.
     pub has_handles: bool,
     /// The crowd that is shown instead of the rig; `None` to show the rig.
@@ -226,6 +229,7 @@ impl Session {
             overlays.concerned.extend(self.rig().end_of_target(found.target));
             overlays.concerned.extend_from_slice(&found.joints);
         }
+        overlays.reach_region = self.reach_region().cloned();
         overlays.inside = inside_view(self);
         overlays.wiggle = self.view().wiggle_view(self.posed());
         let limb = self.limb().map(|limb| &limb.frames);

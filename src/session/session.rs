@@ -8,6 +8,7 @@ use super::limb::ShownLimb;
 use super::playback::Playback;
 use super::pops::CursorMove;
 use super::preferences::Preferences;
+use super::reach_regions::ReachRegions;
 use super::selection::Selection;
 use super::shell::Shell;
 use super::solver::solvers::Solvers;
@@ -22,6 +23,7 @@ use crate::session::drag::follow_mouse::FollowMouse;
 mod act;
 mod files;
 mod framing;
+mod reach;
 mod time;
 mod tour;
 
@@ -52,6 +54,7 @@ pub struct Session {
     playback: Playback,
     solvers: Solvers,
     inspections: Inspections,
+    reach_regions: ReachRegions,
     view: View,
     files: Files,
     shell: Shell,
@@ -88,6 +91,7 @@ impl Session {
             playback: Playback::default(),
             solvers: Solvers::default(),
             inspections: Inspections::default(),
+            reach_regions: ReachRegions::default(),
             view: View::default(),
             files: Files::default(),
             shell: Shell::default(),

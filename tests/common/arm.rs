@@ -12,8 +12,8 @@ use ik_arm::kinematics::two_bone::{LengthError, TwoBone, TwoBonePose};
 use ik_arm::rig::LimbFrames;
 use ik_arm::session::{
     Action, BakeAction, DisplayEdit, Edit, Effect, FileAction, InspectAction, JointEdit, KeysEdit,
-    PathEdit, PlaybackAction, PoseMode, SelectAction, Session, ShellAction, SkinEdit, SolverAction,
-    SolverEdit, TargetEdit, TourAction, TransactionAction, ViewAction,
+    PathEdit, PlaybackAction, PoseMode, ReachAction, SelectAction, Session, ShellAction, SkinEdit,
+    SolverAction, SolverEdit, TargetEdit, TourAction, TransactionAction, ViewAction,
 };
 
 pub const ROOT: JointId = SkeletonRig::ROOT;
@@ -485,6 +485,7 @@ from_actions!(
     KeysEdit,
     PathEdit,
     PlaybackAction,
+    ReachAction,
     SelectAction,
     ShellAction,
     SkinEdit,

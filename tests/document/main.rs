@@ -19,6 +19,7 @@ mod inspection;
 mod keys;
 mod leg_pops;
 mod posing;
+mod reach_regions;
 mod session;
 mod session_edges;
 mod session_pops;

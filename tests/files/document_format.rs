@@ -262,7 +262,7 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
              `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `paths`, `onion_skins`, \
              `singularity_globe`, `twist_references`, `cylinders`, `hand`, `frames`, `fk_pose`, \
              `by_itself`, `skin`, `bones`, `wireframe`, `skin_weights`, `compare_skinning`, \
-             `stiffness`, `balance`",
+             `stiffness`, `balance`, `reach_region`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {

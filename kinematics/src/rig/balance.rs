@@ -23,7 +23,10 @@ impl SkeletonRig {
 
     /// What the balance needs to know of a pose.
     pub(super) fn footing(&self, posed: &Skeleton) -> Footing {
-        Footing { limbs: self.held_limbs(posed), over: self.place_of_balance(posed) }
+        let (limbs, over) = (self.held_limbs(posed), self.place_of_balance(posed));
+        let influence = self.balance.map_or(0.0, |balance| balance.influence);
+        let is_full = over.is_some_and(|(_, firmness)| influence * firmness >= 1.0);
+        Footing { limbs, over, is_full }
     }
 
     /// The whole-body target that balances the figure.

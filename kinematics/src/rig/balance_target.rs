@@ -58,6 +58,56 @@ pub(super) struct Footing {
     /// x and z of the point over which the centre of mass should be, and how firmly the figure
     /// stands, from 0 to 1.
     pub over: Option<(Vec2, f32)>,
+    /// True if the balance has full influence.
+    pub is_full: bool,
+}
+
+impl Footing {
+    /// Replaces the point over which the centre of mass should be.
+    pub fn aim_at(&mut self, place: Vec2) {
+        if let Some((over, _)) = &mut self.over {
+            *over = place;
+        }
+    }
+}
+
+/// The way of the centre of mass to where it should be, turn by turn.
+///
+/// The limb step moves the centre, too, so that a turn leads too far or not far enough. Each turn
+/// shows by which factor, and the next one takes that into account (Aitken's relaxation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BalanceWay {
+    /// Distance that is left.
+    pub left: f32,
+    /// The vector that is left.
+    vector: Vec2,
+    /// Part of the way that the last turn was asked for.
+    part: f32,
+}
+
+impl Default for BalanceWay {
+    fn default() -> Self {
+        Self { left: f32::INFINITY, vector: Vec2::ZERO, part: 1.0 }
+    }
+}
+
+impl BalanceWay {
+    /// The place that the next turn should ask for after a turn with this result.
+    pub fn next_place(&mut self, report: &BalanceReport) -> Option<Vec2> {
+        const PARTS: core::ops::RangeInclusive<f32> = 0.2..=1.5;
+        let vector = report.over? - report.centre;
+        if self.left.is_finite() {
+            let gone = (self.vector - vector).dot(self.vector) / self.vector.length_squared();
+            let part = self.part / gone;
+            self.part = if part.is_finite() && part > 0.0 {
+                part.clamp(*PARTS.start(), *PARTS.end())
+            } else {
+                1.0
+            };
+        }
+        (self.vector, self.left) = (vector, vector.length());
+        Some(report.centre + self.part * vector)
+    }
 }
 
 /// The result of an evaluation for the balance.

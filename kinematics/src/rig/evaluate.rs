@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
-use super::balance_target::{BalanceReport, Footing};
+use super::balance_target::{BalanceReport, BalanceWay, Footing};
 use super::carried::{BodyTarget, Carried};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
@@ -199,6 +199,13 @@ impl SkeletonRig {
         report.error <= self.tolerance() && !report.misses_rotation()
     }
 
+    /// True if the centre of mass is where the [balance](SkeletonRig::balance) asks for it, within ten
+    /// times [`SkeletonRig::tolerance`], or if nothing asks.
+    pub fn is_balanced(&self, evaluated: &EvaluatedSkeleton) -> bool {
+        let report = evaluated.balance.as_ref();
+        report.is_none_or(|report| report.error() <= 10.0 * self.tolerance())
+    }
+
     /// The skeleton at a time in seconds, posed by its targets: [`SkeletonRig::evaluate`] without
     /// the reports.
     pub fn skeleton_at(&self, time: f64) -> Shared<Skeleton> {
@@ -237,30 +244,38 @@ impl SkeletonRig {
         carried: &mut Carried,
         of: StepUse,
     ) -> StepPose {
-        const MOST_TURNS: usize = 4;
+        const MOST_TURNS: usize = 8;
         /// Part of the distance of the centre of mass that a turn must leave at most to be worth
         /// another one.
-        const WORTH: f32 = 0.7;
+        const WORTH: f32 = 0.8;
         let limbs_before = carried.limbs().clone();
         let mut footing = carried.take_footing().unwrap_or_else(|| {
             let mut first = self.begin_step(Shared::from(carried.first_pose(&fk)));
             self.solve_limbs(&mut first, time, None);
             self.footing(&first.solved)
         });
-        let (mut left, mut turns) = (f32::INFINITY, 0);
+        let mut way = BalanceWay::default();
+        let mut turn = 0;
         loop {
+            turn += 1;
             carried.restore_limbs(&limbs_before);
             let mut step = self.begin_step(fk.clone());
             self.solve_body(&mut step, Some(&footing), time, carried, true);
             self.solve_limbs(&mut step, time, (of != StepUse::Pose).then_some(&mut *carried));
             footing = self.footing(&step.solved);
-            turns += 1;
-            let error = self.balance_report(&step.solved).map_or(0.0, |report| report.error());
-            if turns == MOST_TURNS || error <= self.tolerance() || error > WORTH * left {
-                carried.set_footing(footing);
-                return step;
+            let left = way.left;
+            let report = self.balance_report(&step.solved);
+            let next = report.and_then(|report| way.next_place(&report));
+            // A pose that is blended with another one shows nothing of the way.
+            let gains = turn < 2 || footing.is_full && (turn < 3 || way.left <= WORTH * left);
+            match next.filter(|_| turn < MOST_TURNS && way.left > self.tolerance() && gains) {
+                Some(place) if footing.is_full => footing.aim_at(place),
+                Some(_) => {}
+                None => {
+                    carried.set_footing(footing);
+                    return step;
+                }
             }
-            left = error;
         }
     }
 

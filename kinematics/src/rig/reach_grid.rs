@@ -94,7 +94,7 @@ pub(super) fn surface(lattice: &Lattice, cells: &[Cell]) -> TriangleMesh {
     }
     triangles.sort_unstable();
     let normals = normals(&positions, &triangles);
-    let positions = positions.into_iter().map(|position| position.as_vec3()).collect();
+    let positions = positions.into_iter().map(DVec3::as_vec3).collect();
     TriangleMesh { positions, normals, texture_coordinates: Vec::new(), triangles }
 }
 

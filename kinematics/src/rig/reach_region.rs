@@ -20,8 +20,8 @@ use crate::chain_ik::{Method, Root};
 use crate::limb_ik::LimbRange;
 use crate::skin::TriangleMesh;
 
-/// The places at which a target of a rig is reached, while the other targets that are reached stay
-/// so, and while nothing but this target moves. The solver is damped least squares, whatever the
+/// The places at which a target of a rig is reached, while the other targets that are reached and
+/// the balance stay so, and while nothing but this target moves. The solver is damped least squares, whatever the
 /// method of the rig is; stiffness makes no difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReachRegion {
@@ -77,6 +77,8 @@ pub struct ReachSearch {
     time: f64,
     /// Indices of the other targets that must stay reached.
     held: Vec<usize>,
+    /// True if the balance must be kept.
+    is_balanced: bool,
     /// The pose and the state at the target's own place.
     start: (EvaluatedSkeleton, Carried),
     grid: SearchedGrid,
@@ -122,9 +124,11 @@ impl ReachSearch {
             rig.targets[*other].is_posing() && rig.is_reached(&start.0.targets[*other])
         };
         let held = others.filter(is_held).collect();
+        let is_balanced = rig.is_balanced(&start.0);
         let bounds = rig.most_reached(index, &start.0)?;
         let grid = SearchedGrid::new(Lattice::over(bounds, COARSE));
-        let mut search = Self { rig, index, time, held, start, grid, is_fine: false };
+        let is_fine = false;
+        let mut search = Self { rig, index, time, held, is_balanced, start, grid, is_fine };
         search.seed();
         Some(search)
     }
@@ -188,8 +192,8 @@ impl ReachSearch {
         self.rig.targets[self.index] = target.placed(&self.start.0.solved, self.time, place);
         let (evaluated, state) = self.rig.step(self.time, from);
         let is_reached = |index: &usize| self.rig.is_reached(&evaluated.targets[*index]);
-        let own = is_reached(&self.index);
-        let is_found = own && self.held.iter().all(is_reached);
+        let is_kept = !self.is_balanced || self.rig.is_balanced(&evaluated);
+        let is_found = is_reached(&self.index) && self.held.iter().all(is_reached) && is_kept;
         let Some(index) = self.grid.lattice.index(at) else { return };
         let cell = &mut self.grid.cells[index];
         cell.miss = cell.miss.min(evaluated.targets[self.index].error);

@@ -9,9 +9,10 @@ use crate::document::{
 };
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{Balance, Joint, JointId, Skeleton, SkeletonPose};
+use crate::kinematics::skin::Skinning;
 use crate::rig::TargetReport;
-use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
-use crate::session::Overlays;
+use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene, SkinInstance};
+use crate::session::{Overlays, ShownRegion};
 
 /// Number of lines of a drawn path, if its head has fewer keys.
 const LINES: usize = 2048;
@@ -159,6 +160,9 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         let goal = posed.evaluated_skeleton().balance.as_ref().and_then(|it| it.over);
         drawn.add_balance(scene, skeleton, goal, balance);
     }
+    if let Some(region) = &overlays.reach_region {
+        add_reach_region(scene, region);
+    }
     if display.shows(Overlay::Labels) {
         drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);
     }
@@ -301,4 +305,20 @@ fn add_trail(scene: &mut Scene, target: &Target, pose: &Skeleton, time: f64) {
         let colour = colour.with_opacity(0.9 * (1.0 - step as f32 / steps as f32));
         scene.lines.push(Line { from: at(step), to: at(step + 1), colour, dashed: false });
     }
+}
+
+/// Adds the surface of a reach region, see-through.
+fn add_reach_region(scene: &mut Scene, region: &ShownRegion) {
+    const OPACITY: f32 = 0.16;
+    const EDGES: f32 = 0.10;
+    let colour = scene.palette.accent;
+    scene.skins.push(SkinInstance {
+        mesh: region.mesh.clone(),
+        pose: region.pose.clone(),
+        skinning: Skinning::Linear,
+        offset: Vec3::ZERO,
+        colour: colour.with_opacity(OPACITY),
+        wireframe: Some(colour.with_opacity(EDGES)),
+        weights_of: None,
+    });
 }

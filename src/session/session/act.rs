@@ -44,6 +44,7 @@ impl Session {
                 self.editing.use_threads();
                 self.inspections.apply(action)
             }
+            Action::Reach(action) => self.reach_regions.apply(action),
             Action::Tour(action) => {
                 self.apply_tour(action);
                 return None;

@@ -69,7 +69,7 @@ fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) 
 }
 
 /// Guides of a figure.
-const FIGURE_GUIDES: [Overlay; 9] = [
+const FIGURE_GUIDES: [Overlay; 10] = [
     Overlay::Cursor,
     Overlay::Pointer,
     Overlay::InnerLimit,
@@ -79,6 +79,7 @@ const FIGURE_GUIDES: [Overlay; 9] = [
     Overlay::ByItself,
     Overlay::Stiffness,
     Overlay::Balance,
+    Overlay::ReachRegion,
 ];
 
 fn resets(ui: &mut Ui, actions: &mut Actions) {

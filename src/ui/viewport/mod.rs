@@ -63,7 +63,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     notes::why_not_reached(ui, session, &screen, actions);
     notes::follow_mouse(ui, session, rect, actions);
     notes::body_follows(ui, session, rect, actions);
-    notes::provisional(ui, session, rect);
+    notes::in_the_background(ui, session, rect);
     if has_joints(session) && !session.rig().has_bones() {
         invite(ui, rect);
     }

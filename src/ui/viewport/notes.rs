@@ -148,16 +148,21 @@ pub(super) fn body_follows(ui: &Ui, session: &Session, viewport: Rect, actions: 
     });
 }
 
-/// Says that the pose is not that of the motion yet, because a thread computes that.
-pub(super) fn provisional(ui: &Ui, session: &Session, viewport: Rect) {
-    if !session.posed().is_provisional() {
+/// Says what a thread computes that the view does not show yet: the pose of the motion, or a reach
+/// region.
+pub(super) fn in_the_background(ui: &Ui, session: &Session, viewport: Rect) {
+    let text = if session.posed().is_provisional() {
+        "Provisional pose: the motion until here is being computed"
+    } else if session.is_finding_reach_region() {
+        "Finding where the target can be reached"
+    } else {
         return;
-    }
-    let area = Area::new(Id::unique("provisional pose")).order(Order::Middle);
+    };
+    let area = Area::new(Id::unique("in the background")).order(Order::Middle);
     let corner = viewport.left_bottom() + vec2(MARGIN, -MARGIN);
     area.pivot(Align2::LEFT_BOTTOM).fixed_pos(corner).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).show(ui, |ui| {
-            ui.label("Provisional pose: the motion until here is being computed");
+            ui.label(text);
         });
     });
 }

@@ -7,8 +7,8 @@ use ik_arm::rig::Processor;
 use ik_arm::session::{
     Action, BakeAction, DisplayEdit, Edit, FileAction, FrameBudget, InsideLayer, InspectAction,
     InspectionJob, JointEdit, KeysEdit, LimbFigure, Navigation, PanelTab, PathEdit, PlaybackAction,
-    PoseMode, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit, TargetEdit,
-    TourAction, TransactionAction, ViewAction,
+    PoseMode, ReachAction, SelectAction, ShellAction, SkinEdit, SolverAction, SolverEdit,
+    TargetEdit, TourAction, TransactionAction, ViewAction,
 };
 
 use crate::soak::values::Values;
@@ -254,6 +254,10 @@ kinds! {
     Inspect () (InspectAction) {
         Started: Look 1, |v| InspectAction::Started(InspectionJob::new(v.session.history()));
         Ended: Look 1, |v| v.inspected();
+    }
+    Reach () (ReachAction) {
+        Started: Look 1, |v| ReachAction::Started(v.reach_job());
+        Ended: Look 1, |v| ReachAction::Ended(v.reach_job(), None);
     }
     File () (FileAction) {
         SavePicture: Look 1, |v| FileAction::SavePicture(v.name());

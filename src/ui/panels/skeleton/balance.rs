@@ -25,7 +25,7 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let mut is_on = rig.balance.is_some();
     widgets::pair(ui, "", |ui| {
         if let Some(report) = report {
-            distance(ui, report, rig.tolerance());
+            distance(ui, session, report);
         }
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let tooltip = "Move the body so that its centre of mass is over the feet or a point";
@@ -71,12 +71,11 @@ pub(super) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 /// Shows how far the centre of mass is from where it should be; a tick if it is there.
-fn distance(ui: &mut Ui, report: &BalanceReport, tolerance: f32) {
-    // The centre is no tip: it need not be so exact.
-    const EXACTNESS: f32 = 10.0;
+fn distance(ui: &mut Ui, session: &Session, report: &BalanceReport) {
+    let is_balanced = session.rig().is_balanced(session.posed().evaluated_skeleton());
     if report.over.is_none() {
         ui.weak("in the air").on_hover_text("Nothing stands on the ground");
-    } else if report.error() > EXACTNESS * tolerance {
+    } else if !is_balanced {
         let missing = ui.label(RichText::new(text::short(report.error())).monospace());
         missing.on_hover_text("Distance of the centre of mass from where it should be");
     } else {

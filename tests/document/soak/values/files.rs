@@ -10,7 +10,7 @@ use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::rig::{Posture, PosturedJoint};
 use ik_arm::session::{
     BakeJob, Dialog, Export, ExportJob, FileAction, FileContents, InspectAction, InspectionJob,
-    PathDialog,
+    PathDialog, ReachJob,
 };
 use pollster::block_on;
 
@@ -58,6 +58,14 @@ impl Values<'_> {
         let rotation = Some(self.angles());
         let joint = PosturedJoint { rotation, offset: self.coin().then(|| self.angles()) };
         Posture { joints: [(self.joint(), joint)].into(), ..Posture::default() }
+    }
+
+    /// A search for the reach region of a target of the present rig, or of another rig.
+    pub fn reach_job(&mut self) -> ReachJob {
+        let other = crate::common::documents::example("human").rig;
+        let rig = if self.session.rig().targets.is_empty() { &other } else { self.session.rig() };
+        let index = self.random.below(rig.targets.len());
+        ReachJob::new(rig, index, self.session.playback().time())
     }
 
     /// The end of an inspection of the present document, cancelled half the time.
