@@ -1,9 +1,9 @@
 //! Rotations about a centre that bring points as near as possible to their destinations.
 
-use glam::{DMat3, DQuat, DVec3, Quat, Vec3, Vec3A};
+use glam::{DMat3, DQuat, DVec3, Mat3A, Quat, Vec3, Vec3A};
 use nalgebra::Matrix4;
 
-use crate::skeleton::{JointLimits, RotationAxis};
+use crate::skeleton::{JointAngles, JointLimits, RotationAxis, nearest_angles};
 use crate::{normalize, rotation_between};
 
 /// A point to be rotated and its destination, both relative to the centre of rotation.
@@ -65,6 +65,9 @@ pub(super) fn align_best(pairs: &[PointPair]) -> Quat {
 /// increases the weighted squared distance. Rotates the points `from` of the pairs and returns the
 /// total rotation. With a `part` below 1, each angle changes by that part of its way alone.
 ///
+/// A joint with a cone rotates by the best rotation of all, brought into the cone, and then about its
+/// bone.
+///
 /// `axes` are the rotation axes of the three angles before the call.
 pub(super) fn align_within(
     limits: &JointLimits,
@@ -73,6 +76,12 @@ pub(super) fn align_within(
     angles: &mut Vec3,
     pairs: &mut [PointPair],
 ) -> Quat {
+    if limits.as_cone().is_some() {
+        let [x_axis, y_axis, z_axis] = axes;
+        let own = JointAngles(*angles).axes();
+        let frame = frame_of([x_axis, y_axis, z_axis], [own.x_axis, own.y_axis, own.z_axis]);
+        return align_in_cone(limits, frame, part, angles, pairs);
+    }
     let mut whole = Quat::IDENTITY;
     for (about, axis) in RotationAxis::ALL.into_iter().zip(axes) {
         let best = best_angle(axis, pairs);
@@ -99,15 +108,118 @@ pub(super) fn align_within(
     whole
 }
 
+/// The rotation that takes the axes of Euler angles in a joint's frame to those in skeleton space.
+fn frame_of(axes: [Vec3A; 3], own: [Vec3A; 3]) -> Mat3A {
+    // The second and the third axis are always across each other.
+    let basis = |[_, y, z]: [Vec3A; 3]| Mat3A::from_cols(y.cross(z), y, z);
+    basis(axes) * basis(own).transpose()
+}
+
+/// [`align_within`] for a cone: by the best rotation of all, about the bone, and along the side of the
+/// cone. `frame` is the rotation from the joint's frame to skeleton space.
+fn align_in_cone(
+    limits: &JointLimits,
+    frame: Mat3A,
+    part: f32,
+    angles: &mut Vec3,
+    pairs: &mut [PointPair],
+) -> Quat {
+    let mut turner = ConeTurner { limits, frame, angles, pairs, whole: Quat::IDENTITY };
+    let best = match &*turner.pairs {
+        [_] => align(turner.pairs),
+        _ => align_best(turner.pairs),
+    };
+    turner.turn(Quat::IDENTITY.slerp(best, part));
+    if let Some((bone, [least, most])) = limits.twist_room(*turner.angles) {
+        let axis = frame * Vec3A::from(bone);
+        let by = best_within(gentle_angle(axis, turner.pairs), least.min(0.0), most.max(0.0));
+        turner.turn(Quat::from_axis_angle(axis.into(), part * by));
+    }
+    if let Some(axis) = turner.axis_along_side() {
+        let by = best_angle(axis, turner.pairs);
+        turner.turn(Quat::from_axis_angle(axis.into(), part * by));
+    }
+    turner.whole
+}
+
+/// Turns a joint within its cone.
+struct ConeTurner<'a> {
+    limits: &'a JointLimits,
+    /// Rotation from the joint's frame to skeleton space.
+    frame: Mat3A,
+    angles: &'a mut Vec3,
+    pairs: &'a mut [PointPair],
+    /// The rotation of all turns.
+    whole: Quat,
+}
+
+impl ConeTurner<'_> {
+    /// Turns by a rotation, brought into the cone, and shortened until it does not increase the
+    /// weighted squared distance.
+    fn turn(&mut self, mut wanted: Quat) {
+        const HALVINGS: u32 = 6;
+        let own = JointAngles(*self.angles).matrix();
+        let before = distance(self.pairs, Quat::IDENTITY);
+        for _ in 0..HALVINGS {
+            let turned = self.frame.transpose() * Mat3A::from_quat(wanted) * self.frame * own;
+            let within = self.limits.project(nearest_angles(turned, *self.angles));
+            let turned = JointAngles(within).matrix() * own.transpose();
+            let turned = self.frame * turned * self.frame.transpose();
+            let rotation = Quat::from_mat3a(&turned).normalize();
+            if distance(self.pairs, rotation) < before {
+                *self.angles = within;
+                self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+                self.whole = rotation * self.whole;
+                return;
+            }
+            wanted = Quat::IDENTITY.slerp(wanted, 0.5);
+        }
+    }
+
+    /// The axis, in skeleton space, of the turn that lowers the distance most of those that do not
+    /// lead out of the cone; `None` where no side of the cone is in the way.
+    fn axis_along_side(&self) -> Option<Vec3A> {
+        let axes = self.frame * JointAngles(*self.angles).axes();
+        let moment = |it: &PointPair| it.weight * it.from.cross(it.to);
+        let moment: Vec3A = self.pairs.iter().map(moment).sum();
+        let mut by = Vec3::from(axes.transpose() * moment);
+        let is_stopped = self.limits.hold(*self.angles, &mut by);
+        normalize(axes * Vec3A::from(by)).filter(|_| is_stopped)
+    }
+}
+
+/// As [`best_angle`], but small where all points are near the axis, so that a turn would hardly bring
+/// them nearer.
+fn gentle_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
+    /// Part of the lengths of the points below which their distances from the axis are small.
+    const SMALL: f32 = 1e-2;
+    let (a, b) = moments(axis, pairs);
+    let lengths: f32 = pairs.iter().map(|it| it.weight * it.from.length() * it.to.length()).sum();
+    let a = a + SMALL * lengths;
+    if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
+}
+
+/// The weighted squared distance of points from their destinations after a rotation.
+fn distance(pairs: &[PointPair], rotation: Quat) -> f32 {
+    let of_pair = |it: &PointPair| it.weight * (rotation * it.from - it.to).length_squared();
+    pairs.iter().map(of_pair).sum()
+}
+
 /// Angle of a rotation about `axis` that maximizes Σ w from·to. This sum is a cos θ + b sin θ, up
 /// to a constant.
 fn best_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
+    let (a, b) = moments(axis, pairs);
+    if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
+}
+
+/// The factors a and b of cos θ and sin θ in Σ w from·to.
+fn moments(axis: Vec3A, pairs: &[PointPair]) -> (f32, f32) {
     let (mut a, mut b) = (0.0, 0.0);
     for PointPair { from, to, weight } in pairs {
         a += weight * (from.dot(*to) - axis.dot(*from) * axis.dot(*to));
         b += weight * axis.dot(from.cross(*to));
     }
-    if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
+    (a, b)
 }
 
 /// Of the angles from `least` to `most`, a range that contains 0, the one nearest to `best` on the

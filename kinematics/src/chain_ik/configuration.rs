@@ -325,6 +325,14 @@ impl Coordinates {
         }
     }
 
+    /// Takes from the changes of angles the parts that lead out of the cones of their links.
+    pub fn hold_in_cones(&mut self, problem: &Problem, config: &Configuration) {
+        let links = problem.links.iter().zip(&config.angles).zip(&mut self.angles);
+        for ((link, angles), by) in links.filter(|it| it.0.0.limits.as_cone().is_some()) {
+            link.limits.hold(*angles, by);
+        }
+    }
+
     /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes
     /// of angles, and of shifts in chain lengths.
     pub fn norm(&self, length: f32) -> f32 {

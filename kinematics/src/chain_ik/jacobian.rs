@@ -19,7 +19,7 @@ use glam::{Mat3A, Vec3, Vec3A};
 use super::configuration::{Configuration, Coordinates};
 use super::orientation::MissingTurn;
 use super::problem::{MassOnLink, Problem};
-use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton};
+use crate::skeleton::{JointAngles, JointId, RotationAxis, Skeleton, equivalent_triples};
 
 /// Derivatives of a joint's tip with respect to every joint's angles about x, y and z, in skeleton
 /// space and per radian; zero for joints other than the joint and its ancestors.
@@ -165,7 +165,8 @@ impl Wrenches {
     }
 
     /// Writes the way of steepest descent in the metric of the joints' stiffness, W⁻¹ Jᵀ W
-    /// (target − p) with the compliances 1 − k of angles as W⁻¹, to `descent`.
+    /// (target − p) with the compliances 1 − k of angles as W⁻¹, to `descent`. At the side of a cone,
+    /// the way leads along the side.
     pub fn descend_compliantly(
         &mut self,
         problem: &Problem,
@@ -174,6 +175,7 @@ impl Wrenches {
     ) {
         self.descend(problem, config, descent);
         descent.scale_by_compliance(problem);
+        descent.hold_in_cones(problem, config);
     }
 
     fn add(&mut self, link: usize, force: Vec3A, moment: Vec3A) {
@@ -193,7 +195,12 @@ pub(super) fn advance(
     for (index, link) in problem.links.iter().enumerate() {
         let (before, angles) = (from.angles[index], from.angles[index] + factor * by.angles[index]);
         let angles = if angles.is_finite() { angles } else { before };
-        config.angles[index] = link.limits.project(angles);
+        let within = link.limits.project(angles);
+        // In a cone, angles may go round and round, and lose their precision.
+        config.angles[index] = match link.limits.as_cone() {
+            Some(_) => equivalent_triples(within, before)[0],
+            None => within,
+        };
     }
     if problem.free_roots {
         // The square of the chain's length converts the units of angles to those of shifts.

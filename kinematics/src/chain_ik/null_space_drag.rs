@@ -28,7 +28,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3};
 use super::configuration::{Configuration, Coordinates};
 use super::inside::{Ellipsoid, Recorder};
 use super::jacobian::advance;
-use super::method::DampedLeastSquares;
+use super::method::{DampedLeastSquares, hold_in_cone};
 use super::problem::{Builder, EndEffector, HeldLimb, Link, Problem};
 use super::{ChainTarget, Method, Root, SolveError, SolverOptions};
 use crate::normalize;
@@ -279,6 +279,7 @@ impl NullSpaceDrag {
     fn step(&self, damping: f64, sight: f64) -> Option<Coordinates> {
         let problem = &self.problem;
         let mut axes = self.config.axes.clone();
+        let mut cone_ends = Vec::new();
         let mut counted = self.counted();
         let way = self.way().clamp_length_max(sight);
         loop {
@@ -292,8 +293,9 @@ impl NullSpaceDrag {
             let force =
                 damped.cholesky()?.solve(&nalgebra::Vector3::new(left[0], left[1], left[2]));
             let step = to_border + free.transpose() * force;
-            let coordinates = rows.coordinates(problem, &step);
-            let is_fixed = fix_angles(problem, &self.config, &coordinates, &mut axes);
+            let mut coordinates = rows.coordinates(problem, &step);
+            let is_fixed =
+                fix_angles(problem, &self.config, &mut coordinates, &mut axes, &mut cone_ends);
             let is_held = rows.hold(problem, &self.config, &step, &mut counted);
             if !(is_fixed || is_held) {
                 return Some(coordinates);
@@ -302,16 +304,22 @@ impl NullSpaceDrag {
     }
 }
 
-/// Fixes angles that a step would move out of their limits: makes their axes zero. Returns whether
-/// any was newly fixed.
+/// Fixes angles that a step would move out of their limits: makes their axes zero, and holds links at
+/// the ends of their cones. Returns whether any was newly fixed.
 fn fix_angles(
     problem: &Problem,
     config: &Configuration,
-    step: &Coordinates,
+    step: &mut Coordinates,
     axes: &mut [Mat3A],
+    cone_ends: &mut Vec<(usize, Vec3)>,
 ) -> bool {
     let mut any = false;
     for (index, link) in problem.links.iter().enumerate() {
+        if link.limits.as_cone().is_some() {
+            let (angles, by) = (config.angles[index], &mut step.angles[index]);
+            any |= hold_in_cone(link, index, angles, by, &mut axes[index], cone_ends);
+            continue;
+        }
         for about in RotationAxis::ALL {
             let axis = axes[index].col_mut(about.index());
             let by = step.angles[index][about.index()];

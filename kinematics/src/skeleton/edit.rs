@@ -17,7 +17,10 @@ impl Skeleton {
         joint.check(added)?;
         self.check_name(&joint.name, added)?;
         joint.clamp();
+        let parent = joint.parent;
         self.joints.push(joint.into());
+        self.fit_cone(added);
+        parent.into_iter().for_each(|parent| self.fit_cone(parent));
         Ok(added)
     }
 
@@ -71,6 +74,7 @@ impl Skeleton {
             kept.push(joint);
         }
         self.joints = kept;
+        self.ids().for_each(|joint| self.fit_cone(joint));
         Ok(JointRemap(remap))
     }
 
@@ -163,7 +167,9 @@ impl Skeleton {
         (moved.parent, moved.offset, moved.rotation) = (parent, offset, rotation);
         moved.connected = false;
         moved.clamp();
-        Ok(self.sort())
+        let remap = self.sort();
+        self.ids().for_each(|joint| self.fit_cone(joint));
+        Ok(remap)
     }
 
     /// Renames a joint.
@@ -221,8 +227,28 @@ impl Skeleton {
         changed.name.clone_from(&before.name);
         changed.check(joint)?;
         changed.clamp();
+        let parent = changed.parent;
         self.joints[joint.index()] = changed.into();
+        self.fit_cone(joint);
+        parent.into_iter().for_each(|parent| self.fit_cone(parent));
         Ok(())
+    }
+
+    /// Puts the cone of a joint around its bone, or around the offset of its first child if it has
+    /// none, and clamps its rotation.
+    pub(super) fn fit_cone(&mut self, joint: JointId) {
+        let of = &self[joint];
+        if of.limits.as_cone().is_none() {
+            return;
+        }
+        let offsets = self.children(joint).map(|child| self[child].offset);
+        let bone = [of.axis].into_iter().chain(offsets).find(|bone| *bone != Vec3::ZERO);
+        let limits = bone.map_or(of.limits, |bone| of.limits.along(of.frame, bone));
+        if limits != of.limits || !limits.contains(of.rotation) {
+            let joint = self.joints[joint.index()].make_mut();
+            joint.limits = limits;
+            joint.clamp();
+        }
     }
 
     /// Edits a joint without checks; ignored for an index without a joint. If rotation or offset

@@ -4,7 +4,7 @@ use glam::{Affine3A, DMat3, DQuat, DVec3, EulerRot, Mat3, Mat3A, Vec3};
 use thiserror::Error;
 
 use super::{
-    JointAngles, JointLimits, Limit, RotationAxis, angle_triples, equivalent_triples,
+    Cone, JointAngles, JointLimits, Limit, RotationAxis, angle_triples, equivalent_triples,
     nearest_angles,
 };
 
@@ -214,6 +214,9 @@ impl Joint {
         if !(squared.abs_diff_eq(Mat3::IDENTITY, ORTHONORMAL) && self.frame.determinant() > 0.0) {
             return Err(SkeletonError::Frame { joint });
         }
+        if let Some(cone) = self.limits.invalid_cone() {
+            return Err(SkeletonError::Cone { joint, cone });
+        }
         if let Some((axis, Limit { min, max })) = self.limits.invalid_range() {
             return Err(SkeletonError::Limit { joint, axis, min, max });
         }
@@ -363,6 +366,19 @@ pub enum SkeletonError {
         field: JointField,
         /// The vector.
         value: Vec3,
+    },
+    /// An angle of a cone is out of its range.
+    #[error(
+        "the cone of joint {joint} must have x and z above 0 and at most 170°, and a finite twist, the \
+         lower bound first and at most a full turn wide; got x {}°, z {}°, twist {}° to {}°",
+        cone.x.to_degrees(), cone.z.to_degrees(), cone.twist.min.to_degrees(),
+        cone.twist.max.to_degrees()
+    )]
+    Cone {
+        /// The joint.
+        joint: JointId,
+        /// The cone.
+        cone: Cone,
     },
     /// The radius is negative or not finite.
     #[error("the radius of joint {joint} must be finite and 0 or more, got {value}")]

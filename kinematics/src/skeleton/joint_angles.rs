@@ -1,7 +1,7 @@
 use core::array;
 use core::f32::consts::PI;
 
-use glam::{Mat3A, Vec3, Vec3A};
+use glam::{DMat3, Mat3A, Vec3, Vec3A};
 
 use crate::angle;
 
@@ -40,6 +40,18 @@ impl JointAngles {
 /// and z rotate about the same axis, z is that of `near`.
 pub fn nearest_angles(rotation: Mat3A, near: Vec3) -> Vec3 {
     angle_triples(rotation, near)[0]
+}
+
+/// [`nearest_angles`] of a rotation in f64: exact also near y = ±90°.
+pub(crate) fn nearest_angles_f64(rotation: DMat3, near: Vec3) -> Vec3 {
+    const GIMBAL: f64 = 1e-9;
+    let DMat3 { x_axis, y_axis, z_axis } = rotation;
+    let cos_y = x_axis.x.hypot(x_axis.y);
+    let y = (-x_axis.z).atan2(cos_y);
+    let z = if cos_y > GIMBAL { x_axis.y.atan2(x_axis.x) } else { near.z.into() };
+    let (sin_z, cos_z) = z.sin_cos();
+    let x = (sin_z * z_axis.x - cos_z * z_axis.y).atan2(cos_z * y_axis.y - sin_z * y_axis.x);
+    equivalent_triples(glam::DVec3::new(x, y, z).as_vec3(), near)[0]
 }
 
 /// Both Euler triples of the rotation R_z · R_y · R_x, each shifted by full turns to be nearest to

@@ -41,18 +41,22 @@
 //! *Skeleton Kinematics*, wiki of Scotty3D (CMU 15-462), task 2a.
 
 mod balance;
+mod cone;
 mod edit;
 pub mod exact_angles;
 mod joint;
 mod joint_angles;
+mod limit;
 mod limits;
 mod pose;
 mod tree;
 
 pub use balance::Balance;
+pub use cone::Cone;
 pub use joint::{Joint, JointField, JointId, JointRemap, SkeletonError};
 pub use joint_angles::nearest_angles;
-pub use limits::{JointLimits, Limit, RotationAxis};
+pub use limit::{Limit, RotationAxis};
+pub use limits::JointLimits;
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;
 

@@ -66,6 +66,7 @@ impl Skeleton {
             joint.into()
         };
         skeleton.joints = joints.into_iter().map(clamped).collect();
+        skeleton.ids().for_each(|joint| skeleton.fit_cone(joint));
         Ok(skeleton)
     }
 

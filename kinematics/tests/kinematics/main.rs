@@ -6,6 +6,7 @@ mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]
 mod common;
+mod cones;
 mod diagnose;
 mod evaluate;
 mod figure_limbs;

@@ -50,6 +50,8 @@ pub(in crate::chain_ik) struct DampedLeastSquares {
     velocities: Vec<(Vec3A, Vec3A)>,
     /// Rotation axes of the configuration, as columns; zero for fixed angles.
     axes: Vec<Mat3A>,
+    /// The ends of cones at which links are held, as unit vectors of changes of their angles.
+    cone_ends: Vec<(usize, Vec3)>,
     /// The turns that joints miss in the configuration.
     missing: Vec<Option<MissingTurn>>,
     /// The directions in which places count.
@@ -79,6 +81,7 @@ impl DampedLeastSquares {
             wanted: Coordinates::default(),
             velocities: Vec::new(),
             axes: Vec::new(),
+            cone_ends: Vec::new(),
             missing: Vec::new(),
             counted: Vec::new(),
             held: Vec::new(),
@@ -152,6 +155,7 @@ impl DampedLeastSquares {
         let shells = places.filter(|(_, effector)| effector.has_shell());
         shells.for_each(|(counted, _)| *counted = Counted::Nowhere);
         self.axes.clone_from(&config.axes);
+        self.cone_ends.clear();
         self.wanted.copy_from(config);
         wanted(&mut self.wanted);
         self.wanted.subtract(&self.before);
@@ -375,6 +379,7 @@ impl DampedLeastSquares {
     /// there is a solution.
     fn solve_within(&mut self, problem: &Problem, config: &mut Configuration) -> bool {
         self.axes.clone_from(&config.axes);
+        self.cone_ends.clear();
         loop {
             self.multiply(problem, config);
             if !self.solve(problem, config) {
@@ -488,6 +493,12 @@ impl DampedLeastSquares {
         for (index, link) in
             problem.links.iter().enumerate().filter(|(_, link)| link.limits.is_limited())
         {
+            if link.limits.as_cone().is_some() {
+                let by = &mut self.step.angles[index];
+                let (axes, ends) = (&mut self.axes[index], &mut self.cone_ends);
+                any |= hold_in_cone(link, index, self.before.angles[index], by, axes, ends);
+                continue;
+            }
             for about in RotationAxis::ALL {
                 let by = &mut self.step.angles[index][about.index()];
                 let axis = self.axes[index].col_mut(about.index());
@@ -568,6 +579,41 @@ fn place_row(problem: &Problem, effector: usize) -> usize {
 /// The first row of an end effector's turn.
 fn turn_row(effector: usize) -> usize {
     6 * effector + 3
+}
+
+/// Takes from a step the part that leads out of the cone of a link, and from the link's axes the
+/// turns that do. Returns whether the link is held at an end at which it was not held before.
+pub(in crate::chain_ik) fn hold_in_cone(
+    link: &Link,
+    index: usize,
+    angles: Vec3,
+    by: &mut Vec3,
+    axes: &mut Mat3A,
+    ends: &mut Vec<(usize, Vec3)>,
+) -> bool {
+    /// Length of what is new of an end beside those at which the link is held.
+    const NEW: f32 = 1e-3;
+    let of_link = |ends: &[(usize, Vec3)]| -> Vec<Vec3> {
+        ends.iter().filter(|(at, _)| *at == index).map(|(_, out)| *out).collect()
+    };
+    for out in of_link(ends) {
+        *by -= out * out.dot(*by);
+    }
+    let mut any = false;
+    for out in link.limits.crossed(angles, *by).into_iter().flatten() {
+        let new = of_link(ends).into_iter().fold(out, |new, held| new - held * held.dot(new));
+        let Some(out) = new.try_normalize().filter(|_| new.length() > NEW) else { continue };
+        let along = Mat3A::from_cols(
+            Vec3A::from(out) * out.x,
+            Vec3A::from(out) * out.y,
+            Vec3A::from(out) * out.z,
+        );
+        *axes = *axes - *axes * along;
+        *by -= out * out.dot(*by);
+        ends.push((index, out));
+        any = true;
+    }
+    any
 }
 
 /// Axes times the roots of compliances, as columns.

@@ -14,7 +14,7 @@ use core::str::FromStr;
 use thiserror::Error;
 
 use self::ccd::Ccd;
-pub(super) use self::damped_least_squares::DampedLeastSquares;
+pub(super) use self::damped_least_squares::{DampedLeastSquares, hold_in_cone};
 use self::fabrik::Fabrik;
 use self::relaxation::Relaxation;
 use self::transpose::{Transpose, TransposeFixed};
