@@ -2,7 +2,9 @@
 //! of limbs.
 
 use crate::kinematics::chain_ik::Root;
-use crate::kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit};
+use crate::kinematics::diagnosis::{
+    Boundary, Cause, Diagnosis, Remedy, Start, WidenedLimit, WiderLimit,
+};
 use crate::kinematics::skeleton::{JointId, RotationAxis};
 use crate::rig::{RigPop, RigPopCause, SkeletonRig};
 
@@ -308,12 +310,13 @@ fn widen(widened: &[WidenedLimit], names: Names<'_>) -> String {
     let degrees = |it: &WidenedLimit| it.by.to_degrees().round();
     match widened {
         [one] => {
-            format!(
-                "the limit of {} about {} by {}°",
-                (names.joint)(one.joint),
-                one.axis,
-                degrees(one)
-            )
+            let name = (names.joint)(one.joint);
+            match one.to {
+                WiderLimit::Range { axis, .. } => {
+                    format!("the limit of {name} about {axis} by {}°", degrees(one))
+                }
+                WiderLimit::Cone(_) => format!("the cone of {name} by {}°", degrees(one)),
+            }
         }
         several => {
             let most = several.iter().map(degrees).fold(0.0, f32::max);

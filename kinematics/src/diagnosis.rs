@@ -9,7 +9,7 @@
 use glam::Vec3;
 
 use crate::chain_ik::{ChainTarget, Method, Root, SolverOptions};
-use crate::skeleton::{JointId, Limit, RotationAxis, Skeleton, SkeletonError};
+use crate::skeleton::{Cone, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError};
 
 /// A cause for which a tip is not at its target, or a hand not turned as its target asks.
 #[derive(Clone, Debug, PartialEq)]
@@ -210,12 +210,24 @@ pub enum Remedy {
 pub struct WidenedLimit {
     /// The joint.
     pub joint: JointId,
-    /// The axis of the angle.
-    pub axis: RotationAxis,
-    /// The widened range.
-    pub limit: Limit,
-    /// Increase of the range, in radians.
+    /// The wider limit.
+    pub to: WiderLimit,
+    /// Increase of the range, or the greatest one of an angle of the cone, in radians.
     pub by: f32,
+}
+
+/// The limit that replaces a narrower one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WiderLimit {
+    /// A range of an angle.
+    Range {
+        /// The axis of the angle.
+        axis: RotationAxis,
+        /// The range.
+        limit: Limit,
+    },
+    /// A cone.
+    Cone(Cone),
 }
 
 /// Joint angles from which a solve starts.
@@ -237,8 +249,11 @@ impl Remedy {
         match self {
             Self::Lengthen { joint, factor } => lengthen(skeleton, *joint, *factor),
             Self::WidenLimits(widened) => widened.iter().try_for_each(|widened| {
-                skeleton.change(widened.joint, |joint| {
-                    joint.limits.set_range(widened.axis, Some(widened.limit));
+                skeleton.change(widened.joint, |joint| match widened.to {
+                    WiderLimit::Range { axis, limit } => {
+                        joint.limits.set_range(axis, Some(limit));
+                    }
+                    WiderLimit::Cone(cone) => joint.limits = JointLimits::cone(cone),
                 })
             }),
             Self::Unlock(joints) => joints
@@ -297,14 +312,15 @@ fn lengthen(skeleton: &mut Skeleton, joint: JointId, factor: f32) -> Result<(), 
 /// One of the three angles of a joint.
 pub(crate) type Angle = (JointId, RotationAxis);
 
-/// The angles of joints that have a limit.
+/// The angles of joints that have a limit; of a joint with a cone, all three.
 pub(crate) fn limited_angles(
     skeleton: &Skeleton,
     joints: impl Iterator<Item = JointId>,
 ) -> Vec<Angle> {
     let limited = joints.flat_map(|joint| {
         let limits = skeleton[joint].limits;
-        let is_limited = move |axis: &RotationAxis| limits.range(*axis).is_some();
+        let has_cone = limits.as_cone().is_some();
+        let is_limited = move |axis: &RotationAxis| has_cone || limits.range(*axis).is_some();
         RotationAxis::ALL.into_iter().filter(is_limited).map(move |axis| (joint, axis))
     });
     limited.collect()
@@ -315,7 +331,7 @@ pub(crate) fn is_fixed(skeleton: &Skeleton, (joint, axis): Angle) -> bool {
     skeleton[joint].limits.is_fixed(axis)
 }
 
-/// Removes the limits of some angles.
+/// Removes the limits of some angles, and the cones of their joints.
 pub(crate) fn remove_limits(skeleton: &mut Skeleton, angles: &[Angle]) {
     for (joint, axis) in angles {
         skeleton.write_local(*joint, |joint| joint.limits.set_range(*axis, None));
@@ -330,11 +346,18 @@ pub(crate) fn widen_to_contain(
     angles: &[Angle],
 ) -> Option<Remedy> {
     let widened = angles.iter().filter_map(|(joint, axis)| {
-        let limit = skeleton[*joint].limits.range(*axis)?;
-        let widened = limit.widened_to(pose[*joint].rotation[axis.index()])?;
+        let (limits, rotation) = (skeleton[*joint].limits, pose[*joint].rotation);
+        if let Some((cone, by)) = limits.widened_cone(rotation) {
+            return Some(WidenedLimit { joint: *joint, to: WiderLimit::Cone(cone), by });
+        }
+        let limit = limits.range(*axis)?;
+        let widened = limit.widened_to(rotation[axis.index()])?;
         let by = (limit.min - widened.min) + (widened.max - limit.max);
-        Some(WidenedLimit { joint: *joint, axis: *axis, limit: widened, by })
+        let to = WiderLimit::Range { axis: *axis, limit: widened };
+        Some(WidenedLimit { joint: *joint, to, by })
     });
-    let widened: Vec<_> = widened.collect();
+    let mut widened: Vec<_> = widened.collect();
+    // Once for each joint with a cone.
+    widened.dedup();
     (!widened.is_empty()).then_some(Remedy::WidenLimits(widened))
 }

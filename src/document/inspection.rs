@@ -238,10 +238,7 @@ impl Inspector {
         let influences = frame.rig.influences();
         for (joint, of) in frame.evaluated.solved.iter() {
             let is_at_end = |axis: &RotationAxis| {
-                of.limits.range(*axis).is_some_and(|range| {
-                    let angle = of.rotation[axis.index()];
-                    range.max > range.min && (angle <= range.min || angle >= range.max)
-                })
+                !of.limits.is_fixed(*axis) && of.limits.is_at_end(of.rotation, *axis)
             };
             let is_turned = influences[joint.index()] > 0.0;
             let is_met = is_turned && RotationAxis::ALL.iter().any(is_at_end);

@@ -12,7 +12,7 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::limb_ik::LimbPosture;
-use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{Cone, Joint, JointId, JointLimits, Limit, Skeleton};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::Stereographic;
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -261,10 +261,7 @@ fn skeleton(random: &mut Random) -> Skeleton {
                 1 => Mat3::from_cols(Vec3::new(1.0, -0.0, 0.0), Vec3::Y, Vec3::Z),
                 _ => Mat3::IDENTITY,
             },
-            limits: JointLimits::new([(); 3].map(|()| {
-                let (a, b) = (random.finite(), random.finite());
-                random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
-            })),
+            limits: limits(random),
             stiffness: Vec3::from_array([(); 3].map(|()| random.within(0.0..1.0))),
             locked: random.coin(),
             connected: random.coin(),
@@ -275,6 +272,19 @@ fn skeleton(random: &mut Random) -> Skeleton {
     let transform = Affine3A::from_cols_array(&[(); 12].map(|()| random.finite()));
     skeleton.set_transform(transform).expect("finite");
     skeleton
+}
+
+fn limits(random: &mut Random) -> JointLimits {
+    if random.below(4) == 0 {
+        let min = random.within(-4.0..4.0);
+        let twist = Limit { min, max: min + random.within(0.0..6.0) };
+        let [x, z] = [(); 2].map(|()| random.within(0.01..2.9));
+        return JointLimits::cone(Cone { x, z, twist });
+    }
+    JointLimits::new([(); 3].map(|()| {
+        let (a, b) = (random.finite(), random.finite());
+        random.coin().then_some(Limit { min: a.min(b), max: a.max(b) })
+    }))
 }
 
 /// The document of a built-in example.

@@ -53,6 +53,8 @@ struct SwingTwist {
     twist: f64,
 }
 
+/// Greatest angle near which equivalent angles are chosen, in radians.
+const MOST: f32 = 10.0;
 /// Excess beyond the cone that counts as rounding, in radians.
 const ROUNDING: f64 = 3e-6;
 
@@ -83,7 +85,9 @@ impl BoneCone {
         let SwingTwist { swing, twist } = self.split(angles.as_dvec3());
         let swing = nearest_in_ellipse(self.radii(), swing);
         let twist = twist.clamp(self.cone.twist.min.into(), self.cone.twist.max.into());
-        self.angles_of(SwingTwist { swing, twist }, angles)
+        // After more turns, angles are too coarse to be at the end of a cone.
+        let near = if angles.abs().max_element() > MOST { angles % TAU as f32 } else { angles };
+        self.angles_of(SwingTwist { swing, twist }, near)
     }
 
     /// The ends of the cone at which angles are and which a change `by` of them would cross, each as
@@ -142,6 +146,20 @@ impl BoneCone {
             z: (z * factor).min(Cone::WIDEST),
             twist: Limit { min: min.min(twist), max: max.max(twist) },
         }
+    }
+
+    /// The cone that contains this one and angles, widened by whole degrees, and the greatest
+    /// increase of one of its angles.
+    pub fn widened_by_degrees(&self, angles: Vec3) -> (Cone, f32) {
+        let (Cone { x, z, twist: Limit { min, max } }, to) = (self.cone, self.widened(angles));
+        let more = |from: f32, to: f32| (to - from).to_degrees().ceil().to_radians().max(0.0);
+        let by = [more(x, to.x), more(z, to.z), more(to.twist.min, min), more(max, to.twist.max)];
+        let cone = Cone {
+            x: (x + by[0]).min(Cone::WIDEST),
+            z: (z + by[1]).min(Cone::WIDEST),
+            twist: Limit { min: min - by[2], max: max + by[3] },
+        };
+        (cone, by.into_iter().fold(0.0, f32::max))
     }
 
     /// How far angles are beyond the ends of the cone, in radians: of the swing, of the greatest and

@@ -247,7 +247,7 @@ impl Skeleton {
         if limits != of.limits || !limits.contains(of.rotation) {
             let joint = self.joints[joint.index()].make_mut();
             joint.limits = limits;
-            joint.clamp();
+            joint.rotation = limits.project(joint.rotation);
         }
     }
 

@@ -182,8 +182,15 @@ impl Joint {
         triples.into_iter().find(|triple| self.limits.contains(*triple)).unwrap_or(angles)
     }
 
+    /// Clamps the rotation to the limits, with a cone around the bone. A cone of a joint without a bone
+    /// is fitted by [`Skeleton`](super::Skeleton), which knows the children.
     pub(super) fn clamp(&mut self) {
-        self.rotation = self.limits.project(self.rotation);
+        if self.axis != Vec3::ZERO {
+            self.limits = self.limits.along(self.frame, self.axis);
+        }
+        if self.axis != Vec3::ZERO || self.limits.as_cone().is_none() {
+            self.rotation = self.limits.project(self.rotation);
+        }
     }
 
     pub(super) fn check(&self, joint: JointId) -> Result<(), SkeletonError> {

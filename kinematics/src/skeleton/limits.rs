@@ -183,6 +183,13 @@ impl JointLimits {
         }
     }
 
+    /// The least cone, in whole degrees, that contains a cone and angles, and the greatest increase of
+    /// its angles; `None` for limits of angles and for a cone that contains the angles.
+    pub(crate) fn widened_cone(&self, angles: Vec3) -> Option<(Cone, f32)> {
+        let Kind::Cone(cone) = self.kind else { return None };
+        (!cone.contains(angles)).then(|| cone.widened_by_degrees(angles))
+    }
+
     /// The ends of the limits at which angles are and which a change `by` of them would cross, each
     /// as the unit vector of changes that lead straight out.
     pub(crate) fn crossed(&self, angles: Vec3, by: Vec3) -> [Option<Vec3>; 3] {
@@ -239,7 +246,7 @@ impl JointLimits {
 
     /// True if the angle about an axis is at an end of its range, or beyond, or if its change leads
     /// out of a cone at whose end it is.
-    pub(crate) fn is_at_end(&self, angles: Vec3, axis: RotationAxis) -> bool {
+    pub fn is_at_end(&self, angles: Vec3, axis: RotationAxis) -> bool {
         let angle = angles[axis.index()];
         match self.kind {
             Kind::Angles(_) => {

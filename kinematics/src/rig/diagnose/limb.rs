@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::RigCase;
 use crate::diagnosis::{
-    Angle, Boundary, Cause, Diagnosis, Remedy, TriedRemedy, is_fixed, limited_angles,
+    Angle, Boundary, Cause, Diagnosis, Remedy, TriedRemedy, WiderLimit, is_fixed, limited_angles,
 };
 use crate::limb_ik::{Limb, LimbReach};
 use crate::rig::evaluate::{TargetOutcome, TargetReport};
@@ -161,7 +161,12 @@ impl RigCase<'_> {
         let remedy = self.widened(&angles)?;
         let Remedy::WidenLimits(widened) = &remedy else { return None };
         let mut axes = [false; 3];
-        widened.iter().for_each(|it| axes[it.axis.index()] = true);
+        for it in widened {
+            match it.to {
+                WiderLimit::Range { axis, .. } => axes[axis.index()] = true,
+                WiderLimit::Cone(_) => axes = [true; 3],
+            }
+        }
         let tried = Vec::from_iter(self.try_rotation_remedy(remedy));
         Some(self.diagnosis(Cause::RotationLimits { missing, axes }, vec![hand], tried))
     }

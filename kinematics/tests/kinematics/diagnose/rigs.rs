@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{Method, SolverOptions};
-use ik_arm_kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy};
+use ik_arm_kinematics::diagnosis::{Boundary, Cause, Diagnosis, Remedy, WidenedLimit, WiderLimit};
 use ik_arm_kinematics::rig::{
     Carried, LimbSettings, SkeletonRig, Target, TargetKind, TargetMotion, TargetPath, TargetSpace,
 };
@@ -248,7 +248,8 @@ fn a_hand_that_limits_hold_short_of_its_rotation_names_the_limit_and_the_remedy_
 
         let tried = remedies.first().expect("a remedy");
         let Remedy::WidenLimits(widened) = &tried.remedy else { panic!("{tried:?}") };
-        assert!(matches!(&widened[..], [one] if one.joint == HAND && one.axis.index() == axis));
+        let is_about = |one: &WidenedLimit| matches!(one.to, WiderLimit::Range { axis: about, .. } if about.index() == axis);
+        assert!(matches!(&widened[..], [one] if one.joint == HAND && is_about(one)));
         assert!(widened[0].by >= beyond - 1e-4 && widened[0].by < beyond + 0.02, "{widened:?}");
         rig.apply_remedy(&tried.remedy, 0.0).expect("limits");
         let report = &rig.evaluate(0.0).targets[0];

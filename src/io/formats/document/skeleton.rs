@@ -9,7 +9,7 @@ use crate::io::json::{
     Whole, value_or,
 };
 use crate::kinematics::skeleton::{
-    Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
+    Cone, Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -30,6 +30,8 @@ struct JointFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<JsonObject<LimitsFields>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    cone: Option<JsonObject<ConeFields>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     stiffness: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     locked: Option<bool>,
@@ -48,6 +50,25 @@ struct LimitsFields {
     z: Option<JsonNumbers<2>>,
 }
 
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct ConeFields {
+    x: JsonNumber,
+    z: JsonNumber,
+    twist: JsonNumbers<2>,
+}
+
+impl ConeFields {
+    fn new(cone: Cone) -> Self {
+        let Cone { x, z, twist: Limit { min, max } } = cone;
+        Self { x: x.into(), z: z.into(), twist: JsonNumbers([min, max]) }
+    }
+
+    fn cone(self) -> Cone {
+        let JsonNumbers([min, max]) = self.twist;
+        Cone { x: self.x.into(), z: self.z.into(), twist: Limit { min, max } }
+    }
+}
+
 impl SkeletonFields {
     pub fn new(skeleton: &Skeleton) -> Self {
         Self {
@@ -63,17 +84,23 @@ impl SkeletonFields {
     pub fn skeleton(self, warnings: &mut FieldWarnings) -> Result<Skeleton, FieldError> {
         let mut joints: Vec<Joint> = Vec::new();
         for (index, JsonObject(fields)) in self.joints.unwrap_or_default().into_iter().enumerate() {
-            let joint = fields.joint(&joints);
-            if !joint.limits.contains(joint.rotation) {
-                let path = JsonPath::root().key("skeleton").key("joints").index(index);
-                warnings.push(path.key("rotation"), "must be within the joint's limits; clamped");
+            if fields.limits.is_some() && fields.cone.is_some() {
+                let reason = "must not have limits, too: a joint has a cone or ranges of angles";
+                return Err(reason).at("cone").at(index).at("joints");
             }
-            joints.push(joint);
+            joints.push(fields.joint(&joints));
         }
         let names: Vec<_> = joints.iter().map(|joint| joint.name.clone()).collect();
+        let rotations: Vec<_> = joints.iter().map(|joint| joint.rotation).collect();
         let mut skeleton = Skeleton::from_joints(joints)
             .map_err(|error| FieldError::new(invalid_field(&error, &names), error.to_string()))
             .at("joints")?;
+        for (index, (rotation, joint)) in rotations.iter().zip(skeleton.joints()).enumerate() {
+            if joint.rotation != *rotation {
+                let path = JsonPath::root().key("skeleton").key("joints").index(index);
+                warnings.push(path.key("rotation"), "must be within the joint's limits; clamped");
+            }
+        }
         if let Some(JsonNumbers(transform)) = self.transform {
             let set = skeleton.set_transform(Affine3A::from_cols_array(&transform));
             set.map_err(|error| error.to_string()).at("transform")?;
@@ -90,6 +117,7 @@ fn invalid_field(error: &SkeletonError, names: &[String]) -> JsonPath {
         SkeletonError::Parent { joint, .. } => at(joint.index()).key("parent"),
         SkeletonError::Radius { joint, .. } => at(joint.index()).key("radius"),
         SkeletonError::Stiffness { joint, .. } => at(joint.index()).key("stiffness"),
+        SkeletonError::Cone { joint, .. } => at(joint.index()).key("cone"),
         SkeletonError::Frame { joint } => at(joint.index()).key("frame"),
         SkeletonError::NotFinite { joint, field, .. } => at(joint.index()).key(&field.to_string()),
         SkeletonError::Limit { joint, axis, .. } => {
@@ -122,7 +150,12 @@ impl JointFields {
             axis: Some(joint.axis.into()),
             rotation: Some(joint.rotation.into()),
             frame: (!is_identity).then_some(JsonNumbers(frame)),
-            limits: joint.limits.is_limited().then_some(JsonObject(LimitsFields { x, y, z })),
+            limits: [x, y, z].iter().any(Option::is_some).then_some(JsonObject(LimitsFields {
+                x,
+                y,
+                z,
+            })),
+            cone: joint.limits.as_cone().map(ConeFields::new).map(JsonObject),
             stiffness: (joint.stiffness != Vec3::ZERO).then(|| joint.stiffness.into()),
             locked: joint.locked.then_some(true),
             connected: joint.connected.then_some(true),
@@ -143,7 +176,10 @@ impl JointFields {
             offset: value_or(self.offset, parent_tip.unwrap_or_default()),
             rotation: value_or(self.rotation, Vec3::ZERO),
             frame: frame.unwrap_or(Mat3::IDENTITY),
-            limits: JointLimits::new(limits),
+            limits: match self.cone {
+                Some(JsonObject(cone)) => JointLimits::cone(cone.cone()),
+                None => JointLimits::new(limits),
+            },
             stiffness: value_or(self.stiffness, default.stiffness),
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),

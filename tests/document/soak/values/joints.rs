@@ -5,8 +5,8 @@ use ik_arm::document::{
     BalanceOver, BalanceTarget, PathKind, Target, TargetMotion, TargetPath, WavyRing,
 };
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit};
-use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
+use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit, WiderLimit};
+use ik_arm::kinematics::skeleton::{Cone, JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
     Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
@@ -149,6 +149,9 @@ impl Values<'_> {
     }
 
     pub fn limits(&mut self) -> JointLimits {
+        if self.chance(0.3) {
+            return JointLimits::cone(self.cone());
+        }
         JointLimits::new([self.limit(), self.limit(), self.limit()])
     }
 
@@ -241,6 +244,11 @@ impl Values<'_> {
         })
     }
 
+    pub fn cone(&mut self) -> Cone {
+        let twist = self.limit().unwrap_or(Limit { min: -0.5, max: 0.5 });
+        Cone { x: self.above_0(3.0), z: self.above_0(3.0), twist }
+    }
+
     pub fn balance(&mut self) -> Option<BalanceTarget> {
         let (influence, weight) = (self.number(1.0), self.above_0(3.0));
         let Vec3 { x, z, .. } = self.small_point();
@@ -270,12 +278,11 @@ impl Values<'_> {
             3 => {
                 let limit = self.limit().unwrap_or(Limit { min: 0.0, max: 0.0 });
                 let axis = self.rotation_axis();
-                Remedy::WidenLimits(vec![WidenedLimit {
-                    joint: self.joint(),
-                    axis,
-                    limit,
-                    by: 0.1,
-                }])
+                let to = match self.coin() {
+                    true => WiderLimit::Range { axis, limit },
+                    false => WiderLimit::Cone(self.cone()),
+                };
+                Remedy::WidenLimits(vec![WidenedLimit { joint: self.joint(), to, by: 0.1 }])
             }
             4 => Remedy::Unlock(self.some_joints()),
             5 => Remedy::SwitchOff(joint),
