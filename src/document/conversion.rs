@@ -36,7 +36,8 @@ impl Document {
     /// Changes what the twist of a limb is measured from. The elbow stays where it is at `time`, at
     /// which this document is evaluated, and at each key of the twist.
     ///
-    /// A limb that has no pole yet gets one in front of its elbow.
+    /// A limb that has no pole yet gets one in front of its elbow; a target without a limb stays as it
+    /// is.
     pub fn set_limb_reference(&mut self, joint: JointId, to: TwistReferenceKind, time: f64) {
         let channel = Channel::TargetTwist(joint);
         let before = Track::new(self);
@@ -45,7 +46,8 @@ impl Document {
         let pole = index.and_then(|it| self.rig.new_pole(own.evaluated_skeleton(), it));
         let Some(limb) = self.limb_settings_mut(joint) else { return };
         if to == TwistReferenceKind::Pole {
-            limb.pole = limb.pole.or(pole);
+            let Some(pole) = limb.pole.or(pole) else { return };
+            limb.pole = Some(pole);
         }
         let mut untwisted = self.clone();
         untwisted.keys.clear(channel);
