@@ -77,6 +77,8 @@ pub enum Overlay {
     Balance,
     /// The places at which the target of the selected joint is reached.
     ReachRegion,
+    /// The limits of the selected joint, as fans.
+    JointLimits,
 }
 
 impl Overlay {
@@ -113,6 +115,7 @@ impl Overlay {
             Self::Stiffness => "stiffness",
             Self::Balance => "balance",
             Self::ReachRegion => "reach_region",
+            Self::JointLimits => "joint_limits",
         }
     }
 
@@ -136,7 +139,7 @@ impl Overlay {
         [Self::Cylinders, Self::Hand, Self::Frames, Self::SingularityGlobe, Self::TwistReferences];
 
     /// Other poses, the skin, and properties of joints.
-    pub const POSE: [Self; 10] = [
+    pub const POSE: [Self; 11] = [
         Self::FkPose,
         Self::ByItself,
         Self::Skin,
@@ -147,6 +150,7 @@ impl Overlay {
         Self::Stiffness,
         Self::Balance,
         Self::ReachRegion,
+        Self::JointLimits,
     ];
 
     /// Overlays that show motion over time.

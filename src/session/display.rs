@@ -111,6 +111,7 @@ fn toggle_label(overlay: Overlay) -> &'static str {
         Overlay::Stiffness => "Toggle stiffness",
         Overlay::Balance => "Toggle balance",
         Overlay::ReachRegion => "Toggle reach region",
+        Overlay::JointLimits => "Toggle joint limits",
         Overlay::CompareSkinning => "Toggle comparison of skinning",
         Overlay::Frames => "Toggle frames",
         Overlay::SingularityGlobe => "Toggle singularity globe",

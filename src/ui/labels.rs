@@ -95,6 +95,9 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Balance => {
             ("Balance", "Show the centre of mass above the ground and what the figure stands on")
         }
+        Overlay::JointLimits => {
+            ("Joint limits", "Show how far the limits let the selected joint turn")
+        }
         Overlay::ReachRegion => {
             ("Reach region", "Show where the target of the selected joint can be reached")
         }

@@ -262,7 +262,7 @@ fn a_field_of_the_wrong_type_is_named_with_the_expected_one() {
              `grid_yz`, `ground`, `axes`, `labels`, `shadow`, `trail`, `paths`, `onion_skins`, \
              `singularity_globe`, `twist_references`, `cylinders`, `hand`, `frames`, `fk_pose`, \
              `by_itself`, `skin`, `bones`, `wireframe`, `skin_weights`, `compare_skinning`, \
-             `stiffness`, `balance`, `reach_region`",
+             `stiffness`, `balance`, `reach_region`, `joint_limits`",
         ),
         ("\"targets\":[],\n\"targets\":[]", "line 3, column 9: duplicate field `targets`"),
     ] {
@@ -344,6 +344,19 @@ fn an_invalid_value_is_named_with_the_rule() {
             joints("{\"name\":\"a\",\"stiffness\":[0,1,0]}"),
             "line 3, column 25: skeleton.joints[0].stiffness: the stiffness of joint 0 must be 0 or \
              more and below 1, got [0, 1, 0]",
+        ),
+        (
+            joints("{\"name\":\"a\",\"cone\":{\"x\":1,\"z\":3,\"twist\":[-1,1]}}"),
+            "line 3, column 20: skeleton.joints[0].cone: the cone of joint 0 must have x and z above 0 \
+             and at most 170°, and a finite twist, the lower bound first and at most a full turn wide; \
+             got x 57.29578°, z 171.88734°, twist -57.29578° to 57.29578°",
+        ),
+        (
+            joints(
+                "{\"name\":\"a\",\"limits\":{\"x\":[0,1]},\"cone\":{\"x\":1,\"z\":1,\"twist\":[0,1]}}",
+            ),
+            "line 3, column 41: skeleton.joints[0].cone: must not have limits, too: a joint has a cone or \
+             ranges of angles",
         ),
         (
             "\"solver\":{\"posture_rate\":-1}".to_owned(),

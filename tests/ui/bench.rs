@@ -407,7 +407,9 @@ impl Bench {
         let rig = session.rig();
         let selected = session.selection().active();
         rig.sole_limb().is_none()
-            && selected.is_some_and(|joint| rig.target_of_end(joint).is_some())
+            && selected.is_some_and(|joint| {
+                rig.target_of_end(joint).or_else(|| rig.limb_target_of(joint)).is_some()
+            })
     }
 
     pub fn click_at(&mut self, at: Pos2) {

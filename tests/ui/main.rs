@@ -27,6 +27,7 @@ mod hand;
 mod hand_keys;
 mod history;
 mod inside;
+mod limits;
 mod looks;
 mod numbers;
 mod panel;

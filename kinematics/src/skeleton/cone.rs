@@ -125,6 +125,11 @@ impl BoneCone {
         self.angles_of(SwingTwist { swing, twist }, near)
     }
 
+    /// The twist that angles give the bone.
+    pub fn twist_of(&self, angles: Vec3) -> f32 {
+        self.split(angles.as_dvec3()).twist as f32
+    }
+
     /// The bone's direction in the joint's frame, for angles, with the changes of the twist that the
     /// cone allows.
     pub fn twist_room(&self, angles: Vec3) -> (Vec3, [f32; 2]) {

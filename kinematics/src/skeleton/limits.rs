@@ -190,6 +190,13 @@ impl JointLimits {
         (!cone.contains(angles)).then(|| cone.widened_by_degrees(angles))
     }
 
+    /// The twist that Euler angles give the bone of a cone, in radians, within half a turn of the
+    /// middle of its range; `None` for limits of angles.
+    pub fn twist(&self, angles: Vec3) -> Option<f32> {
+        let Kind::Cone(cone) = self.kind else { return None };
+        Some(cone.twist_of(angles))
+    }
+
     /// The ends of the limits at which angles are and which a change `by` of them would cross, each
     /// as the unit vector of changes that lead straight out.
     pub(crate) fn crossed(&self, angles: Vec3, by: Vec3) -> [Option<Vec3>; 3] {

@@ -47,6 +47,7 @@ pub mod exact_angles;
 mod joint;
 mod joint_angles;
 mod limit;
+mod limit_border;
 mod limits;
 mod pose;
 mod tree;

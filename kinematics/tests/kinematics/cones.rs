@@ -129,9 +129,8 @@ fn the_swing_goes_to_the_nearest_point_of_the_ellipse_and_the_twist_to_its_neare
 fn projection_is_continuous_away_from_half_turns() {
     const STEP: f32 = 1e-3;
     let mut random = Random(803);
-    let rotation = |joint: &Joint, angles: Vec3| {
+    let rotation = |angles: Vec3| {
         let DVec3 { x, y, z } = angles.as_dvec3();
-        let _ = joint;
         DQuat::from_euler(EulerRot::ZYX, z, y, x)
     };
     for case in 0..20_000 {
@@ -148,13 +147,34 @@ fn projection_is_continuous_away_from_half_turns() {
                 && from_middle < std::f64::consts::PI - 0.02
         });
         if is_far {
-            let [one, two] =
-                [angles, near].map(|angles| rotation(&joint, joint.limits.project(angles)));
+            let [one, two] = [angles, near].map(|angles| rotation(joint.limits.project(angles)));
             let apart = one.angle_between(two);
             // Near half a turn of swing a small turn changes the twist much.
             assert!(apart < 0.25, "{case}: {cone:?} {angles}: {apart} apart");
         }
     }
+}
+
+#[test]
+fn the_border_that_is_drawn_is_that_of_what_the_cone_contains() {
+    let mut random = Random(808);
+    let (mut inside, mut outside) = (0, 0);
+    for case in 0..10_000 {
+        let cone = cone(&mut random);
+        let joint = joint(&mut random, cone);
+        let (azimuth, swing) = (random.within(-PI..PI), random.within(0.0..PI));
+        let most = joint.most_swing(azimuth).expect("a border");
+        let angles = joint.swung(azimuth, swing).expect("angles");
+        if (swing - most).abs() < 1e-4 {
+            continue;
+        }
+        let is_in = joint.limits.contains(angles);
+        *if is_in { &mut inside } else { &mut outside } += 1;
+        assert_eq!(is_in, swing < most, "{case}: {cone:?}, {swing} of {most} towards {azimuth}");
+        let (found, _) = swing_and_twist(&joint, angles);
+        assert!((found.length() - f64::from(swing)).abs() < 1e-4, "{case}: swings by {swing}");
+    }
+    assert!(inside > 2000 && outside > 2000, "{inside} inside, {outside} outside");
 }
 
 /// A chain all of whose joints have cones, in a random pose within them.
@@ -215,8 +235,7 @@ fn every_method_reaches_targets_within_cones_and_never_leaves_them() {
             assert!(excess(&now) < 1e-5, "{method} {case}");
             reached += usize::from(report.converged());
         }
-        eprintln!("RATE {method} {reached}");
-        assert!(reached * 10 >= CASES * 8, "{method}: {reached} of {CASES}");
+        assert!(reached >= CASES - 1, "{method}: {reached} of {CASES}");
     }
 }
 
@@ -252,8 +271,7 @@ fn the_nearest_point_of_a_chain_with_cones_is_that_of_brute_force() {
             *near += usize::from(solved.tip(tip).distance(place) <= best + 2e-3 * size);
         }
     }
-    eprintln!("NEAR {near:?}");
-    assert!(near[0] >= 58, "least squares: {near:?}");
+    assert!(near[0] == CASES && near.iter().all(|near| *near >= CASES - 1), "{near:?}");
 }
 
 #[test]

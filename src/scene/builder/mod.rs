@@ -5,6 +5,7 @@ mod cylinders;
 mod drawn_skeleton;
 mod figure;
 mod hand;
+mod joint_limits;
 mod limb;
 mod skeleton;
 mod skin;

@@ -160,6 +160,10 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         let goal = posed.evaluated_skeleton().balance.as_ref().and_then(|it| it.over);
         drawn.add_balance(scene, skeleton, goal, balance);
     }
+    let selected = overlays.selection.last().filter(|_| display.shows(Overlay::JointLimits));
+    if let Some(joint) = selected {
+        drawn.add_joint_limits(scene, posed.skeleton(), *joint);
+    }
     if let Some(region) = &overlays.reach_region {
         add_reach_region(scene, region);
     }

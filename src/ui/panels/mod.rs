@@ -69,7 +69,7 @@ fn guides(ui: &mut Ui, session: &Session, is_limb: bool, actions: &mut Actions) 
 }
 
 /// Guides of a figure.
-const FIGURE_GUIDES: [Overlay; 10] = [
+const FIGURE_GUIDES: [Overlay; 11] = [
     Overlay::Cursor,
     Overlay::Pointer,
     Overlay::InnerLimit,
@@ -80,6 +80,7 @@ const FIGURE_GUIDES: [Overlay; 10] = [
     Overlay::Stiffness,
     Overlay::Balance,
     Overlay::ReachRegion,
+    Overlay::JointLimits,
 ];
 
 fn resets(ui: &mut Ui, actions: &mut Actions) {

@@ -1,13 +1,13 @@
 //! The selected joint: rotation, limits, bone and parent.
 
-use core::f32::consts::PI;
+use core::f32::consts::{PI, TAU};
 
 use egui::Ui;
 use glam::Vec3;
 
 use super::targets;
 use crate::document::Channel;
-use crate::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis};
+use crate::kinematics::skeleton::{Cone, Joint, JointId, JointLimits, Limit, RotationAxis};
 use crate::session::{Actions, Edit, JointEdit, Session};
 use crate::ui::widgets::{self, AXES, Choice, NumberField, Slider, text, with_axis};
 use crate::ui::{labels, style};
@@ -72,8 +72,72 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     }
 }
 
-/// Shows, for each axis, a check box that limits the rotation, with the range beside it.
+const LIMITS: [(bool, &str, &str); 2] = [
+    (false, "Angles", "Limit each angle to a range"),
+    (true, "Cone", "Limit the swing of the bone to a cone, and its twist to a range"),
+];
+
+/// The cone of a joint that gets one.
+const NEW_CONE: Cone =
+    Cone { x: PI / 3.0, z: PI / 3.0, twist: Limit { min: -PI / 4.0, max: PI / 4.0 } };
+
+/// Shows the choice between ranges of angles and a cone, and the rows of the chosen one.
 fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
+    let set = |limits| JointEdit::SetLimits { joint: index, limits };
+    let cone = joint.limits.as_cone();
+    let tooltip = "Choose how the joint is limited";
+    let choice = Choice { label: "Limits", name: "Limits", tooltip, shown: "" };
+    if let Some(is_cone) = choice.pick(ui, &LIMITS, |is_cone| *is_cone == cone.is_some()) {
+        actions.push(set(if is_cone { JointLimits::cone(NEW_CONE) } else { JointLimits::NONE }));
+    }
+    match cone {
+        Some(cone) => {
+            self::cone(ui, session, cone, actions, &|cone| set(JointLimits::cone(cone)).into());
+        }
+        None => ranges(ui, session, index, joint, actions),
+    }
+}
+
+/// Shows the greatest swings of a cone and the range of its twist.
+fn cone(
+    ui: &mut Ui,
+    session: &Session,
+    cone: Cone,
+    actions: &mut Actions,
+    set: &dyn Fn(Cone) -> Edit,
+) {
+    /// The least swing of a cone that can be entered, in radians.
+    const LEAST: f32 = 1e-3;
+    let swings = [
+        ("Swing x", "Set the greatest swing about the frame's x", 0, cone.x),
+        ("Swing z", "Set the greatest swing across the bone and x", 1, cone.z),
+    ];
+    for (name, tooltip, which, value) in swings {
+        let value = value.to_degrees();
+        let field = NumberField { name, value, unit: "°", step: 1.0, digits: 1, tooltip };
+        field.row(ui, session, name, actions, |degrees| {
+            let swing = degrees.to_radians().clamp(LEAST, Cone::WIDEST);
+            set(if which == 0 { Cone { x: swing, ..cone } } else { Cone { z: swing, ..cone } })
+        });
+    }
+    widgets::pair(ui, "Twist", |ui| {
+        widgets::at_right(ui, |ui| {
+            let Limit { min, max } = cone.twist;
+            angle(ui, session, actions, "Twist minimum", min, &|to| {
+                let to = to.max(max - TAU);
+                set(Cone { twist: Limit { min: to, max: max.max(to) }, ..cone })
+            });
+            ui.weak("to");
+            angle(ui, session, actions, "Twist maximum", max, &|to| {
+                let to = to.min(min + TAU);
+                set(Cone { twist: Limit { min: min.min(to), max: to }, ..cone })
+            });
+        });
+    });
+}
+
+/// Shows, for each axis, a check box that limits the rotation, with the range beside it.
+fn ranges(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
     for axis in RotationAxis::ALL {
         let (label, limit) = (axis.name(), joint.limits.range(axis));
         let set = |limit| JointEdit::SetLimits {
