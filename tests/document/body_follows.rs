@@ -1,10 +1,10 @@
 //! Whole body follows: what limbs do not reach pulls the rest of the body along.
 
 use glam::Vec3;
-use ik_arm::document::{Channel, Document, FramePop, Inspection, Track};
+use ik_arm::document::{Channel, Document, FramePop, Inspection, Target, Track};
 use ik_arm::kinematics::chain_ik::{Method, SolveError};
 use ik_arm::kinematics::skeleton::JointId;
-use ik_arm::rig::TargetSpace;
+use ik_arm::rig::{Aim, TargetOutcome, TargetSpace};
 use pollster::block_on;
 
 use crate::common::Random;
@@ -140,4 +140,24 @@ fn a_method_that_cannot_move_the_body_says_so() {
     // The closed form is for limbs alone; the body then moves by least squares.
     document.rig.solver.method = Method::TwoBone;
     assert_eq!(document.at(0.0).evaluated_skeleton().body_refused, None);
+}
+
+#[test]
+fn a_method_that_cannot_aim_refuses_that_target_and_solves_the_others() {
+    let to = shoulder() + Vec3::new(0.1, -0.2, ARM + 0.2);
+    let solved = |has_aim: bool| {
+        let mut document = reaching(Method::Fabrik, to);
+        let head = joint(&document, "head");
+        let aim = Aim { axis: Vec3::Z, point: Vec3::new(0.5, 1.0, 2.0) };
+        let tip = document.skeleton().tip(head);
+        let free = Target { weight: 0.0, influence: 1.0, ..Target::new(head, tip, 0.1) };
+        document.rig.targets.push(Target { aim: has_aim.then_some(aim), enabled: has_aim, ..free });
+        Track::new(&document).at(2.0)
+    };
+    let (with, without) = (solved(true), solved(false));
+    assert_eq!(with.skeleton(), without.skeleton(), "the hand takes the body along as without");
+    assert!(with.targets()[0].error < 1e-4);
+    let outcome = &with.targets().last().expect("the head's target").outcome;
+    let TargetOutcome::Refused(error) = outcome else { panic!("refused, not {outcome:?}") };
+    assert!(matches!(error, SolveError::CannotOrient { method: Method::Fabrik, .. }), "{error}");
 }

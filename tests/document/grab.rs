@@ -3,9 +3,10 @@
 use glam::Vec3;
 use ik_arm::document::{BalanceTarget, Channel, Document, Ray, SkeletonRig, Target};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
+use ik_arm::rig::Aim;
 use ik_arm::session::{
     DragInput, Grip, KeysEdit, PlaybackAction, PointHandle, Preferences, Session, SolverEdit,
-    TransactionAction, ViewAction,
+    TargetEdit, TransactionAction, ViewAction,
 };
 
 use crate::common::Random;
@@ -217,4 +218,32 @@ fn the_balance_of_a_body_that_is_dragged_holds() {
         let balance = session.posed().evaluated_skeleton().balance.clone().expect("a balance");
         assert!(balance.error() < 2e-3, "{bone}, let go: {balance:?}");
     }
+}
+
+#[test]
+fn a_drag_stops_where_the_limits_of_legs_would_lift_the_feet() {
+    let mut session = human();
+    let head = joint(&session, "head");
+    session.apply(TargetEdit::AddTarget(head));
+    let index = session.rig().target(head).expect("a target");
+    let target = session.rig().targets[index];
+    let ahead = pose(&session).full_transform(head).transform_point3(2.0 * Vec3::Z);
+    let aim = Some(Aim { axis: Vec3::Z, point: ahead });
+    session.apply(TargetEdit::SetTarget(Target { weight: 0.0, aim, ..target }));
+    let pelvis = joint(&session, "pelvis");
+    let at = press(&mut session, pelvis);
+    let way = across(&session, 0.08, -0.15);
+    for step in 1..=12_u8 {
+        move_to(&mut session, at + way * (f32::from(step) / 10.0));
+        let targets = &session.posed().evaluated_skeleton().targets;
+        let missed = targets.iter().map(|target| target.error).fold(0.0, f32::max);
+        assert!(missed < 1e-3, "step {step}: a hand or foot is off by {missed}");
+        let turn = targets[index].rotation_error.expect("an aim");
+        assert!(turn < 1e-3, "step {step}: the head looks {turn} aside");
+    }
+    let moved = pose(&session).base(pelvis).distance(at);
+    assert!(moved > 0.1, "the pelvis goes as far as the legs let it: {moved}");
+    let short = session.history().drag().and_then(|drag| drag.limit()).expect("a limit").short;
+    let left = (at + way * 1.2).distance(pose(&session).base(pelvis));
+    assert!((short - left).abs() < 1e-3 && short > 0.02, "{short} is told, {left} is left");
 }

@@ -4,7 +4,7 @@ use super::balance_target::Footing;
 use super::evaluate::EvaluatedSkeleton;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::chain_ik::{ChainTarget, NullSpaceDrag, Root, SolveError};
+use crate::chain_ik::{ChainTarget, DragReport, NullSpaceDrag, Root, SolveError};
 use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 
 /// Drags of points of bodies.
@@ -12,7 +12,9 @@ impl SkeletonRig {
     /// A drag of a point of a joint from a pose that this rig has at a time in seconds. All that
     /// targets hold stays: whole-body targets of full influence, where they are reached or as far
     /// from it as they are, and with [`SkeletonRig::body_follows`] the hands and feet of limb
-    /// targets. The limbs themselves do not turn; solve them again for the dragged pose.
+    /// targets. The limbs themselves do not turn; solve them again for the dragged pose. Where limbs
+    /// could not follow, because of the limits of their joints, the point stays nearer to where it
+    /// was.
     ///
     /// # Errors
     ///
@@ -22,7 +24,54 @@ impl SkeletonRig {
         evaluated: &EvaluatedSkeleton,
         time: f64,
         dragged: ChainTarget,
-    ) -> Result<NullSpaceDrag, SolveError> {
+    ) -> Result<(NullSpaceDrag, DragReport), SolveError> {
+        const HALVINGS: u32 = 6;
+        let whole = self.dragged_to(evaluated, time, dragged)?;
+        if !self.loses_limbs(evaluated, time, &whole.0) {
+            return Ok(whole);
+        }
+        let from = dragged.effector_in(&evaluated.solved);
+        let to = |part: f32| ChainTarget { point: from.lerp(dragged.point, part), ..dragged };
+        let (mut least, mut most) = (0.0, 1.0);
+        let mut farthest = self.dragged_to(evaluated, time, to(least))?;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (least + most);
+            let drag = self.dragged_to(evaluated, time, to(middle))?;
+            if self.loses_limbs(evaluated, time, &drag.0) {
+                most = middle;
+            } else {
+                (least, farthest) = (middle, drag);
+            }
+        }
+        let mut posed = Skeleton::clone(&evaluated.solved);
+        farthest.0.write(&mut posed);
+        farthest.1.distance = dragged.effector_in(&posed).distance(dragged.point);
+        Ok(farthest)
+    }
+
+    /// True if limbs miss their targets by more than before after a drag.
+    fn loses_limbs(&self, evaluated: &EvaluatedSkeleton, time: f64, drag: &NullSpaceDrag) -> bool {
+        let mut posed = Skeleton::clone(&evaluated.solved);
+        drag.write(&mut posed);
+        let posed = self.with_limbs(posed, time);
+        let mut limbs = self.targets.iter().zip(&evaluated.targets);
+        limbs.any(|(target, before)| {
+            let is_held = self.is_solved_for(target)
+                && target.influence >= 1.0
+                && target.limb().is_some()
+                && self.pulls_body(target);
+            let error = posed.tip(target.joint).distance(target.in_world(&posed, time));
+            is_held && error > before.error + self.tolerance()
+        })
+    }
+
+    /// A drag to a place, whatever becomes of limbs.
+    fn dragged_to(
+        &self,
+        evaluated: &EvaluatedSkeleton,
+        time: f64,
+        dragged: ChainTarget,
+    ) -> Result<(NullSpaceDrag, DragReport), SolveError> {
         let mut pose = Skeleton::clone(&evaluated.solved);
         for joint in self.limb_joints_of_targets() {
             pose.write_local(joint, |joint| joint.locked = true);
@@ -36,7 +85,9 @@ impl SkeletonRig {
             Root::Free if held.is_empty() && !is_root => Root::Turns,
             root => root,
         };
-        NullSpaceDrag::with_limbs(&pose, &held, &footing.limbs, dragged, root)
+        let mut drag = NullSpaceDrag::with_limbs(&pose, &held, &footing.limbs, dragged, root)?;
+        let report = drag.run();
+        Ok((drag, report))
     }
 
     /// True if a drag of a point of a joint can turn the joint or one above it, or move the root.

@@ -88,7 +88,8 @@ pub enum TargetOutcome {
     WholeBody(Report),
     /// The report of the limb.
     Limb(Box<LimbReport>),
-    /// The solver refuses the whole-body targets.
+    /// The solver refuses the whole-body targets, or its method this one, which asks for a rotation or
+    /// an aim.
     Refused(SolveError),
     /// The target's joint does not end a limb.
     NoLimb(NoLimb),
@@ -289,8 +290,17 @@ impl SkeletonRig {
         poses: bool,
     ) {
         let StepPose { solved, outcomes, body_refused, .. } = step;
-        let is_active =
-            |target: &Target| self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
+        let method = self.solver.method;
+        for (target, slot) in self.targets.iter().zip(outcomes.iter_mut()) {
+            if self.is_solved_for(target) && target.turns_joint() && !method.can_orient() {
+                let joint = target.joint;
+                *slot = TargetOutcome::Refused(SolveError::CannotOrient { method, joint });
+            }
+        }
+        let is_active = |target: &Target| {
+            let is_body = self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
+            is_body && (method.can_orient() || !target.turns_joint())
+        };
         let active = self.targets.iter().filter(|it| is_active(it));
         let active: Vec<BodyTarget> = active
             .map(|it| BodyTarget {
@@ -321,6 +331,13 @@ impl SkeletonRig {
             }
         }
         *body_refused = refused.filter(|_| is_pulled);
+    }
+
+    /// A pose with its limbs posed by their targets, from the angles that they have in it.
+    pub(super) fn with_limbs(&self, pose: Skeleton, time: f64) -> Shared<Skeleton> {
+        let mut step = self.begin_step(Shared::from(pose));
+        self.solve_limbs(&mut step, time, None);
+        step.solved
     }
 
     fn solve_limbs(&self, step: &mut StepPose, time: f64, mut carried: Option<&mut Carried>) {

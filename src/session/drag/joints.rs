@@ -321,11 +321,10 @@ fn drag_point(session: &Session, start: &Posed, dragged: ChainTarget) -> Outcome
     if !rig.can_drag(dragged.joint) {
         return Outcome::say("A target poses this bone; drag the target instead");
     }
-    let mut drag = match rig.drag(full.evaluated_skeleton(), full.time(), dragged) {
-        Ok(drag) => drag,
+    let (drag, report) = match rig.drag(full.evaluated_skeleton(), full.time(), dragged) {
+        Ok(dragged) => dragged,
         Err(error) => return Outcome::fail(error.to_string()),
     };
-    let report = drag.run();
     let limit = DragLimit { short: report.distance, freedom: drag.freedom() };
     let mut posed = Skeleton::clone(full.skeleton());
     drag.write(&mut posed);
