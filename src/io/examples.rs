@@ -50,7 +50,7 @@ macro_rules! examples {
 
 impl Example {
     /// All examples, in the order in which they are listed.
-    pub const ALL: [Self; 33] = examples! {
+    pub const ALL: [Self; 35] = examples! {
         Basics in "" {
             "arm", "Arm" => "The arm of the paper, two limbs in closed form.";
             "two-targets", "Two targets on a Y" =>
@@ -60,6 +60,12 @@ impl Example {
             "walk", "Walk" =>
                 "A figure that walks: its feet stand at their targets while the pelvis moves on, \
                  and its arms swing by FK; press Space to play.";
+            "reaching-down", "Reaching down" =>
+                "A figure that squats to lift something from the floor: only its hands, its gaze \
+                 and its balance are given, and its feet stay; press Space to play.";
+            "looking-at-the-hand", "Looking at the hand" =>
+                "A figure whose head turns to its hand, by an aim; the neck is stiffer than the \
+                 head; press Space to play.";
             "wheel", "Two hands on a wheel" =>
                 "A figure whose hands hold a wheel that turns: their targets are on the wheel.";
             "candy-wrapper", "Candy wrapper" =>

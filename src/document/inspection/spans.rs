@@ -100,7 +100,8 @@ impl Slides {
         evaluated: &EvaluatedSkeleton,
     ) {
         let target = &rig.targets[index];
-        let is_full = rig.is_solved_for(target) && target.influence >= 1.0;
+        let is_full =
+            rig.is_solved_for(target) && target.influence >= 1.0 && !target.has_free_place();
         let place = evaluated.targets[index].position;
         let tip = evaluated.solved.tip(target.joint);
         let length = rig.length_to(target.joint);
