@@ -1,13 +1,14 @@
 //! Time of evaluating the Human with limb targets and with whole-body targets, of frames in which
-//! a hand is dragged and the body follows, and of a trail over 240 frames.
+//! a hand is dragged and the body follows or is balanced, of tracks, of a reach region, and of a
+//! trail over 240 frames.
 
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use ik_arm::document::{Document, SkeletonRig, Target};
+use ik_arm::document::{BalanceTarget, Document, SkeletonRig, Target, Track};
 use ik_arm::io::Example;
-use ik_arm::rig::{Aim, Carried, TargetKind};
+use ik_arm::rig::{Aim, Carried, ReachRegion, TargetKind};
 
 fn example(name: &str) -> Document {
     Example::find(name).expect("an example").open().expect("valid").document
@@ -76,6 +77,23 @@ fn evaluate(criterion: &mut Criterion) {
     group.bench_function("human, six targets, 120 frames of a drag beyond reach", |it| {
         it.iter(|| drag(&mut six, far));
     });
+
+    let mut balanced = example("human").rig;
+    balanced.balance = Some(BalanceTarget::default());
+    group.bench_function("human, balanced, 120 frames of a drag", |it| {
+        it.iter(|| drag(&mut balanced, far));
+    });
+    let reaching = example("reaching-down");
+    let hand_of_reaching = reaching.skeleton().find("left_hand").expect("a hand");
+    group.bench_function("track of 165 frames of Reaching down", |it| {
+        it.iter(|| Track::new(black_box(&reaching)).at(5.5).skeleton().tip(hand_of_reaching));
+    });
+    let human = example("human").rig;
+    group.sample_size(10);
+    group.bench_function("reach region of the hand of the human", |it| {
+        it.iter(|| ReachRegion::of(black_box(&human), 0, 0.0));
+    });
+    group.sample_size(100);
 
     let walk = example("walk");
     let hand = walk.skeleton().find("left_hand").expect("a hand");

@@ -24,10 +24,10 @@
 //! | [`two_bone`] | the closed form of two bones |
 //! | [`batch`], [`soft_reach`], [`twist`] | many arms at once; a hand that slows down before the arm is straight; twist references |
 //! | [`fk`], [`ik`], [`job`], [`pop`] | the arm by its joint angles and by its hand; correcting a limb of another program's skeleton; why an elbow jumped |
-//! | [`skeleton`] | trees of joints and their forward kinematics |
+//! | [`skeleton`] | trees of joints, their forward kinematics, their limits and their balance |
 //! | [`limb_ik`], [`skin`] | limbs of skeletons in closed form; skins and how they follow the joints |
 //! | [`chain_ik`], [`diagnosis`] | iterative solvers, seen from inside; why a target is not reached and what would help |
-//! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets and skin, crowds of arms; steps of motions and their pops |
+//! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets, balance and skin, crowds of arms; steps of motions and their pops; reach regions |
 //!
 //! # Conventions
 //!

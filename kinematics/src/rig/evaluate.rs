@@ -123,6 +123,9 @@ impl SkeletonRig {
     /// that it is on. The work of the solver is bounded: see
     /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
     ///
+    /// With a [balance](SkeletonRig::balance), both are repeated until the centre of mass is where it
+    /// should be, at most eight times.
+    ///
     /// Whole-body targets with different influences are solved once for each influence: together
     /// with all targets of at least that influence. Each such pose is blended with the one of the
     /// next lower influence by the ratio of the two, and the first one with the FK pose.
