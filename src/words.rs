@@ -109,6 +109,9 @@ pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
                     "{target} was still coming nearer when the solver stopped after {iterations} iteration{s}"
                 )
             }
+            Cause::Balance => {
+                format!("The balance keeps the body from following {target} to its target")
+            }
             Cause::Influence { influence: 0.0 } => {
                 format!("The target of {target} has no influence: the joint angles alone pose it")
             }
@@ -226,6 +229,7 @@ fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
             (Verb::Lengthen, format!("the bones by {}", percent(*factor - 1.0)))
         }
         Remedy::FollowBody => (Verb::Let, "the whole body follow".to_owned()),
+        Remedy::FreeBalance => (Verb::SwitchOff, "the balance".to_owned()),
         Remedy::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
         Remedy::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
         Remedy::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),

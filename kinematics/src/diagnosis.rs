@@ -111,6 +111,8 @@ pub enum Cause {
     },
     /// The target can be reached, but not from the pose to which the motion has come.
     Lost,
+    /// The target can be reached without the balance of the figure.
+    Balance,
     /// The pose is a mix of the FK pose and the solved one, which reaches the target.
     Influence {
         /// Fraction of the way from the FK pose to the solved one.
@@ -143,6 +145,7 @@ impl Cause {
             Self::Lost => "lost",
             Self::Singular { .. } => "singular",
             Self::OutOfIterations { .. } => "out_of_iterations",
+            Self::Balance => "balance",
             Self::Influence { .. } => "influence",
         }
     }
@@ -169,6 +172,8 @@ pub enum Remedy {
     SetRoot(Root),
     /// Lets the body follow limb targets that are out of reach.
     FollowBody,
+    /// Lets the centre of mass of the figure be anywhere.
+    FreeBalance,
     /// Widens limits of angles.
     WidenLimits(Vec<WidenedLimit>),
     /// Lets solvers turn joints.

@@ -5,7 +5,9 @@ use ik_arm::document::{
     BalanceOver, BalanceTarget, Channel, Document, FramePop, Inspection, Track,
 };
 use ik_arm::kinematics::chain_ik::Method;
+use ik_arm::kinematics::diagnosis::{Cause, Remedy};
 use ik_arm::kinematics::skeleton::{Balance, JointId, Skeleton};
+use ik_arm::rig::Carried;
 use pollster::block_on;
 
 use crate::common::Random;
@@ -175,4 +177,25 @@ fn a_figure_in_the_air_is_not_balanced_over_feet() {
     let mut without = document.clone();
     without.rig.balance = None;
     assert_eq!(posed.skeleton(), without.at(0.0).skeleton());
+}
+
+#[test]
+fn why_not_names_the_balance_and_switches_it_off_where_that_reaches_the_target() {
+    let mut document = balanced(Method::DampedLeastSquares, BalanceTarget::default());
+    set_target(&mut document, HANDS[0], Vec3::new(0.75, 1.7, 0.2));
+    let rig = &document.rig;
+    let evaluated = rig.evaluate(0.0);
+    assert!(evaluated.targets[0].error > rig.tolerance(), "the balance is in the way");
+    let found = rig.diagnose(0.0, &Carried::default());
+    let balance = found.iter().find(|it| it.cause == Cause::Balance).expect("the balance");
+    let tried = balance.remedies.first().expect("a remedy");
+    assert_eq!(tried.remedy, Remedy::FreeBalance);
+    let mut freed = rig.clone();
+    freed.apply_remedy(&tried.remedy, 0.0).expect("applied");
+    assert!(freed.evaluate(0.0).targets[0].error <= rig.tolerance());
+
+    document.rig.balance = None;
+    set_target(&mut document, HANDS[0], Vec3::new(2.0, 1.7, 0.2));
+    let found = document.rig.diagnose(0.0, &Carried::default());
+    assert!(!found.is_empty() && found.iter().all(|it| it.cause != Cause::Balance), "{found:?}");
 }

@@ -46,7 +46,7 @@ of the solver of the whole-body targets, else null, also if there is nothing to 
 causes for which targets are not reached, the most likely first, each with the remedy that helps
 most and the distance from tip to target and the angle that it leaves, or null if no remedy was
 found; it is empty if all targets are reached, and with --fk. Causes: out_of_reach, limits,
-rotation_limits, turn, locked, conflict, stalled, lost, singular, out_of_iterations, influence. A
+rotation_limits, turn, locked, conflict, stalled, lost, singular, out_of_iterations, balance, influence. A
 solve that does not converge is not an error. `ik-arm solve` solves two bones without a file.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --rotation left_hand=0,90,0"#,

@@ -89,6 +89,7 @@ impl SkeletonRig {
                     None => found.extend(of_target.map(|it| case.tried_again(it))),
                 }
                 found.extend(case.limb(report));
+                found.extend(case.balance());
             }
             case.sorted(found)
         };
@@ -179,6 +180,7 @@ impl SkeletonRig {
                 }
             }),
             Remedy::FollowBody => self.body_follows = true,
+            Remedy::FreeBalance => self.balance = None,
             Remedy::FullInfluence(joint) => self.change_target(joint, |it| it.influence = 1.0),
             Remedy::Stretch { joint, max_stretch } => {
                 self.change_soft_reach(joint, |soft| {
@@ -263,6 +265,14 @@ impl RigCase<'_> {
         let remedies = Vec::from_iter(tried);
         (!remedies.is_empty())
             .then(|| self.diagnosis(Cause::Influence { influence }, vec![joint], remedies))
+    }
+
+    /// The balance, if the target can be reached without it.
+    pub fn balance(&self) -> Option<Diagnosis> {
+        self.rig.active_balance()?;
+        let tried = self.try_remedy(Remedy::FreeBalance)?;
+        let is_reached = self.is_reached(tried.residual);
+        is_reached.then(|| self.diagnosis(Cause::Balance, Vec::new(), vec![tried]))
     }
 
     /// A diagnosis of the solver with the residuals that its remedies leave in the rig.

@@ -271,7 +271,7 @@ impl Values<'_> {
 
     pub fn remedy(&mut self) -> Remedy {
         let joint = self.aimed();
-        match self.random.below(15) {
+        match self.random.below(16) {
             0 => Remedy::MoveTarget { joint, point: self.small_point() },
             1 => Remedy::Lengthen { joint, factor: self.above_0(2.0) },
             2 => Remedy::SetRoot(self.one_of(&Root::ALL)),
@@ -295,6 +295,7 @@ impl Values<'_> {
             9 => Remedy::AllowIterations(self.one_of(&[0, 1, 20, 500])),
             10 => Remedy::FullInfluence(joint),
             11 => Remedy::FollowBody,
+            15 => Remedy::FreeBalance,
             12 => Remedy::FreeTurn(joint),
             13 => Remedy::FreePlace(joint),
             _ => Remedy::Stretch { joint, max_stretch: self.above_0(3.0) },
