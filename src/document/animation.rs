@@ -61,9 +61,7 @@ impl Document {
     /// True if the balance poses the skeleton at some time.
     fn can_balance(&self) -> bool {
         let has_influence = |balance: BalanceTarget| {
-            let keyed = self.keys.track(Channel::BalanceInfluence);
-            let keyed = keyed.map(|keys| keys.knots().iter().any(|it| it.value.x > 0.0));
-            keyed.unwrap_or(balance.is_posing())
+            self.is_ever_above_zero(Channel::BalanceInfluence, balance.influence)
         };
         self.rig.solver.method.can_balance() && self.rig.balance.is_some_and(has_influence)
     }
@@ -77,15 +75,18 @@ impl Document {
 
     /// True if a target poses the skeleton at some time.
     fn can_pose(&self, target: &Target) -> bool {
-        let track = |channel| self.keys.track(channel);
-        let is_ever = |channel, value: f32| {
-            let keyed = track(channel).map(|keys| keys.knots().iter().any(|it| it.value.x > 0.0));
-            keyed.unwrap_or(value > 0.0)
-        };
         let Target { joint, influence, enabled, .. } = *target;
         let leads = self.rig.leads_path(target);
-        (leads || is_ever(Channel::TargetInfluence(joint), influence))
-            && is_ever(Channel::Enabled(joint), f32::from(u8::from(enabled)))
+        (leads || self.is_ever_above_zero(Channel::TargetInfluence(joint), influence))
+            && self.is_ever_above_zero(Channel::Enabled(joint), f32::from(u8::from(enabled)))
+    }
+
+    /// True if any key of a channel is above 0, or its present value if it has no keys.
+    fn is_ever_above_zero(&self, channel: Channel, present: f32) -> bool {
+        match self.keys.track(channel) {
+            Some(keys) => keys.knots().iter().any(|it| it.value.x > 0.0),
+            None => present > 0.0,
+        }
     }
 }
 

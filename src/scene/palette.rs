@@ -158,6 +158,12 @@ impl Palette {
         self.along_ramp(along)
     }
 
+    /// Colour of what is wrong, such as a singular direction or a joint at its limit: that of
+    /// [`Palette::MAX_GAIN`], opaque.
+    pub fn danger(&self) -> Colour {
+        self.gain(Self::MAX_GAIN).with_opacity(1.0)
+    }
+
     /// Colour of the ramp between its colours; the first is at 0, the next at 1.
     fn along_ramp(&self, along: f32) -> Colour {
         let step = (along as usize).min(Self::GAINS - 2);

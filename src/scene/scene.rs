@@ -169,8 +169,7 @@ impl Scene {
             return;
         }
         self.globe = Some(globe);
-        let (ball, text) =
-            (self.palette.gain(Palette::MAX_GAIN).with_opacity(1.0), self.palette.text);
+        let (ball, text) = (self.palette.danger(), self.palette.text);
         for direction in globe.singular() {
             let (centre, radius) =
                 (globe.centre + direction * globe.radius, MARK_RADIUS * globe.radius);

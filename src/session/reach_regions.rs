@@ -38,8 +38,6 @@ pub struct ShownRegion {
     pub mesh: Shared<AttachedMesh>,
     /// The pose of its only joint, which rests.
     pub pose: Shared<SkinPose>,
-    /// Joint of the target.
-    pub target: JointId,
 }
 
 /// Starts and ends searches for reach regions.
@@ -73,8 +71,7 @@ impl ReachJob {
                 return ReachAction::Ended(self, None);
             }
         }
-        let target = self.rig.targets[self.index].joint;
-        let region = search.finish().and_then(|region| ShownRegion::new(&region, target));
+        let region = search.finish().and_then(|region| ShownRegion::new(&region));
         ReachAction::Ended(self, region.map(Box::new))
     }
 
@@ -110,14 +107,14 @@ impl PartialEq for ReachJob {
 
 impl ShownRegion {
     /// The mesh of a region; `None` if it cannot be drawn.
-    pub fn new(region: &ReachRegion, target: JointId) -> Option<Self> {
+    pub fn new(region: &ReachRegion) -> Option<Self> {
         let skeleton = Skeleton::with_root("region");
         let surface = region.surface().clone();
         let weights = vec![VertexWeights::rigid(JointId::new(0)); surface.positions.len()];
         let mesh = SkinnedMesh::new(surface, weights, vec![Affine3A::IDENTITY]).ok()?;
         let pose = Shared::from(mesh.pose(&skeleton));
         let mesh = Shared::from(AttachedMesh::new(mesh, Vec::new(), &skeleton));
-        Some(Self { mesh, pose, target })
+        Some(Self { mesh, pose })
     }
 }
 

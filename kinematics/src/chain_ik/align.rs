@@ -65,8 +65,8 @@ pub(super) fn align_best(pairs: &[PointPair]) -> Quat {
 /// increases the weighted squared distance. Rotates the points `from` of the pairs and returns the
 /// total rotation. With a `part` below 1, each angle changes by that part of its way alone.
 ///
-/// A joint with a cone rotates by the best rotation of all, brought into the cone, and then about its
-/// bone.
+/// A joint with a cone rotates by the best rotation of all, brought into the cone, then about its
+/// bone, and then along the side of the cone.
 ///
 /// `axes` are the rotation axes of the three angles before the call.
 pub(super) fn align_within(
@@ -77,10 +77,7 @@ pub(super) fn align_within(
     pairs: &mut [PointPair],
 ) -> Quat {
     if limits.as_cone().is_some() {
-        let [x_axis, y_axis, z_axis] = axes;
-        let own = JointAngles(*angles).axes();
-        let frame = frame_of([x_axis, y_axis, z_axis], [own.x_axis, own.y_axis, own.z_axis]);
-        return align_in_cone(limits, frame, part, angles, pairs);
+        return align_in_cone(limits, frame_of(axes, *angles), part, angles, pairs);
     }
     let mut whole = Quat::IDENTITY;
     for (about, axis) in RotationAxis::ALL.into_iter().zip(axes) {
@@ -108,11 +105,12 @@ pub(super) fn align_within(
     whole
 }
 
-/// The rotation that takes the axes of Euler angles in a joint's frame to those in skeleton space.
-fn frame_of(axes: [Vec3A; 3], own: [Vec3A; 3]) -> Mat3A {
+/// The rotation from a joint's frame to skeleton space, from the axes of its angles there.
+fn frame_of([_, y_axis, z_axis]: [Vec3A; 3], angles: Vec3) -> Mat3A {
     // The second and the third axis are always across each other.
-    let basis = |[_, y, z]: [Vec3A; 3]| Mat3A::from_cols(y.cross(z), y, z);
-    basis(axes) * basis(own).transpose()
+    let basis = |y: Vec3A, z: Vec3A| Mat3A::from_cols(y.cross(z), y, z);
+    let own = JointAngles(angles).axes();
+    basis(y_axis, z_axis) * basis(own.y_axis, own.z_axis).transpose()
 }
 
 /// [`align_within`] for a cone: by the best rotation of all, about the bone, and along the side of the
@@ -195,8 +193,7 @@ fn gentle_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
     const SMALL: f32 = 1e-2;
     let (a, b) = moments(axis, pairs);
     let lengths: f32 = pairs.iter().map(|it| it.weight * it.from.length() * it.to.length()).sum();
-    let a = a + SMALL * lengths;
-    if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
+    angle_of_maximum(a + SMALL * lengths, b)
 }
 
 /// The weighted squared distance of points from their destinations after a rotation.
@@ -205,14 +202,18 @@ fn distance(pairs: &[PointPair], rotation: Quat) -> f32 {
     pairs.iter().map(of_pair).sum()
 }
 
-/// Angle of a rotation about `axis` that maximizes Σ w from·to. This sum is a cos θ + b sin θ, up
-/// to a constant.
+/// Angle of a rotation about `axis` that maximizes Σ w from·to.
 fn best_angle(axis: Vec3A, pairs: &[PointPair]) -> f32 {
     let (a, b) = moments(axis, pairs);
+    angle_of_maximum(a, b)
+}
+
+/// The angle θ that maximizes a cos θ + b sin θ; 0 if all angles are as good.
+fn angle_of_maximum(a: f32, b: f32) -> f32 {
     if a == 0.0 && b == 0.0 { 0.0 } else { b.atan2(a) }
 }
 
-/// The factors a and b of cos θ and sin θ in Σ w from·to.
+/// The factors a and b in Σ w from·to = a cos θ + b sin θ, up to a constant, after a rotation by θ.
 fn moments(axis: Vec3A, pairs: &[PointPair]) -> (f32, f32) {
     let (mut a, mut b) = (0.0, 0.0);
     for PointPair { from, to, weight } in pairs {

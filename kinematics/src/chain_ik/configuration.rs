@@ -107,12 +107,24 @@ impl Configuration {
     /// of mass.
     #[inline]
     pub fn pivot(&self, problem: &Problem, link: usize, effector: usize) -> Vec3A {
-        match &problem.masses {
-            Some(masses) if masses.effector == effector => {
-                let arm = self.moments[link] - masses.on_links[link].below * self.bases[link];
+        self.pivot_with(&self.moments, problem, link, effector)
+    }
+
+    /// [`pivot`](Self::pivot) with other moments of the links.
+    #[inline]
+    pub fn pivot_with(
+        &self,
+        moments: &[Vec3A],
+        problem: &Problem,
+        link: usize,
+        effector: usize,
+    ) -> Vec3A {
+        match problem.masses_of(effector) {
+            Some(masses) => {
+                let arm = moments[link] - masses.on_links[link].below * self.bases[link];
                 self.tips[effector] - arm
             }
-            _ => self.bases[link],
+            None => self.bases[link],
         }
     }
 

@@ -137,8 +137,7 @@ impl Wrenches {
         for (index, effector) in problem.effectors.iter().enumerate() {
             let force = force(index);
             shifts[effector.tree] += force * problem.part_of_shift(index);
-            let masses = problem.masses.as_ref().filter(|masses| masses.effector == index);
-            if let Some(masses) = masses {
+            if let Some(masses) = problem.masses_of(index) {
                 for (link, MassOnLink { mass, .. }) in masses.on_links.iter().enumerate() {
                     let moment = config.own_moment(masses, link).cross(force);
                     self.add(link, *mass * force, moment);

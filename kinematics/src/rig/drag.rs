@@ -56,10 +56,8 @@ impl SkeletonRig {
         let posed = self.with_limbs(posed, time);
         let mut limbs = self.targets.iter().zip(&evaluated.targets);
         limbs.any(|(target, before)| {
-            let is_held = self.is_solved_for(target)
-                && target.influence >= 1.0
-                && target.limb().is_some()
-                && self.pulls_body(target);
+            let is_held =
+                self.is_solved_for(target) && target.influence >= 1.0 && self.pulls_body(target);
             let error = posed.tip(target.joint).distance(target.in_world(&posed, time));
             is_held && error > before.error + self.tolerance()
         })

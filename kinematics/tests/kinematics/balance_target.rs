@@ -1,7 +1,7 @@
 //! Targets for the centre of mass, against an f64 twin with finite differences, and against
 //! [`Balance`] of the solved pose.
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use ik_arm_kinematics::chain_ik::{
     ChainSolver, ChainTarget, Method, NullSpaceDrag, Orientation, Root, SolveError, SolverOptions,
     solve,
@@ -9,6 +9,7 @@ use ik_arm_kinematics::chain_ik::{
 use ik_arm_kinematics::skeleton::{Balance, Joint, JointId, JointLimits, Skeleton};
 
 use crate::common::Random;
+use crate::common::gradient::{assert_first_step_descends, to_skeleton_f64};
 use crate::common::skeletons::{
     ITERATIVE, chain, forest, length, shake, space_f64, transform, tree,
 };
@@ -17,10 +18,6 @@ const ROOT: JointId = JointId::new(0);
 
 fn balancing() -> impl Iterator<Item = Method> {
     ITERATIVE.into_iter().filter(|method| method.can_balance())
-}
-
-fn angles(skeleton: &Skeleton) -> Vec<DVec3> {
-    skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect()
 }
 
 /// The centre of mass of a joint and all joints below it, in skeleton space, of bones without radii.
@@ -39,9 +36,7 @@ fn centre(skeleton: &Skeleton, top: JointId, angles: &[DVec3]) -> DVec3 {
 /// f = Σ ½ w d², with the distances of tips from points and of the centre of mass from the vertical
 /// line through its point, in skeleton units.
 fn cost(skeleton: &Skeleton, targets: &[ChainTarget], angles: &[DVec3]) -> f64 {
-    let transform = skeleton.transform();
-    let (matrix, translation) = (transform.matrix3.as_dmat3(), transform.translation.as_dvec3());
-    let to_skeleton = DAffine3::from_mat3_translation(matrix, translation).inverse();
+    let to_skeleton = to_skeleton_f64(skeleton);
     let (balanced, tips) = targets.split_last().expect("a target");
     let of_tip = |target: &ChainTarget| {
         let axis = skeleton[target.joint].axis.as_dvec3();
@@ -58,7 +53,6 @@ fn cost(skeleton: &Skeleton, targets: &[ChainTarget], angles: &[DVec3]) -> f64 {
 
 #[test]
 fn the_gradient_of_a_balance_is_that_of_finite_differences() {
-    const STEP: f64 = 1e-6;
     let mut random = Random(381);
     for case in 0..300 {
         let joints = 3 + random.below(7);
@@ -82,38 +76,15 @@ fn the_gradient_of_a_balance_is_that_of_finite_differences() {
             ChainTarget::at(tip, place),
             ChainTarget::balanced(top, over).with_weight(random.within(0.2..3.0)),
         ];
-        let before = angles(&skeleton);
-        let path: Vec<JointId> =
-            skeleton.ids().filter(|it| skeleton.ancestors(tip).any(|above| above == *it)).collect();
-        let free = || path.iter().copied().filter(|joint| !skeleton[*joint].locked);
-        let mut expected = Vec::new();
-        for joint in free() {
-            for axis in 0..3 {
-                let at = |by: f64| {
-                    let mut moved = before.clone();
-                    moved[joint.index()][axis] += by;
-                    cost(&skeleton, &targets, &moved)
-                };
-                expected.push(-(at(STEP) - at(-STEP)) / (2.0 * STEP));
-            }
-        }
-        let options = SolverOptions::new(Method::Transpose);
-        let mut solver = ChainSolver::new(&skeleton, &targets, &options).expect("a solver");
-        solver.step();
-        let mut posed = skeleton.clone();
-        solver.write(&mut posed);
-        let found: Vec<f64> = free()
-            .flat_map(|joint| (posed[joint].rotation - skeleton[joint].rotation).to_array())
-            .map(f64::from)
-            .collect();
-        let dot = |one: &[f64], other: &[f64]| -> f64 {
-            one.iter().zip(other).map(|(one, other)| one * other).sum()
-        };
-        let lengths = (dot(&found, &found) * dot(&expected, &expected)).sqrt();
-        if lengths > 0.0 {
-            let along = dot(&found, &expected) / lengths;
-            assert!(along > 1.0 - 1e-4, "{case}: {along}, {found:?} but {expected:?}");
-        }
+        let is_above = |joint: &JointId| skeleton.ancestors(tip).any(|above| above == *joint);
+        let path = skeleton.ids().filter(is_above).filter(|joint| !skeleton[*joint].locked);
+        assert_first_step_descends(
+            case,
+            &skeleton,
+            &targets,
+            &path.collect::<Vec<_>>(),
+            |angles| cost(&skeleton, &targets, angles),
+        );
     }
 }
 

@@ -2,12 +2,13 @@
 
 use std::f32::consts::PI;
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use ik_arm_kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SolverOptions};
 use ik_arm_kinematics::skeleton::{JointId, Limit, RotationAxis, Skeleton};
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::Random;
+use crate::common::gradient::{angles_f64, to_skeleton_f64};
 use crate::common::skeletons::{forest, space_f64, transform};
 
 const CASES: usize = 300;
@@ -48,7 +49,7 @@ impl Twin {
                     targets.push(ChainTarget::at(joint, near.tip(joint)).with_weight(weight));
                 }
             }
-            let angles = skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect();
+            let angles = angles_f64(&skeleton);
             if targets.len() > 1 {
                 return Self { skeleton, targets, angles };
             }
@@ -57,10 +58,7 @@ impl Twin {
 
     /// Weighted residuals √w (tip − target), with weights relative to the greatest.
     fn residuals(&self, angles: &[DVec3]) -> DVector<f64> {
-        let transform = self.skeleton.transform();
-        let (matrix, translation) =
-            (transform.matrix3.as_dmat3(), transform.translation.as_dvec3());
-        let to_skeleton = DAffine3::from_mat3_translation(matrix, translation).inverse();
+        let to_skeleton = to_skeleton_f64(&self.skeleton);
         let each = self.targets.iter().zip(self.weights()).flat_map(|(target, weight)| {
             let axis = self.skeleton[target.joint].axis.as_dvec3();
             let tip = space_f64(&self.skeleton, target.joint, angles).transform_point3(axis);

@@ -3,13 +3,14 @@
 
 use std::f32::consts::PI;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{
     ChainSolver, ChainTarget, Method, Orientation, SolveError, SolverOptions, Status, solve,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 
 use crate::common::Random;
+use crate::common::gradient::{angles_f64, assert_first_step_descends, to_skeleton_f64};
 use crate::common::skeletons::{
     ITERATIVE, chain, forest, length, shake, space_f64, transform, tree,
 };
@@ -18,23 +19,13 @@ fn orienting() -> impl Iterator<Item = Method> {
     ITERATIVE.into_iter().filter(|method| method.can_orient())
 }
 
-fn angles(skeleton: &Skeleton) -> Vec<DVec3> {
-    skeleton.joints().iter().map(|joint| joint.rotation.as_dvec3()).collect()
-}
-
-fn to_skeleton(skeleton: &Skeleton) -> DAffine3 {
-    let transform = skeleton.transform();
-    let (matrix, translation) = (transform.matrix3.as_dmat3(), transform.translation.as_dvec3());
-    DAffine3::from_mat3_translation(matrix, translation).inverse()
-}
-
 /// The rotation of a joint's space in skeleton space.
 fn rotation(skeleton: &Skeleton, joint: JointId, angles: &[DVec3]) -> DMat3 {
     DMat3::from_mat4(space_f64(skeleton, joint, angles))
 }
 
 fn rotation_target(posed: &Skeleton, joint: JointId) -> Orientation {
-    let wanted = DQuat::from_mat3(&rotation(posed, joint, &angles(posed)));
+    let wanted = DQuat::from_mat3(&rotation(posed, joint, &angles_f64(posed)));
     Orientation::Rotation(wanted.as_quat())
 }
 
@@ -55,7 +46,7 @@ fn missing(skeleton: &Skeleton, target: &ChainTarget, angles: &[DVec3]) -> f64 {
             sine.length().atan2(trace - 1.0)
         }
         Some(Orientation::Aim { axis, point }) => {
-            let point = to_skeleton(skeleton).transform_point3(point.as_dvec3());
+            let point = to_skeleton_f64(skeleton).transform_point3(point.as_dvec3());
             let way = point - space.transform_point3(DVec3::ZERO);
             let axis = space.transform_vector3(axis.as_dvec3());
             axis.cross(way).length().atan2(axis.dot(way))
@@ -70,7 +61,7 @@ fn cost(skeleton: &Skeleton, targets: &[ChainTarget], angles: &[DVec3]) -> f64 {
     let of_target = |target: &ChainTarget| {
         let axis = skeleton[target.joint].axis.as_dvec3();
         let tip = space_f64(skeleton, target.joint, angles).transform_point3(axis);
-        let off = tip - to_skeleton(skeleton).transform_point3(target.point.as_dvec3());
+        let off = tip - to_skeleton_f64(skeleton).transform_point3(target.point.as_dvec3());
         let turned = turn_length * missing(skeleton, target, angles);
         let turned = f64::from(target.orientation_weight) * turned.powi(2);
         0.5 * (f64::from(target.weight) * off.length_squared() + turned)
@@ -108,40 +99,17 @@ fn problem(random: &mut Random) -> (Skeleton, Vec<ChainTarget>) {
 
 #[test]
 fn gradients_are_those_of_finite_differences() {
-    const STEP: f64 = 1e-6;
     let mut random = Random(38);
     for case in 0..300 {
         let (skeleton, targets) = problem(&mut random);
-        let before = angles(&skeleton);
-        let mut expected = Vec::new();
-        for joint in skeleton.ids().filter(|joint| !skeleton[*joint].locked) {
-            for axis in 0..3 {
-                let at = |by: f64| {
-                    let mut moved = before.clone();
-                    moved[joint.index()][axis] += by;
-                    cost(&skeleton, &targets, &moved)
-                };
-                expected.push(-(at(STEP) - at(-STEP)) / (2.0 * STEP));
-            }
-        }
-        let options = SolverOptions::new(Method::Transpose);
-        let mut solver = ChainSolver::new(&skeleton, &targets, &options).expect("a solver");
-        solver.step();
-        let mut posed = skeleton.clone();
-        solver.write(&mut posed);
         let free = skeleton.ids().filter(|joint| !skeleton[*joint].locked);
-        let found: Vec<f64> = free
-            .flat_map(|joint| (posed[joint].rotation - skeleton[joint].rotation).to_array())
-            .map(f64::from)
-            .collect();
-        let dot = |one: &[f64], other: &[f64]| -> f64 {
-            one.iter().zip(other).map(|(one, other)| one * other).sum()
-        };
-        let lengths = (dot(&found, &found) * dot(&expected, &expected)).sqrt();
-        if lengths > 0.0 {
-            let along = dot(&found, &expected) / lengths;
-            assert!(along > 1.0 - 1e-4, "{case}: {along}, {found:?} but {expected:?}");
-        }
+        assert_first_step_descends(
+            case,
+            &skeleton,
+            &targets,
+            &free.collect::<Vec<_>>(),
+            |angles| cost(&skeleton, &targets, angles),
+        );
     }
 }
 
@@ -187,7 +155,7 @@ fn places_and_rotations_are_reached_together() {
                     solve(&mut skeleton, &targets, &SolverOptions::new(method)).expect("solve");
                 let off = targets.iter().map(|target| {
                     let place = skeleton.tip(target.joint).distance(target.point);
-                    let turn = missing(&skeleton, target, &angles(&skeleton)) as f32;
+                    let turn = missing(&skeleton, target, &angles_f64(&skeleton)) as f32;
                     place.max(0.25 * length * turn)
                 });
                 let off = off.fold(0.0, f32::max);
@@ -237,7 +205,7 @@ fn a_rotation_is_that_of_three_places_fixed_to_the_joint() {
         });
         let [(true, one), (true, other)] = &solved else { continue };
         compared += 1;
-        let spaces = [one, other].map(|skeleton| space_f64(skeleton, tip, &angles(skeleton)));
+        let spaces = [one, other].map(|skeleton| space_f64(skeleton, tip, &angles_f64(skeleton)));
         assert!(spaces[0].abs_diff_eq(spaces[1], 2e-4), "{case}");
     }
     assert!(compared > 150, "{compared}");
@@ -256,7 +224,7 @@ fn an_axis_is_aimed_at_a_point_wherever_the_tip_is() {
             let target = ChainTarget::turned(tip, Orientation::Aim { axis, point });
             let report =
                 solve(&mut skeleton, &[target], &SolverOptions::new(method)).expect("solve");
-            let angle = missing(&skeleton, &target, &angles(&skeleton));
+            let angle = missing(&skeleton, &target, &angles_f64(&skeleton));
             assert!((angle - f64::from(report.orientation_error)).abs() < 1e-4, "{method} {case}");
             assert_eq!(report.error, 0.0, "the place is free");
             reached += usize::from(report.converged());

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use super::drawn_skeleton::DrawnSkeleton;
 use crate::document::{LengthFormat, ShownLength};
 use crate::kinematics::skeleton::{Balance, Skeleton};
-use crate::scene::{Ball, Label, LabelSide, Line, Palette, Scene};
+use crate::scene::{Ball, Label, LabelSide, Line, Scene};
 
 /// Radius of the ball at the centre of mass, and height of lines above the ground, so that it does
 /// not hide them, as fractions of the reach.
@@ -32,7 +32,7 @@ impl DrawnSkeleton<'_> {
         let is_held = self.joints.iter().all(|joint| joint.parent.is_some() || joint.locked);
         let margin = balance.margin().filter(|_| !is_held);
         let colour = match margin {
-            Some(margin) if margin < 0.0 => scene.palette.gain(Palette::MAX_GAIN).with_opacity(1.0),
+            Some(margin) if margin < 0.0 => scene.palette.danger(),
             _ => scene.palette.guide,
         };
         let on_ground = |at: Vec2| Vec3::new(at.x, ABOVE_GROUND * self.reach, at.y);

@@ -7,7 +7,7 @@ use glam::{Mat3A, Vec3};
 
 use super::drawn_skeleton::DrawnSkeleton;
 use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
-use crate::scene::{Colour, Line, Palette, Scene};
+use crate::scene::{Colour, Line, Scene};
 
 /// Radius of fans, as a fraction of the bone's length, and of the fan of a twist.
 const RADIUS: f32 = 0.85;
@@ -40,7 +40,7 @@ impl DrawnSkeleton<'_> {
             None => RotationAxis::ALL.into_iter().for_each(|axis| fan.add_range(scene, axis)),
         }
         if of.limits.is_limited() {
-            let needle = fan.point(of.rotation, 1.0);
+            let needle = fan.point(of.rotation);
             let colour = scene.palette.text;
             scene.lines.push(Line { from: fan.base, to: needle, colour, dashed: false });
         }
@@ -49,9 +49,9 @@ impl DrawnSkeleton<'_> {
 
 impl Fan<'_> {
     /// The point of a fan in the direction that the bone has with these angles.
-    fn point(&self, angles: Vec3, radius: f32) -> Vec3 {
+    fn point(&self, angles: Vec3) -> Vec3 {
         let bone = Vec3::from(self.to_world * glam::Vec3A::from(self.joint.bone_at(angles)));
-        self.base + bone * (RADIUS * radius)
+        self.base + bone * RADIUS
     }
 
     /// Adds the fan of a range of an angle, with the other angles as they are.
@@ -60,12 +60,12 @@ impl Fan<'_> {
         let Some(range) = limits.range(axis).filter(|_| !limits.is_fixed(axis)) else { return };
         let is_blocked = limits.is_at_end(self.joint.rotation, axis);
         let own = scene.palette.axes[axis.index()];
-        let colour = if is_blocked { danger(scene) } else { own };
+        let colour = if is_blocked { scene.palette.danger() } else { own };
         let (size, angle) = (range.max - range.min, self.joint.rotation[axis.index()]);
         let with = |turn: f32| {
             let mut angles = self.joint.rotation;
             angles[axis.index()] = angle + turn;
-            limits.contains(angles).then(|| self.point(angles, 1.0))
+            limits.contains(angles).then(|| self.point(angles))
         };
         // The ends are those of the limits; in between, what they contain is drawn.
         let first = range.min - angle;
@@ -80,12 +80,12 @@ impl Fan<'_> {
         let mut blocks =
             RotationAxis::ALL.into_iter().map(|axis| limits.is_at_end(self.joint.rotation, axis));
         let is_blocked = blocks.any(|is_blocked| is_blocked);
-        let colour = if is_blocked { danger(scene) } else { scene.palette.accent };
+        let colour = if is_blocked { scene.palette.danger() } else { scene.palette.accent };
         let count = (TAU / STEP) as usize;
         let border = (0..=count).map(|at| {
             let azimuth = at as f32 * STEP;
             let angles = self.joint.swung(azimuth, self.joint.most_swing(azimuth)?)?;
-            Some(self.point(angles, 1.0))
+            Some(self.point(angles))
         });
         self.add_arc(scene, border, colour, self.base);
         self.add_twist(scene, colour);
@@ -98,7 +98,7 @@ impl Fan<'_> {
         else {
             return;
         };
-        let bone = self.point(self.joint.rotation, 1.0) - self.base;
+        let bone = self.point(self.joint.rotation) - self.base;
         let Some(along) = bone.try_normalize() else { return };
         let across = along.any_orthonormal_vector() * (bone.length() * TWIST_RADIUS / RADIUS);
         let centre = self.base + bone * 0.5;
@@ -132,8 +132,4 @@ impl Fan<'_> {
             last = point;
         }
     }
-}
-
-fn danger(scene: &Scene) -> Colour {
-    scene.palette.gain(Palette::MAX_GAIN).with_opacity(1.0)
 }

@@ -118,13 +118,7 @@ impl Ccd {
         index: usize,
         effector: usize,
     ) -> Vec3A {
-        match &problem.masses {
-            Some(masses) if masses.effector == effector => {
-                let of_base = masses.on_links[index].below * config.bases[index];
-                config.tips[effector] - (self.moments[index] - of_base)
-            }
-            _ => config.bases[index],
-        }
+        config.pivot_with(&self.moments, problem, index, effector)
     }
 
     /// Records the rotation of a link, with the configuration in which the links before it in the

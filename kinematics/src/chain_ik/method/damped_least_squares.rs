@@ -233,7 +233,7 @@ impl DampedLeastSquares {
         index: usize,
         shift: Vec3A,
     ) -> Vec3A {
-        if let Some(masses) = problem.masses.as_ref().filter(|masses| masses.effector == index) {
+        if let Some(masses) = problem.masses_of(index) {
             let of_links = masses.on_links.iter().enumerate().map(|(link, on_link)| {
                 let (spin, velocity) = self.velocities[link];
                 let arm = config.own_moment(masses, link) - on_link.mass * config.bases[link];

@@ -19,8 +19,7 @@ mod masses;
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3A, Quat, Vec3, Vec3A};
 
 use crate::normalize;
-use crate::skeleton::centre_of_mass_below;
-use crate::skeleton::{JointId, JointLimits, RotationAxis, Skeleton};
+use crate::skeleton::{JointId, JointLimits, RotationAxis, Skeleton, centre_of_mass_below};
 
 pub(super) use build::{Builder, check_target};
 pub(crate) use masses::HeldLimb;
@@ -438,8 +437,12 @@ impl Problem {
     /// The part of a shift of its tree by which an end effector moves: all of it, but for a centre of
     /// mass of which a part stays in place.
     pub fn part_of_shift(&self, effector: usize) -> f32 {
-        let masses = self.masses.as_ref().filter(|masses| masses.effector == effector);
-        masses.map_or(1.0, Masses::part_of_shift)
+        self.masses_of(effector).map_or(1.0, Masses::part_of_shift)
+    }
+
+    /// The masses on links if the end effector is the centre of mass.
+    pub fn masses_of(&self, effector: usize) -> Option<&Masses> {
+        self.masses.as_ref().filter(|masses| masses.effector == effector)
     }
 
     /// Indices of the end effectors at a link and below.
