@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use glam::Quat;
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, ChainTarget, Method, Orientation, SolveError, SolverOptions,
+    ChainSolver, ChainTarget, Method, OrientRefusal, Orientation, SolveError, SolverOptions,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton, SkeletonError};
 
@@ -161,7 +161,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     for arm in ARMS {
         let skeleton = skeleton(arm)?;
-        for method in Method::ALL.into_iter().filter(|method| method.can_orient()) {
+        for method in Method::ALL {
+            if method.refuses(OrientRefusal::Hinges) {
+                continue;
+            }
             let mut random = Random(38);
             let (mut alone, mut reached, mut times) = (0, 0, Vec::new());
             for _ in 0..poses {

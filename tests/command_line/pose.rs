@@ -754,14 +754,18 @@ fn a_head_looks_at_a_point() {
 #[test]
 fn a_rotation_that_the_method_cannot_give_is_refused_by_name() {
     let mut document = example("human");
-    document.rig.solver.method = Method::Fabrik;
-    let output = Scene::document(&document).run(&["--rotation", "head=0,45,0"]);
-    assert!(output.status.success());
-    let said = stderr(&output);
-    assert!(
-        said.contains("fabrik cannot turn joint 4 to an orientation; transpose-fixed,"),
-        "{said}"
-    );
+    for (method, asked, expected) in [
+        (Method::Fabrik, ["--rotation", "head=0,45,0"], "turn joint 4 while its place is free"),
+        (Method::Fabrik, ["--aim", "head=0,1,3"], "aim joint 4 at a point"),
+        (Method::TwoBone, ["--rotation", "head=0,45,0"], "turn joint 4 to an orientation"),
+    ] {
+        document.rig.solver.method = method;
+        let output = Scene::document(&document).run(&asked);
+        assert!(output.status.success());
+        let said = stderr(&output);
+        let expected = format!("{method} cannot {expected}; transpose-fixed,");
+        assert!(said.contains(&expected), "{said}");
+    }
 }
 
 #[test]

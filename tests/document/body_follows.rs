@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, FramePop, Inspection, Target, Track};
-use ik_arm::kinematics::chain_ik::{Method, SolveError};
+use ik_arm::kinematics::chain_ik::{Method, OrientRefusal, SolveError};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{Aim, TargetOutcome, TargetSpace};
 use pollster::block_on;
@@ -159,5 +159,11 @@ fn a_method_that_cannot_aim_refuses_that_target_and_solves_the_others() {
     assert!(with.targets()[0].error < 1e-4);
     let outcome = &with.targets().last().expect("the head's target").outcome;
     let TargetOutcome::Refused(error) = outcome else { panic!("refused, not {outcome:?}") };
-    assert!(matches!(error, SolveError::CannotOrient { method: Method::Fabrik, .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            SolveError::CannotOrient { method: Method::Fabrik, reason: OrientRefusal::Aim, .. }
+        ),
+        "{error}"
+    );
 }

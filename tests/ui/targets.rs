@@ -441,10 +441,17 @@ fn a_whole_body_target_can_turn_its_joint() {
     // A method that cannot do it says so.
     bench.apply([TransactionAction::Undo, TransactionAction::Undo]);
     assert_eq!(self::held(&bench, "head"), None);
-    let options = SolverOptions::new(Method::Fabrik);
+    let options = SolverOptions::new(Method::Relaxation);
     bench.apply([SolverEdit::SetSolver(options)]);
     choose(&mut bench, "Target turns", "To a rotation");
     assert_eq!(self::held(&bench, "head"), None, "the choice is disabled");
+
+    // FABRIK turns, but does not aim.
+    bench.apply([SolverEdit::SetSolver(SolverOptions::new(Method::Fabrik))]);
+    choose(&mut bench, "Target turns", "Aims at a point");
+    assert!(target(&bench, "head").aim.is_none(), "the choice is disabled");
+    choose(&mut bench, "Target turns", "To a rotation");
+    assert!(self::held(&bench, "head").is_some());
 }
 
 #[test]

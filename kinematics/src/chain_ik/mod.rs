@@ -17,10 +17,11 @@
 //!
 //! | method | moves | at limits | orientations |
 //! | --- | --- | --- | --- |
-//! | [`Method::TransposeFixed`], [`Method::Transpose`] | all angles, along the gradient of f | stops at the limit | yes |
+//! | [`Method::TransposeFixed`] | all angles, along the gradient of f | stops at the limit | unless all joints are hinges |
+//! | [`Method::Transpose`] | all angles, along the gradient of f | stops at the limit | yes |
 //! | [`Method::DampedLeastSquares`] | all angles, to the minimum of a quadratic model of f | solves for the other angles | yes |
 //! | [`Method::Ccd`] | one joint after the other | best angle within the limits | yes |
-//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short | refused |
+//! | [`Method::Fabrik`] | points, from targets to roots and back | nearest angles within the limits; may stop short | rotations with a place |
 //! | [`Method::Relaxation`] | points: each bone in turn moves both of its ends | as FABRIK | refused |
 //! | [`Method::TwoBone`] | two joints, at once | stops short | refused |
 //!
@@ -68,7 +69,7 @@ pub use inside::{
 pub use jacobian::{Swing, jacobian, jacobian_of_point};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};
 pub use null_space_drag::{DragReport, NullSpaceDrag};
-pub use options::{OptionField, Root, SolveError, SolverOptions};
+pub use options::{OptionField, OrientRefusal, Root, SolveError, SolverOptions};
 pub(crate) use problem::HeldLimb;
 pub use problem::{ChainTarget, Effector, Orientation};
 pub use report::{Report, Status};

@@ -211,16 +211,19 @@ pub enum SolveError {
         /// The orientation.
         orientation: Orientation,
     },
-    /// The method cannot turn joints to orientations.
+    /// The method cannot turn a joint to its orientation.
     #[error(
-        "{method} cannot turn joint {joint} to an orientation; {} can",
-        crate::chain_ik::method::orienting_methods()
+        "{method} cannot {}; {} can",
+        reason.of_joint(*joint),
+        crate::chain_ik::method::orienting_methods(*reason)
     )]
     CannotOrient {
         /// The method.
         method: Method,
         /// The target's joint.
         joint: JointId,
+        /// What the method cannot do.
+        reason: OrientRefusal,
     },
     /// The method cannot move a centre of mass.
     #[error("{method} cannot balance a body; {} can", crate::chain_ik::method::balancing_methods())]
@@ -275,6 +278,33 @@ pub enum SolveError {
         /// The reason.
         reason: TwoBoneRefusal,
     },
+}
+
+/// What a method cannot do to turn a joint to an [`Orientation`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OrientRefusal {
+    /// Turn a joint to an orientation at all.
+    Any,
+    /// Aim an axis at a point.
+    Aim,
+    /// Turn a joint whose tip may be anywhere: a target with the weight 0.
+    FreePlace,
+    /// Turn a joint by hinges alone: no joint from the target's to the root has more than one angle
+    /// that its limits let change.
+    Hinges,
+}
+
+impl OrientRefusal {
+    /// What a method cannot do with this joint, after "cannot".
+    fn of_joint(self, joint: JointId) -> String {
+        match self {
+            Self::Any => format!("turn joint {joint} to an orientation"),
+            Self::Aim => format!("aim joint {joint} at a point"),
+            Self::FreePlace => format!("turn joint {joint} while its place is free"),
+            Self::Hinges => format!("turn joint {joint} to an orientation by hinges alone"),
+        }
+    }
 }
 
 /// A numeric field of [`SolverOptions`](super::SolverOptions).

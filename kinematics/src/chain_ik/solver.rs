@@ -9,7 +9,7 @@ use super::problem::{self, Builder, HeldLimb, Problem};
 use super::report::{Report, Status};
 use super::stall::{Escape, StallDetector};
 use super::tracker::Tracker;
-use super::{ChainTarget, Method, SolveError, SolverOptions, method, perturb};
+use super::{ChainTarget, Method, OrientRefusal, SolveError, SolverOptions, method, perturb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::vector::saturate;
 
@@ -121,6 +121,7 @@ impl ChainSolver {
         let mut problem = Problem::default();
         builder.fill(&mut problem, skeleton, targets)?;
         check_stiffness(options.method, &problem)?;
+        check_hinges(options.method, &problem, targets)?;
         Ok((builder, problem))
     }
 
@@ -280,7 +281,8 @@ impl ChainSolver {
         for target in targets {
             problem::check_target(target)?;
         }
-        check_method(self.options.method, targets)
+        check_method(self.options.method, targets)?;
+        check_hinges(self.options.method, &self.problem, targets)
     }
 
     /// Begins anew with the angles of a pose, and with the offsets of its free roots, in place of
@@ -509,11 +511,21 @@ fn check_method(method: Method, targets: &[ChainTarget]) -> Result<(), SolveErro
     if !method.can_balance() && targets.iter().any(ChainTarget::is_of_mass) {
         return Err(SolveError::CannotBalance { method });
     }
-    let oriented = targets.iter().find(|target| target.orientation.is_some());
-    match oriented.filter(|_| !method.can_orient()) {
-        Some(ChainTarget { joint, .. }) => Err(SolveError::CannotOrient { method, joint: *joint }),
-        None => Ok(()),
-    }
+    let refused = |target: &ChainTarget| {
+        let reason = method.refusal_of(target)?;
+        Some(SolveError::CannotOrient { method, joint: target.joint, reason })
+    };
+    targets.iter().find_map(refused).map_or(Ok(()), Err)
+}
+
+/// Checks that a method can turn joints to their orientations by the links above them.
+fn check_hinges(
+    method: Method,
+    problem: &Problem,
+    targets: &[ChainTarget],
+) -> Result<(), SolveError> {
+    let refused = |joint| SolveError::CannotOrient { method, joint, reason: OrientRefusal::Hinges };
+    method::turned_by_hinges(method, problem, targets).map_or(Ok(()), |joint| Err(refused(joint)))
 }
 
 /// Checks that a method can give joints their stiffness.

@@ -294,23 +294,23 @@ impl SkeletonRig {
     ) {
         let StepPose { solved, outcomes, body_refused, .. } = step;
         let method = self.solver.method;
+        let (mut active, mut active_slots) = (Vec::new(), Vec::new());
         for (target, slot) in self.targets.iter().zip(outcomes.iter_mut()) {
-            if self.is_solved_for(target) && target.turns_joint() && !method.can_orient() {
-                let joint = target.joint;
-                *slot = TargetOutcome::Refused(SolveError::CannotOrient { method, joint });
+            if !self.is_solved_for(target) || target.kind != TargetKind::WholeBody {
+                continue;
+            }
+            let (joint, tip) = (target.joint, self.tip_target(target, solved, time));
+            match method.refusal_of(&tip) {
+                Some(reason) => {
+                    let refused = SolveError::CannotOrient { method, joint, reason };
+                    *slot = TargetOutcome::Refused(refused);
+                }
+                None => {
+                    active.push(BodyTarget { tip, influence: target.influence });
+                    active_slots.push(slot);
+                }
             }
         }
-        let is_active = |target: &Target| {
-            let is_body = self.is_solved_for(target) && target.kind == TargetKind::WholeBody;
-            is_body && (method.can_orient() || !target.turns_joint())
-        };
-        let active = self.targets.iter().filter(|it| is_active(it));
-        let active: Vec<BodyTarget> = active
-            .map(|it| BodyTarget {
-                tip: self.tip_target(it, solved, time),
-                influence: it.influence,
-            })
-            .collect();
         let mut options = self.solver;
         if active.is_empty() && options.method.is_closed_form() {
             // Limbs pull more joints than the closed form has.
@@ -328,11 +328,7 @@ impl SkeletonRig {
             Ok(report) => (TargetOutcome::WholeBody(report), None),
             Err(error) => (TargetOutcome::Refused(error.clone()), Some(error)),
         };
-        for (target, slot) in self.targets.iter().zip(outcomes) {
-            if is_active(target) {
-                *slot = outcome.clone();
-            }
-        }
+        active_slots.into_iter().for_each(|slot| *slot = outcome.clone());
         *body_refused = refused.filter(|_| is_pulled);
     }
 

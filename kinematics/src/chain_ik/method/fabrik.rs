@@ -7,6 +7,8 @@
 //! outward   point = base + r · unit(q − base)      base: of the root, then the parent's point
 //! ```
 //!
+//! A link with a wanted rotation R has base' = q − R · position instead, and keeps R outward.
+//!
 //! The destination of a point that several children share is the weighted mean of the destinations
 //! of the children's bases. A link with several points takes the mean of the positions base' that
 //! its points give. The links are laid out as [`points`](super::points) says.
@@ -60,9 +62,15 @@ fn reach(points: &mut LinkPoints, problem: &Problem, config: &Configuration, lin
         points.destinations[index] = destination;
         let arm = points.posed_arm(config, link, index);
         points.arms[index] = arm;
-        let back = normalize(base - destination).or_else(|| normalize(-arm));
         let point = points.point(index);
-        sum += point.weight * (destination + point.radius * back.unwrap_or(Vec3A::ZERO));
+        let to_base = match points.wanted(link) {
+            Some(wanted) => wanted * -point.position,
+            None => {
+                let back = normalize(base - destination).or_else(|| normalize(-arm));
+                point.radius * back.unwrap_or(Vec3A::ZERO)
+            }
+        };
+        sum += point.weight * (destination + to_base);
         weights += point.weight;
     }
     points.base_destinations[link] = sum / weights;

@@ -23,9 +23,10 @@ use self::two_bone::TwoBones;
 pub(super) use self::two_bone::TwoBonesRefused;
 use super::configuration::Configuration;
 use super::inside::Recorder;
-use super::problem::{Link, Problem};
+use super::options::OrientRefusal;
+use super::problem::{ChainTarget, EndEffector, Link, Orientation, Problem};
 use super::stall::Patience;
-use crate::skeleton::Skeleton;
+use crate::skeleton::{JointId, Skeleton};
 
 /// Method of a [`ChainSolver`](super::ChainSolver).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,8 +67,8 @@ pub(super) struct MethodRow {
     uses_damping: bool,
     uses_step: bool,
     is_closed_form: bool,
-    /// True if the method turns joints to orientations.
-    can_orient: bool,
+    /// What the method cannot do to turn joints to orientations.
+    refused: &'static [OrientRefusal],
     /// True if the method moves a centre of mass. The fixed step would need too many iterations: it
     /// reaches 29 of 100 random places of tips and centre together, the others 89 and more.
     can_balance: bool,
@@ -124,7 +125,7 @@ impl MethodRow {
             uses_damping: false,
             uses_step: false,
             is_closed_form: false,
-            can_orient: false,
+            refused: &[OrientRefusal::Any],
             can_balance: false,
             stiffness: ReadStiffness::PerAngle,
             uses_orientations: false,
@@ -151,7 +152,8 @@ const METHODS: [MethodRow; 7] = [
         // The fixed step overshoots for longer before it settles.
         patience: Patience::of_repeated_steps(100),
         uses_step: true,
-        can_orient: true,
+        // It reaches 63 to 83 % of the poses of robot arms, whose joints are hinges.
+        refused: &[OrientRefusal::Hinges],
         // Up to about twice the distance; the direction is all that counts of a target out of
         // reach.
         stable_distance: 1.25,
@@ -163,7 +165,7 @@ const METHODS: [MethodRow; 7] = [
         title: "Jacobian transpose",
         short_title: "Transpose",
         summary: "Descend the gradient with steps that fit its curvature",
-        can_orient: true,
+        refused: &[],
         can_balance: true,
         ..MethodRow::new(Method::Transpose, "transpose", 500, |it| {
             Ok(MethodState::Transpose(Transpose::new(it.problem)))
@@ -174,7 +176,7 @@ const METHODS: [MethodRow; 7] = [
         short_title: "Damped l. s.",
         summary: "Solve damped least squares: few iterations, handles limits and many targets",
         uses_damping: true,
-        can_orient: true,
+        refused: &[],
         can_balance: true,
         work: |problem| visits(problem) + damped_least_squares::work(problem),
         ..MethodRow::new(Method::DampedLeastSquares, "dls", 500, |it| {
@@ -188,7 +190,7 @@ const METHODS: [MethodRow; 7] = [
         summary: "Rotate one joint at a time, tip to root: cheap, bends tips",
         // In exact arithmetic no sweep increases the distance.
         patience: Patience::of_orientations(20, -(f32::EPSILON as f64)),
-        can_orient: true,
+        refused: &[],
         can_balance: true,
         stiffness: ReadStiffness::PerJoint,
         uses_orientations: true,
@@ -198,6 +200,7 @@ const METHODS: [MethodRow; 7] = [
         title: "FABRIK",
         short_title: "FABRIK",
         summary: "Move joint positions along the chain: very cheap, may stall at limits",
+        refused: &[OrientRefusal::Aim, OrientRefusal::FreePlace],
         stiffness: ReadStiffness::PerJoint,
         // With conflicting targets, FABRIK converges near the minimum, not at it.
         patience: Patience::of_orientations(20, -1e-5),
@@ -300,9 +303,29 @@ impl Method {
         self.row().uses_step
     }
 
-    /// True if the method turns joints to an [`Orientation`](super::Orientation).
-    pub const fn can_orient(self) -> bool {
-        self.row().can_orient
+    /// True if the method turns joints to an [`Orientation`](super::Orientation); some orientations
+    /// it may [refuse](Method::refuses).
+    pub fn can_orient(self) -> bool {
+        !self.refuses(OrientRefusal::Any)
+    }
+
+    /// True if the method cannot do this to turn a joint.
+    pub fn refuses(self, reason: OrientRefusal) -> bool {
+        let refused = self.row().refused;
+        refused.contains(&OrientRefusal::Any) || refused.contains(&reason)
+    }
+
+    /// Why the method cannot turn the joint of a target, whatever its skeleton is; `None` if it can or
+    /// need not.
+    pub(crate) fn refusal_of(self, target: &ChainTarget) -> Option<OrientRefusal> {
+        let is_aim = matches!(target.orientation?, Orientation::Aim { .. });
+        let reasons = [
+            (OrientRefusal::Any, true),
+            (OrientRefusal::Aim, is_aim),
+            (OrientRefusal::FreePlace, target.weight == 0.0),
+        ];
+        let refused = reasons.into_iter().filter(|(_, applies)| *applies);
+        refused.map(|(reason, _)| reason).find(|reason| self.row().refused.contains(reason))
     }
 
     /// True if the method moves a [centre of mass](super::Effector::CentreOfMass).
@@ -317,9 +340,9 @@ impl Method {
     }
 }
 
-/// The names of the methods that turn joints to orientations.
-pub(super) fn orienting_methods() -> String {
-    let can_orient = Method::ALL.into_iter().filter(|method| method.can_orient());
+/// The names of the methods that turn joints to orientations where others refuse it.
+pub(super) fn orienting_methods(refused: OrientRefusal) -> String {
+    let can_orient = Method::ALL.into_iter().filter(|method| !method.refuses(refused));
     can_orient.map(Method::name).collect::<Vec<_>>().join(", ")
 }
 
@@ -327,6 +350,26 @@ pub(super) fn orienting_methods() -> String {
 pub(super) fn balancing_methods() -> String {
     let can_balance = Method::ALL.into_iter().filter(|method| method.can_balance());
     can_balance.map(Method::name).collect::<Vec<_>>().join(", ")
+}
+
+/// The joint of the first target that a method cannot turn to its orientation, since all joints
+/// between it and its root are hinges.
+pub(super) fn turned_by_hinges(
+    method: Method,
+    problem: &Problem,
+    targets: &[ChainTarget],
+) -> Option<JointId> {
+    if !method.refuses(OrientRefusal::Hinges) {
+        return None;
+    }
+    let is_on_hinges = |effector: &EndEffector| {
+        let first = effector.link.map(|link| &problem.links[link]);
+        let mut above = std::iter::successors(first, |link| Some(&problem.links[link.parent?]));
+        first.is_some() && above.all(Link::is_hinge)
+    };
+    let mut effectors = problem.effectors.iter().zip(targets);
+    let turned = effectors.find(|(it, target)| target.orientation.is_some() && is_on_hinges(it));
+    turned.map(|(effector, _)| effector.joint)
 }
 
 /// The first link of a problem whose stiffness a method cannot respect.

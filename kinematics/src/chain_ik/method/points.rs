@@ -3,27 +3,30 @@
 //! A pass from the targets to the roots sets a destination for each point ([`InwardPass`]); then
 //! the links are laid out from the roots: each link keeps the distance of its points from its joint
 //! and points at their destinations. A link with several points (a bone with children away from its
-//! tip, or a locked fork) rotates as a whole, to the best fit. If any link has limits or stiffness,
-//! every link rotates as a whole, and limited links angle by angle within their limits.
+//! tip, or a locked fork) rotates as a whole, to the best fit. If any link has limits, stiffness or a
+//! wanted rotation, every link rotates as a whole, and limited links angle by angle within their
+//! limits. A link with a wanted rotation has it in both passes, so that its joint has a place, too,
+//! where the links above it bring it; a weight w of the rotation below 1, of the greatest weight,
+//! lays the link out on the part w of the way from its rotation before.
 //!
 //! Orientations of links with one point and no limits are computed on demand, by the smallest
 //! rotation.
 //!
 //! A chain without limits and stiffness whose only target is out of reach is laid out straight
-//! towards the target. The inward pass ignores limits. If any link has limits or stiffness, a sweep
-//! of CCD follows where the passes do not halve the cost, after passes that do not lower it are
+//! towards the target. The inward pass ignores limits. If any link rotates as a whole for one of these
+//! reasons, a sweep of CCD follows where the passes do not halve the cost, after passes that do not lower it are
 //! undone. A link with the stiffness k makes the part 1 − k of its turn from its rotation relative
 //! to its parent before the pass.
 
 use core::ops::Range;
 
-use glam::{Mat3A, Quat, Vec3A};
+use glam::{Mat3A, Quat, Vec3, Vec3A};
 
 use super::ccd::Ccd;
 use crate::chain_ik::align::{PointPair, ROTATIONS, align, align_within};
 use crate::chain_ik::configuration::Configuration;
 use crate::chain_ik::inside::{Event, LinkSegment, Recorder};
-use crate::chain_ik::problem::Problem;
+use crate::chain_ik::problem::{Link, Orienting, Problem, Wanted};
 use crate::skeleton::JointAngles;
 use crate::{normalize, rotation_between};
 
@@ -70,10 +73,11 @@ impl<P: InwardPass> PointMethod<P> {
     ) -> bool {
         // Fraction of the cost that passes may leave without a sweep.
         const ENOUGH: f64 = 0.5;
-        if !self.points.turn_whole {
+        if !self.points.turns_whole(problem) {
             self.pass(problem, config, recorder);
             return true;
         }
+        self.points.want_rotations(problem, config);
         self.before.copy_from(config);
         self.pass(problem, config, recorder);
         let left = config.cost(problem) / self.before.cost(problem);
@@ -143,8 +147,12 @@ pub(in crate::chain_ik) struct LinkPoints {
     /// Joints and tips that are fixed to the root, for each tree.
     grounds: Vec<Vec<PointMember>>,
     mounts: Vec<Quat>,
-    /// True if any link has limits or stiffness, so that each link rotates as a whole.
+    /// True if any link has limits, stiffness or a wanted rotation, so that each link rotates as a
+    /// whole.
     turn_whole: bool,
+    /// Orientation G that each link with a wanted rotation has in both passes, and the weight of
+    /// the rotation, 0 for links without; empty if no rotation is wanted.
+    wanted: Vec<(Quat, f32)>,
     /// Rotation E of each stiff link before a pass.
     locals: Vec<Quat>,
     /// Destination of each point.
@@ -240,12 +248,44 @@ impl LinkPoints {
     }
 
     fn must_turn_whole(problem: &Problem) -> bool {
-        problem.links.iter().any(|link| link.limits.is_limited() || link.is_stiff())
+        let is_special = |link: &Link| link.limits.is_limited() || link.is_stiff();
+        problem.orients || problem.links.iter().any(is_special)
     }
 
     /// True if links rotate as a whole, so that a pass starts from the pose.
-    pub fn turn_whole(&self) -> bool {
-        self.turn_whole
+    pub fn turns_whole(&self, problem: &Problem) -> bool {
+        // Targets may ask for rotations that did not when the points were made.
+        self.turn_whole || problem.orients
+    }
+
+    /// Sets the orientations of the links with wanted rotations. Of several rotations of a link, the
+    /// weighted mean counts.
+    fn want_rotations(&mut self, problem: &Problem, config: &mut Configuration) {
+        self.wanted.clear();
+        if !problem.orients {
+            return;
+        }
+        self.update_orientations(config);
+        self.wanted.resize(problem.links.len(), (Quat::IDENTITY, 0.0));
+        for effector in &problem.effectors {
+            let (Some(link), Some(orienting)) = (effector.link, effector.orientation) else {
+                continue;
+            };
+            let Orienting { wanted: Wanted::Rotation(wanted), .. } = orienting else { continue };
+            let weight = problem.weight_of(&orienting);
+            let (mean, weights) = &mut self.wanted[link];
+            *weights += weight;
+            *mean = mean.slerp(wanted, if *weights > 0.0 { weight / *weights } else { 0.0 });
+        }
+        for ((wanted, weight), own) in self.wanted.iter_mut().zip(&config.orientations) {
+            *wanted = own.slerp(*wanted, weight.min(1.0));
+        }
+    }
+
+    /// The orientation that a link with a wanted rotation has in a pass.
+    pub fn wanted(&self, link: usize) -> Option<Quat> {
+        let wanted = self.wanted.get(link).filter(|(_, weight)| *weight > 0.0);
+        wanted.map(|(orientation, _)| *orientation)
     }
 
     /// Number of points of all links.
@@ -272,7 +312,7 @@ impl LinkPoints {
     /// reach.
     fn is_out_of_reach(&self, problem: &Problem, config: &Configuration) -> bool {
         let ([effector], false, false) =
-            (&problem.effectors[..], self.turn_whole, problem.free_roots)
+            (&problem.effectors[..], self.turns_whole(problem), problem.free_roots)
         else {
             return false;
         };
@@ -376,7 +416,7 @@ impl LinkPoints {
     fn lay_link(&mut self, problem: &Problem, config: &mut Configuration, link: usize) {
         let (from, to) = self.ranges[link];
         let base = config.bases[link];
-        if self.turn_whole || to - from > 1 {
+        if self.turns_whole(problem) || to - from > 1 {
             self.rotate(problem, config, link);
         } else if let Some(towards) = normalize(self.destinations[from] - base) {
             self.arms[from] = self.all[from].radius * towards;
@@ -392,50 +432,77 @@ impl LinkPoints {
         }
     }
 
-    /// Rotates a link as a whole, so that its points come near their destinations.
+    /// Rotates a link as a whole: to its wanted rotation, or so that its points come near their
+    /// destinations.
     fn rotate(&mut self, problem: &Problem, config: &mut Configuration, index: usize) {
-        let (from, to) = self.ranges[index];
         let link = &problem.links[index];
         let mounted = self.mounted(problem, config, index);
-        let own =
-            |config: &Configuration| Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
-        let before = config.angles[index];
         if link.limits.is_limited() {
-            config.orientations[index] = (mounted * own(config)).normalize();
-        } else if link.is_stiff() {
-            config.orientations[index] = (mounted * self.locals[index]).normalize();
-        }
-        let start = config.orientations[index];
-        self.pairs.clear();
-        for point in from..to {
-            let LinkPoint { position, weight, .. } = self.all[point];
-            self.pairs.push(PointPair {
-                from: config.orientations[index] * position,
-                to: self.destinations[point] - config.bases[index],
-                weight,
-            });
-        }
-        for _ in 0..if to - from > 1 || link.limits.is_limited() { ROTATIONS } else { 1 } {
-            if link.limits.is_limited() {
-                let axes = Mat3A::from_quat(mounted) * JointAngles(config.angles[index]).axes();
-                let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-                align_within(&link.limits, axes, 1.0, &mut config.angles[index], &mut self.pairs);
-            } else {
-                let rotation = align(&self.pairs);
-                self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
-                config.orientations[index] = (rotation * config.orientations[index]).normalize();
+            let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+            config.orientations[index] = (mounted * own).normalize();
+            self.find_pairs(config, index);
+            self.turn_angles(link, mounted, &mut config.angles[index]);
+            let own = Quat::from_mat3a(&JointAngles(config.angles[index]).matrix());
+            config.orientations[index] = (mounted * own).normalize();
+        } else {
+            if link.is_stiff() {
+                config.orientations[index] = (mounted * self.locals[index]).normalize();
             }
+            let start = config.orientations[index];
+            let turned = self.wanted(index).unwrap_or_else(|| {
+                self.find_pairs(config, index);
+                self.turned(start)
+            });
+            let part = link.part_of_turn();
+            let is_whole = part == 1.0;
+            config.orientations[index] = if is_whole { turned } else { start.slerp(turned, part) };
+        }
+        for point in self.of_link(index) {
+            self.arms[point] = config.orientations[index] * self.all[point].position;
+        }
+    }
+
+    /// Finds the vectors that a link turns from its orientation, and where to: those to its points,
+    /// or its axes if it has a wanted rotation.
+    fn find_pairs(&mut self, config: &Configuration, index: usize) {
+        let (from, to) = self.ranges[index];
+        let own = config.orientations[index];
+        let wanted = self.wanted(index);
+        self.pairs.clear();
+        if let Some(wanted) = wanted {
+            let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z];
+            let pair = |axis| PointPair { from: own * axis, to: wanted * axis, weight: 1.0 };
+            self.pairs.extend(axes.map(pair));
+            return;
+        }
+        for (point, destination) in self.all[from..to].iter().zip(&self.destinations[from..to]) {
+            let from = own * point.position;
+            let to = *destination - config.bases[index];
+            self.pairs.push(PointPair { from, to, weight: point.weight });
+        }
+    }
+
+    /// An orientation turned by the rotation that fits the pairs.
+    fn turned(&mut self, mut orientation: Quat) -> Quat {
+        for _ in 0..if self.pairs.len() > 1 { ROTATIONS } else { 1 } {
+            let rotation = align(&self.pairs);
+            self.pairs.iter_mut().for_each(|pair| pair.from = rotation * pair.from);
+            orientation = (rotation * orientation).normalize();
+        }
+        orientation
+    }
+
+    /// Turns the angles of a link within its limits, so that they fit the pairs.
+    fn turn_angles(&mut self, link: &Link, mounted: Quat, angles: &mut Vec3) {
+        let before = *angles;
+        for _ in 0..ROTATIONS {
+            let axes = Mat3A::from_quat(mounted) * JointAngles(*angles).axes();
+            let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+            align_within(&link.limits, axes, 1.0, angles, &mut self.pairs);
         }
         let part = link.part_of_turn();
-        if link.limits.is_limited() {
-            let turned = before.lerp(config.angles[index], part);
-            config.angles[index] = if part < 1.0 { turned } else { config.angles[index] };
-            config.orientations[index] = (mounted * own(config)).normalize();
-        } else if part < 1.0 {
-            config.orientations[index] = start.slerp(config.orientations[index], part);
-        }
-        for point in from..to {
-            self.arms[point] = config.orientations[index] * self.all[point].position;
+        if part < 1.0 {
+            *angles = before.lerp(*angles, part);
         }
     }
 

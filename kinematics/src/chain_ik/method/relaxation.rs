@@ -55,7 +55,7 @@ impl InwardPass for RestoreLengths {
         for link in (0..problem.links.len()).rev() {
             self.restore(points, problem, config, link);
         }
-        self.goes_on = !points.turn_whole();
+        self.goes_on = !points.turns_whole(problem);
     }
 }
 

@@ -228,6 +228,12 @@ impl Link {
         self.uniform_compliance().unwrap_or(1.0)
     }
 
+    /// True if the limits let one angle change at most.
+    pub fn is_hinge(&self) -> bool {
+        let is_movable = |axis: &RotationAxis| !self.limits.is_fixed(*axis);
+        RotationAxis::ALL.iter().filter(|axis| is_movable(axis)).count() <= 1
+    }
+
     /// True if an angle is stiff.
     pub fn is_stiff(&self) -> bool {
         self.compliance != Vec3A::ONE
@@ -424,6 +430,12 @@ impl Problem {
         1e4 * f64::from(self.length.max(1.0))
     }
 
+    /// Weight of an orientation as a fraction of the greatest weight.
+    pub fn weight_of(&self, orienting: &Orienting) -> f32 {
+        let square = self.turn_length().powi(2).max(f64::MIN_POSITIVE);
+        (f64::from(orienting.stiffness) / square) as f32
+    }
+
     /// ℓ in the problem's units.
     pub fn turn_length(&self) -> f64 {
         TURN_LENGTH * f64::from(self.length)
@@ -534,10 +546,9 @@ impl Problem {
             });
         }
         self.orients = self.effectors.iter().any(|effector| effector.orientation.is_some());
-        let square = square.max(f64::MIN_POSITIVE);
         let weight = |effector: &EndEffector| {
-            let stiffness = effector.orientation.map_or(0.0, |it| f64::from(it.stiffness));
-            f64::from(effector.weight) + stiffness / square
+            let turn = effector.orientation.as_ref().map_or(0.0, |it| self.weight_of(it));
+            f64::from(effector.weight) + f64::from(turn)
         };
         let weights: f64 = self.effectors.iter().map(weight).sum();
         self.weights = weights.max(f64::MIN_POSITIVE);

@@ -183,6 +183,7 @@ impl ChainSolver {
     ) -> Result<TrackStep, SolveError> {
         self.builder.fill(&mut tracker.next, fk, targets)?;
         super::check_stiffness(self.options.method, &tracker.next)?;
+        super::check_hinges(self.options.method, &tracker.next, targets)?;
         tracker.next.carry_origins(&self.problem);
         tracker.next.set_targets(targets);
         if self.is_settled() && !tracker.was_held_back && tracker.next == self.problem {

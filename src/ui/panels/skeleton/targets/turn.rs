@@ -5,6 +5,7 @@ use egui::Ui;
 use glam::Vec3;
 
 use crate::document::{Channel, Target};
+use crate::kinematics::chain_ik::OrientRefusal;
 use crate::rig::Aim;
 use crate::session::{Actions, Session, TargetEdit};
 use crate::ui::widgets::{self, AXES, Choice, NumberField, PointSliders, euler_sliders};
@@ -41,7 +42,9 @@ pub(super) fn show(
     if target.turns_joint() {
         let tooltip = "Let the tip be anywhere, and turn the joint alone";
         let is_free = target.has_free_place();
-        let changed = widgets::check_box(ui, "Free place", tooltip, is_free, None);
+        let cannot = cannot(session, OrientRefusal::FreePlace, "needs a place for the tip");
+        let refused = cannot.filter(|_| !is_free);
+        let changed = widgets::check_box(ui, "Free place", tooltip, is_free, refused.as_deref());
         actions.extend(changed.map(|is_free| {
             let weight = if is_free { 0.0 } else { 1.0 };
             TargetEdit::SetTarget(Target { weight, ..target })
@@ -61,9 +64,6 @@ pub(super) fn show(
 }
 
 fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
-    let method = session.rig().solver.method;
-    let cannot = (!method.can_orient())
-        .then(|| format!("{} turns no joint; choose another solver", method.title()));
     let shown = match (target.orientation, target.aim) {
         (Some(_), _) => "To a rotation",
         (None, Some(_)) => "Aims at a point",
@@ -87,14 +87,23 @@ fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
         }
         let to_rotation = "Turn the joint to three angles in the target's space";
         let is_rotation = target.orientation.is_some();
-        if list.item(is_rotation, "To a rotation", to_rotation, cannot.as_deref()) {
+        let refused = cannot(session, OrientRefusal::Any, "turns no joint");
+        if list.item(is_rotation, "To a rotation", to_rotation, refused.as_deref()) {
             set(Some(present_rotation(session, &target)), None);
         }
         let at_point = "Turn an axis of the joint to a point, as a head looks at something";
-        if list.item(target.aim.is_some(), "Aims at a point", at_point, cannot.as_deref()) {
+        let refused = cannot(session, OrientRefusal::Aim, "aims no joint");
+        if list.item(target.aim.is_some(), "Aims at a point", at_point, refused.as_deref()) {
             set(None, Some(present_aim(session, &target, Vec3::Z)));
         }
     });
+}
+
+/// Why the solver cannot do what it refuses; `None` if it does not refuse it.
+fn cannot(session: &Session, refusal: OrientRefusal, what: &str) -> Option<String> {
+    let method = session.rig().solver.method;
+    let refused = method.refuses(refusal);
+    refused.then(|| format!("{} {what}; choose another solver", method.title()))
 }
 
 /// Shows the axis and the point of an aim.
