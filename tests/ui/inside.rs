@@ -2,8 +2,10 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
+use glam::Vec3;
+use ik_arm::document::Target;
 use ik_arm::kinematics::chain_ik::{Method, SubStepKind};
-use ik_arm::session::{InsideLayer, SelectAction, SolverAction, SolverEdit, SolverRun};
+use ik_arm::session::{InsideLayer, SelectAction, SolverAction, SolverEdit, SolverRun, TargetEdit};
 
 use crate::bench::Bench;
 
@@ -161,6 +163,32 @@ fn the_numbers_of_a_step_are_those_of_the_solver() {
     let most = step.changes.iter().max_by(|one, other| one.by.abs().total_cmp(&other.by.abs()));
     let most = most.expect("an angle").by.to_degrees();
     assert!(bench.says(&format!("{most:+.2}°")), "{most}");
+}
+
+#[test]
+fn turns_that_joints_miss_are_told_in_the_parts_of_every_method_that_can() {
+    for method in [Method::DampedLeastSquares, Method::Transpose, Method::Ccd, Method::Fabrik] {
+        let mut bench = example("ten-joints");
+        let tip = bench.session().rig().targets[0];
+        let options = bench.session().rig().solver;
+        bench.apply([SolverEdit::SetSolver(options.with_method(method))]);
+        let turned = Target { orientation: Some(Vec3::new(0.3, 1.0, 0.0)), ..tip };
+        bench.apply([TargetEdit::SetTarget(turned)]);
+        bench.apply([SolverAction::Step]);
+        bench.settle();
+        look_inside(&mut bench);
+        let last = run(&bench).parts().len() - 1;
+        for part in [0, last] {
+            bench.apply([SolverAction::ShowPart { iteration: 1, part: Some(part) }]);
+            bench.settle();
+            let [missed] = run(&bench).parts()[part].turns[..] else { panic!("one turn") };
+            let shown = format!("{:.2}°", missed.turn.length().to_degrees());
+            assert!(bench.says("Missing turn") && bench.says(&shown), "{method}: {shown}");
+        }
+    }
+    let mut bench = after_a_step(Method::DampedLeastSquares);
+    look_inside(&mut bench);
+    assert!(!bench.says("Missing turn"), "no target turns its joint");
 }
 
 #[test]

@@ -64,7 +64,8 @@ mod tracker;
 
 pub use diagnose::{diagnose, diagnose_targets};
 pub use inside::{
-    AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
+    AngleChange, Column, Ellipsoid, Gradient, MissedTurn, StepTaken, SubStep, SubStepKind, TipMove,
+    Turn, TurnColumn,
 };
 pub use jacobian::{Swing, jacobian, jacobian_of_point};
 pub use method::{Method, ParseMethodError, TwoBoneRefusal};

@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use ik_arm_kinematics::chain_ik::{
     ChainSolver, ChainTarget, Method, OrientRefusal, Orientation, SolveError, SolverOptions,
-    Status, solve,
+    Status, SubStepKind, solve,
 };
 use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 
@@ -120,6 +120,71 @@ fn gradients_are_those_of_finite_differences() {
             |angles| cost(&skeleton, &targets, angles),
         );
     }
+}
+
+#[test]
+fn missing_turns_inside_an_iteration_and_their_columns_are_those_of_finite_differences() {
+    const STEP: f64 = 1e-5;
+    let mut random = Random(380);
+    let mut columns = 0;
+    for case in 0..150 {
+        let (skeleton, targets) = problem(&mut random);
+        let options = SolverOptions::new(Method::DampedLeastSquares);
+        let mut solver = ChainSolver::new(&skeleton, &targets, &options).expect("a solver");
+        let (_, parts) = solver.step_inside(&skeleton);
+        let target = |joint| *targets.iter().find(|it| it.joint == joint).expect("a target");
+        for part in &parts {
+            for missed in &part.turns {
+                let angle = missing(&part.pose, &target(missed.joint), &angles_f64(&part.pose));
+                assert!((f64::from(missed.turn.length()) - angle).abs() < 1e-3, "{case}");
+                let base = part.pose.base(missed.joint);
+                assert!(missed.at.distance(base) < 1e-4 * (1.0 + base.length()), "{case}");
+            }
+        }
+        let SubStepKind::Gradient(gradient) = &parts[0].kind else { continue };
+        let pose = &parts[0].pose;
+        for column in &gradient.turn_columns {
+            let at = |by: f64| {
+                let mut turned = angles_f64(pose);
+                turned[column.joint.index()][column.axis.index()] += by;
+                missing(pose, &target(column.target), &turned)
+            };
+            // Near no turn and half a turn the angle is not smooth.
+            if (0.05..3.0).contains(&at(0.0)) {
+                let expected = (at(-STEP) - at(STEP)) / (2.0 * STEP);
+                assert!((f64::from(column.gain) - expected).abs() < 2e-3, "{case}: {column:?}");
+                columns += 1;
+            }
+        }
+    }
+    assert!(columns > 1000, "{columns}");
+}
+
+#[test]
+fn small_steps_leave_the_turns_that_the_jacobian_predicts() {
+    let mut random = Random(381);
+    let mut compared = 0;
+    for case in 0..150 {
+        let (skeleton, targets) = problem(&mut random);
+        let options = SolverOptions::new(Method::Transpose);
+        let mut solver = ChainSolver::new(&skeleton, &targets, &options).expect("a solver");
+        for _ in 0..20 {
+            let (_, parts) = solver.step_inside(&skeleton);
+            let [before, after] = &parts[..] else { continue };
+            let SubStepKind::Step(step) = &after.kind else { continue };
+            let turned: f32 = step.changes.iter().map(|change| change.by.abs()).sum();
+            let turns = before.turns.iter().zip(&after.turns).zip(&step.predicted_turns);
+            for ((before, after), predicted) in turns {
+                if turned < 0.2 && (0.2..2.5).contains(&before.turn.length()) {
+                    let off = (after.turn.length() - predicted.length()).abs();
+                    // The curvature of a turn by φ is 1/φ.
+                    assert!(off < 5.0 * turned.powi(2) + 1e-4, "{case}: {off}, {turned}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 100, "{compared}");
 }
 
 /// Random trees, of which every second has limits, with place and rotation of all tips from a

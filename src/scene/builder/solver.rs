@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use super::drawn_skeleton::{DrawnSkeleton, GHOST};
 use crate::document::{Display, Overlay};
 use crate::kinematics::chain_ik::{
-    ChainTarget, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, Turn,
+    ChainTarget, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, Turn, TurnColumn,
 };
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::scene::{Ball, Colour, Label, LabelSide, Line, Scene};
@@ -20,6 +20,8 @@ const THICK: f32 = 0.009;
 /// Radius of the arcs of turned angles and of points, as fractions of the reach.
 const ARC: f32 = 0.09;
 const POINT: f32 = 0.014;
+/// Length of the arrow of a turn by one radian, as a fraction of the reach.
+const RADIAN: f32 = 0.12;
 /// Angle in radians from which a turn is drawn.
 const LEAST_TURN: f32 = 2e-3;
 
@@ -76,6 +78,9 @@ impl InsideDrawing<'_> {
             }
             _ => {}
         }
+        if shows(InsideLayer::Turns) {
+            self.add_turns(scene, part);
+        }
     }
 
     fn previous(&self) -> Option<&SubStepKind> {
@@ -106,6 +111,43 @@ impl InsideDrawing<'_> {
                 let (name, axis) = (&skeleton[column.joint].name, column.axis);
                 scene.add_label(label, format_args!("{name} {axis}"));
             }
+        }
+    }
+
+    /// Adds the turns that joints miss, as arrows along their axes with arcs of their angles; before a
+    /// step, what each angle takes from them per radian, and after it, dashed, what the Jacobian
+    /// predicted to be left.
+    fn add_turns(&self, scene: &mut Scene, part: &SubStep) {
+        let radian = RADIAN * self.reach;
+        match &part.kind {
+            SubStepKind::Gradient(gradient) => {
+                let columns = &gradient.turn_columns;
+                let is_selected = |column: &&TurnColumn| self.selection.contains(&column.joint);
+                let any = columns.iter().any(|column| is_selected(&column));
+                for column in columns.iter().filter(|column| !any || is_selected(column)) {
+                    let colour = scene.palette.axes[column.axis.index()];
+                    self.add_arrow(scene, column.at, radian * column.by, THIN, colour);
+                }
+            }
+            SubStepKind::Step(step) => {
+                let colour = scene.palette.guide;
+                for (missed, predicted) in part.turns.iter().zip(&step.predicted_turns) {
+                    let to = missed.at + radian * *predicted;
+                    scene.lines.push(Line { from: missed.at, to, colour, dashed: true });
+                }
+            }
+            _ => {}
+        }
+        let accent = scene.palette.accent;
+        for missed in part.turns.iter().filter(|missed| missed.turn.length() > LEAST_TURN) {
+            let by = radian * missed.turn;
+            self.add_arrow(scene, missed.at, by, THICK, accent);
+            let (axis, angle) = missed.turn.normalize_and_length();
+            let start = RADIAN * self.reach * axis.any_orthonormal_vector();
+            scene.add_arc(missed.at, start, axis, angle, accent);
+            let middle = missed.at + Quat::from_axis_angle(axis, 0.5 * angle) * start;
+            let label = Label::new(middle, 0.0, LabelSide::Above, scene.palette.text);
+            scene.add_label(label, format_args!("{:.1}°", angle.to_degrees()));
         }
     }
 

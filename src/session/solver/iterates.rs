@@ -237,12 +237,21 @@ pub enum InsideLayer {
     Passes,
     /// Two-bone: the triangle and the circle of all elbows.
     Triangle,
+    /// The turns that joints miss to their orientations, and the columns of the Jacobian for them.
+    Turns,
 }
 
 impl InsideLayer {
     /// All layers.
-    pub const ALL: [Self; 6] =
-        [Self::Columns, Self::Ellipsoid, Self::Step, Self::Rays, Self::Passes, Self::Triangle];
+    pub const ALL: [Self; 7] = [
+        Self::Columns,
+        Self::Ellipsoid,
+        Self::Step,
+        Self::Rays,
+        Self::Passes,
+        Self::Triangle,
+        Self::Turns,
+    ];
 }
 
 /// The layers that are shown.

@@ -18,6 +18,19 @@ pub struct SubStep {
     pub pose: Skeleton,
     /// Largest distance from a tip to its target in that pose, as far as the method counts it.
     pub error: f32,
+    /// The turns that joints miss in that pose, of all targets with an orientation.
+    pub turns: Vec<MissedTurn>,
+}
+
+/// The turn that a joint misses to the orientation of its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MissedTurn {
+    /// The joint.
+    pub joint: JointId,
+    /// Its position.
+    pub at: Vec3,
+    /// The axis of the turn, by the right-hand rule, times its angle in radians.
+    pub turn: Vec3,
 }
 
 /// A part of an iteration, with its results.
@@ -62,6 +75,9 @@ pub enum SubStepKind {
 pub struct Gradient {
     /// One column for each angle and each tip that it moves, joints from the root on.
     pub columns: Vec<Column>,
+    /// One column for each angle and each joint with an orientation that it turns, joints from the
+    /// root on.
+    pub turn_columns: Vec<TurnColumn>,
     /// The speeds that each tip can have in different directions.
     pub ellipsoids: Vec<Ellipsoid>,
     /// The damping λ of damped least squares.
@@ -83,6 +99,25 @@ pub struct Column {
     pub by: Vec3,
 }
 
+/// A column of the Jacobian for an orientation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnColumn {
+    /// The joint that turns.
+    pub joint: JointId,
+    /// The axis of its angle.
+    pub axis: RotationAxis,
+    /// The joint with the orientation.
+    pub target: JointId,
+    /// Position of the joint with the orientation.
+    pub at: Vec3,
+    /// What the angle takes from the missing turn, per radian: an axis times an angle. For a
+    /// rotation it is the axis of the angle itself, of length 1.
+    pub by: Vec3,
+    /// Angle by which the missing turn becomes shorter, per radian of the angle: the part of `by`
+    /// along the missing turn.
+    pub gain: f32,
+}
+
 /// A change of angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepTaken {
@@ -90,6 +125,9 @@ pub struct StepTaken {
     pub changes: Vec<AngleChange>,
     /// The moves of all tips.
     pub tips: Vec<TipMove>,
+    /// The turns that the Jacobian predicts to be missing after the step, in the order of
+    /// [`SubStep::turns`].
+    pub predicted_turns: Vec<Vec3>,
     /// The step length τ of the transpose, in radians per squared length.
     pub length: Option<f32>,
     /// The damping λ of damped least squares.

@@ -1,10 +1,12 @@
 use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
 
 use super::{
-    AngleChange, Column, Ellipsoid, Gradient, StepTaken, SubStep, SubStepKind, TipMove, Turn,
+    AngleChange, Column, Ellipsoid, Gradient, MissedTurn, StepTaken, SubStep, SubStepKind, TipMove,
+    Turn, TurnColumn,
 };
 use crate::chain_ik::configuration::{Configuration, Coordinates};
-use crate::chain_ik::problem::Problem;
+use crate::chain_ik::orientation::MissingTurn;
+use crate::chain_ik::problem::{EndEffector, Problem};
 use crate::skeleton::{RotationAxis, Skeleton};
 use crate::vector::{saturate, saturate_vector};
 
@@ -116,7 +118,8 @@ pub(in crate::chain_ik) fn sub_steps(
         if let Event::Gradient { descent, .. } = event {
             before = Some(Before { config: config.clone(), descent });
         }
-        steps.push(SubStep { kind, pose: pose(&config), error: saturate(config.error(problem)) });
+        let (pose, error) = (pose(&config), saturate(config.error(problem)));
+        steps.push(SubStep { kind, pose, error, turns: world.missed_turns(&config) });
     }
     steps
 }
@@ -149,6 +152,7 @@ impl World<'_> {
                     SubStepKind::Step(StepTaken {
                         changes: self.changes(before, config),
                         tips: self.tip_moves(&before.config, &predicted, config),
+                        predicted_turns: self.predicted_turns(before, by, *factor),
                         length,
                         damping,
                         refused: *tries,
@@ -180,7 +184,9 @@ impl World<'_> {
             Ellipsoid::of(effector.joint, centre, own.map(|column| column.by))
         });
         let ellipsoids = ellipsoids.collect();
-        Gradient { columns, ellipsoids, damping: damping.map(|damping| self.length(damping)) }
+        let turn_columns = self.turn_columns(config);
+        let damping = damping.map(|damping| self.length(damping));
+        Gradient { columns, turn_columns, ellipsoids, damping }
     }
 
     fn columns(&self, config: &Configuration) -> Vec<Column> {
@@ -202,6 +208,77 @@ impl World<'_> {
             }
         }
         columns
+    }
+
+    fn turn_columns(&self, config: &Configuration) -> Vec<TurnColumn> {
+        let mut columns = Vec::new();
+        for (index, link) in self.problem.links.iter().enumerate() {
+            for (effector, missing) in self.missing_turns(config) {
+                if !self.problem.below(link).contains(&effector) {
+                    continue;
+                }
+                let effector = &self.problem.effectors[effector];
+                let way = missing.turn.normalize_or_zero();
+                for axis in RotationAxis::ALL {
+                    let about = config.axes[index].col(axis.index());
+                    let by = missing.column(about, config.bases[index]);
+                    columns.push(TurnColumn {
+                        joint: link.joint,
+                        axis,
+                        target: effector.joint,
+                        at: self.base(config, effector),
+                        by: self.turn_vector(by),
+                        gain: by.dot(way),
+                    });
+                }
+            }
+        }
+        columns
+    }
+
+    /// The turns that joints miss, with the indices of their end effectors.
+    fn missing_turns<'a>(
+        &'a self,
+        config: &'a Configuration,
+    ) -> impl Iterator<Item = (usize, MissingTurn)> + 'a {
+        let effectors = self.problem.effectors.iter().enumerate();
+        effectors.filter_map(|(index, it)| Some((index, config.missing_turn(it)?)))
+    }
+
+    fn missed_turns(&self, config: &Configuration) -> Vec<MissedTurn> {
+        let missed = self.missing_turns(config).map(|(effector, missing)| {
+            let effector = &self.problem.effectors[effector];
+            let (at, turn) = (self.base(config, effector), self.turn_vector(missing.turn));
+            MissedTurn { joint: effector.joint, at, turn }
+        });
+        missed.collect()
+    }
+
+    /// Position of an end effector's joint.
+    fn base(&self, config: &Configuration, effector: &EndEffector) -> Vec3 {
+        let offset = config.orientation_of(effector) * effector.space.translation;
+        self.point(effector.tree, config.base_of(effector) + offset)
+    }
+
+    /// The turns that the Jacobian predicts to be missing after a step, before limits.
+    fn predicted_turns(&self, before: &Before, by: &Coordinates, factor: f32) -> Vec<Vec3> {
+        let config = &before.config;
+        let left = |(index, missing): (usize, MissingTurn)| {
+            let effector = &self.problem.effectors[index];
+            let mut left = missing.turn;
+            for (at, link) in self.problem.links.iter().enumerate() {
+                if self.problem.below(link).contains(&index) {
+                    let turn = config.axes[at] * Vec3A::from(by.angles[at] * factor);
+                    left -= missing.column(turn, config.bases[at]);
+                }
+            }
+            if self.problem.free_roots {
+                let lever = factor * self.problem.length * self.problem.length;
+                left -= missing.taken(Vec3A::ZERO, lever * by.shifts[effector.tree]);
+            }
+            left
+        };
+        self.missing_turns(config).map(left).map(|left| self.turn_vector(left)).collect()
     }
 
     /// The tips that the Jacobian predicts for a step, before limits.
@@ -272,7 +349,6 @@ impl World<'_> {
         } else {
             (axis, angle)
         };
-        let side = self.transform.matrix3.determinant().signum();
         let tips = pairs.iter().map(|[tip, target]| {
             let after = base + rotation * (*tip - base);
             [*tip, *target, after].map(|point| self.point(link.tree, point))
@@ -280,8 +356,7 @@ impl World<'_> {
         Turn {
             joint: link.joint,
             base: self.point(link.tree, base),
-            // An axis of a turn changes its sign in a mirror.
-            axis: side * self.vector(axis.into()).normalize_or_zero(),
+            axis: self.turn_vector(axis.into()),
             angle,
             tips: tips.collect(),
         }
@@ -299,6 +374,12 @@ impl World<'_> {
     fn point(&self, tree: usize, point: Vec3A) -> Vec3 {
         let in_skeleton = self.problem.trees[tree].origin + point.as_dvec3() / self.problem.unit();
         saturate_vector(self.transform.as_daffine3().transform_point3(in_skeleton))
+    }
+
+    /// A rotation vector, which keeps its length. An axis changes its sign in a mirror.
+    fn turn_vector(&self, turn: Vec3A) -> Vec3 {
+        let side = self.transform.matrix3.determinant().signum();
+        side * turn.length() * self.vector(turn).normalize_or_zero()
     }
 
     fn vector(&self, vector: Vec3A) -> Vec3 {

@@ -4,7 +4,8 @@
 use egui::{Align, Color32, Grid, Layout, RichText, Sense, Slider, Ui, vec2};
 
 use crate::kinematics::chain_ik::{
-    AngleChange, Ellipsoid, Gradient, SolverOptions, StepTaken, SubStep, SubStepKind, Turn,
+    AngleChange, Ellipsoid, Gradient, MissedTurn, SolverOptions, StepTaken, SubStep, SubStepKind,
+    Turn,
 };
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
@@ -24,7 +25,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let title = parts[shown].kind.title();
     ui.add_space(4.0);
     ui.label(RichText::new(title).strong().color(style::accent(ui)));
-    legend(ui, session, &parts[shown].kind, actions);
+    legend(ui, session, &parts[shown], actions);
     if run.method().uses_damping() {
         damping(ui, session, actions);
     }
@@ -117,8 +118,9 @@ struct MarkLegend {
     meaning: &'static str,
 }
 
-fn legend(ui: &mut Ui, session: &Session, kind: &SubStepKind, actions: &mut Actions) {
-    for entry in entries(ui, kind) {
+fn legend(ui: &mut Ui, session: &Session, part: &SubStep, actions: &mut Actions) {
+    let of_turns = (!part.turns.is_empty()).then(|| entry_of_turns(ui, &part.kind));
+    for entry in entries(ui, &part.kind).into_iter().chain(of_turns) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             let is_shown = session.view().inside_layers().shows(entry.layer);
@@ -203,6 +205,26 @@ fn entries(ui: &Ui, kind: &SubStepKind) -> Vec<MarkLegend> {
     }
 }
 
+/// The legend of the turns that joints miss.
+fn entry_of_turns(ui: &Ui, kind: &SubStepKind) -> MarkLegend {
+    let palette = style::palette(ui);
+    let (accent, guide) = (style::colour(palette.accent), style::colour(palette.guide));
+    let (name, more, meaning) = match kind {
+        SubStepKind::Gradient(_) => (
+            "Columns of rotation",
+            palette.axes.map(style::colour).to_vec(),
+            "the turn that the joint misses, as its axis and an arc; thin, the axis about which each angle turns the joint, x, y and z",
+        ),
+        SubStepKind::Step(_) => (
+            "Missing turn",
+            vec![guide],
+            "the turn that the joint misses after the step, as its axis and an arc; dashed, what the Jacobian predicted",
+        ),
+        _ => ("Missing turn", Vec::new(), "the turn that the joint misses, as its axis and an arc"),
+    };
+    MarkLegend { layer: InsideLayer::Turns, colours: [vec![accent], more].concat(), name, meaning }
+}
+
 fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -230,6 +252,17 @@ fn numbers(ui: &mut Ui, session: &Session, run: &SolverRun, shown: usize) {
     };
     let rows = [("Error before", text::short(before)), ("Error after", text::short(part.error))];
     pairs(ui, "error", &rows);
+    missing_turns(ui, session, &part.turns);
+}
+
+/// The angles of the turns that joints miss after the part.
+fn missing_turns(ui: &mut Ui, session: &Session, turns: &[MissedTurn]) {
+    let row = |missed: &MissedTurn| {
+        let angle = missed.turn.length().to_degrees();
+        [name(session, missed.joint), format!("{angle:.2}°")]
+    };
+    let rows: Vec<_> = turns.iter().map(row).collect();
+    table(ui, "missing turns", ["Joint", "Missing turn"], &rows);
 }
 
 /// The lengths of the columns, and the axes of the ellipsoid.
@@ -243,6 +276,14 @@ fn jacobian(ui: &mut Ui, session: &Session, gradient: &Gradient) {
     });
     let rows: Vec<_> = columns.collect();
     table(ui, "columns", ["Angle", "Column, per radian"], &rows);
+    let selected = |joint| !any || selection.contains(&joint);
+    let of_turns = gradient.turn_columns.iter().filter(|it| selected(it.joint)).take(MOST);
+    let gains = of_turns.map(|column| {
+        let angle = format!("{} {}", name(session, column.joint), column.axis);
+        [angle, format!("{:+.2}", column.gain)]
+    });
+    let rows: Vec<_> = gains.collect();
+    table(ui, "turn columns", ["Angle", "Of the missing turn, per radian"], &rows);
     if let (Some(damping), [ellipsoid]) = (gradient.damping, &gradient.ellipsoids[..]) {
         singular_values(ui, ellipsoid, damping);
     }
