@@ -36,6 +36,7 @@ pub use action::{Action, Actions};
 pub use dialog::{BakeJob, Dialog};
 pub use display::DisplayEdit;
 pub use drag::grip::{Drag, DragLimit, Grip};
+pub use drag::limit_fan::LimitFan;
 pub use drag::point::{Constraint, DragInput, PointDrag, PointHandle};
 pub use drag::turn::{GripRing, TurnDrag};
 pub use evaluated::Evaluated;

@@ -1,7 +1,7 @@
 //! Names and tooltips of channels, overlays, twist references and solvers.
 
 use crate::document::{Channel, Overlay, PathKind, Target, TwistReferenceKind};
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{Extreme, JointId, LimitEnd, SwingAxis};
 use crate::session::{Grip, Session};
 
 /// Name of the part that a grip moves, such as "pelvis", "the limb of left_hand" or
@@ -21,9 +21,24 @@ pub(in crate::ui) fn grip(session: &Session, grip: Grip) -> String {
         Grip::Tip(joint, _) | Grip::Bone(joint) | Grip::Ring(joint, _) => name(joint).to_owned(),
         Grip::Target(joint, _) => format!("the target of {}", of_joint(joint)),
         Grip::Orientation(joint, _) => of_joint(joint).to_owned(),
+        Grip::Limit(joint, end) => format!("the {} of {}", limit_end(end), name(joint)),
         Grip::Aim(joint, _) => format!("the aim of {}", of_joint(joint)),
         Grip::LimbTwist(joint) => format!("the limb of {}", of_joint(joint)),
         _ => String::new(),
+    }
+}
+
+/// Name of an end of a joint's limits, such as "least angle about x".
+pub(in crate::ui) fn limit_end(end: LimitEnd) -> String {
+    let extreme = |extreme| match extreme {
+        Extreme::Least => "least",
+        Extreme::Greatest => "greatest",
+    };
+    match end {
+        LimitEnd::Range(axis, of) => format!("{} angle about {axis}", extreme(of)),
+        LimitEnd::Swing(SwingAxis::X, _) => "greatest swing about x".to_owned(),
+        LimitEnd::Swing(SwingAxis::Z, _) => "greatest swing about z".to_owned(),
+        LimitEnd::Twist(of) => format!("{} twist", extreme(of)),
     }
 }
 
@@ -95,9 +110,10 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::Balance => {
             ("Balance", "Show the centre of mass above the ground and what the figure stands on")
         }
-        Overlay::JointLimits => {
-            ("Joint limits", "Show how far the limits let the selected joint turn")
-        }
+        Overlay::JointLimits => (
+            "Joint limits",
+            "Show how far the limits let the selected joint turn, and drag their ends",
+        ),
         Overlay::ReachRegion => {
             ("Reach region", "Show where the target of the selected joint can be reached")
         }

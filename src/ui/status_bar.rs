@@ -194,6 +194,9 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
         Grip::Ring(joint, axis) => {
             joints.get(joint.index()).map(|joint| joint.rotation[axis.index()])
         }
+        Grip::Limit(joint, end) => {
+            joints.get(joint.index()).and_then(|joint| joint.angle_of_end(end))
+        }
         _ => None,
     };
     let turned = angle.map_or(drag.turned(), |angle| drag.turned_to(angle));
@@ -201,6 +204,7 @@ fn describe_turn(session: &Session, grip: Grip, drag: &TurnDrag) -> String {
     let verb = match grip {
         Grip::Ring(_, axis) | Grip::Orientation(_, axis) => format!("Rotate about {axis}"),
         Grip::LimbTwist(_) | Grip::Bone(_) => "Socket twist".to_owned(),
+        Grip::Limit(_, end) => text::capitalized(&labels::limit_end(end)),
         _ => "Bend".to_owned(),
     };
     format!(
@@ -289,6 +293,7 @@ fn drag_of(grip: Grip, name: &str) -> Cow<'static, str> {
         Grip::LimbPole(..) => "drag the Pole",
         Grip::Ring(..) | Grip::Orientation(..) => return format!("rotate {name}").into(),
         Grip::LimbTwist(_) => return format!("turn {name} about its Pointer").into(),
+        Grip::Limit(..) => return format!("move {name}").into(),
         Grip::Tip(..) | Grip::Bone(_) | Grip::Target(..) | Grip::Aim(..) => {
             return format!("drag {name}").into();
         }

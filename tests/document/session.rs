@@ -14,7 +14,9 @@ use ik_arm::document::{
 };
 use ik_arm::io::{FileAnimation, OpenOptions};
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
-use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis};
+use ik_arm::kinematics::skeleton::{
+    Extreme, JointId, JointLimits, Limit, LimitEnd, RotationAxis, SwingAxis,
+};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     Action, Dialog, DisplayEdit, DragInput, Effect, Export, FileAction, FileContents, Grip,
@@ -72,10 +74,21 @@ fn grips() -> impl Strategy<Value = Grip> {
         Just(Grip::Tip(UPPER, PointHandle::Free)),
         rotation_axes().prop_map(|axis| Grip::Ring(WRIST, axis)),
         (joints(), rotation_axes()).prop_map(|(joint, axis)| Grip::Orientation(joint, axis)),
+        (joints(), limit_ends()).prop_map(|(joint, end)| Grip::Limit(joint, end)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Target(joint, handle)),
         (joints(), handles.clone()).prop_map(|(joint, handle)| Grip::Head(joint, handle)),
         (joints(), handles).prop_map(|(joint, handle)| Grip::Tip(joint, handle)),
         (joints(), rotation_axes()).prop_map(|(joint, axis)| Grip::Ring(joint, axis)),
+    ]
+}
+
+fn limit_ends() -> impl Strategy<Value = LimitEnd> {
+    let extremes = || prop::sample::select(vec![Extreme::Least, Extreme::Greatest]);
+    let swings = prop::sample::select(vec![SwingAxis::X, SwingAxis::Z]);
+    prop_oneof![
+        (rotation_axes(), extremes()).prop_map(|(axis, of)| LimitEnd::Range(axis, of)),
+        (swings, extremes()).prop_map(|(axis, of)| LimitEnd::Swing(axis, of)),
+        extremes().prop_map(LimitEnd::Twist),
     ]
 }
 

@@ -1,12 +1,16 @@
 //! Cone limits of a joint: chosen in the panel, drawn in the view, kept by targets.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers};
-use glam::Vec3;
+use egui::{Event, Key, Modifiers, PointerButton};
+use glam::{Quat, Vec3};
 use ik_arm::document::Overlay;
-use ik_arm::kinematics::skeleton::{Cone, Joint};
-use ik_arm::scene::SceneBuilder;
-use ik_arm::session::{DisplayEdit, SelectAction, TargetEdit, TransactionAction};
+use ik_arm::kinematics::skeleton::{
+    Cone, Extreme, Joint, JointLimits, Limit, LimitEnd, RotationAxis, SwingAxis,
+};
+use ik_arm::scene::{Colour, SceneBuilder};
+use ik_arm::session::{
+    DisplayEdit, Grip, JointEdit, LimitFan, SelectAction, SolverEdit, TargetEdit, TransactionAction,
+};
 
 use crate::bench::Bench;
 
@@ -83,16 +87,95 @@ fn a_hand_that_its_target_pulls_behind_the_body_stays_in_the_cone_of_the_shoulde
 fn the_limits_of_the_selected_joint_are_drawn_and_red_where_they_block() {
     let mut bench = upper_arm();
     choose_cone(&mut bench);
-    let lines = |bench: &Bench| {
+    // The number of shapes, and of those in the colour of danger.
+    let drawn = |bench: &Bench| {
         let (session, mut builder) = (bench.session(), SceneBuilder::default());
-        builder.build(session.posed(), &session.overlays(), session.preferences().theme).lines.len()
+        let theme = session.preferences().theme;
+        let scene = builder.build(session.posed(), &session.overlays(), theme);
+        let colours = scene.guide_solids.iter().map(|it| it.colour);
+        let colours: Vec<_> = colours.chain(scene.lines.iter().map(|it| it.colour)).collect();
+        let is_red = |colour: &&Colour| colour.with_opacity(1.0) == scene.palette.danger();
+        (colours.len(), colours.iter().filter(is_red).count())
     };
-    let before = lines(&bench);
+    let before = drawn(&bench).0;
     bench.apply([DisplayEdit::ShowOverlay(Overlay::JointLimits, true)]);
-    let of_cone = lines(&bench) - before;
-    assert!(of_cone > 100, "{of_cone} lines");
+    let of_cone = drawn(&bench).0 - before;
+    assert!(of_cone > 100, "{of_cone} shapes");
     let forearm = bench.joint("left_forearm");
     bench.apply([SelectAction::Joints(vec![forearm])]);
-    let of_hinge = lines(&bench) - before;
-    assert!((10..of_cone).contains(&of_hinge), "{of_hinge} lines of the elbow, {of_cone} before");
+    let (of_hinge, red) = drawn(&bench);
+    let of_hinge = of_hinge - before;
+    assert!((10..of_cone).contains(&of_hinge), "{of_hinge} shapes of the elbow, {of_cone} before");
+    assert_eq!(red, 0, "the elbow is bent");
+    let hand = bench.session().rig().targets[0];
+    let far = hand.home + Vec3::new(2.0, 0.0, 0.0);
+    bench.apply([SolverEdit::SetBodyFollows(false)]);
+    bench.apply([TargetEdit::SetTarget(hand.with_home(far))]);
+    assert!(drawn(&bench).1 > 10, "the elbow is straight, at an end of its range");
+}
+
+/// Presses the handle at an end of the limits of the left upper arm, moves the mouse to where it has
+/// turned by an angle, and releases the button.
+fn drag_end(bench: &mut Bench, end: LimitEnd, by: f32) {
+    let joint_id = bench.joint("left_upper_arm");
+    let fan = LimitFan::shown(bench.session().posed(), joint_id).expect("limits are shown");
+    let at = fan.ends().find(|(it, _)| *it == end).expect("an end").1;
+    let ring = fan.ring(end).expect("a ring");
+    let to = ring.centre + Quat::from_axis_angle(ring.axis, by) * (at - ring.centre);
+    let [from, to] = [at, to].map(|point| bench.on_screen(point));
+    bench.move_to(from);
+    bench.press(PointerButton::Primary);
+    let taken = bench.session().history().drag().map(ik_arm::session::Drag::grip);
+    assert_eq!(taken, Some(Grip::Limit(joint_id, end)));
+    bench.move_to(to);
+    bench.settle();
+    bench.release(PointerButton::Primary);
+    bench.settle();
+}
+
+#[test]
+fn ends_of_ranges_are_dragged_in_the_view() {
+    let mut bench = upper_arm();
+    bench.apply([DisplayEdit::ShowOverlay(Overlay::JointLimits, true)]);
+    let joint_id = bench.joint("left_upper_arm");
+    let ranges = [(-1.0, 1.2), (-0.8, 0.9), (-1.4, 0.6)];
+    let ranges = ranges.map(|(min, max)| Some(Limit { min, max }));
+    let limits = JointLimits::new(ranges);
+    bench.apply([JointEdit::SetLimits { joint: joint_id, limits }]);
+    bench.settle();
+    for (axis, extreme, by) in [
+        (RotationAxis::X, Extreme::Greatest, -0.3),
+        (RotationAxis::Y, Extreme::Least, 0.2),
+        (RotationAxis::Z, Extreme::Greatest, 0.25),
+    ] {
+        let end = LimitEnd::Range(axis, extreme);
+        let before = joint(&bench).angle_of_end(end).expect("an end");
+        drag_end(&mut bench, end, by);
+        let after = joint(&bench).angle_of_end(end).expect("an end");
+        assert!((after - before - by).abs() < 0.02, "{end:?}: {before} to {after}, by {by}");
+        assert_eq!(bench.session().history().undo_label(), Some("Move limit"));
+        bench.apply([TransactionAction::Undo]);
+        assert_eq!(joint(&bench).limits, limits, "it was one step");
+    }
+}
+
+#[test]
+fn ends_of_a_cone_are_dragged_in_the_view_and_the_joint_is_pushed_by_them() {
+    let mut bench = upper_arm();
+    choose_cone(&mut bench);
+    bench.apply([DisplayEdit::ShowOverlay(Overlay::JointLimits, true)]);
+    let joint_id = bench.joint("left_upper_arm");
+    let twist = Limit { min: -1.0, max: 1.0 };
+    let limits = JointLimits::cone(Cone { x: 1.2, z: 1.3, twist });
+    bench.apply([JointEdit::SetLimits { joint: joint_id, limits }]);
+    bench.settle();
+    drag_end(&mut bench, LimitEnd::Swing(SwingAxis::Z, Extreme::Least), 0.3);
+    assert!((cone(&bench).expect("a cone").z - 1.0).abs() < 0.02);
+    drag_end(&mut bench, LimitEnd::Twist(Extreme::Greatest), -0.4);
+    assert!((cone(&bench).expect("a cone").twist.max - 0.6).abs() < 0.03, "{:?}", cone(&bench));
+    let own = joint(&bench);
+    assert!(own.limits.contains(own.rotation), "{}", own.rotation);
+    // Without the guide there is nothing to take.
+    bench.apply([DisplayEdit::ShowOverlay(Overlay::JointLimits, false)]);
+    assert!(LimitFan::shown(bench.session().posed(), joint_id).is_none());
 }

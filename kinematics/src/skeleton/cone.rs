@@ -4,6 +4,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, Mat3, Vec3};
 
 use super::joint_angles::nearest_angles_f64;
 use super::limit::Limit;
+use super::limit_border::SwingAxis;
 
 /// A cone within which a bone may swing, and a range of its twist about itself.
 ///
@@ -62,6 +63,11 @@ impl BoneCone {
     /// A cone about the y-axis of the frame.
     pub const fn new(cone: Cone) -> Self {
         Self { cone, basis: DMat3::IDENTITY }
+    }
+
+    /// Another cone around the same bone.
+    pub fn with(self, cone: Cone) -> Self {
+        Self { cone, ..self }
     }
 
     /// The cone of a joint with a frame, along a direction in the space of the joint.
@@ -128,6 +134,30 @@ impl BoneCone {
     /// The twist that angles give the bone.
     pub fn twist_of(&self, angles: Vec3) -> f32 {
         self.split(angles.as_dvec3()).twist as f32
+    }
+
+    /// An axis of the cone's swings, in the joint's frame.
+    pub fn axis(&self, axis: SwingAxis) -> Vec3 {
+        match axis {
+            SwingAxis::X => self.basis.x_axis.as_vec3(),
+            SwingAxis::Z => self.basis.z_axis.as_vec3(),
+        }
+    }
+
+    /// Angles of a swing about an axis with the twist that angles have.
+    pub fn swung_about(&self, axis: SwingAxis, by: f32, angles: Vec3) -> Vec3 {
+        let SwingTwist { twist, .. } = self.split(angles.as_dvec3());
+        let swing = match axis {
+            SwingAxis::X => DVec2::X,
+            SwingAxis::Z => DVec2::Y,
+        };
+        self.angles_of(SwingTwist { swing: swing * f64::from(by), twist }, angles)
+    }
+
+    /// Angles with another twist.
+    pub fn twisted(&self, twist: f32, angles: Vec3) -> Vec3 {
+        let SwingTwist { swing, .. } = self.split(angles.as_dvec3());
+        self.angles_of(SwingTwist { swing, twist: twist.into() }, angles)
     }
 
     /// The bone's direction in the joint's frame, for angles, with the changes of the twist that the

@@ -4,6 +4,7 @@ use glam::{Mat3, Vec3};
 
 use super::cone::{BoneCone, Cone};
 use super::limit::{Limit, RotationAxis};
+use super::limit_border::SwingAxis;
 
 /// Limits of a joint's rotation: a range for each Euler angle, a [`Cone`], or none.
 ///
@@ -91,6 +92,38 @@ impl JointLimits {
         match self.kind {
             Kind::Cone(cone) => Self { kind: Kind::Cone(cone.along(frame, bone)) },
             Kind::Angles(_) => self,
+        }
+    }
+
+    /// Another cone around the same bone, in place of a cone.
+    pub(super) fn with_cone(self, cone: Cone) -> Self {
+        match self.kind {
+            Kind::Cone(of_bone) => Self { kind: Kind::Cone(of_bone.with(cone)) },
+            Kind::Angles(_) => Self::cone(cone),
+        }
+    }
+
+    /// An axis of a cone, in the joint's frame.
+    pub(super) fn swing_axis(&self, axis: SwingAxis) -> Option<Vec3> {
+        match self.kind {
+            Kind::Cone(cone) => Some(cone.axis(axis)),
+            Kind::Angles(_) => None,
+        }
+    }
+
+    /// Angles of a swing about an axis of the cone with the twist that angles have.
+    pub(super) fn swung_about(&self, axis: SwingAxis, by: f32, angles: Vec3) -> Option<Vec3> {
+        match self.kind {
+            Kind::Cone(cone) => Some(cone.swung_about(axis, by, angles)),
+            Kind::Angles(_) => None,
+        }
+    }
+
+    /// Angles with another twist of a cone.
+    pub(super) fn twisted(&self, twist: f32, angles: Vec3) -> Option<Vec3> {
+        match self.kind {
+            Kind::Cone(cone) => Some(cone.twisted(twist, angles)),
+            Kind::Angles(_) => None,
         }
     }
 

@@ -57,6 +57,7 @@ pub use cone::Cone;
 pub use joint::{Joint, JointField, JointId, JointRemap, SkeletonError};
 pub use joint_angles::nearest_angles;
 pub use limit::{Limit, RotationAxis};
+pub use limit_border::{Extreme, LimitEnd, SwingAxis};
 pub use limits::JointLimits;
 pub use pose::{SkeletonPose, is_within_numbers};
 pub use tree::Skeleton;

@@ -1,7 +1,7 @@
 //! Cone limits: projection, against a search over the ellipse in f64, and solvers that never leave
 //! them.
 
-use std::f32::consts::PI;
+use std::f32::consts::{self, PI};
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, Vec3};
@@ -9,7 +9,8 @@ use ik_arm_kinematics::chain_ik::{
     ChainSolver, ChainTarget, Method, NullSpaceDrag, Root, SolverOptions, solve,
 };
 use ik_arm_kinematics::skeleton::{
-    Cone, Joint, JointId, JointLimits, Limit, Skeleton, SkeletonError,
+    Cone, Extreme, Joint, JointId, JointLimits, Limit, LimitEnd, RotationAxis, Skeleton,
+    SkeletonError, nearest_angles,
 };
 
 use crate::common::Random;
@@ -178,6 +179,95 @@ fn the_border_that_is_drawn_is_that_of_what_the_cone_contains() {
 }
 
 /// A chain all of whose joints have cones, in a random pose within them.
+/// A joint in a skeleton, with a cone or with some ranges of angles, and a rotation within them.
+fn limited(random: &mut Random, has_cone: bool) -> Joint {
+    let cone = cone(random);
+    let mut joint = joint(random, cone);
+    if !has_cone {
+        joint.limits = JointLimits::NONE;
+        for axis in RotationAxis::ALL {
+            let (min, size) = (random.within(-2.0..1.0), random.within(0.1..2.0));
+            let range = Some(Limit { min, max: min + size });
+            joint.limits.set_range(axis, range.filter(|_| random.chance(0.7)));
+            joint.rotation[axis.index()] = min + 0.3 * size;
+        }
+    } else {
+        joint.rotation = joint.limits.project(random.vector(1.0));
+    }
+    Skeleton::from_joints(vec![joint]).expect("a joint")[JointId::new(0)].clone()
+}
+
+#[test]
+fn ends_of_limits_are_where_turns_about_their_axes_leave_the_limits() {
+    const STEP: f64 = 1e-2;
+    let mut random = Random(811);
+    let mut ends = 0;
+    for case in 0..400 {
+        let joint = limited(&mut random, case % 2 == 0);
+        for end in joint.limit_ends() {
+            let at = joint.angles_at_end(end).expect("an end");
+            assert!(joint.limits.contains(at), "{case}: {end:?}");
+            let axis = joint.axis_of_end(end).expect("an axis").as_dvec3().normalize();
+            let turned = |by: f64| {
+                let frame = joint.frame.as_dmat3();
+                let turn = frame.transpose() * DMat3::from_axis_angle(axis, by) * frame;
+                let DVec3 { x, y, z } = at.as_dvec3();
+                let turned = turn * DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x));
+                nearest_angles(turned.as_mat3().into(), at)
+            };
+            let is_greatest = matches!(
+                end,
+                LimitEnd::Range(_, Extreme::Greatest)
+                    | LimitEnd::Swing(_, Extreme::Greatest)
+                    | LimitEnd::Twist(Extreme::Greatest)
+            );
+            let out = if is_greatest { STEP } else { -STEP };
+            assert!(!joint.limits.contains(turned(out)), "{case}: {end:?} ends too late");
+            assert!(joint.limits.contains(turned(-out)), "{case}: {end:?} ends too early");
+            ends += 1;
+        }
+    }
+    assert!(ends > 1000, "{ends}");
+}
+
+#[test]
+fn an_end_of_limits_goes_where_it_is_moved_but_not_beyond_what_is_sound() {
+    let mut random = Random(812);
+    for case in 0..400 {
+        let joint = limited(&mut random, case % 2 == 0);
+        for end in joint.limit_ends() {
+            let angle = random.within(-7.0..7.0);
+            let mut moved = joint.clone();
+            moved.limits = joint.limits.with_end(end, angle);
+            let before: Vec<f32> =
+                joint.limit_ends().filter_map(|it| joint.angle_of_end(it)).collect();
+            let after: Vec<f32> =
+                joint.limit_ends().filter_map(|it| moved.angle_of_end(it)).collect();
+            let own = joint.limit_ends().position(|it| it == end).expect("the end");
+            let opposite = own ^ 1;
+            for (index, (before, after)) in before.iter().zip(&after).enumerate() {
+                let is_moved =
+                    index == own || index == opposite && matches!(end, LimitEnd::Swing(..));
+                assert!(is_moved || before == after, "{case}: {end:?} moves another end");
+            }
+            let expected = match end {
+                LimitEnd::Swing(_, Extreme::Greatest) => angle.clamp(0.017_453, Cone::WIDEST),
+                LimitEnd::Swing(_, Extreme::Least) => angle.clamp(-Cone::WIDEST, -0.017_453),
+                LimitEnd::Range(_, Extreme::Least) => angle.min(before[opposite]),
+                LimitEnd::Range(_, Extreme::Greatest) => angle.max(before[opposite]),
+                LimitEnd::Twist(Extreme::Least) => {
+                    angle.clamp(before[opposite] - consts::TAU, before[opposite])
+                }
+                LimitEnd::Twist(Extreme::Greatest) => {
+                    angle.clamp(before[opposite], before[opposite] + consts::TAU)
+                }
+            };
+            assert_eq!(after[own], expected, "{case}: {end:?} to {angle}");
+            Skeleton::from_joints(vec![moved]).expect("sound limits");
+        }
+    }
+}
+
 fn coned(random: &mut Random, joints: usize) -> Skeleton {
     let mut skeleton = chain(random, joints, 1.0);
     for joint in skeleton.ids() {

@@ -3,15 +3,14 @@
 
 use core::f32::consts::{PI, TAU};
 
-use glam::{Mat3A, Vec3};
+use glam::Vec3;
 
-use super::drawn_skeleton::DrawnSkeleton;
-use crate::kinematics::skeleton::{Joint, JointId, RotationAxis, Skeleton};
+use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::scene::{Colour, Line, Scene};
+use crate::session::LimitFan;
 
-/// Radius of fans, as a fraction of the bone's length, and of the fan of a twist.
-const RADIUS: f32 = 0.85;
-const TWIST_RADIUS: f32 = 0.3;
+/// Radius of the border, as a fraction of the bone's length.
+const THICKNESS: f32 = 0.012;
 /// Opacity of the border and of spokes.
 const BORDER: f32 = 0.9;
 const SPOKES: f32 = 0.28;
@@ -19,41 +18,18 @@ const SPOKES: f32 = 0.28;
 const STEP: f32 = PI / 36.0;
 const SPOKE: usize = 2;
 
-/// Where the fans of a joint are drawn.
-struct Fan<'a> {
-    joint: &'a Joint,
-    base: Vec3,
-    /// From the space of the joint's base to the world.
-    to_world: Mat3A,
+/// Adds the limits of a joint of a posed skeleton: a fan for each range of an angle, or the cone and a
+/// fan for its twist. A fan is red while the joint is at an end of it.
+pub(super) fn add_joint_limits(scene: &mut Scene, posed: &Skeleton, joint: JointId) {
+    let Some(fan) = LimitFan::of(posed, joint) else { return };
+    match fan.joint.limits.as_cone() {
+        Some(_) => fan.add_cone(scene),
+        None => RotationAxis::ALL.into_iter().for_each(|axis| fan.add_range(scene, axis)),
+    }
+    fan.add_needle(scene, fan.base, Some(fan.point(fan.joint.rotation)));
 }
 
-impl DrawnSkeleton<'_> {
-    /// Adds the limits of a joint of a posed skeleton: a fan for each range of an angle, or the cone
-    /// and a fan for its twist. A fan is red while the joint is at an end of it.
-    pub fn add_joint_limits(&self, scene: &mut Scene, posed: &Skeleton, joint: JointId) {
-        let Some(of) = posed.joint(joint).filter(|it| it.axis != Vec3::ZERO) else { return };
-        let above = of.parent.map(|parent| self.pose.full(parent).matrix3);
-        let to_world = above.unwrap_or(posed.transform().matrix3);
-        let fan = Fan { joint: of, base: self.pose.base(joint), to_world };
-        match of.limits.as_cone() {
-            Some(_) => fan.add_cone(scene),
-            None => RotationAxis::ALL.into_iter().for_each(|axis| fan.add_range(scene, axis)),
-        }
-        if of.limits.is_limited() {
-            let needle = fan.point(of.rotation);
-            let colour = scene.palette.text;
-            scene.lines.push(Line { from: fan.base, to: needle, colour, dashed: false });
-        }
-    }
-}
-
-impl Fan<'_> {
-    /// The point of a fan in the direction that the bone has with these angles.
-    fn point(&self, angles: Vec3) -> Vec3 {
-        let bone = Vec3::from(self.to_world * glam::Vec3A::from(self.joint.bone_at(angles)));
-        self.base + bone * RADIUS
-    }
-
+impl LimitFan {
     /// Adds the fan of a range of an angle, with the other angles as they are.
     fn add_range(&self, scene: &mut Scene, axis: RotationAxis) {
         let limits = &self.joint.limits;
@@ -65,13 +41,18 @@ impl Fan<'_> {
         let with = |turn: f32| {
             let mut angles = self.joint.rotation;
             angles[axis.index()] = angle + turn;
-            limits.contains(angles).then(|| self.point(angles))
+            self.range_point(axis, angle + turn).filter(|_| limits.contains(angles))
         };
         // The ends are those of the limits; in between, what they contain is drawn.
         let first = range.min - angle;
         let count = (size.min(TAU) / STEP).ceil().max(1.0) as usize;
         let turns = (0..=count).map(|at| first + size.min(TAU) * at as f32 / count as f32);
-        self.add_arc(scene, turns.map(with), colour, self.base);
+        if !self.turns_about_bone(axis) {
+            return self.add_arc(scene, turns.map(with), colour, self.base);
+        }
+        let centre = self.twist_centre();
+        self.add_arc(scene, turns.map(with), colour, centre);
+        self.add_needle(scene, centre, self.range_point(axis, angle));
     }
 
     /// Adds the border of the cone with spokes, and the fan of its twist.
@@ -98,18 +79,18 @@ impl Fan<'_> {
         else {
             return;
         };
-        let bone = self.point(self.joint.rotation) - self.base;
-        let Some(along) = bone.try_normalize() else { return };
-        let across = along.any_orthonormal_vector() * (bone.length() * TWIST_RADIUS / RADIUS);
-        let centre = self.base + bone * 0.5;
-        let point = |turn: f32| centre + glam::Quat::from_axis_angle(along, turn) * across;
+        let centre = self.twist_centre();
         let size = (cone.twist.max - cone.twist.min).min(TAU);
         let count = (size / STEP).ceil().max(1.0) as usize;
         let turn = |at: usize| cone.twist.min + size * at as f32 / count as f32;
-        self.add_arc(scene, (0..=count).map(|at| Some(point(turn(at)))), colour, centre);
-        let needle = point(twist);
-        let colour = scene.palette.text;
-        scene.lines.push(Line { from: centre, to: needle, colour, dashed: false });
+        self.add_arc(scene, (0..=count).map(|at| self.twist_point(turn(at))), colour, centre);
+        self.add_needle(scene, centre, self.twist_point(twist));
+    }
+
+    /// Adds the needle of what the joint has.
+    fn add_needle(&self, scene: &mut Scene, from: Vec3, to: Option<Vec3>) {
+        let (radius, colour) = (THICKNESS * self.length(), scene.palette.text);
+        to.into_iter().for_each(|to| scene.add_guide_solid(from, to, radius, radius, colour));
     }
 
     /// Adds the lines between points that follow each other, and spokes from a centre to some.
@@ -121,10 +102,12 @@ impl Fan<'_> {
         centre: Vec3,
     ) {
         let (border, spoke) = (colour.with_opacity(BORDER), colour.with_opacity(SPOKES));
+        let radius = THICKNESS * self.length();
         let mut last = None;
         for (index, point) in points.enumerate() {
             if let Some((from, to)) = last.zip(point) {
-                scene.lines.push(Line { from, to, colour: border, dashed: false });
+                // Solids show through the skin.
+                scene.add_guide_solid(from, to, radius, radius, border);
             }
             if let Some(to) = point.filter(|_| index.is_multiple_of(SPOKE)) {
                 scene.lines.push(Line { from: centre, to, colour: spoke, dashed: false });

@@ -2,6 +2,7 @@ use glam::Vec3;
 
 use super::cylinders::{self, CylinderLimb};
 use super::drawn_skeleton::DrawnSkeleton;
+use super::joint_limits::add_joint_limits;
 use super::skin::ShownSkin;
 use super::solver::{self, InsideDrawing};
 use crate::document::{
@@ -162,7 +163,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
     }
     let selected = overlays.selection.last().filter(|_| display.shows(Overlay::JointLimits));
     if let Some(joint) = selected {
-        drawn.add_joint_limits(scene, posed.skeleton(), *joint);
+        add_joint_limits(scene, posed.skeleton(), *joint);
     }
     if let Some(region) = &overlays.reach_region {
         add_reach_region(scene, region);

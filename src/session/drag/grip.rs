@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::point::{Constraint, DragInput, PointDrag, PointHandle};
 use super::turn::TurnDrag;
 use crate::kinematics::chain_ik::Ellipsoid;
-use crate::kinematics::skeleton::{JointId, RotationAxis};
+use crate::kinematics::skeleton::{JointId, LimitEnd, RotationAxis};
 
 /// A part of a gizmo that can be dragged in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +27,8 @@ pub enum Grip {
     /// The ring of the angle about x, y or z of the orientation that the target of a
     /// joint holds.
     Orientation(JointId, RotationAxis),
+    /// An end of a joint's limits.
+    Limit(JointId, LimitEnd),
 }
 
 impl Grip {
@@ -38,7 +40,11 @@ impl Grip {
             | Self::Aim(_, handle)
             | Self::Head(_, handle)
             | Self::Tip(_, handle) => handle.has_valid_axis(),
-            Self::Bone(_) | Self::Ring(..) | Self::Orientation(..) | Self::LimbTwist(_) => true,
+            Self::Bone(_)
+            | Self::Ring(..)
+            | Self::Orientation(..)
+            | Self::Limit(..)
+            | Self::LimbTwist(_) => true,
         }
     }
 
@@ -53,6 +59,7 @@ impl Grip {
             Self::Tip(..) | Self::Bone(_) => "Pose joints",
             Self::Ring(..) => "Turn joint",
             Self::Orientation(..) => "Turn target",
+            Self::Limit(..) => "Move limit",
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::kinematics::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::rig::{Posture, TargetSpace};
 use crate::session::drag::body::is_elbow;
 use crate::session::drag::grip::{Drag, DragLimit, Dragged, Grip};
+use crate::session::drag::limit_fan::LimitFan;
 use crate::session::drag::point::{Constraint, PointDrag, PointHandle};
 use crate::session::drag::turn::{GripRing, TurnDrag};
 use crate::session::keys;
@@ -61,6 +62,11 @@ pub(in crate::session) fn grab(
             let drag =
                 TurnDrag::new(GripRing::of_orientation(session.posed(), joint, axis)?, start, ray);
             return Some(Drag::of_ring(grip, drag));
+        }
+        Grip::Limit(joint, end) => {
+            let fan = LimitFan::shown(session.posed(), joint)?;
+            let start = session.skeleton().joint(joint)?.angle_of_end(end)?;
+            return Some(Drag::of_ring(grip, TurnDrag::new(fan.ring(end)?, start, ray)));
         }
     };
     let step = session.shown().grid_cell() * PointDrag::SNAP_CELLS;
@@ -141,6 +147,11 @@ pub(in crate::session) fn drag(session: &mut Session, grip: Grip, dragged: Dragg
         }
         (Grip::Orientation(joint, axis), Dragged::Angle(angle)) => {
             drag_orientation(session, joint, axis, angle)
+        }
+        (Grip::Limit(joint, end), Dragged::Angle(angle)) => {
+            Outcome::edit_joint(session.shown(), joint, |joint| {
+                joint.limits = joint.limits.with_end(end, angle);
+            })
         }
         (Grip::LimbTwist(joint), Dragged::Angle(angle)) => drag_twist(session, joint, angle),
         (Grip::Bone(joint), Dragged::Angle(angle)) => {

@@ -4,5 +4,6 @@ pub mod body;
 pub mod follow_mouse;
 pub mod grip;
 pub mod joints;
+pub mod limit_fan;
 pub mod point;
 pub mod turn;

@@ -1,6 +1,7 @@
 //! Handles in the viewport: their positions on screen, hit tests and painting.
 
 mod handles;
+mod limit_marks;
 pub(in crate::ui) mod screen;
 mod skeleton;
 mod twist_ring;

@@ -4,6 +4,7 @@ use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use glam::Vec3;
 
 use super::handles::{OUTER_RADIUS, RADIUS, RotateRing, TranslateHandles};
+use super::limit_marks::LimitMarks;
 use super::screen::{ScreenProjection, bright, to_segment};
 use super::twist_ring::TwistRing;
 use crate::document::Target;
@@ -33,6 +34,8 @@ pub(in crate::ui) struct Gizmo {
     /// Translation handles of the selected joint's target and its pole, or of the selected head.
     handles: Vec<JointHandles>,
     rings: Vec<RotateRing>,
+    /// The limits of the selected joint, while they are shown.
+    limits: LimitMarks,
     /// The ring of the twist of the selected limb.
     twist: Option<TwistRing>,
 }
@@ -74,16 +77,18 @@ impl Gizmo {
             marks: marks(screen, session),
             handles: handles(screen, session),
             rings: rings(screen, session),
+            limits: LimitMarks::new(screen, session),
             twist: twist_ring(screen, session),
         }
     }
 
-    /// The handle at a screen position; `None` if there is no handle. The handles of the selected
-    /// joint come first, then the ring of its limb's twist, other rings, targets, tips. A target or tip wins over a ring if
+    /// The handle at a screen position; `None` if there is no handle. The ends of the selected joint's
+    /// limits and its handles come first, then the ring of its limb's twist, other rings, targets, tips. A target or tip wins over a ring if
     /// its centre is clearly nearer.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_twist = || self.twist.as_ref().and_then(|ring| ring.at(mouse));
-        self.handles.iter().find_map(|of| of.at(mouse)).or_else(of_twist).or_else(|| {
+        let of_joint = || self.handles.iter().find_map(|of| of.at(mouse));
+        self.limits.at(mouse).or_else(of_joint).or_else(of_twist).or_else(|| {
             let circle = self.mark_at(mouse).or_else(|| self.tip_at(mouse));
             match (RotateRing::nearest(&self.rings, mouse), circle) {
                 (Some((to_ring, _)), Some((to_centre, grip))) if to_centre + CLEARLY < to_ring => {
@@ -162,6 +167,7 @@ impl Gizmo {
                 painter.circle_stroke(bone.tip, TIP, Stroke::new(2.0, bright(strong)));
             }
         }
+        self.limits.paint(painter, ui, stand_out, faded);
         for of in &self.handles {
             let own = |grip: Option<Grip>| grip.and_then(|grip| of.handle(grip));
             if dragged.is_none() || own(dragged).is_some() {

@@ -227,7 +227,7 @@ fn select(
         }
         Some(Grip::Target(joint, _) | Grip::Head(joint, _) | Grip::Tip(joint, _)) => Some(joint),
         Some(Grip::LimbTwist(joint)) => Some(joint),
-        Some(Grip::Ring(..) | Grip::Orientation(..)) => return,
+        Some(Grip::Ring(..) | Grip::Orientation(..) | Grip::Limit(..)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
     let is_first = joint.is_none() && !session.rig().has_bones();

@@ -155,6 +155,12 @@ pub(in crate::ui) fn error_label(ui: &mut Ui, text: &str) {
     });
 }
 
+/// A text with a capital first letter.
+pub(in crate::ui) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use crate::ui::widgets::text::*;

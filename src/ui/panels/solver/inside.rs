@@ -132,7 +132,7 @@ fn legend(ui: &mut Ui, session: &Session, part: &SubStep, actions: &mut Actions)
                 ui.painter().rect_filled(rect, 1.0, *colour);
             }
         });
-        ui.label(RichText::new(capitalized(entry.meaning)).weak().small());
+        ui.label(RichText::new(text::capitalized(entry.meaning)).weak().small());
     }
 }
 
@@ -223,11 +223,6 @@ fn entry_of_turns(ui: &Ui, kind: &SubStepKind) -> MarkLegend {
         _ => ("Missing turn", Vec::new(), "the turn that the joint misses, as its axis and an arc"),
     };
     MarkLegend { layer: InsideLayer::Turns, colours: [vec![accent], more].concat(), name, meaning }
-}
-
-fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Number of angles in a table, so that it stays readable; those that turn most are listed.

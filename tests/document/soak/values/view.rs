@@ -1,7 +1,7 @@
 //! Cameras, and drags by rays.
 
 use crate::common::arm::{LOWER, ROOT, UPPER, WRIST};
-use ik_arm::kinematics::skeleton::{JointId, RotationAxis};
+use ik_arm::kinematics::skeleton::{Extreme, JointId, LimitEnd, RotationAxis, SwingAxis};
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{Vec2, Vec3};
@@ -62,7 +62,7 @@ impl Values<'_> {
 
     pub fn grip(&mut self) -> Grip {
         let joint = self.joint();
-        match self.random.below(16) {
+        match self.random.below(17) {
             0 | 1 => Grip::Target(LOWER, self.handle()),
             2 => Grip::LimbPole(LOWER, self.handle()),
             3 => Grip::Ring(UPPER, self.rotation_axis()),
@@ -75,6 +75,7 @@ impl Values<'_> {
             10 => Grip::Tip(UPPER, PointHandle::Free),
             11 => Grip::Tip(UPPER, PointHandle::Free),
             12 => Grip::Ring(WRIST, self.rotation_axis()),
+            15 => Grip::Limit(joint, self.limit_end()),
             14 => Grip::Aim(self.aimed(), self.handle()),
             13 => Grip::Orientation(self.aimed(), self.rotation_axis()),
             _ => Grip::Ring(joint, self.rotation_axis()),
@@ -83,6 +84,16 @@ impl Values<'_> {
 
     pub fn hovered(&mut self) -> Option<JointId> {
         if self.coin() { None } else { Some(self.joint()) }
+    }
+
+    fn limit_end(&mut self) -> LimitEnd {
+        let extreme = if self.coin() { Extreme::Least } else { Extreme::Greatest };
+        match self.random.below(4) {
+            0 => LimitEnd::Twist(extreme),
+            1 => LimitEnd::Swing(SwingAxis::X, extreme),
+            2 => LimitEnd::Swing(SwingAxis::Z, extreme),
+            _ => LimitEnd::Range(self.rotation_axis(), extreme),
+        }
     }
 
     fn handle(&mut self) -> PointHandle {
