@@ -70,6 +70,7 @@ pub fn document(random: &mut Random) -> Document {
     rig.solver.step = random.positive();
     rig.solver.posture_rate = random.positive();
     rig.solver.root = random.one_of(&Root::ALL);
+    rig.solver.root_stiffness = random.within(0.0..1.0);
     rig.iterations_per_frame = 1 + random.below(1000) as u32;
     let ring = PathKind::Ring(WavyRing {
         radius: random.finite(),

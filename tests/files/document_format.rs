@@ -363,6 +363,10 @@ fn an_invalid_value_is_named_with_the_rule() {
             "line 2, column 26: solver.posture_rate: must be 0 or more, got -1",
         ),
         (
+            "\"solver\":{\"root_stiffness\":1}".to_owned(),
+            "line 2, column 28: solver.root_stiffness: must be 0 or more and below 1, got 1",
+        ),
+        (
             "\"balance\":{\"influence\":1.5}".to_owned(),
             "line 2, column 24: balance.influence: must be from 0 to 1, got 1.5",
         ),

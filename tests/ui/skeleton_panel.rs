@@ -530,6 +530,24 @@ fn a_joint_is_made_stiff_as_a_whole_or_about_one_axis() {
 }
 
 #[test]
+fn the_stiffness_of_free_roots_is_set_on_the_solver_page() {
+    let mut bench = Bench::example("human");
+    assert_eq!(bench.session().rig().solver.root, Root::Free);
+    bench.show_tab(PanelTab::Solver);
+    bench.reveal(Role::SpinButton, "Root stiffness");
+    bench.click(Role::SpinButton, "Root stiffness");
+    bench.key_with(Modifiers::COMMAND, Key::A);
+    bench.frame([egui::Event::Text("7".to_owned())]);
+    bench.key(Key::Enter);
+    bench.settle();
+    assert_eq!(bench.session().rig().solver.root_stiffness, Joint::MAX_STIFFNESS);
+    let turns = bench.session().rig().solver.with_root(Root::Turns);
+    bench.apply([SolverEdit::SetSolver(turns)]);
+    bench.settle();
+    assert!(!bench.shows(Role::SpinButton, "Root stiffness"), "roots that stay have none");
+}
+
+#[test]
 fn the_posture_rate_is_set_on_the_solver_page() {
     let mut bench = built();
     bench.click(Role::Button, "Add target");

@@ -202,8 +202,8 @@ pub(super) fn advance(
         };
     }
     if problem.free_roots {
-        // The square of the chain's length converts the units of angles to those of shifts.
-        let lever = factor * problem.length * problem.length;
+        // Converts the units of angles to those of shifts.
+        let lever = factor * problem.shift_unit.powi(2);
         for (index, shifts) in config.shifts.iter_mut().enumerate() {
             let (before, moved) =
                 (from.shifts[index], from.shifts[index] + lever * by.shifts[index]);

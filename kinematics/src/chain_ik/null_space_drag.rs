@@ -366,12 +366,12 @@ struct HeldRows {
 impl Rows {
     /// The rows in a configuration whose links have these rotation axes, zero for fixed angles.
     fn new(problem: &Problem, config: &Configuration, axes: &[Mat3A]) -> Self {
-        let length = f64::from(problem.length);
+        let (length, shift) = (f64::from(problem.length), f64::from(problem.shift_unit));
         let turning = 3 * problem.links.len();
         let shifting = if problem.free_roots { 3 * problem.trees.len() } else { 0 };
         let columns = turning + shifting;
         let compliance = |at: usize| f64::from(problem.links[at / 3].compliance[at % 3]).sqrt();
-        let of_shifts = std::iter::repeat_n(length, shifting);
+        let of_shifts = std::iter::repeat_n(shift, shifting);
         let units = (0..turning).map(compliance).chain(of_shifts).collect::<Vec<f64>>();
         let zero = || DMatrix::zeros(3, columns);
         let mut places = vec![zero(); problem.effectors.len()];
@@ -397,11 +397,11 @@ impl Rows {
                 let from = turning + 3 * effector.tree;
                 for (axis, unit) in Vec3A::AXES.into_iter().enumerate() {
                     let part = f64::from(problem.part_of_shift(index));
-                    set_column(&mut places[index], from + axis, unit, part * length);
+                    set_column(&mut places[index], from + axis, unit, part * shift);
                     if let (Some(turn), Some(missing)) = (&mut turn, missing) {
                         let weight = f64::from(missing.stiffness).sqrt();
                         let by = missing.of_velocity()[axis];
-                        set_column(turn, from + axis, by, weight * length);
+                        set_column(turn, from + axis, by, weight * shift);
                     }
                 }
             }
@@ -496,7 +496,7 @@ impl Rows {
 
     /// The changes of angles and shifts that a step makes, as [`advance`] takes them.
     fn coordinates(&self, problem: &Problem, step: &DVector<f64>) -> Coordinates {
-        let lever = f64::from(problem.length).powi(2);
+        let lever = f64::from(problem.shift_unit).powi(2);
         let by = |at: usize| (step[at] * self.units[at]) as f32;
         let mut coordinates = Coordinates::zero(problem);
         for (link, angles) in coordinates.angles.iter_mut().enumerate() {

@@ -37,6 +37,10 @@ pub struct SolverOptions {
     pub posture_rate: f32,
     /// The inputs of roots that solvers may change.
     pub root: Root,
+    /// Reluctance of [free](Root::Free) roots to move when a solver divides a motion among joints,
+    /// from 0 to below 1, as [`Joint::stiffness`](crate::skeleton::Joint::stiffness) for turns. At
+    /// 0, a way of one chain length takes as much effort as a turn by one radian.
+    pub root_stiffness: f32,
 }
 
 impl Default for SolverOptions {
@@ -49,6 +53,7 @@ impl Default for SolverOptions {
             step: 1.0,
             posture_rate: 10.0,
             root: Root::Turns,
+            root_stiffness: 0.0,
         }
     }
 }
@@ -102,6 +107,12 @@ impl SolverOptions {
         Self { root, ..self }
     }
 
+    /// These options with another stiffness of free roots.
+    #[must_use]
+    pub fn with_root_stiffness(self, root_stiffness: f32) -> Self {
+        Self { root_stiffness, ..self }
+    }
+
     pub(super) fn check(&self) -> Result<(), SolveError> {
         let is_positive = |value: f32| value.is_finite() && value > 0.0;
         let checks = [
@@ -111,6 +122,11 @@ impl SolverOptions {
                 OptionField::PostureRate,
                 self.posture_rate,
                 self.posture_rate.is_finite() && self.posture_rate >= 0.0,
+            ),
+            (
+                OptionField::RootStiffness,
+                self.root_stiffness,
+                (0.0..1.0).contains(&self.root_stiffness),
             ),
             (
                 OptionField::Tolerance,
@@ -319,6 +335,9 @@ pub enum OptionField {
     Step,
     /// [`SolverOptions::posture_rate`](super::SolverOptions::posture_rate), 0 or more.
     PostureRate,
+    /// [`SolverOptions::root_stiffness`](super::SolverOptions::root_stiffness), 0 or more and below
+    /// 1.
+    RootStiffness,
 }
 
 impl OptionField {
@@ -326,11 +345,12 @@ impl OptionField {
         match self {
             Self::Tolerance | Self::PostureRate => "0 or more",
             Self::Damping | Self::Step => "above 0",
+            Self::RootStiffness => "0 or more and below 1",
         }
     }
 }
 
-/// The field's name: "tolerance", "damping", "step" or "posture rate".
+/// The field's name: "tolerance", "damping", "step", "posture rate" or "root stiffness".
 impl fmt::Display for OptionField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
@@ -338,6 +358,7 @@ impl fmt::Display for OptionField {
             Self::Damping => "damping",
             Self::Step => "step",
             Self::PostureRate => "posture rate",
+            Self::RootStiffness => "root stiffness",
         })
     }
 }

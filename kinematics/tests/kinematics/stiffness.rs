@@ -4,7 +4,8 @@ use std::f32::consts::PI;
 
 use glam::{DMat3, DVec3, Vec3};
 use ik_arm_kinematics::chain_ik::{
-    ChainSolver, ChainTarget, Method, SolveError, SolverOptions, TwoBoneRefusal, jacobian, solve,
+    ChainSolver, ChainTarget, Method, Root, SolveError, SolverOptions, TwoBoneRefusal, jacobian,
+    solve,
 };
 use ik_arm_kinematics::skeleton::{JointId, JointLimits, Limit, RotationAxis, Skeleton};
 
@@ -221,4 +222,42 @@ fn angles_of_different_stiffness_share_a_turn_by_it() {
     let Vec3 { x, y, .. } = posed[joint].rotation;
     assert!((x / y + 0.1).abs() < 1e-3, "{x} beside {y}");
     assert!(y > 0.0 && y < PI);
+}
+
+#[test]
+fn stiff_free_roots_move_less_and_targets_are_reached_as_before() {
+    for method in RESPECTING {
+        let mut random = Random(93);
+        let (mut reached, mut ways) = (0, [0.0; 3]);
+        for _ in 0..60 {
+            let skeleton = chain(&mut random, 4, 1.0);
+            let (root, tip) = (JointId::new(0), JointId::new(4));
+            let place = skeleton.tip(tip) + random.direction() * 0.6 * length(&skeleton, &[tip]);
+            for (stiffness, way) in [0.0, 0.5, 0.9].into_iter().zip(&mut ways) {
+                let mut posed = skeleton.clone();
+                let options =
+                    SolverOptions::new(method).with_root(Root::Free).with_root_stiffness(stiffness);
+                let target = ChainTarget::at(tip, place);
+                let report = solve(&mut posed, &[target], &options).expect("solve");
+                reached += usize::from(report.converged());
+                *way += posed.base(root).distance(skeleton.base(root));
+            }
+        }
+        let [loose, stiff, stiffer] = ways;
+        println!("{method}: {reached} of 180 reached; {stiff} and {stiffer} of {loose}");
+        assert!(reached >= 178, "{method}: {reached}");
+        assert!(stiff < 0.95 * loose && stiffer < 0.9 * stiff, "{method}: {ways:?}");
+    }
+}
+
+#[test]
+fn a_stiffness_of_roots_out_of_range_is_refused() {
+    let skeleton = chain(&mut Random(1), 2, 1.0);
+    let target = ChainTarget::at(JointId::new(2), Vec3::X);
+    for stiffness in [-0.1, 1.0, f32::NAN] {
+        let options = SolverOptions::default().with_root_stiffness(stiffness);
+        let error = ChainSolver::new(&skeleton, &[target], &options).expect_err("refused");
+        let expected = "root stiffness must be finite and 0 or more and below 1, got";
+        assert!(error.to_string().starts_with(expected), "{error}");
+    }
 }

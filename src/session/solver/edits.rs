@@ -100,6 +100,7 @@ fn is_valid(solver: &SolverOptions) -> bool {
         && above_0(solver.step)
         && solver.posture_rate.is_finite()
         && solver.posture_rate >= 0.0
+        && (0.0..1.0).contains(&solver.root_stiffness)
         && solver.tolerance.is_none_or(above_0)
         && solver.iterations.is_none_or(|iterations| iterations > 0)
 }

@@ -77,6 +77,8 @@ fn skeleton(rig: &SkeletonRig) -> Result<(), Broken> {
     }
     hold!(balance.is_none_or(|it| it.is_valid()), "the balance is sound: {balance:?}");
     let SolverOptions { iterations, tolerance, damping, step, posture_rate, .. } = *solver;
+    let root_stiffness = solver.root_stiffness;
+    hold!((0.0..1.0).contains(&root_stiffness), "the root's stiffness: {root_stiffness}");
     hold!(posture_rate.is_finite() && posture_rate >= 0.0, "a posture rate: {posture_rate}");
     hold!(is_above_0(damping) && is_above_0(step), "the solver can work: {solver:?}");
     hold!(tolerance.is_none_or(is_above_0), "the solver has a tolerance: {solver:?}");

@@ -273,7 +273,7 @@ impl World<'_> {
                 }
             }
             if self.problem.free_roots {
-                let lever = factor * self.problem.length * self.problem.length;
+                let lever = factor * self.problem.shift_unit.powi(2);
                 left -= missing.taken(Vec3A::ZERO, lever * by.shifts[effector.tree]);
             }
             left
@@ -293,7 +293,7 @@ impl World<'_> {
             }
         }
         if self.problem.free_roots {
-            let lever = factor * self.problem.length * self.problem.length;
+            let lever = factor * self.problem.shift_unit.powi(2);
             let effectors = self.problem.effectors.iter().enumerate();
             for ((index, effector), tip) in effectors.zip(&mut tips) {
                 *tip += lever * self.problem.part_of_shift(index) * by.shifts[effector.tree];

@@ -359,7 +359,7 @@ pub(in crate::chain_ik) fn move_roots(problem: &Problem, config: &mut Configurat
         if weights == 0.0 {
             continue;
         }
-        let by = sum / weights;
+        let by = problem.part_of_root() * sum / weights;
         if !problem.can_shift(tree, config.shifts[tree] + by) {
             continue;
         }

@@ -296,7 +296,7 @@ impl DampedLeastSquares {
             return false;
         }
         let step = std::mem::take(&mut self.step);
-        let lever = problem.length * problem.length;
+        let lever = problem.shift_unit.powi(2);
         self.set_velocities(problem, config, &step, lever);
         let mut any = false;
         for (index, effector) in problem.effectors.iter().enumerate().filter(|it| it.1.has_shell())
@@ -334,7 +334,7 @@ impl DampedLeastSquares {
 
     /// Turns the step Jᵀ F into the rest of the wanted way; fixed angles do not move.
     fn take_from_wanted(&mut self, problem: &Problem) {
-        let lever = problem.length * problem.length;
+        let lever = problem.shift_unit.powi(2);
         let Coordinates { angles, shifts } = &mut self.step;
         for (by, wanted) in angles.iter_mut().zip(&self.wanted.angles) {
             *by = *wanted - *by;
@@ -419,7 +419,8 @@ impl DampedLeastSquares {
         }
     }
 
-    /// Adds the shifts of each free root to J W⁻¹ Jᵀ: three columns of one chain length.
+    /// Adds the shifts of each free root to J W⁻¹ Jᵀ: three columns of one
+    /// [`Problem::shift_unit`].
     fn add_shifts(&mut self, problem: &Problem) {
         for tree in 0..problem.trees.len() {
             self.blocks.clear();
@@ -428,11 +429,11 @@ impl DampedLeastSquares {
                     continue;
                 }
                 let part = problem.part_of_shift(index);
-                let lever = part * problem.length * effector.weight.sqrt();
+                let lever = part * problem.shift_unit * effector.weight.sqrt();
                 let place = columns(Mat3A::IDENTITY * lever, |axis| self.counted[index].of(axis));
                 self.blocks.push((place_row(problem, index), place));
                 if let Some(missing) = self.missing[index] {
-                    let weight = problem.length * missing.stiffness.sqrt();
+                    let weight = problem.shift_unit * missing.stiffness.sqrt();
                     let [x, y, z] = missing.of_velocity().map(|column| column * weight);
                     self.blocks.push((turn_row(index), Mat3A::from_cols(x, y, z)));
                 }

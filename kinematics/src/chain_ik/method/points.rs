@@ -399,7 +399,7 @@ impl LinkPoints {
                     - member.kind.position_in(config)
             };
             let sum: Vec3A = ground.iter().map(|member| member.weight * residual(member)).sum();
-            let shift = config.shifts[tree] + sum / weights;
+            let shift = config.shifts[tree] + problem.part_of_root() * sum / weights;
             if problem.can_shift(tree, shift) {
                 config.shifts[tree] = shift;
             }

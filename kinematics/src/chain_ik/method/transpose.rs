@@ -254,7 +254,7 @@ impl Transpose {
     }
 
     /// Calls `add` for each coordinate that differs from `before`, with its change and with −g at
-    /// the last and at this iteration. Shifts count in chain lengths, angles in the roots of their
+    /// the last and at this iteration. Shifts count in [`Problem::shift_unit`], angles in the roots of their
     /// compliances.
     fn for_each_change(
         &self,
@@ -277,7 +277,7 @@ impl Transpose {
                 each(change[i] / lever, from[i] / lever, to[i] / lever);
             }
         }
-        let lever = problem.length;
+        let lever = problem.shift_unit;
         for (tree, shift) in config.shifts.iter().enumerate() {
             let change = (*shift - before.shifts[tree]) / lever;
             let (from, to) = (lever * from.shifts[tree], lever * to.shifts[tree]);

@@ -21,6 +21,8 @@ struct Attachment {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Builder {
     root: Root,
+    /// 1 − k with the stiffness k of free roots.
+    root_compliance: f32,
     method: Method,
     /// Joints between targets and roots, parents before children.
     path: Vec<PathJoint>,
@@ -58,7 +60,9 @@ impl Builder {
         check_targets(skeleton, targets)?;
         let joints = targets.iter().map(|target| target.joint);
         let path = path(skeleton, joints, options.root);
-        Ok(Self { root: options.root, method: options.method, path, ..Self::default() })
+        let SolverOptions { root, method, root_stiffness, .. } = *options;
+        let root_compliance = 1.0 - root_stiffness;
+        Ok(Self { root, root_compliance, method, path, ..Self::default() })
     }
 
     /// Fills a problem in its memory. The targets must be on the same joints, in the same order, as
@@ -90,6 +94,7 @@ impl Builder {
         problem.trees.clear();
         problem.free_roots = self.root == Root::Free;
         problem.length = (length * unit) as f32;
+        problem.shift_unit = problem.length * self.root_compliance.sqrt();
         (problem.to_skeleton, problem.to_world, problem.unit) = (to_skeleton, to_world, unit);
         self.add_links(problem, skeleton);
         problem.add_effectors(skeleton, targets, &self.attachments, self.method);
@@ -307,10 +312,11 @@ impl Problem {
         sum as f32 + self.inertia_of_shifts()
     }
 
-    /// The part of Σ w r² that the shifts of free roots have, each with one chain length as r.
+    /// The part of Σ w r² that the shifts of free roots have, each with
+    /// [`Problem::shift_unit`] as r.
     pub fn inertia_of_shifts(&self) -> f32 {
         let weights: f32 = self.effectors.iter().map(|effector| effector.weight).sum();
-        if self.free_roots { weights * self.length * self.length } else { 0.0 }
+        if self.free_roots { weights * self.shift_unit.powi(2) } else { 0.0 }
     }
 }
 

@@ -396,6 +396,9 @@ pub struct Problem {
     pub free_roots: bool,
     /// Length of the longest path from a root to a tip, in the problem's units.
     pub length: f32,
+    /// Shift of a free root that takes as much effort as a turn of a joint by one radian: the length, or
+    /// less for stiff roots.
+    pub shift_unit: f32,
     /// Σ w r² in the bind pose, the reciprocal of the transpose method's step τ.
     pub inertia: f32,
     to_skeleton: DAffine3,
@@ -585,6 +588,11 @@ impl Problem {
             (sum - effector.residual(*tip) * weight, all + weight)
         });
         if weight > 0.0 { sum / weight } else { DVec3::ZERO }
+    }
+
+    /// The part of a shift of a free root that methods make which move all roots at once.
+    pub fn part_of_root(&self) -> f32 {
+        if self.length > 0.0 { (self.shift_unit / self.length).powi(2) } else { 1.0 }
     }
 
     /// True if the offset of a tree's root, shifted by `shift`, is finite in f32.

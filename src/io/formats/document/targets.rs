@@ -102,6 +102,8 @@ pub struct SolverFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     posture_rate: Option<AtLeast0>,
     root: Option<Root>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    root_stiffness: Option<AtLeast0>,
     iterations_per_frame: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     track: Option<bool>,
@@ -364,6 +366,8 @@ impl SolverFields {
             posture_rate: (solver.posture_rate != default.posture_rate)
                 .then(|| solver.posture_rate.into()),
             root: Some(solver.root),
+            root_stiffness: (solver.root_stiffness != default.root_stiffness)
+                .then(|| solver.root_stiffness.into()),
             iterations_per_frame: Some(Whole(rig.iterations_per_frame)),
             track: (!rig.is_tracked).then_some(false),
             body_follows: rig.body_follows.then_some(true),
@@ -385,7 +389,13 @@ impl SolverFields {
             step: value_or(self.step, default.step),
             posture_rate: value_or(self.posture_rate, default.posture_rate),
             root: self.root.unwrap_or(default.root),
+            root_stiffness: value_or(self.root_stiffness, default.root_stiffness),
         };
+        if rig.solver.root_stiffness >= 1.0 {
+            let reason =
+                format!("must be 0 or more and below 1, got {}", rig.solver.root_stiffness);
+            return Err(reason).at("root_stiffness");
+        }
         rig.is_tracked = self.track.unwrap_or(true);
         rig.body_follows = self.body_follows.unwrap_or(false);
         rig.iterations_per_frame = value_or(self.iterations_per_frame, rig.iterations_per_frame);

@@ -6,6 +6,7 @@ mod runs;
 use egui::{ComboBox, RichText, Ui};
 
 use crate::kinematics::chain_ik::{Method, Root, SolverOptions};
+use crate::kinematics::skeleton::Joint;
 use crate::session::{Actions, Session, ShellAction, ShownIteration, SolverAction, SolverEdit};
 use crate::ui::widgets::{self, NumberField, text};
 use runs::why_not;
@@ -108,6 +109,16 @@ fn settings(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         step.row(ui, session, "Step", actions, set);
     }
     roots(ui, options, actions);
+    if options.root == Root::Free {
+        let tooltip =
+            "Set how little free roots move where joints can turn instead, from 0 to 0.99";
+        let stiffness = field("Root stiffness", options.root_stiffness, 0.05, 2, tooltip);
+        let set = |stiffness: f32| {
+            let root_stiffness = stiffness.clamp(0.0, Joint::MAX_STIFFNESS);
+            set(SolverOptions { root_stiffness, ..options })
+        };
+        stiffness.row(ui, session, "Root stiffness", actions, set);
+    }
     motion(ui, session, actions);
 }
 

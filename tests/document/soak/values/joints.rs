@@ -265,6 +265,7 @@ impl Values<'_> {
         options.damping = self.above_0(0.2);
         options.step = self.above_0(2.0);
         options.posture_rate = self.one_of(&[10.0, 10.0, 0.0, 1.0, 50.0, 1e6, -1.0]);
+        options.root_stiffness = self.one_of(&[0.0, 0.0, 0.5, 0.99, 1.0]);
         options.root = if self.chance(0.4) { self.one_of(&Root::ALL) } else { Root::Turns };
         options
     }
