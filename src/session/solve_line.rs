@@ -23,7 +23,7 @@ pub(super) fn of(limb: &LimbFrames) -> String {
         }
     };
     let ik = Ik { reference, ..posed.ik };
-    let (hand, twist) = if posed.influence < 1.0 || limb.limited_by.is_some() {
+    let (hand, twist) = if posed.influence < 1.0 || limb.is_limited() {
         ik.matching(&posed.pose, None)
     } else {
         (posed.cursor, twist_of(&ik, posed.cursor, posed.twist, &limb.solution.pose))

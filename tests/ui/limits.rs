@@ -7,6 +7,7 @@ use ik_arm::document::Overlay;
 use ik_arm::kinematics::skeleton::{
     Cone, Extreme, Joint, JointLimits, Limit, LimitEnd, RotationAxis, SwingAxis,
 };
+use ik_arm::rig::TargetOutcome;
 use ik_arm::scene::{Colour, SceneBuilder};
 use ik_arm::session::{
     DisplayEdit, Grip, JointEdit, LimitFan, SelectAction, SolverEdit, TargetEdit, TransactionAction,
@@ -81,6 +82,30 @@ fn a_hand_that_its_target_pulls_behind_the_body_stays_in_the_cone_of_the_shoulde
         let upper = &posed[bench.joint("left_upper_arm")];
         assert!(upper.limits.contains(upper.rotation), "{by}: {}", upper.rotation);
     }
+}
+
+#[test]
+fn an_elbow_that_the_cone_turns_aside_is_told_and_the_hand_gets_there() {
+    let mut bench = upper_arm();
+    let limits = JointLimits::cone(Cone { x: 1.3, z: 1.5, twist: Limit { min: -1.2, max: 1.2 } });
+    let joint_id = bench.joint("left_upper_arm");
+    let hand = bench.joint("left_hand");
+    bench.apply([JointEdit::SetLimits { joint: joint_id, limits }]);
+    bench.apply([SelectAction::Joints(vec![hand])]);
+    let index = bench.session().rig().target_of_end(hand).expect("a target");
+    let target = bench.session().rig().targets[index];
+    for way in [Vec3::new(0.1, 0.5, 0.1), Vec3::new(-0.1, 0.45, 0.25), Vec3::new(0.15, 0.6, -0.1)] {
+        bench.apply([TargetEdit::SetTarget(target.with_home(target.home + way))]);
+        bench.settle();
+        let report = bench.session().posed().target_report(target.joint).expect("a report").clone();
+        let TargetOutcome::Limb(limb) = &report.outcome else { panic!("{report:?}") };
+        if limb.turned_aside.abs() > 0.05 && report.error < 1e-5 {
+            assert!(bench.says("turn the elbow aside by"));
+            assert!(bench.says("left_upper_arm"));
+            return;
+        }
+    }
+    panic!("no place turns the elbow aside");
 }
 
 #[test]

@@ -582,6 +582,7 @@ fn a_root_that_is_free_is_moved_by_the_solver() {
     bench.wait(4.0);
     let report = bench.session().solvers().run().expect("it ran").report();
     assert!(report.converged(), "{report:?}");
+    bench.reveal(Role::Button, "Apply pose");
     bench.click(Role::Button, "Apply pose");
     assert!(bench.session().skeleton().joints()[0].offset.x > 15.0);
 }

@@ -68,9 +68,9 @@ pub use inside::{
     Turn, TurnColumn,
 };
 pub use jacobian::{Swing, jacobian, jacobian_of_point};
-pub use method::{Method, ParseMethodError, TwoBoneRefusal};
+pub use method::{Method, OrientRefusal, ParseMethodError, TwoBoneRefusal};
 pub use null_space_drag::{DragReport, NullSpaceDrag};
-pub use options::{OptionField, OrientRefusal, Root, SolveError, SolverOptions};
+pub use options::{OptionField, Root, SolveError, SolverOptions};
 pub(crate) use problem::HeldLimb;
 pub use problem::{ChainTarget, Effector, Orientation};
 pub use report::{Report, Status};

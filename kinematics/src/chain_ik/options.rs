@@ -3,7 +3,10 @@ use core::fmt;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::method::{Method, TwoBoneRefusal, TwoBonesRefused};
+use super::method::{
+    Method, OrientRefusal, TwoBoneRefusal, TwoBonesRefused, balancing_methods,
+    methods_with_stiffness, orienting_methods,
+};
 use super::problem::{Orientation, Problem};
 use crate::skeleton::JointId;
 
@@ -231,7 +234,7 @@ pub enum SolveError {
     #[error(
         "{method} cannot {}; {} can",
         reason.of_joint(*joint),
-        crate::chain_ik::method::orienting_methods(*reason)
+        orienting_methods(*reason)
     )]
     CannotOrient {
         /// The method.
@@ -242,7 +245,7 @@ pub enum SolveError {
         reason: OrientRefusal,
     },
     /// The method cannot move a centre of mass.
-    #[error("{method} cannot balance a body; {} can", crate::chain_ik::method::balancing_methods())]
+    #[error("{method} cannot balance a body; {} can", balancing_methods())]
     CannotBalance {
         /// The method.
         method: Method,
@@ -251,7 +254,7 @@ pub enum SolveError {
     #[error(
         "{method} cannot turn joint {joint} by {}; {} can",
         if *per_angle { "angles of different stiffness" } else { "its stiffness" },
-        crate::chain_ik::method::methods_with_stiffness(*per_angle)
+        methods_with_stiffness(*per_angle)
     )]
     CannotStiffen {
         /// The method.
@@ -294,33 +297,6 @@ pub enum SolveError {
         /// The reason.
         reason: TwoBoneRefusal,
     },
-}
-
-/// What a method cannot do to turn a joint to an [`Orientation`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum OrientRefusal {
-    /// Turn a joint to an orientation at all.
-    Any,
-    /// Aim an axis at a point.
-    Aim,
-    /// Turn a joint whose tip may be anywhere: a target with the weight 0.
-    FreePlace,
-    /// Turn a joint by hinges alone: no joint from the target's to the root has more than one angle
-    /// that its limits let change.
-    Hinges,
-}
-
-impl OrientRefusal {
-    /// What a method cannot do with this joint, after "cannot".
-    fn of_joint(self, joint: JointId) -> String {
-        match self {
-            Self::Any => format!("turn joint {joint} to an orientation"),
-            Self::Aim => format!("aim joint {joint} at a point"),
-            Self::FreePlace => format!("turn joint {joint} while its place is free"),
-            Self::Hinges => format!("turn joint {joint} to an orientation by hinges alone"),
-        }
-    }
 }
 
 /// A numeric field of [`SolverOptions`](super::SolverOptions).

@@ -13,6 +13,8 @@ pub struct CarriedLimb {
     /// Angles of the hand that a target turns, as solved: the next ones are the nearest to these,
     /// whole turns included.
     pub(super) hand: Option<Vec3>,
+    /// Angle by which the limits of the upper joint have turned the elbow aside.
+    pub(super) aside: f64,
     /// Rotations from the FK pose to the solved one of upper joint, lower joint and hand.
     pub(super) turns: [Option<DQuat>; 3],
 }
@@ -60,7 +62,7 @@ impl CarriedLimb {
             .zip(outward)
             .map(|(pointer, outward)| LimbAim { pointer, outward: orthonormal(outward, pointer) });
         let way = axis.zip(bending).map(|(axis, outward)| BendWay { axis, outward });
-        Self { way, aim, hand, turns: [None; 3] }
+        Self { way, aim, hand, aside: 0.0, turns: [None; 3] }
     }
 }
 

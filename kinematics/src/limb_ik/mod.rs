@@ -30,8 +30,11 @@
 //!
 //! # What breaks
 //!
-//! - Limits of the upper joint, and of a lower joint that is no hinge, are applied last. The limb
-//!   may then miss the target; [`LimbReach::Limited`] names the joint.
+//! - Limits of the upper joint, and of a lower joint that is no hinge, are applied last. Where those
+//!   of the upper joint do not allow the elbow's place, the elbow is
+//!   [turned aside](LimbReport::turned_aside) about the Pointer to the nearest place that they
+//!   allow; between two such places that are as near, it jumps. Without one the limb misses the
+//!   target; [`LimbReach::Limited`] names the joint.
 //! - Every reference but [`ElbowReference::Fk`] flips the elbow in the direction where it is
 //!   singular, as for [twist references](super::twist); [`ElbowReference::Fk`] only for a target
 //!   opposite to the tip of the FK pose.
@@ -39,6 +42,7 @@
 mod carried;
 mod elbow;
 mod fk_limb;
+mod shoulder;
 mod solver;
 mod triangle;
 

@@ -3,6 +3,7 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use super::carried::{BendWay, CarriedLimb};
 use super::elbow::LimbAim;
 use super::fk_limb::FkLimb;
+use super::shoulder::Shoulder;
 use super::triangle::{LimbSolution, LimbTriangle};
 use super::{JointSpace, Limb};
 use crate::skeleton::{JointId, Skeleton};
@@ -84,6 +85,10 @@ pub struct LimbReport {
     pub reach: LimbReach,
     /// Factor by which the bones are lengthened.
     pub stretch: f32,
+    /// Angle in radians about the Pointer by which the limits of the upper joint turn the elbow from
+    /// where the reference and the twist want it, so that the tip comes to the target; 0 where they
+    /// allow the wanted place.
+    pub turned_aside: f32,
     /// The closed form, before limits of the upper joint and before the influence.
     pub solution: LimbSolution,
 }
@@ -144,8 +149,9 @@ pub fn step(
     };
     let tip = skeleton.transform().as_daffine3().transform_point3(tip);
     let error = saturate(tip.distance(target.point.as_dvec3()));
-    let SolvedLimb { reach, solution, .. } = solved;
-    Some(LimbReport { error, reach, stretch: solution.stretch as f32, solution })
+    let SolvedLimb { reach, solution, turned_aside, .. } = solved;
+    let (stretch, turned_aside) = (solution.stretch as f32, turned_aside as f32);
+    Some(LimbReport { error, reach, stretch, turned_aside, solution })
 }
 
 /// The twist at which the limb keeps the elbow that it has by FK, radians.
@@ -252,6 +258,7 @@ struct SolvedLimb {
     /// Position of the tip in skeleton space at full influence.
     tip: DVec3,
     reach: LimbReach,
+    turned_aside: f64,
     solution: LimbSolution,
 }
 
@@ -285,8 +292,12 @@ impl SolvedLimb {
             carried.way = carried.way.map(BendWay::reversed);
         }
         let aim = aim.twisted(f64::from(target.twist));
-        let upper_rotation = fk.aim_of(tip, lower.bend).rotation_to(aim);
-        let upper = skeleton[limb.upper].angles_within(to_above * upper_rotation);
+        let own = fk.aim_of(tip, lower.bend);
+        let turned = |aside: f64| to_above * own.rotation_to(aim.twisted(aside));
+        let shoulder = Shoulder { joint: &skeleton[limb.upper], tip, turned: &turned };
+        let turned_aside = shoulder.way_aside(carried.aside);
+        carried.aside = turned_aside;
+        let upper = skeleton[limb.upper].angles_within(turned(turned_aside));
 
         let upper_rotation = fk.above.rotation * skeleton[limb.upper].rotation_f64(upper.angles);
         let hand = limb.hand.zip(local.hand).map(|(hand, turned)| {
@@ -300,7 +311,7 @@ impl SolvedLimb {
 
         let distance = distance * stretch;
         let is_reached = (distance - wanted).abs() <= 1e-5 * distance.max(wanted);
-        let reach = if upper.is_limited {
+        let reach = if upper.is_limited && shoulder.miss(turned_aside) > shoulder.rounding() {
             LimbReach::Limited(limb.upper)
         } else if lower.is_limited {
             LimbReach::Limited(limb.lower)
@@ -320,7 +331,8 @@ impl SolvedLimb {
             range: fk.bend.reach().into(),
             stretch,
         };
-        Self { upper: upper.angles, lower: lower.angles, hand, tip, reach, solution }
+        let (upper, lower) = (upper.angles, lower.angles);
+        Self { upper, lower, hand, tip, reach, turned_aside, solution }
     }
 
     /// Writes the angles, blended with those of the FK pose by the influence.

@@ -113,12 +113,20 @@ pub struct LimbFrames {
     pub range: ReachLimits,
     /// The joint whose limits keep the hand from the target.
     pub limited_by: Option<JointId>,
+    /// Angle in radians about the Pointer by which limits of the upper joint turn the elbow from where
+    /// the reference and the twist want it.
+    pub turned_aside: f32,
     /// The references that the limb could have, by [`TwistReferenceKind::ALL`]; `None` for a pole
     /// without a place.
     pub references: [Option<TwistReference>; TwistReferenceKind::ALL.len()],
 }
 
 impl LimbFrames {
+    /// True if limits keep the hand from its target or the elbow from its place.
+    pub fn is_limited(&self) -> bool {
+        self.limited_by.is_some() || self.turned_aside != 0.0
+    }
+
     /// Radius of a limb at its base for a limb of length [`Self::SEED_LENGTH`], as in Palmieri's
     /// report; [`Self::TIP_RADIUS`] is the radius at its tip. [`Self::thickness`] scales both to
     /// other limbs.
@@ -308,7 +316,7 @@ impl SkeletonRig {
         let limb = Limb::ending_at(&evaluated.solved, target.joint).ok()?;
         let root = RootSpace::new(&evaluated.solved, limb)?;
         let solved = solution(evaluated, limb, target, report)?;
-        let LimbReport { solution, reach, .. } = solved;
+        let LimbReport { solution, reach, turned_aside, .. } = solved;
         let posing = if target.enabled { target.influence } else { 0.0 };
         let fk_stretch = settings.fk_stretch;
         let limited_by = match reach {
@@ -322,7 +330,9 @@ impl SkeletonRig {
         let cursor = saturate_vector(root.vector(solution.target));
         let by_ik = root.ik_pose(&solution, cursor, soft_reach, bones);
         let fk = root.pose(LimbTriangle::of(&evaluated.fk, limb)?, fk_stretch);
-        let pose = if posing >= 1.0 && limited_by.is_none() {
+        let turned_aside = if posing > 0.0 { turned_aside } else { 0.0 };
+        let is_as_wanted = limited_by.is_none() && turned_aside == 0.0;
+        let pose = if posing >= 1.0 && is_as_wanted {
             by_ik
         } else {
             let stretch = fk_stretch + (by_ik.stretch - fk_stretch) * posing;
@@ -360,6 +370,7 @@ impl SkeletonRig {
             limits: hard.blended(bones, soft_reach, posing, fk_stretch),
             range,
             limited_by,
+            turned_aside,
             references,
         })
     }

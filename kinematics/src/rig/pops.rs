@@ -345,7 +345,7 @@ impl Step<'_> {
         /// Bend of the FK pose in radians below which it gives the elbow no side.
         const STRAIGHT: f32 = 0.1;
         let limb = self.limb.as_ref()?;
-        let is_limited = limb.iter().any(|limb| limb.limited_by.is_some());
+        let is_limited = limb.iter().any(LimbFrames::is_limited);
         // The pose without limits tells whether limits make the step.
         let posed = |limb: LimbFrames| {
             let pose = if is_limited { limb.solution.pose } else { limb.posed.pose };

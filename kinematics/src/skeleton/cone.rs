@@ -3,8 +3,7 @@ use core::f64::consts::{PI, TAU};
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, Mat3, Vec3};
 
 use super::joint_angles::nearest_angles_f64;
-use super::limit::Limit;
-use super::limit_border::SwingAxis;
+use super::limit::{Limit, SwingAxis};
 
 /// A cone within which a bone may swing, and a range of its twist about itself.
 ///

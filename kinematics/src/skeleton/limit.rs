@@ -71,3 +71,52 @@ impl Limit {
         }
     }
 }
+
+/// An end of a joint's limits, at one angle about one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitEnd {
+    /// Of the range of the Euler angle about an axis.
+    Range(RotationAxis, Extreme),
+    /// Of a cone's swing about x or z of the [`Cone`](super::Cone); both ends of an axis move together.
+    Swing(SwingAxis, Extreme),
+    /// Of the range of a cone's twist.
+    Twist(Extreme),
+}
+
+/// The least or the greatest of a range of angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extreme {
+    /// The least angle.
+    Least,
+    /// The greatest angle.
+    Greatest,
+}
+
+/// An axis about which a bone swings within a [`Cone`](super::Cone).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SwingAxis {
+    /// The cone's x.
+    X,
+    /// The cone's z.
+    Z,
+}
+
+impl Extreme {
+    pub(super) const BOTH: [Self; 2] = [Self::Least, Self::Greatest];
+
+    pub(super) fn of(self, range: Limit) -> f32 {
+        match self {
+            Self::Least => range.min,
+            Self::Greatest => range.max,
+        }
+    }
+
+    /// A range with this end at an angle, but not beyond its other end, nor farther from it than
+    /// `widest`.
+    pub(super) fn moved_to(self, Limit { min, max }: Limit, angle: f32, widest: f32) -> Limit {
+        match self {
+            Self::Least => Limit { min: angle.clamp(max - widest, max), max },
+            Self::Greatest => Limit { min, max: angle.clamp(min, min + widest) },
+        }
+    }
+}

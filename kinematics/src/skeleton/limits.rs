@@ -3,8 +3,7 @@ use core::ops::RangeInclusive;
 use glam::{Mat3, Vec3};
 
 use super::cone::{BoneCone, Cone};
-use super::limit::{Limit, RotationAxis};
-use super::limit_border::SwingAxis;
+use super::limit::{Limit, RotationAxis, SwingAxis};
 
 /// Limits of a joint's rotation: a range for each Euler angle, a [`Cone`], or none.
 ///

@@ -201,7 +201,7 @@ fn the_twist_is_measured_from_the_reference_and_references_agree_with_what_the_j
             let evaluated = other.evaluate(0.0);
             let after = other.limb_frames(&evaluated, 0).expect("a limb");
             let gain = f64::from(frames.reference_of(kind).expect("it").gain(pose.pointer));
-            if after.limited_by.is_some() || gain > 10.0 {
+            if after.is_limited() || gain > 10.0 {
                 continue;
             }
             let apart = f64::from(after.pose().elbow.distance(said.elbow));
@@ -285,14 +285,14 @@ fn a_twist_leaves_the_tip_and_turns_the_elbow_by_its_angle() {
     let mut turned = 0;
     for index in 0..CASES {
         let Case { mut rig, limb, frames, points, length, .. } = case(&mut random);
-        if frames.posed.influence < 1.0 || frames.limited_by.is_some() {
+        if frames.posed.influence < 1.0 || frames.is_limited() {
             continue;
         }
         let turn = random.within(-3.0..3.0);
         rig.targets[0].limb_mut().expect("a limb").twist += turn;
         let evaluated = rig.evaluate(0.0);
         let after = Points::new(&evaluated.solved, limb);
-        if rig.limb_frames(&evaluated, 0).expect("a limb").limited_by.is_some() {
+        if rig.limb_frames(&evaluated, 0).expect("a limb").is_limited() {
             continue;
         }
         assert!(after.tip.distance(points.tip) <= 1e-5 * length, "case {index}: the tip moves");

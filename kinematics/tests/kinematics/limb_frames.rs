@@ -96,6 +96,7 @@ fn frames(case: &Case, root: Vec3, pose: TwoBonePose) -> LimbFrames {
         limits,
         range: limits,
         limited_by: None,
+        turned_aside: 0.0,
         references: [Some(reference); TwistReferenceKind::ALL.len()],
     }
 }

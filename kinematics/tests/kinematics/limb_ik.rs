@@ -1,11 +1,15 @@
 //! Limbs of random skeletons: reach, hinges, limits, elbow references, influence and stretch, seen
 //! by forward kinematics alone.
 
+use core::f32::consts::{PI, TAU};
+
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use ik_arm_kinematics::limb_ik::{
-    ElbowReference, Limb, LimbReach, LimbReport, LimbTarget, fk_twist, solve,
+    CarriedLimb, ElbowReference, Limb, LimbReach, LimbReport, LimbTarget, fk_twist, solve, step,
 };
-use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
+use ik_arm_kinematics::skeleton::{
+    Cone, Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton,
+};
 use ik_arm_kinematics::soft_reach::SoftReach;
 use ik_arm_kinematics::twist::Stereographic;
 
@@ -449,4 +453,89 @@ fn limbs_are_found_by_their_ends() {
     assert_eq!(no_limb(JointId::new(0)), "it has no bone");
     assert_eq!(no_limb(PELVIS), "no joint above it can turn it");
     assert_eq!(no_limb(JointId::new(99)), "there is no joint 99");
+}
+
+#[test]
+fn limits_of_the_upper_joint_turn_the_elbow_aside_by_as_little_as_they_must() {
+    const PLACES: u16 = 360;
+    let mut random = Random(47);
+    let (mut turned, mut missed) = (0, 0);
+    for case in 0..150 {
+        let (skeleton, limb) = leg(&mut random);
+        let (mut skeleton, _) = with_hinge(&mut random, skeleton, limb);
+        let limits = if random.coin() {
+            let twist = Limit { min: random.within(-2.0..0.0), max: random.within(0.2..2.0) };
+            JointLimits::cone(Cone {
+                x: random.within(0.3..2.0),
+                z: random.within(0.3..2.0),
+                twist,
+            })
+        } else {
+            JointLimits::new([(); 3].map(|()| {
+                Some(Limit { min: random.within(-2.0..-0.1), max: random.within(0.1..2.0) })
+            }))
+        };
+        skeleton.change(limb.upper, |upper| upper.limits = limits).expect("limits");
+        let [base, _, tip] = points(&skeleton, limb);
+        let way = Quat::from_mat3(&random.rotation()) * (tip - base);
+        let target = LimbTarget::new(base + way * random.within(0.7..1.0));
+        let near = 2e-5 * length(&skeleton, limb);
+        // Every place of the elbow, by the twist.
+        let apart = TAU / f32::from(PLACES);
+        let reaches = |turn: f32| {
+            let (_, report) = solved(&skeleton, limb, &LimbTarget { twist: turn, ..target });
+            report.turned_aside == 0.0 && report.error < near
+        };
+        let places = (0..PLACES).map(|place| apart * f32::from(place));
+        let places = places.map(|turn| if turn > PI { turn - TAU } else { turn });
+        let least = places.filter(|turn| reaches(*turn)).map(f32::abs).reduce(f32::min);
+        let (after, report) = solved(&skeleton, limb, &target);
+        let upper = &after[limb.upper];
+        assert!(upper.limits.project(upper.rotation).distance(upper.rotation) < 1e-5, "{case}");
+        match least {
+            Some(least) => {
+                assert!(report.error < 2.0 * near, "{case}: {report:?}, by {least}");
+                assert!(report.turned_aside.abs() <= least + 1e-3, "{case}: {report:?}, {least}");
+                assert!(
+                    report.turned_aside.abs() > least - 1.1 * apart,
+                    "{case}: {report:?}, {least}"
+                );
+                turned += usize::from(least > 0.0);
+            }
+            None => missed += usize::from(report.error > near),
+        }
+    }
+    assert!(turned > 15 && missed > 15, "{turned} turned aside, {missed} missed");
+}
+
+#[test]
+fn an_elbow_that_is_turned_aside_goes_on_smoothly_from_step_to_step() {
+    const STEPS: u16 = 400;
+    let mut skeleton = Skeleton::with_root("root");
+    let twist = Limit { min: -0.5, max: 0.5 };
+    let limits = JointLimits::cone(Cone { x: 1.2, z: 0.6, twist });
+    let upper = Joint { limits, ..Joint::new("upper", Some(JointId::new(0)), Vec3::X) };
+    let upper = skeleton.add(upper).expect("upper");
+    let hinge = JointLimits::new([0.0, 0.0, 2.5].map(|max| Some(Limit { min: 0.0, max })));
+    let lower =
+        Joint { offset: Vec3::X, limits: hinge, ..Joint::new("lower", Some(upper), Vec3::X) };
+    let lower = skeleton.add(lower).expect("lower");
+    let limb = Limb::ending_at(&skeleton, lower).expect("a limb");
+    let (mut carried, mut last) = (CarriedLimb::default(), None::<(Vec3, Vec3)>);
+    let (mut most, mut aside) = (0.0_f32, 0);
+    for at in 0..=STEPS {
+        let angle = TAU * f32::from(at) / f32::from(STEPS);
+        let point = Vec3::new(1.2, 0.5 * angle.sin(), 0.7 * angle.cos());
+        let mut posed = skeleton.clone();
+        let report =
+            step(&mut posed, limb, &LimbTarget::new(point), &mut carried).expect("a report");
+        aside += usize::from(report.turned_aside != 0.0);
+        let elbow = posed.base(lower);
+        if let Some((before, from)) = last {
+            most = most.max(elbow.distance(before) / point.distance(from));
+        }
+        last = Some((elbow, point));
+    }
+    println!("{aside} steps aside, the elbow moves at most {most} times as far");
+    assert!(aside > 20 && most < 8.0, "{aside}, {most}");
 }

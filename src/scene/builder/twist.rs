@@ -128,7 +128,7 @@ pub(super) fn add_circle(scene: &mut Scene, limb: &LimbFrames, has_marks: bool) 
     let palette = scene.palette;
     let (guide, accent) = (palette.guide, palette.accent);
     circle.add_arc(scene, TAU, 1.0, guide);
-    let has_marks = has_marks && limb.limited_by.is_none();
+    let has_marks = has_marks && !limb.is_limited();
     if has_marks {
         circle.add_spoke(scene, 0.0, palette.twist_reference(posed.kind), true);
     }

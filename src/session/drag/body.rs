@@ -171,7 +171,7 @@ impl GripRing {
     /// The ring of the twist of a limb, around the Pointer through the elbow, in world space;
     /// `None` where FK alone poses the limb or limits turn the elbow aside.
     pub fn of_twist(limb: &LimbFrames) -> Option<Self> {
-        let is_on_circle = limb.uses_ik() && limb.limited_by.is_none();
+        let is_on_circle = limb.uses_ik() && !limb.is_limited();
         Self::about_pointer(limb).filter(|_| is_on_circle)
     }
 

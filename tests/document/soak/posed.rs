@@ -64,7 +64,7 @@ fn reach(limb: &LimbFrames) -> Result<(), Broken> {
     let rounding = 4.0 * U * asked;
     hold!(!is_reached || missed <= near + rounding, "reached is there: {missed:e} {limb:?}");
     let is_hard = limb.posed.ik.soft_reach.is_hard();
-    let is_exact = limb.posed.influence == 1.0 && is_hard && limb.limited_by.is_none();
+    let is_exact = limb.posed.influence == 1.0 && is_hard && !limb.is_limited();
     let is_there = !is_reached || pose.hand == cursor;
     hold!(!is_exact || is_there, "a hard hand is the cursor bit for bit: {limb:?}");
     let [inner, outer] = [limb.range.inner, limb.range.outer].map(f64::from);

@@ -23,7 +23,6 @@ use self::two_bone::TwoBones;
 pub(super) use self::two_bone::TwoBonesRefused;
 use super::configuration::Configuration;
 use super::inside::Recorder;
-use super::options::OrientRefusal;
 use super::problem::{ChainTarget, EndEffector, Link, Orientation, Problem};
 use super::stall::Patience;
 use crate::skeleton::{JointId, Skeleton};
@@ -52,6 +51,33 @@ pub enum Method {
     Relaxation,
     /// Closed form for two joints: a target's joint and its parent.
     TwoBone,
+}
+
+/// What a method cannot do to turn a joint to an [`Orientation`](super::Orientation).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OrientRefusal {
+    /// Turn a joint to an orientation at all.
+    Any,
+    /// Aim an axis at a point.
+    Aim,
+    /// Turn a joint whose tip may be anywhere: a target with the weight 0.
+    FreePlace,
+    /// Turn a joint by hinges alone: no joint from the target's to the root has more than one angle
+    /// that its limits let change.
+    Hinges,
+}
+
+impl OrientRefusal {
+    /// What a method cannot do with this joint, after "cannot".
+    pub(super) fn of_joint(self, joint: JointId) -> String {
+        match self {
+            Self::Any => format!("turn joint {joint} to an orientation"),
+            Self::Aim => format!("aim joint {joint} at a point"),
+            Self::FreePlace => format!("turn joint {joint} while its place is free"),
+            Self::Hinges => format!("turn joint {joint} to an orientation by hinges alone"),
+        }
+    }
 }
 
 /// Names, defaults and abilities of a method, and the function that prepares it.

@@ -320,6 +320,12 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
             LimbReach::Reached if limb.stretch > 1.0 => {
                 format!("Reached, stretched to {:.0} %", 100.0 * limb.stretch)
             }
+            LimbReach::Reached if limb.turned_aside != 0.0 => {
+                let upper = session.rig().limb_joints(target.joint).next();
+                let name = upper.map_or("", |upper| &session.skeleton()[upper].name);
+                let aside = text::degrees(limb.turned_aside.abs());
+                format!("Reached; the limits of {name} turn the elbow aside by {aside}")
+            }
             LimbReach::Reached => "Reached".into(),
             LimbReach::TooFar => format!("Too far away by {gap}"),
             LimbReach::TooClose => format!("Too close by {gap}"),
