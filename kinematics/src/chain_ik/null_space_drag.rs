@@ -262,12 +262,12 @@ impl NullSpaceDrag {
         }
     }
 
-    /// The directions in which held places count: all, or for places of shells that are at a border
-    /// or beyond none, so that they may move inwards.
+    /// The directions in which held places count: all, or none for free places, and for places of shells
+    /// that are at a border or beyond, so that they may move inwards.
     fn counted(&self) -> Vec<Counted> {
         let held = &self.problem.effectors[..self.index()];
         let of_held = |it: &EndEffector| match it {
-            it if it.has_shell() => Counted::Free,
+            it if it.has_shell() || it.weight == 0.0 => Counted::Free,
             it if it.is_of_mass() => Counted::Across(it.free_direction.as_dvec3()),
             _ => Counted::Whole,
         };
@@ -480,6 +480,9 @@ impl Rows {
                 continue;
             }
             let (effector, tip) = (&problem.effectors[index], config.tips[index]);
+            if effector.weight == 0.0 {
+                continue;
+            }
             let velocity = &self.places[index] * step;
             let velocity = DVec3::new(velocity[0], velocity[1], velocity[2]);
             let Some(out) = effector.way_out(tip, velocity.as_vec3a()).and_then(normalize) else {

@@ -201,3 +201,30 @@ fn a_trunk_goes_as_far_as_its_branches_let_it() {
         assert!(report.distance < before - 1e-3, "case {case}: {report:?}, was {before}");
     }
 }
+
+#[test]
+fn an_aim_without_a_place_leaves_the_tip_of_its_joint_free_to_be_dragged() {
+    let mut random = Random(64);
+    let mut far = 0;
+    for case in 0..40 {
+        let mut skeleton = chain(&mut random, 6, 1.0);
+        shake(&mut random, &mut skeleton);
+        let tip = JointId::new(6);
+        let axis = random.direction();
+        let pose = skeleton.full_transform(tip);
+        let point = skeleton.base(tip) + 2.0 * pose.transform_vector3(axis).normalize();
+        let aim = ChainTarget::turned(tip, Orientation::Aim { axis, point });
+        let place = skeleton.tip(tip) + random.direction() * 0.05 * length(&skeleton, &[tip]);
+        let grip = skeleton[tip].axis;
+        let dragged = ChainTarget::at(tip, place).with_grip(grip);
+        let mut drag = NullSpaceDrag::new(&skeleton, &[aim], dragged, Root::Turns).expect("a drag");
+        let report = drag.run();
+        let mut posed = skeleton.clone();
+        drag.write(&mut posed);
+        let way = point - posed.base(tip);
+        let turned = posed.full_transform(tip).transform_vector3(axis);
+        assert!(turned.angle_between(way) < 1e-3, "{case}: {}", turned.angle_between(way));
+        far += usize::from(report.distance > 1e-3 * length(&skeleton, &[tip]));
+    }
+    assert!(far <= 6, "{far} of 40 do not come there");
+}

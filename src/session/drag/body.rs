@@ -19,7 +19,7 @@ impl Grip {
     /// | --- | --- |
     /// | head of a chain on a path | the head, or the target that leads it |
     /// | root without a bone, such as a pelvis | the root |
-    /// | end of a target, such as a hand or foot | the target |
+    /// | end of a target with a place, such as a hand or foot | the target |
     /// | bone of a target's limb | the limb, about its Pointer; the target of a straight limb |
     /// | other bone | the pressed point, while all that targets hold stays |
     pub fn of_part(posed: &Posed, joint: JointId) -> Option<Self> {
@@ -97,7 +97,11 @@ impl Grip {
             return own.parent.is_none();
         }
         let posing = rig.target_that_turns(joint).filter(|it| it.influence >= 1.0);
-        if posing.is_some_and(|it| it.joint == joint || is_elbow(&rig.skeleton, it, joint)) {
+        let moves = |it: &Target| {
+            let is_own = it.joint == joint && !it.has_free_place();
+            is_own || is_elbow(&rig.skeleton, it, joint)
+        };
+        if posing.is_some_and(moves) {
             return true;
         }
         rig.can_drag(joint)
@@ -143,7 +147,9 @@ enum Role {
 fn role_of(posed: &Posed, joint: JointId) -> Option<Role> {
     let rig = &posed.document().rig;
     let own = rig.skeleton.joint(joint)?;
-    let ends = |target: &&Target| target.is_posing() && rig.end_of(target) == joint;
+    let ends = |target: &&Target| {
+        target.is_posing() && !target.has_free_place() && rig.end_of(target) == joint
+    };
     if let Some(target) = rig.targets.iter().find(ends) {
         return Some(Role::End(target.joint));
     }

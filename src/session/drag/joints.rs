@@ -275,7 +275,7 @@ fn drag_tip(session: &Session, joint: JointId, to: Vec3, moved: Vec3) -> Outcome
     }
     let target = before.target_that_turns(joint).filter(|it| it.influence >= 1.0).copied();
     match target {
-        Some(target) if target.joint == joint => {
+        Some(target) if target.joint == joint && !target.has_free_place() => {
             targets::set_target(session, target.placed(start.skeleton(), start.time(), to))
         }
         Some(target) if is_elbow(&before.skeleton, &target, joint) => {
