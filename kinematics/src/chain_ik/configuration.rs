@@ -346,10 +346,10 @@ impl Coordinates {
     }
 
     /// Euclidean norm of a step as [`advance`](super::jacobian::advance) takes it: of the changes
-    /// of angles, and of shifts in chain lengths.
-    pub fn norm(&self, length: f32) -> f32 {
+    /// of angles, and of shifts in this unit.
+    pub fn norm(&self, unit: f32) -> f32 {
         let angles: f32 = self.angles.iter().map(|angles| angles.length_squared()).sum();
-        let shifts: f32 = self.shifts.iter().map(|shift| (*shift * length).length_squared()).sum();
+        let shifts: f32 = self.shifts.iter().map(|shift| (*shift * unit).length_squared()).sum();
         (angles + shifts).sqrt()
     }
 }

@@ -168,7 +168,7 @@ impl DampedLeastSquares {
             }
             self.take_from_wanted(problem);
             let is_fixed = self.fix_angles(problem);
-            let norm = self.step.norm(problem.length);
+            let norm = self.step.norm(problem.shift_unit);
             factor = if norm > most { most / norm } else { 1.0 };
             if !(self.hold_in_shells(problem, config, 1.0) || is_fixed) {
                 break;
