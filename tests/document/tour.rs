@@ -11,8 +11,8 @@ use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::session::{
     Dialog, DisplayEdit, Effect, FileAction, JointEdit, PlaybackAction, PoseMode, Preferences,
-    Session, SolverAction, TourAction, TourEnd, TourState, TourStep, TransactionAction, ViewAction,
-    filled,
+    Session, SolverAction, TargetEdit, TourAction, TourEnd, TourState, TourStep, TransactionAction,
+    ViewAction, filled,
 };
 
 fn session() -> Session {
@@ -46,8 +46,8 @@ fn act(session: &mut Session, actions: impl IntoIterator<Item = impl Into<Step>>
 }
 
 #[test]
-fn there_are_twelve_steps_each_with_a_question_of_two_to_four_answers() {
-    assert_eq!(TourStep::all().len(), 12);
+fn there_are_thirteen_steps_each_with_a_question_of_two_to_four_answers() {
+    assert_eq!(TourStep::all().len(), 13);
     for step in TourStep::all() {
         let answers = &step.guess.answers;
         assert!((2..=4).contains(&answers.len()), "{}", step.title);
@@ -132,6 +132,11 @@ fn a_step_does_not_take_another_move_for_its_task() {
     act(&mut session, [JointEdit::SetRotation { joint, rotation }]);
     act(&mut session, [JointEdit::SetTranslation(Vec3::NEG_Y * 0.05)]);
     assert!(!shows_result(&session), "step 12");
+    let mut session = in_step(13);
+    let hand = session.rig().targets[0];
+    act(&mut session, [TargetEdit::SetTarget(hand.with_home(hand.home + Vec3::Y * 0.2))]);
+    act(&mut session, [JointEdit::SetTranslation(Vec3::NEG_Y * 0.02)]);
+    assert!(!shows_result(&session), "step 13");
 }
 
 fn example(name: &str) -> Document {

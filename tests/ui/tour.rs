@@ -158,10 +158,15 @@ fn do_with_the_mouse(bench: &mut Bench, number: usize) {
             bench.click_at(bench.rect(Role::Button, "Race all solvers").center());
             bench.wait(8.0);
         }
-        _ => {
+        12 => {
             let pelvis = bench.session().skeleton_pose().tip(JointId::new(0));
             let from = on_screen(bench, pelvis);
             drag_through(bench, line(from, from - Vec2::new(0.0, 60.0), 20));
+        }
+        _ => {
+            let from = on_screen(bench, hand);
+            let across = on_screen(bench, hand + Vec3::X * 0.1) - from;
+            drag_through(bench, line(from, from + across * 6.5, 30));
         }
     }
 }
@@ -233,7 +238,8 @@ fn every_step_notices_its_task_done_without_a_mouse() {
                 press_keys(&mut bench, Role::Button, "Race all solvers", &[Key::Space]);
                 bench.wait(8.0);
             }
-            _ => press_keys(&mut bench, Role::Slider, "Skeleton y", &[Key::PageUp; 4]),
+            12 => press_keys(&mut bench, Role::Slider, "Skeleton y", &[Key::PageUp; 4]),
+            _ => press_keys(&mut bench, Role::Slider, "Target x", &[Key::PageUp; 7]),
         }
         assert!(is_done(&bench, number), "step {number}");
     }

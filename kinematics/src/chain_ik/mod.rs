@@ -9,11 +9,11 @@
 //! f = Σ ½ w |p − t|² + Σ ½ v ℓ² φ²
 //! ```
 //!
-//! with ℓ a quarter of the chain's length, by rotating the joints between targets and roots within their limits. Locked joints, and joints
-//! that are not between a target and a root, are unchanged, bit for bit; so are roots that are
-//! [locked](Root::Locked). Targets, errors and the
-//! tolerance are in the world; solvers work in skeleton space, so that mirrored and scaled
-//! skeletons are solved correctly.
+//! with ℓ a quarter of the chain's length, by rotating the joints between targets and roots within
+//! their limits. Locked joints, and joints that are not between a target and a root, are unchanged,
+//! bit for bit; so are roots that are [locked](Root::Locked). Targets, errors and the tolerance are
+//! in the world; solvers work in skeleton space, so that mirrored and scaled skeletons are solved
+//! correctly.
 //!
 //! | method | moves | at limits | orientations |
 //! | --- | --- | --- | --- |

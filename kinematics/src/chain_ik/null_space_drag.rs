@@ -262,8 +262,8 @@ impl NullSpaceDrag {
         }
     }
 
-    /// The directions in which held places count: all, or none for free places, and for places of shells
-    /// that are at a border or beyond, so that they may move inwards.
+    /// The directions in which held places count: all, or none for free places, and for places of
+    /// shells that are at a border or beyond, so that they may move inwards.
     fn counted(&self) -> Vec<Counted> {
         let held = &self.problem.effectors[..self.index()];
         let of_held = |it: &EndEffector| match it {

@@ -22,9 +22,9 @@ const STEP: f64 = PI / 36.0;
 const STEPS: u8 = 36;
 
 impl Shoulder<'_> {
-    /// The least turn of the elbow with which the limits let the tip come to its place: 0 if they do
-    /// without. If they never do, the turn that brings the tip nearest. `before`, the turn in the step
-    /// before, decides between the two sides.
+    /// The least turn of the elbow with which the limits let the tip come to its place: 0 if they
+    /// do without. If they never do, the turn that brings the tip nearest. `before`, the turn in
+    /// the step before, decides between the two sides.
     pub fn way_aside(&self, before: f64) -> f64 {
         if !self.joint.limits.is_limited() || self.reaches(0.0) {
             return 0.0;
@@ -32,13 +32,7 @@ impl Shoulder<'_> {
         let sides = if before < 0.0 { [-1.0, 1.0] } else { [1.0, -1.0] };
         match sides.map(|side| self.first_that_reaches(side)) {
             [Some(same), _] if before != 0.0 => same,
-            [Some(one), Some(other)] => {
-                if one.abs() <= other.abs() {
-                    one
-                } else {
-                    other
-                }
-            }
+            [Some(one), Some(other)] if one.abs() > other.abs() => other,
             [one, other] => one.or(other).unwrap_or_else(|| self.nearest(before)),
         }
     }
@@ -76,8 +70,8 @@ impl Shoulder<'_> {
         Some(reached)
     }
 
-    /// The turn that brings the tip nearest to its place, of about equal ones that which is nearest to
-    /// none and to that of the step before.
+    /// The turn that brings the tip nearest to its place, of about equal ones that which is nearest
+    /// to none and to that of the step before.
     fn nearest(&self, before: f64) -> f64 {
         /// Distance, in lengths of the limb, that a turn by half a circle must gain.
         const WORTH: f64 = 0.02;

@@ -113,8 +113,8 @@ pub struct LimbFrames {
     pub range: ReachLimits,
     /// The joint whose limits keep the hand from the target.
     pub limited_by: Option<JointId>,
-    /// Angle in radians about the Pointer by which limits of the upper joint turn the elbow from where
-    /// the reference and the twist want it.
+    /// Angle in radians about the Pointer by which limits of the upper joint turn the elbow from
+    /// where the reference and the twist want it.
     pub turned_aside: f32,
     /// The references that the limb could have, by [`TwistReferenceKind::ALL`]; `None` for a pole
     /// without a place.

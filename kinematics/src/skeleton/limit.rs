@@ -77,7 +77,8 @@ impl Limit {
 pub enum LimitEnd {
     /// Of the range of the Euler angle about an axis.
     Range(RotationAxis, Extreme),
-    /// Of a cone's swing about x or z of the [`Cone`](super::Cone); both ends of an axis move together.
+    /// Of a cone's swing about x or z of the [`Cone`](super::Cone); both ends of an axis move
+    /// together.
     Swing(SwingAxis, Extreme),
     /// Of the range of a cone's twist.
     Twist(Extreme),

@@ -18,8 +18,8 @@ const SPOKES: f32 = 0.28;
 const STEP: f32 = PI / 36.0;
 const SPOKE: usize = 2;
 
-/// Adds the limits of a joint of a posed skeleton: a fan for each range of an angle, or the cone and a
-/// fan for its twist. A fan is red while the joint is at an end of it.
+/// Adds the limits of a joint of a posed skeleton: a fan for each range of an angle, or the cone
+/// and a fan for its twist. A fan is red while the joint is at an end of it.
 pub(super) fn add_joint_limits(scene: &mut Scene, posed: &Skeleton, joint: JointId) {
     let Some(fan) = LimitFan::of(posed, joint) else { return };
     match fan.joint.limits.as_cone() {

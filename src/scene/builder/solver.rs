@@ -114,9 +114,9 @@ impl InsideDrawing<'_> {
         }
     }
 
-    /// Adds the turns that joints miss, as arrows along their axes with arcs of their angles; before a
-    /// step, what each angle takes from them per radian, and after it, dashed, what the Jacobian
-    /// predicted to be left.
+    /// Adds the turns that joints miss, as arrows along their axes with arcs of their angles;
+    /// before a step, what each angle takes from them per radian, and after it, dashed, what the
+    /// Jacobian predicted to be left.
     fn add_turns(&self, scene: &mut Scene, part: &SubStep) {
         let radian = RADIAN * self.reach;
         match &part.kind {

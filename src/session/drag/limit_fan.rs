@@ -1,5 +1,5 @@
-//! The limits of a joint in the world: the fans of the directions that its bone may have, and the ends
-//! that can be dragged.
+//! The limits of a joint in the world: the fans of the directions that its bone may have, and the
+//! ends that can be dragged.
 
 use glam::{Mat3A, Quat, Vec3, Vec3A};
 
@@ -57,8 +57,8 @@ impl LimitFan {
         Some(self.point_around(self.side() * along, twist))
     }
 
-    /// The point of the fan of a range for an angle about an axis; `None` for an axis without a length
-    /// in the world.
+    /// The point of the fan of a range for an angle about an axis; `None` for an axis without a
+    /// length in the world.
     pub fn range_point(&self, axis: RotationAxis, angle: f32) -> Option<Vec3> {
         if self.turns_about_bone(axis) {
             return Some(self.point_around(self.axis(self.joint.rotation_axis(axis))?, angle));

@@ -18,7 +18,7 @@ use crate::session::solver::status::farthest_target;
 type Figure = fn(&Session) -> Option<String>;
 
 /// All figures by their names in the texts.
-const FIGURES: [(&str, Figure); 31] = [
+const FIGURES: [(&str, Figure); 33] = [
     ("elbow_to_hand", |session| Some(factor(highest_spike(session)?.ratio))),
     ("elbow_step", |session| Some(whole(elbow_step(session)?))),
     ("hand_step", |session| Some(whole(elbow_step(session)? / highest_spike(session)?.ratio))),
@@ -50,6 +50,8 @@ const FIGURES: [(&str, Figure); 31] = [
     ("two_bone_miss", two_bone_miss),
     ("missed", |session| missed(session).map(|(name, _)| name)),
     ("miss", |session| missed(session).map(|(_, miss)| miss)),
+    ("chest_moved", |session| joint_moved(session, "chest")),
+    ("pelvis_moved", |session| joint_moved(session, "pelvis")),
 ];
 
 /// Number of joint angles of the skeleton.
@@ -227,6 +229,15 @@ fn distance(session: &Session, distance: f32) -> String {
         metres if metres < 0.995 => format!("{:.0} cm", 100.0 * metres),
         metres => format!("{metres:.1} m"),
     }
+}
+
+/// How far the base of a joint has moved since the step began.
+fn joint_moved(session: &Session, name: &str) -> Option<String> {
+    let document = session.tour()?.start();
+    let before = document.at(document.timeline.start);
+    let joint = before.skeleton().find(name)?;
+    let moved = session.posed().skeleton().base(joint).distance(before.skeleton().base(joint));
+    Some(distance(session, moved))
 }
 
 /// Name of the end that misses its target most, and by how much.

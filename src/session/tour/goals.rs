@@ -68,6 +68,7 @@ impl Goal {
             Self::LeaveATargetOutOfReach => {
                 (left_a_target_out_of_reach, leave_a_target_out_of_reach)
             }
+            Self::PullTheBodyAlong => (pulled_the_body_along, pull_the_body_along),
         }
     }
 }
@@ -256,6 +257,19 @@ fn left_a_target_out_of_reach(session: &Session, _: &Document) -> bool {
 fn leave_a_target_out_of_reach(session: &Session) -> Vec<Action> {
     let at: Vec3 = session.skeleton().transform().translation.into();
     vec![JointEdit::SetTranslation(at + Vec3::Y * 0.3).into()]
+}
+
+fn pulled_the_body_along(session: &Session, start: &Document) -> bool {
+    let (posed, before) = (session.posed(), start.at(start.timeline.start));
+    let Some(chest) = session.skeleton().find("chest") else { return false };
+    let moved = posed.skeleton().tip(chest).distance(before.skeleton().tip(chest));
+    let is_reached = |(_, miss)| miss <= session.rig().tolerance();
+    moved > MOVE * session.rig().reach() && farthest_target(posed).is_none_or(is_reached)
+}
+
+fn pull_the_body_along(session: &Session) -> Vec<Action> {
+    let pulled = |target: Target| target.with_home(target.home + Vec3::new(0.3, 0.2, 0.6));
+    with_target(session, pulled).into_iter().collect()
 }
 
 /// Moves of the target of the shown limb through points in Root space.

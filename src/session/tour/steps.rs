@@ -84,6 +84,8 @@ pub enum Goal {
     RaceAllSolvers,
     /// Move the skeleton so that a target is out of reach.
     LeaveATargetOutOfReach,
+    /// Pull a hand so far that the body comes along, while hands and feet reach their targets.
+    PullTheBodyAlong,
 }
 
 /// The card after the last step, with the conclusions of the tour.
@@ -123,7 +125,7 @@ impl TourStep {
     }
 }
 
-static STEPS: [TourStep; 12] = [
+static STEPS: [TourStep; 13] = [
     TourStep {
         title: "Over the shoulder",
         scene: include_str!("../../../assets/tour/over-the-shoulder.json"),
@@ -431,6 +433,31 @@ static STEPS: [TourStep; 12] = [
         result: "They stayed until the legs were straight, like the arm in step 6. Now {missed} is \
             {miss} short of its target, as the list of targets says, and points at it. Pull the \
             pelvis down again: the feet stay on the floor, and the knees bend.",
+    },
+    TourStep {
+        title: "A body is a chain of compromises",
+        scene: include_str!("../../../assets/human.json"),
+        tab: None,
+        section: None,
+        select: Some("left_hand"),
+        text: "Now *Whole body follows*, the switch in the corner of the view, is on: where an arm is \
+            too short, it pulls its shoulder along. All joints up to the pelvis share the motion, \
+            stiff ones give less, and the feet, whose targets weigh most, stay where they are.",
+        guess: Guess {
+            question: "You pull the left hand farther away than the arm is long. What comes along?",
+            answers: &[
+                "Nothing: the hand stays short",
+                "The chest and the pelvis",
+                "The whole figure, feet and all",
+            ],
+            right: 1,
+        },
+        task: "Drag the left hand to the side, away from the body, until the chest leans after it.",
+        keyboard: "Select *left_hand* in the tree on the left, Tab to *Target x*, and use Page Up.",
+        goal: Goal::PullTheBodyAlong,
+        result: "The chest moved by {chest_moved} and the pelvis by {pelvis_moved}; the hand is there, \
+            and the feet are where they were. Pull farther, and the legs end it: then the targets \
+            cannot all be reached, and the panel tells which one is short and why.",
     },
 ];
 

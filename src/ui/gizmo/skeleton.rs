@@ -82,9 +82,9 @@ impl Gizmo {
         }
     }
 
-    /// The handle at a screen position; `None` if there is no handle. The ends of the selected joint's
-    /// limits and its handles come first, then the ring of its limb's twist, other rings, targets, tips. A target or tip wins over a ring if
-    /// its centre is clearly nearer.
+    /// The handle at a screen position; `None` if there is no handle. The ends of the selected
+    /// joint's limits and its handles come first, then the ring of its limb's twist, other rings,
+    /// targets, tips. A target or tip wins over a ring if its centre is clearly nearer.
     pub fn at(&self, mouse: Pos2) -> Option<Grip> {
         let of_twist = || self.twist.as_ref().and_then(|ring| ring.at(mouse));
         let of_joint = || self.handles.iter().find_map(|of| of.at(mouse));

@@ -341,8 +341,8 @@ impl Method {
         refused.contains(&OrientRefusal::Any) || refused.contains(&reason)
     }
 
-    /// Why the method cannot turn the joint of a target, whatever its skeleton is; `None` if it can or
-    /// need not.
+    /// Why the method cannot turn the joint of a target, whatever its skeleton is; `None` if it can
+    /// or need not.
     pub(crate) fn refusal_of(self, target: &ChainTarget) -> Option<OrientRefusal> {
         let is_aim = matches!(target.orientation?, Orientation::Aim { .. });
         let reasons = [

@@ -13,10 +13,10 @@
 //! rotation.
 //!
 //! A chain without limits and stiffness whose only target is out of reach is laid out straight
-//! towards the target. The inward pass ignores limits. If any link rotates as a whole for one of these
-//! reasons, a sweep of CCD follows where the passes do not halve the cost, after passes that do not lower it are
-//! undone. A link with the stiffness k makes the part 1 − k of its turn from its rotation relative
-//! to its parent before the pass.
+//! towards the target. The inward pass ignores limits. If links rotate as a whole for one of these
+//! reasons, a sweep of CCD follows where the passes do not halve the cost, after passes that do not
+//! lower it are undone. A link with the stiffness k makes the part 1 − k of its turn from its
+//! rotation relative to its parent before the pass.
 
 use core::ops::Range;
 

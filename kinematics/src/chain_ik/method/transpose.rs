@@ -254,8 +254,8 @@ impl Transpose {
     }
 
     /// Calls `add` for each coordinate that differs from `before`, with its change and with −g at
-    /// the last and at this iteration. Shifts count in [`Problem::shift_unit`], angles in the roots of their
-    /// compliances.
+    /// the last and at this iteration. Shifts count in [`Problem::shift_unit`], angles in the roots
+    /// of their compliances.
     fn for_each_change(
         &self,
         problem: &Problem,

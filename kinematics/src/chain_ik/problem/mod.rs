@@ -396,8 +396,8 @@ pub struct Problem {
     pub free_roots: bool,
     /// Length of the longest path from a root to a tip, in the problem's units.
     pub length: f32,
-    /// Shift of a free root that takes as much effort as a turn of a joint by one radian: the length, or
-    /// less for stiff roots.
+    /// Shift of a free root that takes as much effort as a turn of a joint by one radian: the
+    /// length, or less for stiff roots.
     pub shift_unit: f32,
     /// Σ w r² in the bind pose, the reciprocal of the transpose method's step τ.
     pub inertia: f32,
