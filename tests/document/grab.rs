@@ -220,16 +220,22 @@ fn the_balance_of_a_body_that_is_dragged_holds() {
     }
 }
 
+/// Adds a target with which the head looks at a point straight ahead. Returns the target's index.
+fn look_ahead(session: &mut Session, head: JointId) -> usize {
+    session.apply(TargetEdit::AddTarget(head));
+    let index = session.rig().target(head).expect("a target");
+    let target = session.rig().targets[index];
+    let ahead = pose(session).full_transform(head).transform_point3(2.0 * Vec3::Z);
+    let aim = Some(Aim { axis: Vec3::Z, point: ahead });
+    session.apply(TargetEdit::SetTarget(Target { weight: 0.0, aim, ..target }));
+    index
+}
+
 #[test]
 fn a_head_that_looks_at_a_point_goes_where_it_is_dragged_and_looks_on() {
     let mut session = human();
     let head = joint(&session, "head");
-    session.apply(TargetEdit::AddTarget(head));
-    let index = session.rig().target(head).expect("a target");
-    let target = session.rig().targets[index];
-    let ahead = pose(&session).full_transform(head).transform_point3(2.0 * Vec3::Z);
-    let aim = Some(Aim { axis: Vec3::Z, point: ahead });
-    session.apply(TargetEdit::SetTarget(Target { weight: 0.0, aim, ..target }));
+    let index = look_ahead(&mut session, head);
     let at = press(&mut session, head);
     let grip = pose(&session).full_transform(head).inverse().transform_point3(at);
     let way = across(&session, 0.12, -0.05);
@@ -248,12 +254,7 @@ fn a_head_that_looks_at_a_point_goes_where_it_is_dragged_and_looks_on() {
 fn a_drag_stops_where_the_limits_of_legs_would_lift_the_feet() {
     let mut session = human();
     let head = joint(&session, "head");
-    session.apply(TargetEdit::AddTarget(head));
-    let index = session.rig().target(head).expect("a target");
-    let target = session.rig().targets[index];
-    let ahead = pose(&session).full_transform(head).transform_point3(2.0 * Vec3::Z);
-    let aim = Some(Aim { axis: Vec3::Z, point: ahead });
-    session.apply(TargetEdit::SetTarget(Target { weight: 0.0, aim, ..target }));
+    let index = look_ahead(&mut session, head);
     let pelvis = joint(&session, "pelvis");
     let at = press(&mut session, pelvis);
     let way = across(&session, 0.08, -0.15);

@@ -180,6 +180,11 @@ impl Configuration {
         effector.link.map_or(self.shifts[effector.tree], |link| self.bases[link])
     }
 
+    /// Base of the joint of an end effector, which may be fused with its link.
+    pub fn joint_of(&self, effector: &EndEffector) -> Vec3A {
+        self.base_of(effector) + self.orientation_of(effector) * effector.space.translation
+    }
+
     /// The turns that joints miss, of all end effectors with a wanted orientation.
     pub fn missing_turns<'a>(
         &'a self,

@@ -256,8 +256,7 @@ impl World<'_> {
 
     /// Position of an end effector's joint.
     fn base(&self, config: &Configuration, effector: &EndEffector) -> Vec3 {
-        let offset = config.orientation_of(effector) * effector.space.translation;
-        self.point(effector.tree, config.base_of(effector) + offset)
+        self.point(effector.tree, config.joint_of(effector))
     }
 
     /// The turns that the Jacobian predicts to be missing after a step, before limits.

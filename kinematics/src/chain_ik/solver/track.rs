@@ -299,8 +299,7 @@ fn hold_back(problem: &mut Problem, config: &Configuration, most: f32) -> bool {
 /// Takes a turn, a rotation vector, from the wanted orientation of an end effector.
 fn turn_back(effector: &mut EndEffector, turn: Vec3A, config: &Configuration) {
     let back = Quat::from_scaled_axis((-turn).into());
-    let at =
-        config.base_of(effector) + config.orientation_of(effector) * effector.space.translation;
+    let at = config.joint_of(effector);
     match effector.orientation.as_mut().map(|orienting| &mut orienting.wanted) {
         Some(Wanted::Rotation(wanted)) => *wanted = back * *wanted,
         Some(Wanted::Aim { point, .. }) => *point = at + back * (*point - at),
