@@ -280,7 +280,8 @@ fn limits(random: &mut Random) -> JointLimits {
         let min = random.within(-4.0..4.0);
         let twist = Limit { min, max: min + random.within(0.0..6.0) };
         let [x, z] = [(); 2].map(|()| random.within(0.01..2.9));
-        return JointLimits::cone(Cone { x, z, twist });
+        let middle = Vec2::from([(); 2].map(|()| random.within(-2.0..2.0)));
+        return JointLimits::cone(Cone { x, z, twist, middle });
     }
     JointLimits::new([(); 3].map(|()| {
         let (a, b) = (random.finite(), random.finite());

@@ -348,8 +348,9 @@ fn an_invalid_value_is_named_with_the_rule() {
         (
             joints("{\"name\":\"a\",\"cone\":{\"x\":1,\"z\":3,\"twist\":[-1,1]}}"),
             "line 3, column 20: skeleton.joints[0].cone: the cone of joint 0 must have x and z above 0 \
-             and at most 170°, and a finite twist, the lower bound first and at most a full turn wide; \
-             got x 57.29578°, z 171.88734°, twist -57.29578° to 57.29578°",
+             and at most 170°, and a finite twist, the lower bound first and at most a full turn wide, \
+             and its middle at most 170° from the bone at rest; got x 57.29578°, z 171.88734°, twist \
+             -57.29578° to 57.29578°, middle 0°",
         ),
         (
             joints(

@@ -1,8 +1,10 @@
 //! Cone limits of a joint: chosen in the panel, drawn in the view, kept by targets.
 
+use core::f32::consts::PI;
+
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use ik_arm::document::Overlay;
 use ik_arm::kinematics::skeleton::{
     Cone, Extreme, Joint, JointLimits, Limit, LimitEnd, RotationAxis, SwingAxis,
@@ -58,12 +60,16 @@ fn a_cone_is_chosen_and_its_angles_are_typed_in_degrees() {
     type_into(&mut bench, "Swing z", "200");
     type_into(&mut bench, "Twist minimum", "-30");
     type_into(&mut bench, "Twist maximum", "-40");
-    let Cone { x, z, twist } = cone(&bench).expect("a cone");
+    type_into(&mut bench, "Middle x", "-45");
+    type_into(&mut bench, "Middle z", "20");
+    let Cone { x, z, twist, middle } = cone(&bench).expect("a cone");
     assert!((x.to_degrees() - 80.0).abs() < 1e-3, "{x}");
     assert_eq!(z, Cone::WIDEST, "the widest that there is");
     assert!((twist.max.to_degrees() + 40.0).abs() < 1e-3 && twist.min == twist.max, "{twist:?}");
+    let wanted = Vec2::new(-45.0, 20.0);
+    assert!((middle * 180.0 / PI).distance(wanted) < 1e-3, "{middle}");
     assert!(joint(&bench).limits.contains(joint(&bench).rotation), "the angles are within it");
-    for _ in 0..5 {
+    for _ in 0..7 {
         bench.apply([TransactionAction::Undo]);
     }
     assert_eq!(cone(&bench), None);
@@ -87,7 +93,12 @@ fn a_hand_that_its_target_pulls_behind_the_body_stays_in_the_cone_of_the_shoulde
 #[test]
 fn an_elbow_that_the_cone_turns_aside_is_told_and_the_hand_gets_there() {
     let mut bench = upper_arm();
-    let limits = JointLimits::cone(Cone { x: 1.3, z: 1.5, twist: Limit { min: -1.2, max: 1.2 } });
+    let limits = JointLimits::cone(Cone {
+        x: 1.3,
+        z: 1.5,
+        twist: Limit { min: -1.2, max: 1.2 },
+        middle: Vec2::ZERO,
+    });
     let joint_id = bench.joint("left_upper_arm");
     let hand = bench.joint("left_hand");
     bench.apply([JointEdit::SetLimits { joint: joint_id, limits }]);
@@ -191,7 +202,7 @@ fn ends_of_a_cone_are_dragged_in_the_view_and_the_joint_is_pushed_by_them() {
     bench.apply([DisplayEdit::ShowOverlay(Overlay::JointLimits, true)]);
     let joint_id = bench.joint("left_upper_arm");
     let twist = Limit { min: -1.0, max: 1.0 };
-    let limits = JointLimits::cone(Cone { x: 1.2, z: 1.3, twist });
+    let limits = JointLimits::cone(Cone { x: 1.2, z: 1.3, twist, middle: Vec2::ZERO });
     bench.apply([JointEdit::SetLimits { joint: joint_id, limits }]);
     bench.settle();
     drag_end(&mut bench, LimitEnd::Swing(SwingAxis::Z, Extreme::Least), 0.3);

@@ -56,16 +56,27 @@ pub(super) fn bend(
 /// Fractions of the range between two limits, tried by [`leave_limits`] in this order.
 const FRACTIONS: [f32; 3] = [0.5, 0.25, 0.75];
 
-/// Number of different starts that [`leave_limits`] knows.
-pub(super) const STARTS_INSIDE: u32 = 2 * FRACTIONS.len() as u32;
+/// Number of different starts that [`leave_limits`] knows for a problem.
+pub(super) fn starts_inside(problem: &Problem) -> u32 {
+    /// Further starts where there are cones, whose sides leave more minima.
+    const SPREAD: u32 = 10;
+    let has_cone = problem.links.iter().any(|link| link.limits.as_cone().is_some());
+    ACROSS + if has_cone { SPREAD } else { 0 }
+}
+
+/// Number of starts across limits.
+const ACROSS: u32 = 2 * FRACTIONS.len() as u32;
 
 /// Moves angles inside their limits: the angles at limits or, for odd numbers `start`, all that
-/// have limits. Returns whether any angle has changed.
+/// have limits; of later starts, those of cones. Returns whether any angle has changed.
 pub(super) fn leave_limits(problem: &Problem, config: &mut Configuration, start: u32) -> bool {
     let fraction = FRACTIONS[start as usize / 2 % FRACTIONS.len()];
     let mut any = false;
-    for (link, angles) in problem.links.iter().zip(&mut config.angles) {
-        let inside = link.limits.moved_inside(*angles, fraction, start % 2 == 1);
+    for (index, (link, angles)) in problem.links.iter().zip(&mut config.angles).enumerate() {
+        let inside = match start.checked_sub(ACROSS) {
+            None => link.limits.moved_inside(*angles, fraction, start % 2 == 1),
+            Some(spread) => link.limits.spread(spread + 7 * index as u32, *angles),
+        };
         any |= inside != *angles;
         *angles = inside;
     }

@@ -493,9 +493,11 @@ impl ChainSolver {
             let forgets = self.state.restart();
             let goes_on = match attempt {
                 0 => self.bend() || forgets,
-                1..=perturb::STARTS_INSIDE => self.change_angles(|problem, config| {
-                    perturb::leave_limits(problem, config, attempt - 1)
-                }),
+                _ if attempt <= perturb::starts_inside(&self.problem) => {
+                    self.change_angles(|problem, config| {
+                        perturb::leave_limits(problem, config, attempt - 1)
+                    })
+                }
                 _ => return false,
             };
             if goes_on {

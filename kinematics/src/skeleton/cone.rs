@@ -1,6 +1,6 @@
 use core::f64::consts::{PI, TAU};
 
-use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, Mat3, Vec3};
+use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, Mat3, Quat, Vec2, Vec3};
 
 use super::joint_angles::nearest_angles_f64;
 use super::limit::{Limit, SwingAxis};
@@ -9,8 +9,9 @@ use super::limit::{Limit, SwingAxis};
 ///
 /// Directions are those of the bone: y along it (of a joint without a bone, along the offset of its
 /// first child), x the x-axis of the joint's frame less its part along y, and z = x × y. The rotation
-/// R_z·R_y·R_x of the joint is a twist about y and then a swing about an axis across y. The swing as
-/// a rotation vector is (s_x, s_z); it must be inside the ellipse (s_x/x)² + (s_z/z)² ≤ 1.
+/// R_z·R_y·R_x of the joint is a twist about y, then a swing about an axis across y, and then the
+/// turn that brings y to the middle of the cone. The swing as a rotation vector is (s_x, s_z); it must
+/// be inside the ellipse (s_x/x)² + (s_z/z)² ≤ 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cone {
@@ -20,6 +21,10 @@ pub struct Cone {
     pub z: f32,
     /// Range of the twist about y in radians, at most a full turn wide.
     pub twist: Limit,
+    /// Where the middle of the cone is: the swing about x and z, in radians, that brings the bone
+    /// there from where it is with angles of 0; not longer than [`Cone::WIDEST`].
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub middle: Vec2,
 }
 
 impl Cone {
@@ -32,7 +37,14 @@ impl Cone {
         let is_swing = |angle: f32| angle > 0.0 && angle <= Self::WIDEST;
         let Limit { min, max } = self.twist;
         let is_twist = min.is_finite() && max.is_finite() && min <= max;
-        is_swing(self.x) && is_swing(self.z) && is_twist && f64::from(max - min) <= TAU + 1e-6
+        let is_middle = self.middle.length() <= Self::WIDEST;
+        let is_cone = is_swing(self.x) && is_swing(self.z) && is_middle;
+        is_cone && is_twist && f64::from(max - min) <= TAU + 1e-6
+    }
+
+    /// The turn that brings the bone to the middle, with x, y and z of the cone as axes.
+    fn to_middle(self) -> DQuat {
+        swing(self.middle.as_dvec2())
     }
 }
 
@@ -130,6 +142,18 @@ impl BoneCone {
         self.angles_of(SwingTwist { swing, twist }, near)
     }
 
+    /// Angles inside the cone, spread over its directions and twists: others for each number.
+    pub fn spread(&self, number: u32, near: Vec3) -> Vec3 {
+        const PART: f64 = 0.6;
+        // The fractions of a sequence that fills a square evenly (Roberts, 2018).
+        let [around, across] =
+            [0.754_877_666, 0.569_840_291].map(|step| (f64::from(number) * step).fract());
+        let Limit { min, max } = self.cone.twist;
+        let twist = f64::from(min) + across * f64::from(max - min);
+        let swing = self.radii() * DVec2::from_angle(TAU * around) * PART;
+        self.angles_of(SwingTwist { swing, twist }, near)
+    }
+
     /// The twist that angles give the bone.
     pub fn twist_of(&self, angles: Vec3) -> f32 {
         self.split(angles.as_dvec3()).twist as f32
@@ -137,10 +161,17 @@ impl BoneCone {
 
     /// An axis of the cone's swings, in the joint's frame.
     pub fn axis(&self, axis: SwingAxis) -> Vec3 {
-        match axis {
-            SwingAxis::X => self.basis.x_axis.as_vec3(),
-            SwingAxis::Z => self.basis.z_axis.as_vec3(),
-        }
+        let of_cone = match axis {
+            SwingAxis::X => DVec3::X,
+            SwingAxis::Z => DVec3::Z,
+        };
+        (self.basis * (self.cone.to_middle() * of_cone)).as_vec3()
+    }
+
+    /// The turn that brings the bone to the middle, in the joint's frame.
+    pub fn to_middle(&self) -> Quat {
+        let basis = DQuat::from_mat3(&self.basis);
+        (basis * self.cone.to_middle() * basis.inverse()).as_quat()
     }
 
     /// Angles of a swing about an axis with the twist that angles have.
@@ -173,25 +204,27 @@ impl BoneCone {
     pub fn widened(&self, angles: Vec3) -> Cone {
         let SwingTwist { swing, twist } = self.split(angles.as_dvec3());
         let factor = (swing / self.radii()).length().max(1.0) as f32;
-        let Cone { x, z, twist: Limit { min, max } } = self.cone;
+        let Cone { x, z, twist: Limit { min, max }, .. } = self.cone;
         let twist = twist as f32;
         Cone {
             x: (x * factor).min(Cone::WIDEST),
             z: (z * factor).min(Cone::WIDEST),
             twist: Limit { min: min.min(twist), max: max.max(twist) },
+            ..self.cone
         }
     }
 
     /// The cone that contains this one and angles, widened by whole degrees, and the greatest
     /// increase of one of its angles.
     pub fn widened_by_degrees(&self, angles: Vec3) -> (Cone, f32) {
-        let (Cone { x, z, twist: Limit { min, max } }, to) = (self.cone, self.widened(angles));
+        let (Cone { x, z, twist: Limit { min, max }, .. }, to) = (self.cone, self.widened(angles));
         let more = |from: f32, to: f32| (to - from).to_degrees().ceil().to_radians().max(0.0);
         let by = [more(x, to.x), more(z, to.z), more(to.twist.min, min), more(max, to.twist.max)];
         let cone = Cone {
             x: (x + by[0]).min(Cone::WIDEST),
             z: (z + by[1]).min(Cone::WIDEST),
             twist: Limit { min: min - by[2], max: max + by[3] },
+            ..self.cone
         };
         (cone, by.into_iter().fold(0.0, f32::max))
     }
@@ -212,7 +245,8 @@ impl BoneCone {
 
     fn split(&self, angles: DVec3) -> SwingTwist {
         let basis = DQuat::from_mat3(&self.basis);
-        let DQuat { x, y, z, w } = basis.inverse() * rotation(angles) * basis;
+        let of_cone = basis.inverse() * rotation(angles) * basis;
+        let DQuat { x, y, z, w } = self.cone.to_middle().inverse() * of_cone;
         let length = y.hypot(w);
         // The twist of a swing by half a turn is anything.
         let twist = if length > 0.0 { 2.0 * y.atan2(w) } else { 0.0 };
@@ -227,11 +261,16 @@ impl BoneCone {
     }
 
     /// The angles of a swing and twist, of all equivalent ones those nearest to `near`.
-    fn angles_of(&self, SwingTwist { swing, twist }: SwingTwist, near: Vec3) -> Vec3 {
-        let swing = DQuat::from_scaled_axis(DVec3::new(swing.x, 0.0, swing.y));
-        let turned = DMat3::from_quat(swing * DQuat::from_rotation_y(twist));
+    fn angles_of(&self, of: SwingTwist, near: Vec3) -> Vec3 {
+        let swung = self.cone.to_middle() * swing(of.swing);
+        let turned = DMat3::from_quat(swung * DQuat::from_rotation_y(of.twist));
         nearest_angles_f64(self.basis * turned * self.basis.transpose(), near)
     }
+}
+
+/// The rotation of a rotation vector about x and z.
+fn swing(about: DVec2) -> DQuat {
+    DQuat::from_scaled_axis(DVec3::new(about.x, 0.0, about.y))
 }
 
 fn rotation(angles: DVec3) -> DQuat {

@@ -377,9 +377,10 @@ pub enum SkeletonError {
     /// An angle of a cone is out of its range.
     #[error(
         "the cone of joint {joint} must have x and z above 0 and at most 170°, and a finite twist, the \
-         lower bound first and at most a full turn wide; got x {}°, z {}°, twist {}° to {}°",
+         lower bound first and at most a full turn wide, and its middle at most 170° from the bone at \
+         rest; got x {}°, z {}°, twist {}° to {}°, middle {}°",
         cone.x.to_degrees(), cone.z.to_degrees(), cone.twist.min.to_degrees(),
-        cone.twist.max.to_degrees()
+        cone.twist.max.to_degrees(), cone.middle.length().to_degrees()
     )]
     Cone {
         /// The joint.

@@ -108,8 +108,8 @@ impl Joint {
         self.rotation_f64(angles).as_mat3() * self.axis
     }
 
-    /// Euler angles with which the bone has swung by an angle in radians, with the twist in the
-    /// middle of its range; `None` for a joint without a cone or a bone. The azimuth, in radians, is
+    /// Euler angles with which the bone has swung from the middle of its cone by an angle in radians,
+    /// with the twist in the middle of its range; `None` for a joint without a cone or a bone. The azimuth, in radians, is
     /// that of the swing's axis around the bone; it begins at the axis of the frame that is nearest
     /// to being across the bone.
     pub fn swung(&self, azimuth: f32, swing: f32) -> Option<Vec3> {
@@ -122,7 +122,8 @@ impl Joint {
         let axis = Quat::from_axis_angle(bone, azimuth) * start;
         let twist = 0.5 * cone.twist.min + 0.5 * cone.twist.max;
         let turned = Mat3::from_axis_angle(axis, swing) * Mat3::from_axis_angle(bone, twist);
-        Some(nearest_angles(Mat3A::from(turned), self.rotation))
+        let to_middle = Mat3A::from_quat(self.limits.to_middle()?);
+        Some(nearest_angles(to_middle * Mat3A::from(turned), self.rotation))
     }
 
     /// The greatest swing towards an azimuth that the cone allows, in radians; `None` as for

@@ -1,6 +1,6 @@
 use core::ops::RangeInclusive;
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Quat, Vec3};
 
 use super::cone::{BoneCone, Cone};
 use super::limit::{Limit, RotationAxis, SwingAxis};
@@ -8,7 +8,7 @@ use super::limit::{Limit, RotationAxis, SwingAxis};
 /// Limits of a joint's rotation: a range for each Euler angle, a [`Cone`], or none.
 ///
 /// ```
-/// use glam::Vec3;
+/// use glam::{Vec2, Vec3};
 /// use ik_arm_kinematics::skeleton::{Cone, JointLimits, Limit, RotationAxis};
 ///
 /// let mut knee = JointLimits::NONE;
@@ -20,7 +20,7 @@ use super::limit::{Limit, RotationAxis, SwingAxis};
 /// assert_eq!(knee.room(Vec3::Z, RotationAxis::X), None);
 ///
 /// let wide = Limit { min: -1.0, max: 1.0 };
-/// let shoulder = JointLimits::cone(Cone { x: 0.5, z: 1.0, twist: wide });
+/// let shoulder = JointLimits::cone(Cone { x: 0.5, z: 1.0, twist: wide, middle: Vec2::ZERO });
 /// assert!(shoulder.contains(Vec3::new(0.0, 0.0, 0.9)));
 /// assert!(shoulder.project(Vec3::X * 0.7).distance(Vec3::X * 0.5) < 1e-6);
 /// ```
@@ -99,6 +99,14 @@ impl JointLimits {
         match self.kind {
             Kind::Cone(of_bone) => Self { kind: Kind::Cone(of_bone.with(cone)) },
             Kind::Angles(_) => Self::cone(cone),
+        }
+    }
+
+    /// The turn that brings the bone to the middle of a cone, in the joint's frame.
+    pub(super) fn to_middle(&self) -> Option<Quat> {
+        match self.kind {
+            Kind::Cone(cone) => Some(cone.to_middle()),
+            Kind::Angles(_) => None,
         }
     }
 
@@ -245,17 +253,24 @@ impl JointLimits {
     /// Takes from a change of angles the parts that lead out of the limits. Returns whether there was
     /// any.
     pub(crate) fn hold(&self, angles: Vec3, by: &mut Vec3) -> bool {
+        /// Length of what is new of an end beside those that hold the change.
+        const NEW: f32 = 1e-3;
         let mut held: [Vec3; 3] = [Vec3::ZERO; 3];
-        let mut count = 0;
-        for out in self.crossed(angles, *by).into_iter().flatten() {
-            let new = held[..count].iter().fold(out, |new, held| new - *held * held.dot(new));
-            if let Some(out) = new.try_normalize() {
-                *by -= out * out.dot(*by);
-                held[count] = out;
-                count += 1;
-            }
+        for count in 0..held.len() {
+            let new_part = |out: Vec3| {
+                let new = held[..count].iter().fold(out, |new, held| new - *held * held.dot(new));
+                new.try_normalize().filter(|_| new.length() > NEW)
+            };
+            // With the end that is crossed most, the change often crosses no other one.
+            let crossed = self.crossed(angles, *by).into_iter().flatten();
+            let crossed = crossed.filter_map(|out| Some((out.dot(*by), new_part(out)?)));
+            let Some((_, out)) = crossed.max_by(|one, other| one.0.total_cmp(&other.0)) else {
+                return count > 0;
+            };
+            *by -= out * out.dot(*by);
+            held[count] = out;
         }
-        count > 0
+        true
     }
 
     /// Of a cone, the direction of the bone in the joint's frame and the changes of its twist that
@@ -332,6 +347,14 @@ impl JointLimits {
             }
         }
         inside
+    }
+
+    /// Angles inside a cone, others for each number; `angles` for limits of angles.
+    pub(crate) fn spread(&self, number: u32, angles: Vec3) -> Vec3 {
+        match self.kind {
+            Kind::Cone(cone) => cone.spread(number, angles),
+            Kind::Angles(_) => angles,
+        }
     }
 
     /// The middle of each range or of the cone, and 0 for angles without limits.

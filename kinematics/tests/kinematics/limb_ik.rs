@@ -3,7 +3,7 @@
 
 use core::f32::consts::{PI, TAU};
 
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 use ik_arm_kinematics::limb_ik::{
     CarriedLimb, ElbowReference, Limb, LimbReach, LimbReport, LimbTarget, fk_twist, solve, step,
 };
@@ -469,6 +469,7 @@ fn limits_of_the_upper_joint_turn_the_elbow_aside_by_as_little_as_they_must() {
                 x: random.within(0.3..2.0),
                 z: random.within(0.3..2.0),
                 twist,
+                middle: Vec2::new(random.within(-0.8..0.8), random.within(-0.8..0.8)),
             })
         } else {
             JointLimits::new([(); 3].map(|()| {
@@ -513,7 +514,7 @@ fn an_elbow_that_is_turned_aside_goes_on_smoothly_from_step_to_step() {
     const STEPS: u16 = 400;
     let mut skeleton = Skeleton::with_root("root");
     let twist = Limit { min: -0.5, max: 0.5 };
-    let limits = JointLimits::cone(Cone { x: 1.2, z: 0.6, twist });
+    let limits = JointLimits::cone(Cone { x: 1.2, z: 0.6, twist, middle: Vec2::new(0.2, -0.1) });
     let upper = Joint { limits, ..Joint::new("upper", Some(JointId::new(0)), Vec3::X) };
     let upper = skeleton.add(upper).expect("upper");
     let hinge = JointLimits::new([0.0, 0.0, 2.5].map(|max| Some(Limit { min: 0.0, max })));

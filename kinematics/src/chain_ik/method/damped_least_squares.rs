@@ -600,21 +600,25 @@ pub(in crate::chain_ik) fn hold_in_cone(
     for out in of_link(ends) {
         *by -= out * out.dot(*by);
     }
-    let mut any = false;
-    for out in link.limits.crossed(angles, *by).into_iter().flatten() {
+    let new_part = |out: Vec3| {
         let new = of_link(ends).into_iter().fold(out, |new, held| new - held * held.dot(new));
-        let Some(out) = new.try_normalize().filter(|_| new.length() > NEW) else { continue };
-        let along = Mat3A::from_cols(
-            Vec3A::from(out) * out.x,
-            Vec3A::from(out) * out.y,
-            Vec3A::from(out) * out.z,
-        );
-        *axes = *axes - *axes * along;
-        *by -= out * out.dot(*by);
-        ends.push((index, out));
-        any = true;
-    }
-    any
+        new.try_normalize().filter(|_| new.length() > NEW)
+    };
+    // With the end that is crossed most, the step often crosses no other one.
+    let crossed = link.limits.crossed(angles, *by).into_iter().flatten();
+    let crossed = crossed.filter_map(|out| Some((out.dot(*by), new_part(out)?)));
+    let Some((_, out)) = crossed.max_by(|one, other| one.0.total_cmp(&other.0)) else {
+        return false;
+    };
+    let along = Mat3A::from_cols(
+        Vec3A::from(out) * out.x,
+        Vec3A::from(out) * out.y,
+        Vec3A::from(out) * out.z,
+    );
+    *axes = *axes - *axes * along;
+    *by -= out * out.dot(*by);
+    ends.push((index, out));
+    true
 }
 
 /// Axes times the roots of compliances, as columns.

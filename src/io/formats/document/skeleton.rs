@@ -1,7 +1,7 @@
 //! Fields of the skeleton and indices of its joints in a file, and conversions between these and a
 //! skeleton.
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::io::json::{
@@ -55,17 +55,26 @@ struct ConeFields {
     x: JsonNumber,
     z: JsonNumber,
     twist: JsonNumbers<2>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    middle: Option<JsonNumbers<2>>,
 }
 
 impl ConeFields {
     fn new(cone: Cone) -> Self {
-        let Cone { x, z, twist: Limit { min, max } } = cone;
-        Self { x: x.into(), z: z.into(), twist: JsonNumbers([min, max]) }
+        let Cone { x, z, twist: Limit { min, max }, middle } = cone;
+        let middle = (middle != Vec2::ZERO).then_some(JsonNumbers(middle.into()));
+        Self { x: x.into(), z: z.into(), twist: JsonNumbers([min, max]), middle }
     }
 
     fn cone(self) -> Cone {
         let JsonNumbers([min, max]) = self.twist;
-        Cone { x: self.x.into(), z: self.z.into(), twist: Limit { min, max } }
+        let middle = self.middle.map(|JsonNumbers(middle)| Vec2::from(middle));
+        Cone {
+            x: self.x.into(),
+            z: self.z.into(),
+            twist: Limit { min, max },
+            middle: middle.unwrap_or_default(),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use core::f32::consts::{PI, TAU};
 
 use egui::Ui;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::targets;
 use crate::document::Channel;
@@ -78,8 +78,12 @@ const LIMITS: [(bool, &str, &str); 2] = [
 ];
 
 /// The cone of a joint that gets one.
-const NEW_CONE: Cone =
-    Cone { x: PI / 3.0, z: PI / 3.0, twist: Limit { min: -PI / 4.0, max: PI / 4.0 } };
+const NEW_CONE: Cone = Cone {
+    x: PI / 3.0,
+    z: PI / 3.0,
+    twist: Limit { min: -PI / 4.0, max: PI / 4.0 },
+    middle: Vec2::ZERO,
+};
 
 /// Shows the choice between ranges of angles and a cone, and the rows of the chosen one.
 fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: &mut Actions) {
@@ -98,7 +102,7 @@ fn limits(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
     }
 }
 
-/// Shows the greatest swings of a cone and the range of its twist.
+/// Shows the greatest swings of a cone, the range of its twist and where its middle is.
 fn cone(
     ui: &mut Ui,
     session: &Session,
@@ -123,15 +127,30 @@ fn cone(
     widgets::pair(ui, "Twist", |ui| {
         widgets::at_right(ui, |ui| {
             let Limit { min, max } = cone.twist;
-            angle(ui, session, actions, "Twist minimum", min, &|to| {
+            angle(ui, session, actions, "Twist minimum", RANGE, min, &|to| {
                 let to = to.max(max - TAU);
                 set(Cone { twist: Limit { min: to, max: max.max(to) }, ..cone })
             });
             ui.weak("to");
-            angle(ui, session, actions, "Twist maximum", max, &|to| {
+            angle(ui, session, actions, "Twist maximum", RANGE, max, &|to| {
                 let to = to.min(min + TAU);
                 set(Cone { twist: Limit { min: min.min(to), max: to }, ..cone })
             });
+        });
+    });
+    widgets::pair(ui, "Middle", |ui| {
+        widgets::at_right(ui, |ui| {
+            let middle = cone.middle;
+            let set_middle =
+                |to: Vec2| set(Cone { middle: to.clamp_length_max(Cone::WIDEST), ..cone });
+            let tooltip = "Turn the middle of the cone away from the bone at rest";
+            for (name, label, value) in [("Middle x", "x", middle.x), ("Middle z", "z", middle.y)] {
+                ui.weak(label);
+                angle(ui, session, actions, name, tooltip, value, &|to| match label {
+                    "x" => set_middle(Vec2::new(to, middle.y)),
+                    _ => set_middle(Vec2::new(middle.x, to)),
+                });
+            }
         });
     });
 }
@@ -153,29 +172,43 @@ fn ranges(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
             actions.extend(changed.map(|limited| set(limited.then_some(wide))));
             let Some(limit) = limit else { return };
             widgets::at_right(ui, |ui| {
-                angle(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
-                    set(Some(Limit { min, max: limit.max.max(min) })).into()
-                });
+                angle(
+                    ui,
+                    session,
+                    actions,
+                    &format!("{label} minimum"),
+                    RANGE,
+                    limit.min,
+                    &|min| set(Some(Limit { min, max: limit.max.max(min) })).into(),
+                );
                 ui.weak("to");
-                angle(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
-                    set(Some(Limit { min: limit.min.min(max), max })).into()
-                });
+                angle(
+                    ui,
+                    session,
+                    actions,
+                    &format!("{label} maximum"),
+                    RANGE,
+                    limit.max,
+                    &|max| set(Some(Limit { min: limit.min.min(max), max })).into(),
+                );
             });
         });
     }
 }
 
-/// Shows a field for one end of a limit. `value` and the argument of `set` are in radians; the
+const RANGE: &str = "Set the end of the range";
+
+/// Shows a field for an angle of a limit. `value` and the argument of `set` are in radians; the
 /// field shows degrees.
 fn angle(
     ui: &mut Ui,
     session: &Session,
     actions: &mut Actions,
     name: &str,
+    tooltip: &str,
     value: f32,
     set: &dyn Fn(f32) -> Edit,
 ) {
-    let tooltip = "Set the end of the range";
     let value = value.to_degrees();
     let field = NumberField { name, value, unit: "°", step: 1.0, digits: 1, tooltip };
     field.show(ui, session, actions, |degrees| set(degrees.to_radians()));

@@ -246,7 +246,8 @@ impl Values<'_> {
 
     pub fn cone(&mut self) -> Cone {
         let twist = self.limit().unwrap_or(Limit { min: -0.5, max: 0.5 });
-        Cone { x: self.above_0(3.0), z: self.above_0(3.0), twist }
+        let middle = Vec2::new(self.small_point().x, self.small_point().z);
+        Cone { x: self.above_0(3.0), z: self.above_0(3.0), twist, middle }
     }
 
     pub fn balance(&mut self) -> Option<BalanceTarget> {
