@@ -112,6 +112,10 @@ pub fn cause(rig: &SkeletonRig, found: &Diagnosis) -> String {
             Cause::Balance => {
                 format!("The balance keeps the body from following {target} to its target")
             }
+            Cause::ShortChain { length } => {
+                let s = if length == 1 { "" } else { "s" };
+                format!("The chain of {target} turns {length} joint{s}, and needs more")
+            }
             Cause::Influence { influence: 0.0 } => {
                 format!("The target of {target} has no influence: the joint angles alone pose it")
             }
@@ -230,6 +234,9 @@ fn verb_and_rest(remedy: &Remedy, names: Names<'_>) -> (Verb, String) {
         }
         Remedy::FollowBody => (Verb::Let, "the whole body follow".to_owned()),
         Remedy::FreeBalance => (Verb::SwitchOff, "the balance".to_owned()),
+        Remedy::LengthenChain { joint, length } => {
+            (Verb::Let, format!("the chain of {} turn {length} joints", tip(joint)))
+        }
         Remedy::SetRoot(Root::Free) => (Verb::Let, "the root move".to_owned()),
         Remedy::SetRoot(Root::Turns) => (Verb::Let, "the root turn".to_owned()),
         Remedy::SetRoot(Root::Locked) => (Verb::Lock, "the root".to_owned()),

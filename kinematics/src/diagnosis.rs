@@ -6,6 +6,8 @@
 //! [`SkeletonRig::diagnose`](crate::rig::SkeletonRig::diagnose) adds those of limbs and of targets
 //! that share a pose with FK.
 
+use core::num::NonZeroU32;
+
 use glam::Vec3;
 
 use crate::chain_ik::{ChainTarget, Method, Root, SolverOptions};
@@ -113,6 +115,11 @@ pub enum Cause {
     Lost,
     /// The target can be reached without the balance of the figure.
     Balance,
+    /// The target of a chain turns too few joints.
+    ShortChain {
+        /// Number of joints that it turns.
+        length: u32,
+    },
     /// The pose is a mix of the FK pose and the solved one, which reaches the target.
     Influence {
         /// Fraction of the way from the FK pose to the solved one.
@@ -146,6 +153,7 @@ impl Cause {
             Self::Singular { .. } => "singular",
             Self::OutOfIterations { .. } => "out_of_iterations",
             Self::Balance => "balance",
+            Self::ShortChain { .. } => "short_chain",
             Self::Influence { .. } => "influence",
         }
     }
@@ -174,6 +182,13 @@ pub enum Remedy {
     FollowBody,
     /// Lets the centre of mass of the figure be anywhere.
     FreeBalance,
+    /// Lets the target of a chain turn more joints.
+    LengthenChain {
+        /// The joint of the target.
+        joint: JointId,
+        /// Number of joints that it turns.
+        length: NonZeroU32,
+    },
     /// Widens limits of angles.
     WidenLimits(Vec<WidenedLimit>),
     /// Lets solvers turn joints.

@@ -39,7 +39,7 @@ pub fn document(random: &mut Random) -> Document {
             let (kind, influence) = (target_kind(random), random.within(0.0..1.0));
             let turns = random.below(3);
             let orientation = (turns == 1).then(|| random.finite_vector());
-            let aims = turns == 2 && kind == TargetKind::WholeBody;
+            let aims = turns == 2 && !matches!(kind, TargetKind::Limb(_));
             let aim = aims.then(|| Aim { axis: random.direction(), point: random.finite_vector() });
             let (space, softness) = (TargetSpace::World, random.within(0.0..0.99));
             rig.targets.push(Target {
@@ -138,8 +138,13 @@ fn limb_posture(random: &mut Random) -> LimbPosture {
 }
 
 fn target_kind(random: &mut Random) -> TargetKind {
-    if random.coin() {
-        return TargetKind::WholeBody;
+    match random.below(4) {
+        0 | 1 => return TargetKind::WholeBody,
+        2 => {
+            let length = 1 + random.below(5) as u32;
+            return TargetKind::Chain(length.try_into().expect("above 0"));
+        }
+        _ => {}
     }
     let reference = random.one_of(&TwistReferenceKind::ALL);
     let needs_pole = reference == TwistReferenceKind::Pole;

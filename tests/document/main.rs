@@ -5,6 +5,7 @@ mod bake;
 mod balance;
 mod body_follows;
 mod bones;
+mod chains;
 #[path = "../common/mod.rs"]
 mod common;
 mod dissolve;

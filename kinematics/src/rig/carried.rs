@@ -11,32 +11,47 @@ use crate::limb_ik::{CarriedLimb, LimbPosture};
 use crate::skeleton::{JointId, JointRemap, Skeleton};
 
 /// The state that a step of a motion leaves to the next one, so that small motions of targets and
-/// FK poses give small motions of joints: the configuration of the whole-body targets' solver, and
-/// how limbs bend. It is about the poses before influences and, for whole-body targets, before
-/// limbs.
+/// FK poses give small motions of joints: the configurations of the solvers of the whole-body targets
+/// and of chains, and how limbs bend. It is about the poses before influences and, for whole-body
+/// targets, before chains and limbs.
 ///
 /// The default continues from nothing: the step solves from its FK pose, with restarts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Carried {
-    /// The posture with which the first step begins; `None` after it.
-    posture: Option<Shared<Posture>>,
-    /// True if the first step keeps the posture, false if it solves from there.
-    rests_at_posture: bool,
-    /// True if the first step brings the pose as near to FK as targets allow.
-    relaxes: bool,
-    /// One for each influence of whole-body targets, the greatest first.
-    bodies: Vec<Body>,
+    start: Start,
+    /// Of the whole-body targets.
+    body: Bodies,
+    /// Of chains, by the first of the joints of the targets that are solved together.
+    chains: BTreeMap<JointId, Bodies>,
     /// By the joint of a limb's target.
     limbs: BTreeMap<JointId, CarriedLimb>,
     /// Of a figure that is balanced, what the last step has left.
     footing: Option<Footing>,
 }
 
+/// How the first step begins; after it, the default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Start {
+    /// The posture with which the step begins.
+    posture: Option<Shared<Posture>>,
+    /// True if the step keeps the posture, false if it solves from there.
+    rests_at_posture: bool,
+    /// True if the step brings the pose as near to FK as targets allow.
+    relaxes: bool,
+}
+
+impl Start {
+    /// The FK pose, or the posture with which the step begins.
+    pub fn first_pose(&self, fk: &Skeleton) -> Skeleton {
+        self.posture.as_ref().map_or_else(|| fk.clone(), |posture| posture.posed(fk))
+    }
+}
+
 /// The configuration with which a motion begins, as a document keeps it: the state before its first
 /// step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Posture {
-    /// Joints that whole-body targets turn.
+    /// Joints that targets of the whole body and of chains turn.
     pub joints: BTreeMap<JointId, PosturedJoint>,
     /// States of limbs, by the joints of their targets.
     pub limbs: BTreeMap<JointId, LimbPosture>,
@@ -97,7 +112,12 @@ pub(super) struct BodyTarget {
     pub influence: f32,
 }
 
-/// Whole-body targets that are solved together.
+/// The configurations of targets that are solved together, by a solver of chains: one for each of
+/// their influences, the greatest first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Bodies(Vec<Body>);
+
+/// Targets of the same or greater influence, solved together.
 #[derive(Clone, Debug, PartialEq)]
 struct Body {
     solver: ChainSolver,
@@ -109,7 +129,9 @@ struct Body {
 impl Carried {
     /// The state before the first step of a motion that begins with a posture.
     pub fn from_posture(posture: &Shared<Posture>) -> Self {
-        Self { rests_at_posture: true, ..Self::near_posture(posture) }
+        let mut near = Self::near_posture(posture);
+        near.start.rests_at_posture = true;
+        near
     }
 
     /// The state before the first step of a motion that begins near a posture, with the pose that
@@ -117,26 +139,20 @@ impl Carried {
     pub fn near_posture(posture: &Shared<Posture>) -> Self {
         let limbs = &posture.limbs;
         let limbs = limbs.iter().map(|(joint, it)| (*joint, CarriedLimb::from_posture(it)));
-        Self {
-            posture: Some(posture.clone()),
-            rests_at_posture: false,
-            relaxes: false,
-            bodies: Vec::new(),
-            limbs: limbs.collect(),
-            footing: None,
-        }
+        let start = Start { posture: Some(posture.clone()), ..Start::default() };
+        Self { start, limbs: limbs.collect(), ..Self::default() }
     }
 
     /// The state before the first step of a motion without a posture: the first pose is solved from
     /// the FK pose and then brought as near to it as the targets allow, so that a motion that
     /// closes a loop comes back to its first pose.
     pub fn relaxed() -> Self {
-        Self { relaxes: true, ..Self::default() }
+        Self { start: Start { relaxes: true, ..Start::default() }, ..Self::default() }
     }
 
     /// The posture with which a motion continues from here.
     pub fn to_posture(&self) -> Posture {
-        let joints = self.bodies.last().map(Body::joints).unwrap_or_default();
+        let joints = self.full_bodies().flat_map(Body::joints).collect();
         let limbs = self.limbs.iter();
         let limbs = limbs.filter_map(|(joint, limb)| Some((*joint, limb.to_posture()?)));
         Posture { joints, limbs: limbs.collect() }
@@ -150,30 +166,56 @@ impl Carried {
 
     /// About the work of the last step, in the unit of [`ChainSolver::bounded`].
     pub fn work(&self) -> u64 {
-        self.bodies.iter().map(|body| body.solver.work()).sum()
+        self.bodies().map(|body| body.solver.work()).sum()
     }
 
-    /// True if whole-body targets posed joints in the last step.
+    /// True if targets of the whole body or of chains posed joints in the last step.
     pub fn has_body(&self) -> bool {
-        !self.bodies.is_empty()
+        self.bodies().next().is_some()
     }
 
-    /// An FK pose with the joints that whole-body targets turn as the last step has posed them,
-    /// before influences; `None` if they posed none.
+    /// An FK pose with the joints that targets of the whole body and of chains turn as the last step
+    /// has posed them, before influences; `None` if they posed none.
     pub fn body_pose(&self, fk: &Skeleton) -> Option<Skeleton> {
-        Some(self.bodies.last()?.posed(fk))
+        let write = |mut pose: Skeleton, body: &Body| {
+            body.solver.write(&mut pose);
+            pose
+        };
+        self.has_body().then(|| self.full_bodies().fold(fk.clone(), write))
+    }
+
+    /// All configurations of solvers.
+    fn bodies(&self) -> impl Iterator<Item = &Body> {
+        [&self.body].into_iter().chain(self.chains.values()).flat_map(|bodies| &bodies.0)
+    }
+
+    /// The configurations for all targets that are solved together, of whatever influence.
+    fn full_bodies(&self) -> impl Iterator<Item = &Body> {
+        [&self.body].into_iter().chain(self.chains.values()).filter_map(|bodies| bodies.0.last())
     }
 
     fn steps(&self) -> impl Iterator<Item = &TrackStep> {
-        self.bodies.iter().filter_map(|body| body.step.as_ref())
+        self.bodies().filter_map(|body| body.step.as_ref())
     }
 
-    pub(super) fn forget_body(&mut self) {
-        self.bodies.clear();
-        self.posture = None;
+    /// How the step begins. The state has no start from then on.
+    pub(super) fn take_start(&mut self) -> Start {
+        std::mem::take(&mut self.start)
     }
 
-    pub(super) fn retain_limbs(&mut self, is_posing: impl Fn(JointId) -> bool) {
+    /// The configurations of whole-body targets.
+    pub(super) fn body(&mut self) -> &mut Bodies {
+        &mut self.body
+    }
+
+    /// The configurations of a chain.
+    pub(super) fn chain(&mut self, first: JointId) -> &mut Bodies {
+        self.chains.entry(first).or_default()
+    }
+
+    /// Forgets chains and limbs whose targets do not pose the skeleton any more.
+    pub(super) fn retain_parts(&mut self, is_posing: impl Fn(JointId) -> bool) {
+        self.chains.retain(|joint, _| is_posing(*joint));
         self.limbs.retain(|joint, _| is_posing(*joint));
     }
 
@@ -184,11 +226,6 @@ impl Carried {
 
     pub(super) fn set_footing(&mut self, footing: Footing) {
         self.footing = Some(footing);
-    }
-
-    /// The FK pose, or the posture with which the first step begins.
-    pub(super) fn first_pose(&self, fk: &Skeleton) -> Skeleton {
-        self.posture.as_ref().map_or_else(|| fk.clone(), |posture| posture.posed(fk))
     }
 
     /// The states of limbs, to be restored before a step is repeated.
@@ -203,15 +240,23 @@ impl Carried {
     pub(super) fn limb(&mut self, joint: JointId) -> &mut CarriedLimb {
         self.limbs.entry(joint).or_default()
     }
+}
 
-    /// Poses `pose`, the FK pose, by whole-body targets, of which there is at least one, while the
-    /// tips of `limbs` stay in place; without `poses`, it may leave the pose. Returns the report of the solve for all of them.
+impl Bodies {
+    pub fn forget(&mut self) {
+        self.0.clear();
+    }
+
+    /// Poses `pose`, the FK pose, by targets, of which there is at least one, while the tips of
+    /// `limbs` stay in place; without `poses`, it may leave the pose. Returns the report of the solve
+    /// for all of them.
     ///
     /// # Errors
     ///
     /// The error of a solver; the pose is unchanged.
-    pub(super) fn step_body(
+    pub fn step(
         &mut self,
+        start: &Start,
         options: &SolverOptions,
         pose: &mut Shared<Skeleton>,
         targets: &[BodyTarget],
@@ -222,10 +267,8 @@ impl Carried {
         influences.sort_unstable_by(|one, other| other.total_cmp(one));
         influences.dedup();
         let mut before = Before {
-            bodies: std::mem::take(&mut self.bodies).into_iter().map(Some).collect(),
-            posture: self.posture.take().filter(|posture| !posture.joints.is_empty()),
-            rests_at_posture: self.rests_at_posture,
-            relaxes: std::mem::take(&mut self.relaxes),
+            bodies: std::mem::take(&mut self.0).into_iter().map(Some).collect(),
+            start,
             work: ChainSolver::POSE_WORK / influences.len() as u64,
         };
         let last = influences.len() - 1;
@@ -234,33 +277,31 @@ impl Carried {
             let tips: Vec<ChainTarget> = tips.map(|target| target.tip).collect();
             before.step(options, pose, &tips, limbs, index == last)
         };
-        self.bodies = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
-        let report = self.bodies[last].solver.report();
+        self.0 = influences.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+        let report = self.0[last].solver.report();
         if influences == [1.0] {
             // Nothing is blended, so that no rotation is carried on.
-            self.bodies[0].turns.fill(None);
+            self.0[0].turns.fill(None);
             if poses {
-                *pose = self.bodies[0].posed(pose).into();
+                *pose = self.0[0].posed(pose).into();
             }
         } else {
-            let poses: Vec<Skeleton> = self.bodies.iter().map(|body| body.posed(pose)).collect();
-            blend(pose, poses, &influences, &mut self.bodies);
+            let poses: Vec<Skeleton> = self.0.iter().map(|body| body.posed(pose)).collect();
+            blend(pose, poses, &influences, &mut self.0);
         }
         Ok(report)
     }
 }
 
 /// The bodies of the step before.
-struct Before {
+struct Before<'a> {
     bodies: Vec<Option<Body>>,
-    posture: Option<Shared<Posture>>,
-    rests_at_posture: bool,
-    relaxes: bool,
+    start: &'a Start,
     /// Most work of a body.
     work: u64,
 }
 
-impl Before {
+impl Before<'_> {
     /// The next step of the body with these targets: the one before, if there was one.
     fn step(
         &mut self,
@@ -300,8 +341,10 @@ impl Before {
         let mut solver = ChainSolver::bounded_with_limbs(fk, tips, limbs, options, self.work)?;
         // True if targets of less influence do not pull the joints any more.
         let mut is_released = false;
-        let rests = self.posture.is_some() && self.rests_at_posture && has_all_targets;
-        match &self.posture {
+        let Start { posture, rests_at_posture, relaxes } = self.start;
+        let posture = posture.as_ref().filter(|posture| !posture.joints.is_empty());
+        let rests = posture.is_some() && *rests_at_posture && has_all_targets;
+        match posture {
             Some(posture) if rests => solver.rest_at(&posture.posed(fk)),
             Some(posture) => solver.begin_from(&posture.posed(fk)),
             None => {
@@ -317,7 +360,7 @@ impl Before {
         }
         if !rests {
             solver.run();
-            if self.relaxes || is_released {
+            if *relaxes || is_released {
                 solver.relax();
             }
         }
@@ -333,6 +376,7 @@ impl Body {
         pose
     }
 
+    /// The joints that the solver turns, with their angles and places.
     fn joints(&self) -> BTreeMap<JointId, PosturedJoint> {
         let mut joints: BTreeMap<JointId, PosturedJoint> = BTreeMap::new();
         for (joint, rotation) in self.solver.angles() {

@@ -11,8 +11,8 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 impl SkeletonRig {
     /// A drag of a point of a joint from a pose that this rig has at a time in seconds. All that
     /// targets hold stays: whole-body targets of full influence, where they are reached or as far
-    /// from it as they are, and with [`SkeletonRig::body_follows`] the hands and feet of limb
-    /// targets. The limbs themselves do not turn; solve them again for the dragged pose. Where limbs
+    /// from it as they are, so those of chains, and with [`SkeletonRig::body_follows`] the hands and
+    /// feet of limb targets. The limbs themselves do not turn; solve them again for the dragged pose. Where limbs
     /// could not follow, because of the limits of their joints, the point stays nearer to where it
     /// was.
     ///
@@ -76,13 +76,15 @@ impl SkeletonRig {
         }
         let footing = self.footing(&evaluated.solved);
         let mut held = self.held_targets(evaluated, time);
-        held.extend(self.held_balance(evaluated, &footing));
         let is_root = pose.joint(dragged.joint).is_some_and(|joint| joint.parent.is_none());
+        let balance = self.held_balance(evaluated, &footing);
         // A body that nothing holds would be carried away.
+        let is_held = self.holds_body() || balance.is_some();
         let root = match self.solver.root {
-            Root::Free if held.is_empty() && !is_root => Root::Turns,
+            Root::Free if !is_held && !is_root => Root::Turns,
             root => root,
         };
+        held.extend(balance);
         let mut drag = NullSpaceDrag::with_limbs(&pose, &held, &footing.limbs, dragged, root)?;
         let report = drag.run();
         Ok((drag, report))
@@ -110,9 +112,9 @@ impl SkeletonRig {
         full.any(|it| it.kind == TargetKind::WholeBody || self.pulls_body(it))
     }
 
-    /// True if a whole-body target of full influence turns a joint.
+    /// True if a target of full influence turns a joint of the whole body or of a chain.
     pub fn is_turned_by_body_target(&self, joint: JointId) -> bool {
-        let mut targets = self.full_targets().filter(|it| it.kind == TargetKind::WholeBody);
+        let mut targets = self.full_targets().filter(|it| it.limb().is_none());
         targets.any(|target| self.moved_by(target).turned.contains(&joint))
     }
 
@@ -148,7 +150,7 @@ impl SkeletonRig {
         let full = |target: &Target| self.is_solved_for(target) && target.influence >= 1.0;
         let mut held = Vec::new();
         for (target, report) in self.targets.iter().zip(targets).filter(|(it, _)| full(it)) {
-            if target.kind == TargetKind::WholeBody {
+            if target.limb().is_none() {
                 let mut of_target = self.tip_target(target, fk, time);
                 if report.error > self.tolerance() {
                     of_target.point = solved.tip(target.joint);

@@ -2,7 +2,8 @@ use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
 use super::balance_target::{BalanceReport, BalanceWay, Footing};
-use super::carried::{BodyTarget, Carried};
+use super::carried::{Bodies, BodyTarget, Carried, Start};
+use super::chain::with_others_locked;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
@@ -84,7 +85,7 @@ pub enum TargetOutcome {
     Off,
     /// The target moves the head of a chain, which follows its path.
     Leads,
-    /// The report of the solver of all whole-body targets.
+    /// The report of the solver of all whole-body targets, or of the targets of the chain.
     WholeBody(Report),
     /// The report of the limb.
     Limb(Box<LimbReport>),
@@ -118,9 +119,9 @@ impl SkeletonRig {
     /// since the step before, its targets and joints included.
     ///
     /// The whole-body targets are solved together, from the FK pose, and with
-    /// [`SkeletonRig::body_follows`] the bases that limb targets pull; the limb targets then one
-    /// after the other, in the order of their joints, but each after those that move the joints
-    /// that it is on. The work of the solver is bounded: see
+    /// [`SkeletonRig::body_follows`] the bases that limb targets pull; the targets of chains and limbs
+    /// then one after the other, in the order of their joints, but each after those that move the
+    /// joints that it is on. Chains that have a joint in common are solved together. The work of the solver is bounded: see
     /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
     ///
     /// With a [balance](SkeletonRig::balance), both are repeated until the centre of mass is where it
@@ -218,15 +219,15 @@ impl SkeletonRig {
 
     fn posed(&self, time: f64, carried: &mut Carried, of: StepUse) -> StepPose {
         let fk = self.fk_at(time);
+        let start = carried.take_start();
         if self.active_balance().is_some() {
-            return self.balanced(fk, time, carried, of);
+            return self.balanced(fk, time, carried, &start, of);
         }
         let mut step = self.begin_step(fk);
-        let has_limbs = self.targets.iter().any(|it| self.is_solved_for(it) && it.limb().is_some());
-        let poses = of != StepUse::State || has_limbs;
-        self.solve_body(&mut step, None, time, carried, poses);
+        let poses = of != StepUse::State || !self.parts().is_empty();
+        self.solve_body(&mut step, None, time, carried, &start, poses);
         let carried = (of != StepUse::Pose).then_some(carried);
-        self.solve_limbs(&mut step, time, carried);
+        self.solve_parts(&mut step, time, carried, &start);
         step
     }
 
@@ -239,13 +240,14 @@ impl SkeletonRig {
         StepPose { solved: fk.clone(), fk, outcomes, body_refused: None }
     }
 
-    /// The step of a figure that is balanced: body and limbs by turns, until the centre of mass is
+    /// The step of a figure that is balanced: body and parts by turns, until the centre of mass is
     /// where it should be or does not come much nearer.
     fn balanced(
         &self,
         fk: Shared<Skeleton>,
         time: f64,
         carried: &mut Carried,
+        start: &Start,
         of: StepUse,
     ) -> StepPose {
         const MOST_TURNS: usize = 8;
@@ -253,19 +255,18 @@ impl SkeletonRig {
         /// another one.
         const WORTH: f32 = 0.8;
         let limbs_before = carried.limbs().clone();
-        let mut footing = carried.take_footing().unwrap_or_else(|| {
-            let mut first = self.begin_step(Shared::from(carried.first_pose(&fk)));
-            self.solve_limbs(&mut first, time, None);
-            self.footing(&first.solved)
-        });
+        let mut footing = carried
+            .take_footing()
+            .unwrap_or_else(|| self.footing(&self.with_limbs(start.first_pose(&fk), time)));
         let mut way = BalanceWay::default();
         let mut turn = 0;
         loop {
             turn += 1;
             carried.restore_limbs(&limbs_before);
             let mut step = self.begin_step(fk.clone());
-            self.solve_body(&mut step, Some(&footing), time, carried, true);
-            self.solve_limbs(&mut step, time, (of != StepUse::Pose).then_some(&mut *carried));
+            self.solve_body(&mut step, Some(&footing), time, carried, start, true);
+            let carried_on = (of != StepUse::Pose).then_some(&mut *carried);
+            self.solve_parts(&mut step, time, carried_on, start);
             footing = self.footing(&step.solved);
             let left = way.left;
             let report = self.balance_report(&step.solved);
@@ -290,27 +291,17 @@ impl SkeletonRig {
         footing: Option<&Footing>,
         time: f64,
         carried: &mut Carried,
+        start: &Start,
         poses: bool,
     ) {
         let StepPose { solved, outcomes, body_refused, .. } = step;
-        let method = self.solver.method;
-        let (mut active, mut active_slots) = (Vec::new(), Vec::new());
-        for (target, slot) in self.targets.iter().zip(outcomes.iter_mut()) {
-            if !self.is_solved_for(target) || target.kind != TargetKind::WholeBody {
-                continue;
-            }
-            let (joint, tip) = (target.joint, self.tip_target(target, solved, time));
-            match method.refusal_of(&tip) {
-                Some(reason) => {
-                    let refused = SolveError::CannotOrient { method, joint, reason };
-                    *slot = TargetOutcome::Refused(refused);
-                }
-                None => {
-                    active.push(BodyTarget { tip, influence: target.influence });
-                    active_slots.push(slot);
-                }
-            }
-        }
+        let is_body = |index: &usize| {
+            let target = &self.targets[*index];
+            self.is_solved_for(target) && target.kind == TargetKind::WholeBody
+        };
+        let indices: Vec<usize> = (0..self.targets.len()).filter(is_body).collect();
+        let active = self.accepted(&indices, solved, time, outcomes);
+        let (indices, active): (Vec<usize>, Vec<BodyTarget>) = active.into_iter().unzip();
         let mut options = self.solver;
         if active.is_empty() && options.method.is_closed_form() {
             // Limbs pull more joints than the closed form has.
@@ -322,51 +313,141 @@ impl SkeletonRig {
         let limbs = footing.map_or(&[][..], |footing| &footing.limbs);
         let targets = [active, pulled, Vec::from_iter(balance)].concat();
         if targets.is_empty() {
-            return carried.forget_body();
+            return carried.body().forget();
         }
-        let (outcome, refused) = match carried.step_body(&options, solved, &targets, limbs, poses) {
+        let solve = carried.body().step(start, &options, solved, &targets, limbs, poses);
+        let (outcome, refused) = match solve {
             Ok(report) => (TargetOutcome::WholeBody(report), None),
             Err(error) => (TargetOutcome::Refused(error.clone()), Some(error)),
         };
-        active_slots.into_iter().for_each(|slot| *slot = outcome.clone());
+        indices.into_iter().for_each(|index| outcomes[index] = outcome.clone());
         *body_refused = refused.filter(|_| is_pulled);
+    }
+
+    /// The targets with these indices for a solver of chains, without those that the method refuses;
+    /// these have the refusal as their outcome.
+    fn accepted(
+        &self,
+        indices: &[usize],
+        fk: &Skeleton,
+        time: f64,
+        outcomes: &mut [TargetOutcome],
+    ) -> Vec<(usize, BodyTarget)> {
+        let method = self.solver.method;
+        let mut accepted = Vec::new();
+        for &index in indices {
+            let target = &self.targets[index];
+            let (joint, tip) = (target.joint, self.tip_target(target, fk, time));
+            match method.refusal_of(&tip) {
+                Some(reason) => {
+                    let refused = SolveError::CannotOrient { method, joint, reason };
+                    outcomes[index] = TargetOutcome::Refused(refused);
+                }
+                None => accepted.push((index, BodyTarget { tip, influence: target.influence })),
+            }
+        }
+        accepted
     }
 
     /// A pose with its limbs posed by their targets, from the angles that they have in it.
     pub(super) fn with_limbs(&self, pose: Skeleton, time: f64) -> Shared<Skeleton> {
         let mut step = self.begin_step(Shared::from(pose));
-        self.solve_limbs(&mut step, time, None);
+        let mut limbs = self.parts();
+        limbs.retain(|index| self.targets[*index].limb().is_some());
+        for index in PartOrder::new(self, limbs).indices {
+            self.solve_limb(&mut step, index, time, None);
+        }
         step.solved
     }
 
-    fn solve_limbs(&self, step: &mut StepPose, time: f64, mut carried: Option<&mut Carried>) {
-        let StepPose { solved, outcomes, .. } = step;
-        let is_limb = |index: &usize| {
+    /// Indices of the targets that are solved after the body, those of chains and limbs.
+    fn parts(&self) -> Vec<usize> {
+        let is_part = |index: &usize| {
             let target = &self.targets[*index];
-            self.is_solved_for(target) && target.limb().is_some()
+            self.is_solved_for(target) && target.kind != TargetKind::WholeBody
         };
-        let limbs: Vec<usize> = (0..self.targets.len()).filter(is_limb).collect();
+        (0..self.targets.len()).filter(is_part).collect()
+    }
+
+    /// Solves the targets of chains and limbs.
+    fn solve_parts(
+        &self,
+        step: &mut StepPose,
+        time: f64,
+        mut carried: Option<&mut Carried>,
+        start: &Start,
+    ) {
+        let parts = self.parts();
         if let Some(carried) = &mut carried {
-            carried.retain_limbs(|joint| limbs.iter().any(|it| self.targets[*it].joint == joint));
+            carried.retain_parts(|joint| parts.iter().any(|it| self.targets[*it].joint == joint));
         }
-        for index in LimbOrder::new(self, limbs).indices {
-            let target = &self.targets[index];
-            let Some(settings) = target.limb() else { continue };
-            outcomes[index] = match Limb::ending_at(solved, target.joint) {
-                Ok(limb) => {
-                    let limb_target = target.limb_target(settings, solved, time);
-                    let solved = solved.make_mut();
-                    let report = match &mut carried {
-                        Some(carried) => {
-                            limb_ik::step(solved, limb, &limb_target, carried.limb(target.joint))
-                        }
-                        None => limb_ik::solve(solved, limb, &limb_target),
-                    };
-                    let singular = TargetOutcome::Refused(SolveError::Singular);
-                    report.map_or(singular, |report| TargetOutcome::Limb(Box::new(report)))
+        for together in self.solved_together(PartOrder::new(self, parts).indices) {
+            match self.targets[together[0]].kind {
+                TargetKind::Limb(_) => {
+                    self.solve_limb(step, together[0], time, carried.as_deref_mut());
                 }
-                Err(error) => TargetOutcome::NoLimb(error),
-            };
+                _ => self.solve_chains(step, &together, time, carried.as_deref_mut(), start),
+            }
+        }
+    }
+
+    fn solve_limb(
+        &self,
+        step: &mut StepPose,
+        index: usize,
+        time: f64,
+        carried: Option<&mut Carried>,
+    ) {
+        let target = &self.targets[index];
+        let Some(settings) = target.limb() else { return };
+        let StepPose { solved, outcomes, .. } = step;
+        outcomes[index] = match Limb::ending_at(solved, target.joint) {
+            Ok(limb) => {
+                let limb_target = target.limb_target(settings, solved, time);
+                let solved = solved.make_mut();
+                let report = match carried {
+                    Some(carried) => {
+                        limb_ik::step(solved, limb, &limb_target, carried.limb(target.joint))
+                    }
+                    None => limb_ik::solve(solved, limb, &limb_target),
+                };
+                let singular = TargetOutcome::Refused(SolveError::Singular);
+                report.map_or(singular, |report| TargetOutcome::Limb(Box::new(report)))
+            }
+            Err(error) => TargetOutcome::NoLimb(error),
+        };
+    }
+
+    /// Solves the targets of chains that have joints in common.
+    fn solve_chains(
+        &self,
+        step: &mut StepPose,
+        together: &[usize],
+        time: f64,
+        carried: Option<&mut Carried>,
+        start: &Start,
+    ) {
+        let StepPose { solved, outcomes, .. } = step;
+        let (turned, options) = (self.turned_together(together), self.chain_options());
+        let mut pose = Shared::from(with_others_locked(solved, &turned));
+        let active = self.accepted(together, &pose, time, outcomes);
+        let (indices, targets): (Vec<usize>, Vec<BodyTarget>) = active.into_iter().unzip();
+        if targets.is_empty() {
+            return;
+        }
+        let mut afresh = Bodies::default();
+        let bodies = match carried {
+            Some(carried) => carried.chain(self.targets[together[0]].joint),
+            None => &mut afresh,
+        };
+        let outcome = match bodies.step(start, &options, &mut pose, &targets, &[], true) {
+            Ok(report) => TargetOutcome::WholeBody(report),
+            Err(error) => TargetOutcome::Refused(error),
+        };
+        indices.into_iter().for_each(|index| outcomes[index] = outcome.clone());
+        for joint in turned {
+            let rotation = pose[joint].rotation;
+            solved.make_mut().write_local(joint, |joint| joint.rotation = rotation);
         }
     }
 }
@@ -402,7 +483,8 @@ impl SkeletonRig {
         let Ok(soft) = SoftReach::new(target.softness, 1.0, 0.0) else { return point };
         let turns = |joint: &JointId| !fk[*joint].locked;
         let top = fk.ancestors(target.joint).filter(turns).last();
-        let Some(top) = top.filter(|_| !soft.is_hard() && self.solver.root != Root::Free) else {
+        let is_free = self.solver.root == Root::Free && target.kind == TargetKind::WholeBody;
+        let Some(top) = top.filter(|_| !soft.is_hard() && !is_free) else {
             return point;
         };
         let below = fk.ancestors(target.joint).take_while(|joint| *joint != top);
@@ -486,8 +568,8 @@ pub enum TargetSpaceError {
         /// The joint that the target is on.
         joint: JointId,
     },
-    /// Limbs whose targets are on each other.
-    #[error("the target of joint {target} must not be on a limb whose target depends on it")]
+    /// Limbs or chains whose targets are on each other.
+    #[error("the target of joint {target} must not be on a joint whose target depends on it")]
     Cycle {
         /// Joint of one of the targets.
         target: JointId,
@@ -540,24 +622,25 @@ impl SkeletonRig {
                 error.map_or(Ok(()), Err)?;
             }
         }
-        let limbs = (0..self.targets.len()).filter(|index| self.targets[*index].limb().is_some());
-        match LimbOrder::new(self, limbs.collect()).cycle {
+        let is_part = |index: &usize| self.targets[*index].kind != TargetKind::WholeBody;
+        let parts = (0..self.targets.len()).filter(is_part);
+        match PartOrder::new(self, parts.collect()).cycle {
             Some(index) => Err(TargetSpaceError::Cycle { target: self.targets[index].joint }),
             None => Ok(()),
         }
     }
 }
 
-/// Indices of limb targets in the order in which they are solved: those that move a joint before
-/// those that depend on it, otherwise in the order of their joints.
-pub(super) struct LimbOrder {
+/// Indices of targets of chains and limbs in the order in which they are solved: those that move a
+/// joint before those that depend on it, otherwise in the order of their joints.
+pub(super) struct PartOrder {
     pub indices: Vec<usize>,
     /// A target that depends on itself through others.
     cycle: Option<usize>,
 }
 
-impl LimbOrder {
-    /// The order of the limb targets with these indices.
+impl PartOrder {
+    /// The order of the targets with these indices.
     pub fn new(rig: &SkeletonRig, mut left: Vec<usize>) -> Self {
         left.sort_by_key(|index| rig.targets[*index].joint);
         if !left.iter().any(|index| is_on_joint(&rig.targets[*index])) {

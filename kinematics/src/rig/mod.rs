@@ -6,6 +6,7 @@ mod balance;
 mod balance_target;
 mod body_follows;
 mod carried;
+mod chain;
 mod crowd;
 mod diagnose;
 mod drag;

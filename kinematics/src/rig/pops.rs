@@ -9,13 +9,13 @@
 //! joints. A step pops if the ratio of the two is above 2; of a limb, above the bound of
 //! [`pop`](crate::pop).
 
-use glam::{DMat3, DQuat, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::limb_frames::LimbFrames;
 use super::pop_cause::RigPopCause;
 use super::skeleton_rig::SkeletonRig;
-use super::target::Target;
+use super::target::{Target, TargetKind};
 use crate::pop::{self, ElbowStep, PosedLimb};
 use crate::skeleton::{JointId, RotationAxis, Skeleton};
 use crate::twist::{TwistReference, TwistReferenceKind};
@@ -53,8 +53,8 @@ const ALIKE: f64 = 0.999;
 const JUMP: f64 = 0.1;
 
 impl<'a> RigMoment<'a> {
-    /// The pops of a step from this moment to another one, at most one for the whole-body targets
-    /// and one for each limb. `is_missed` says for both moments whether the target with an index is
+    /// The pops of a step from this moment to another one, at most one for the whole-body targets,
+    /// one for chains that are solved together, and one for each limb. `is_missed` says for both moments whether the target with an index is
     /// missed.
     pub fn pops_to(
         &self,
@@ -70,14 +70,21 @@ impl<'a> RigMoment<'a> {
             both.iter().any(|target| after.rig.is_solved_for(target))
         };
         let targets: Vec<usize> = (0..after.rig.targets.len()).filter(poses).collect();
-        let (limbs, bodies): (Vec<usize>, Vec<usize>) =
-            targets.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
+        let (bodies, parts): (Vec<usize>, Vec<usize>) = targets
+            .into_iter()
+            .partition(|index| after.rig.targets[*index].kind == TargetKind::WholeBody);
+        let (limbs, chains): (Vec<usize>, Vec<usize>) =
+            parts.into_iter().partition(|index| after.rig.targets[*index].limb().is_some());
         let pulling = limbs.iter().filter(|it| after.rig.pulls_body(&after.rig.targets[**it]));
         let body: Vec<usize> = bodies.iter().chain(pulling).copied().collect();
         let of_limb =
             |index: &usize| Step::of_limb([self, after], *index, is_missed).pop(&[*index]);
+        let of_chains =
+            |chains: &Vec<usize>| Step::of_chains([self, after], chains, is_missed).pop(chains);
+        let chains = after.rig.solved_together(chains);
         let of_body = Step::of_body([self, after], &body, is_missed).pop(&body);
-        limbs.iter().filter_map(of_limb).chain(of_body).collect()
+        let parts = limbs.iter().filter_map(of_limb).chain(chains.iter().filter_map(of_chains));
+        parts.chain(of_body).collect()
     }
 }
 
@@ -87,7 +94,7 @@ struct Step<'a> {
     after: RigMoment<'a>,
     /// The joints that the targets turn.
     joints: Vec<JointId>,
-    /// The limb of the target before and after the step; `None` for whole-body targets.
+    /// The limb of the target before and after the step; `None` for other targets.
     limb: Option<[LimbFrames; 2]>,
     /// Base and tip of each joint, if these joints had been taken along by FK.
     taken: Vec<[DVec3; 2]>,
@@ -106,6 +113,17 @@ impl<'a> Step<'a> {
         let frames = |moment: &RigMoment<'_>| moment.rig.limb_frames(moment.evaluated, target);
         let limb = frames(before).zip(frames(after)).map(<[LimbFrames; 2]>::from);
         Self { before: *before, after: *after, joints, limb, taken, is_missed }
+    }
+
+    /// The step of the joints that targets of chains turn together.
+    fn of_chains(
+        [before, after]: [&RigMoment<'a>; 2],
+        targets: &[usize],
+        is_missed: [&'a dyn Fn(usize) -> bool; 2],
+    ) -> Self {
+        let joints = after.rig.turned_together(targets);
+        let taken = taken_along(before, after, &joints);
+        Self { before: *before, after: *after, joints, limb: None, taken, is_missed }
     }
 
     /// The step of the joints that whole-body targets turn together, and of those that limb targets
@@ -196,21 +214,29 @@ impl Step<'_> {
         way.max(of_influence).max(of_twist).max(of_pole).max(of_turn)
     }
 
-    /// Angle in radians by which the rotation that a whole-body target asks for, or the direction of
-    /// its aim, turns; 0 without either.
+    /// Angle in radians by which the rotation that a target asks for, or the direction of its aim,
+    /// turns, seen from the joint above a chain; 0 without either.
     fn wanted_turn(&self, index: usize) -> f64 {
         let [before, after] = self.both(index).map(|(target, _)| target);
         if !(before.turns_joint() && after.turns_joint()) {
             return 0.0;
         }
         let [from, to] = [self.before, self.after].map(|moment| &moment.evaluated.solved);
-        let rotations = before.orientation_in_world(from).zip(after.orientation_in_world(to));
+        let above = after.top_of_chain(&self.after.rig.skeleton).and_then(|top| from[top].parent);
+        let rotation = |target: &Target, pose: &Skeleton| {
+            let above = above.map_or(Quat::IDENTITY, |it| pose.rotation_in_world(it).as_quat());
+            Some(above.inverse() * target.orientation_in_world(pose)?)
+        };
+        let rotations = rotation(before, from).zip(rotation(after, to));
         let of_rotation = rotations.map(|(from, to)| from.angle_between(to));
+        let seen = |point: Vec3, pose: &Skeleton| match above {
+            Some(above) => pose.full_transform(above).inverse().transform_point3(point),
+            None => point,
+        };
+        // The eye is where it was, as the joint above takes it along.
+        let eye = from.joint(after.joint).map(|_| seen(from.base(after.joint), from));
         let sight = |target: &Target, pose: &Skeleton| {
-            Some(
-                target.aim_point_in_world(pose)?
-                    - from.joint(target.joint).map(|_| from.base(target.joint))?,
-            )
+            Some(seen(target.aim_point_in_world(pose)?, pose) - eye?)
         };
         let sights = sight(before, from).zip(sight(after, to));
         let of_aim = sights.map(|(from, to)| from.angle_between(to));
@@ -238,7 +264,7 @@ impl Step<'_> {
     fn length(&self, index: usize) -> f64 {
         match self.limb {
             Some([_, after]) => f64::from(after.bones().outer_limit()),
-            None => f64::from(self.after.rig.length_to(self.after.rig.targets[index].joint)),
+            None => f64::from(self.after.rig.length_of_chain(&self.after.rig.targets[index])),
         }
     }
 }

@@ -267,8 +267,12 @@ impl SkeletonRig {
         let Some(last) = self.skeleton.joint(joint) else { return 0.0 };
         let above = self.skeleton.ancestors(joint).map(|joint| &self.skeleton[joint]);
         let offsets = above.filter(|joint| joint.parent.is_some()).map(|it| it.offset.length());
-        let scale = self.skeleton.transform().matrix3.determinant().abs().cbrt();
-        (last.axis.length() + offsets.sum::<f32>()) * scale
+        (last.axis.length() + offsets.sum::<f32>()) * self.scale()
+    }
+
+    /// The mean scale of the skeleton's transform.
+    pub(super) fn scale(&self) -> f32 {
+        self.skeleton.transform().matrix3.determinant().abs().cbrt()
     }
 
     /// [`SkeletonRig::reach`] with a buffer for intermediate results.

@@ -1,4 +1,5 @@
 use core::f32::consts::TAU;
+use core::num::NonZeroU32;
 
 use glam::{Affine3A, EulerRot, Mat3, Mat3A, Quat, Vec3};
 
@@ -25,12 +26,12 @@ pub struct Target {
     pub kind: TargetKind,
     /// Euler angles in radians of the joint that the target turns, in the target's space, R_z · R_y
     /// · R_x in the frame of that joint: the hand or foot at the end of a limb, or the joint of a
-    /// whole-body target. `None` for a hand that follows the lower bone, and for any rotation.
+    /// target that is no limb's. `None` for a hand that follows the lower bone, and for any rotation.
     pub orientation: Option<Vec3>,
-    /// An axis of a whole-body target's joint that is aimed at a point; not together with an
-    /// orientation.
+    /// An axis of the joint that is aimed at a point; not together with an orientation, and not of a
+    /// limb target.
     pub aim: Option<Aim>,
-    /// Weight of the orientation or aim of a whole-body target, relative to weights of places: a turn by 1
+    /// Weight of the orientation or aim of a target that is no limb's, relative to weights of places: a turn by 1
     /// radian counts like a distance of a quarter of the chain's length. 0 or more.
     pub orientation_weight: f32,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
@@ -63,6 +64,9 @@ pub enum TargetKind {
     /// targets, by the rig's solver.
     #[default]
     WholeBody,
+    /// This number of joints, from the target's joint upwards, after the body: by the rig's solver,
+    /// together with the targets of chains that have one of the joints, too.
+    Chain(NonZeroU32),
     /// The two bones of the [`Limb`](crate::limb_ik::Limb) that ends at the tip of the
     /// target's joint, in closed form.
     Limb(LimbSettings),
@@ -91,25 +95,37 @@ impl Target {
         }
     }
 
-    /// The limb that the target poses; `None` for a whole-body target and a joint that ends none.
+    /// The limb that the target poses; `None` for another target and a joint that ends none.
     pub fn limb_in(&self, skeleton: &Skeleton) -> Option<Limb> {
         self.limb().and_then(|_| Limb::ending_at(skeleton, self.joint).ok())
     }
 
-    /// Settings of a limb target; `None` for a whole-body target.
+    /// Settings of a limb target; `None` for another target.
     pub fn limb(&self) -> Option<&LimbSettings> {
         match &self.kind {
-            TargetKind::WholeBody => None,
+            TargetKind::WholeBody | TargetKind::Chain(_) => None,
             TargetKind::Limb(settings) => Some(settings),
         }
     }
 
-    /// Settings of a limb target; `None` for a whole-body target.
+    /// Settings of a limb target; `None` for another target.
     pub fn limb_mut(&mut self) -> Option<&mut LimbSettings> {
         match &mut self.kind {
-            TargetKind::WholeBody => None,
+            TargetKind::WholeBody | TargetKind::Chain(_) => None,
             TargetKind::Limb(settings) => Some(settings),
         }
+    }
+
+    /// The target as one of another kind. A limb's orientation is about another joint than that of
+    /// other targets, so that it is not kept from one to the other, and a limb aims at nothing.
+    #[must_use]
+    pub fn with_kind(self, kind: TargetKind) -> Self {
+        let changed = Self { kind, ..self };
+        if changed.limb().is_some() == self.limb().is_some() {
+            return changed;
+        }
+        let weight = if self.has_free_place() { 1.0 } else { self.weight };
+        Self { orientation: None, aim: None, weight, ..changed }
     }
 
     /// True if the orientation, the aim and the settings of a limb target are finite.
@@ -122,12 +138,18 @@ impl Target {
     }
 
     /// The joint that the target's orientation is about: the hand or foot at the end of a limb, or
-    /// the joint of a whole-body target; `None` for a limb without a hand.
+    /// the target's joint; `None` for a limb without a hand.
     pub fn oriented_joint(&self, skeleton: &Skeleton) -> Option<JointId> {
         match self.kind {
-            TargetKind::WholeBody => Some(self.joint),
+            TargetKind::WholeBody | TargetKind::Chain(_) => Some(self.joint),
             TargetKind::Limb(_) => Limb::ending_at(skeleton, self.joint).ok()?.hand,
         }
+    }
+
+    /// The uppermost joint of the target's chain, locked or not; `None` for another target.
+    pub(super) fn top_of_chain(&self, skeleton: &Skeleton) -> Option<JointId> {
+        let TargetKind::Chain(length) = self.kind else { return None };
+        skeleton.ancestors(self.joint).take(length.get() as usize).last()
     }
 
     /// True if the target poses the skeleton.
@@ -140,7 +162,7 @@ impl Target {
         self.weight == 0.0
     }
 
-    /// True if the target asks for a rotation or an aim of the joint of a whole body.
+    /// True if the target asks for a rotation or an aim of its joint, other than of a limb's hand.
     pub fn turns_joint(&self) -> bool {
         self.limb().is_none() && (self.orientation.is_some() || self.aim.is_some())
     }
@@ -495,16 +517,20 @@ impl TargetSpace {
 /// The joints that a target turns.
 pub(super) struct MovedJoints {
     pub turned: Vec<JointId>,
-    /// The upper joint of a limb.
+    /// The uppermost joint of a limb or chain.
     upper: Option<JointId>,
 }
 
 impl MovedJoints {
     /// The joints that `target` turns if it poses a skeleton whose solver has this mode of roots.
     pub fn new(skeleton: &Skeleton, root: Root, target: &Target) -> Self {
-        let limb = target.limb_in(skeleton);
-        let turned = Self::turned(skeleton, root, target).collect();
-        Self { turned, upper: limb.map(|limb| limb.upper) }
+        let turned: Vec<JointId> = Self::turned(skeleton, root, target).collect();
+        let upper = match target.kind {
+            TargetKind::WholeBody => None,
+            TargetKind::Chain(_) => turned.last().copied(),
+            TargetKind::Limb(_) => target.limb_in(skeleton).map(|limb| limb.upper),
+        };
+        Self { turned, upper }
     }
 
     /// The joints that are turned, one after the other.
@@ -513,13 +539,17 @@ impl MovedJoints {
         root: Root,
         target: &Target,
     ) -> impl Iterator<Item = JointId> {
-        let is_free = root == Root::Free;
+        let most = match target.kind {
+            TargetKind::WholeBody => Some(usize::MAX),
+            TargetKind::Chain(length) => Some(length.get() as usize),
+            TargetKind::Limb(_) => None,
+        };
+        let is_moved = root == Root::Free && target.kind == TargetKind::WholeBody;
         let can_turn = move |joint: &JointId| {
             let joint = &skeleton[*joint];
-            !joint.locked || (is_free && joint.parent.is_none())
+            !joint.locked || (is_moved && joint.parent.is_none())
         };
-        let is_body = matches!(target.kind, TargetKind::WholeBody);
-        let body = is_body.then(|| skeleton.ancestors(target.joint).filter(can_turn));
+        let body = most.map(|most| skeleton.ancestors(target.joint).take(most).filter(can_turn));
         let limb = target.limb_in(skeleton).map(Limb::joints);
         body.into_iter().flatten().chain(limb.into_iter().flatten())
     }
@@ -530,7 +560,8 @@ impl MovedJoints {
     }
 
     /// True if `target`, which moves these joints, must be solved after a target that moves the
-    /// joints of `other`: because it is on one of them, or because its limb is attached to one.
+    /// joints of `other`: because it is on one of them, or because its limb or chain is attached to
+    /// one.
     pub fn depends_on(&self, skeleton: &Skeleton, target: &Target, other: &Self) -> bool {
         let base = self.upper.and_then(|upper| skeleton[upper].parent);
         let spaces = target.spaces().filter_map(TargetSpace::joint);

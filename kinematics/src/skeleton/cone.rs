@@ -169,7 +169,7 @@ impl BoneCone {
     }
 
     /// The turn that brings the bone to the middle, in the joint's frame.
-    pub fn to_middle(&self) -> Quat {
+    pub fn turn_to_middle(&self) -> Quat {
         let basis = DQuat::from_mat3(&self.basis);
         (basis * self.cone.to_middle() * basis.inverse()).as_quat()
     }

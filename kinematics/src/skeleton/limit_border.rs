@@ -122,7 +122,7 @@ impl Joint {
         let axis = Quat::from_axis_angle(bone, azimuth) * start;
         let twist = 0.5 * cone.twist.min + 0.5 * cone.twist.max;
         let turned = Mat3::from_axis_angle(axis, swing) * Mat3::from_axis_angle(bone, twist);
-        let to_middle = Mat3A::from_quat(self.limits.to_middle()?);
+        let to_middle = Mat3A::from_quat(self.limits.turn_to_middle()?);
         Some(nearest_angles(to_middle * Mat3A::from(turned), self.rotation))
     }
 

@@ -103,9 +103,9 @@ impl JointLimits {
     }
 
     /// The turn that brings the bone to the middle of a cone, in the joint's frame.
-    pub(super) fn to_middle(&self) -> Option<Quat> {
+    pub(super) fn turn_to_middle(&self) -> Option<Quat> {
         match self.kind {
-            Kind::Cone(cone) => Some(cone.to_middle()),
+            Kind::Cone(cone) => Some(cone.turn_to_middle()),
             Kind::Angles(_) => None,
         }
     }

@@ -24,7 +24,7 @@ use targets::GivenTarget;
 The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
-   "targets":[{"joint":N,"kind":"limb"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
+   "targets":[{"joint":N,"kind":"limb"|"chain"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
     "error":E,"rotation_error_deg":A,"aim_error_deg":A,
     "limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
     "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
@@ -35,7 +35,7 @@ The file is not changed. The output is one line of JSON, in world space:
     "residual_with_remedy":E,"rotation_error_with_remedy_deg":A}, …]}
 Joints keep the file's order and indices. Targets are the enabled ones; error is the distance from
 tip to target in the printed pose, and rotation_error_deg the angle from the rotation of the hand or
-foot, or of a whole-body target's joint, to that which the target asks for; aim_error_deg is the
+foot, or of another target's joint, to that which the target asks for; aim_error_deg is the
 angle from the axis that is aimed to its point. Both are null if the target asks for none. Limb has
 the figures of a limb's target in the evaluated pose: the place of its base, the unit vector from
 there to the hand, the angle of the elbow about it from the Limb frame, the lengths of the bones, the distance to the hand,
@@ -46,8 +46,8 @@ of the solver of the whole-body targets, else null, also if there is nothing to 
 causes for which targets are not reached, the most likely first, each with the remedy that helps
 most and the distance from tip to target and the angle that it leaves, or null if no remedy was
 found; it is empty if all targets are reached, and with --fk. Causes: out_of_reach, limits,
-rotation_limits, turn, locked, conflict, stalled, lost, singular, out_of_iterations, balance, influence. A
-solve that does not converge is not an error. `ik-arm solve` solves two bones without a file.
+rotation_limits, turn, locked, conflict, stalled, lost, singular, out_of_iterations, balance,
+short_chain, influence. A solve that does not converge is not an error. `ik-arm solve` solves two bones without a file.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --rotation left_hand=0,90,0"#,
     mut_arg("file", |file| file.help(open::input_help("File to pose")))
@@ -74,9 +74,9 @@ pub struct PoseArgs {
     /// of a limb with a place where it is, of any other joint with a free place
     #[arg(long = "rotation", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     rotations: Vec<GivenTarget>,
-    /// Aim the joint of a whole-body target at a point in the world; repeatable. The axis is that of
-    /// the target's aim, else z of the joint's own space, where faces look. A joint without a target
-    /// gets one with a free place: its tip may go anywhere
+    /// Aim the joint of a target, not of a limb's, at a point in the world; repeatable. The axis is
+    /// that of the target's aim, else z of the joint's own space, where faces look. A joint without a
+    /// target gets one with a free place: its tip may go anywhere
     #[arg(long = "aim", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     aims: Vec<GivenTarget>,
     /// Solve all enabled targets together from the FK pose with this solver, at full influence

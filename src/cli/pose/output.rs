@@ -166,6 +166,7 @@ impl<'a> PoseLine<'a> {
                 kind: match target.kind {
                     TargetKind::Limb(_) => "limb",
                     TargetKind::WholeBody => "whole_body",
+                    TargetKind::Chain(_) => "chain",
                 },
                 influence: target.influence,
                 target: point,
@@ -254,7 +255,9 @@ impl AnsweredPose {
     /// The pose by the rig's targets.
     pub fn by_targets(posed: &Posed) -> Self {
         let outcomes = || posed.targets().iter().map(|target| &target.outcome);
-        let report = outcomes().find_map(|outcome| match outcome {
+        let targets = posed.document().rig.targets.iter().zip(outcomes());
+        let bodies = targets.filter(|(target, _)| target.kind == TargetKind::WholeBody);
+        let report = bodies.into_iter().find_map(|(_, outcome)| match outcome {
             TargetOutcome::WholeBody(report) => Some(*report),
             _ => None,
         });

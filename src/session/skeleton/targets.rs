@@ -217,6 +217,7 @@ fn remedy_label(remedy: &Remedy) -> &'static str {
         Remedy::SetRoot(_) => "Change root",
         Remedy::FollowBody => "Let body follow",
         Remedy::FreeBalance => "Remove balance",
+        Remedy::LengthenChain { .. } => "Lengthen chain",
         Remedy::WidenLimits(_) => "Widen limits",
         Remedy::Unlock(_) => "Unlock joints",
         Remedy::SwitchOff(_) => "Switch off target",

@@ -3,13 +3,16 @@
 mod limb;
 mod turn;
 
+use core::num::NonZeroU32;
+
 use thiserror::Error;
 
 use super::carried::Carried;
+use super::chain::with_others_locked;
 use super::evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport};
 use super::skeleton_rig::SkeletonRig;
 use super::target::{Target, TargetKind};
-use crate::chain_ik::{self, ChainTarget, SolveError};
+use crate::chain_ik::{self, ChainTarget, SolveError, SolverOptions};
 use crate::diagnosis::{
     Angle, Cause, Diagnosis, Remedy, TriedRemedy, in_turn, remove_limits, widen_to_contain,
 };
@@ -57,11 +60,10 @@ impl SkeletonRig {
             .copied()
             .filter(|it| full.is_missed(*it, &evaluated_full, tolerance))
             .collect();
-        let whole_body = full.diagnose_whole_body(&still_missed, &evaluated_full, time);
+        let of_solver = full.diagnose_solved(&still_missed, &evaluated_full, time);
         let afresh = (*before != Carried::default()).then(|| full.evaluate(time));
         let is_lost = |index: usize| {
-            let is_whole_body = self.targets[index].kind == TargetKind::WholeBody;
-            let afresh = afresh.as_ref().filter(|_| is_whole_body);
+            let afresh = afresh.as_ref().filter(|_| self.targets[index].limb().is_none());
             afresh.is_some_and(|afresh| !full.is_missed(index, afresh, tolerance))
         };
 
@@ -83,13 +85,14 @@ impl SkeletonRig {
                     found.push(case.diagnosis(Cause::Lost, Vec::new(), Vec::new()));
                 }
                 let report = &evaluated_full.targets[index];
-                let of_target = whole_body.iter().filter(|it| it.target == case.target.joint);
+                let of_target = of_solver.iter().filter(|it| it.target == case.target.joint);
                 match case.turn(report) {
                     Some(turn) => found.push(turn),
                     None => found.extend(of_target.map(|it| case.tried_again(it))),
                 }
                 found.extend(case.limb(report));
                 found.extend(case.balance());
+                found.extend(case.longer_chain());
             }
             case.sorted(found)
         };
@@ -107,23 +110,55 @@ impl SkeletonRig {
         target.enabled && !has_converged && !is_reached
     }
 
-    /// The causes for the whole-body targets among those with the indices `missed`.
-    fn diagnose_whole_body(
+    /// The causes for the targets of the whole body and of chains among those with the indices
+    /// `missed`.
+    fn diagnose_solved(
         &self,
         missed: &[usize],
         evaluated: &EvaluatedSkeleton,
         time: f64,
     ) -> Vec<Diagnosis> {
-        let is_whole_body = |target: &&Target| target.kind == TargetKind::WholeBody;
-        let missed = missed.iter().map(|index| &self.targets[*index]).filter(is_whole_body);
-        let missed: Vec<JointId> = missed.map(|target| target.joint).collect();
+        let of_kind = |is_kind: fn(&TargetKind) -> bool| {
+            missed.iter().copied().filter(move |index| is_kind(&self.targets[*index].kind))
+        };
+        let is_body = |index: &usize| {
+            let target = &self.targets[*index];
+            self.is_solved_for(target) && target.kind == TargetKind::WholeBody
+        };
+        let body: Vec<usize> = (0..self.targets.len()).filter(is_body).collect();
+        let missed_by_body: Vec<usize> = of_kind(|it| *it == TargetKind::WholeBody).collect();
+        let mut found =
+            self.diagnose_together(&evaluated.fk, &body, &missed_by_body, &self.solver, time);
+        for index in of_kind(|kind| matches!(kind, TargetKind::Chain(_))) {
+            let together = self.chains_with(index);
+            let turned = self.turned_together(&together);
+            let mut pose = with_others_locked(&evaluated.solved, &turned);
+            for joint in turned {
+                let rotation = evaluated.fk[joint].rotation;
+                pose.write_local(joint, |joint| joint.rotation = rotation);
+            }
+            let options = self.chain_options();
+            found.extend(self.diagnose_together(&pose, &together, &[index], &options, time));
+        }
+        found
+    }
+
+    /// The causes for missed targets among those that are solved together from an FK pose.
+    fn diagnose_together(
+        &self,
+        fk: &Skeleton,
+        together: &[usize],
+        missed: &[usize],
+        options: &SolverOptions,
+        time: f64,
+    ) -> Vec<Diagnosis> {
         if missed.is_empty() {
             return Vec::new();
         }
-        let active = self.targets.iter().filter(|it| self.is_solved_for(it)).filter(is_whole_body);
-        let tips: Vec<ChainTarget> =
-            active.map(|it| self.tip_target(it, &evaluated.fk, time)).collect();
-        chain_ik::diagnose_targets(&evaluated.fk, &tips, &self.solver, &missed).unwrap_or_default()
+        let tip = |index: &usize| self.tip_target(&self.targets[*index], fk, time);
+        let tips: Vec<ChainTarget> = together.iter().map(tip).collect();
+        let missed: Vec<JointId> = missed.iter().map(|index| self.targets[*index].joint).collect();
+        chain_ik::diagnose_targets(fk, &tips, options, &missed).unwrap_or_default()
     }
 }
 
@@ -181,6 +216,11 @@ impl SkeletonRig {
             }),
             Remedy::FollowBody => self.body_follows = true,
             Remedy::FreeBalance => self.balance = None,
+            Remedy::LengthenChain { joint, length } => self.change_target(joint, |target| {
+                if matches!(target.kind, TargetKind::Chain(_)) {
+                    target.kind = TargetKind::Chain(length);
+                }
+            }),
             Remedy::FullInfluence(joint) => self.change_target(joint, |it| it.influence = 1.0),
             Remedy::Stretch { joint, max_stretch } => {
                 self.change_soft_reach(joint, |soft| {
@@ -273,6 +313,18 @@ impl RigCase<'_> {
         let tried = self.try_remedy(Remedy::FreeBalance)?;
         let is_reached = self.is_reached(tried.residual);
         is_reached.then(|| self.diagnosis(Cause::Balance, Vec::new(), vec![tried]))
+    }
+
+    /// A chain of too few joints, if the target is reached with more of them.
+    pub fn longer_chain(&self) -> Option<Diagnosis> {
+        let TargetKind::Chain(length) = self.target.kind else { return None };
+        let joint = self.target.joint;
+        let most = self.rig.skeleton.ancestors(joint).count() as u32;
+        let longer = (length.get() + 1..=most).filter_map(NonZeroU32::new);
+        let mut remedies = longer.map(|length| Remedy::LengthenChain { joint, length });
+        let tried = remedies.find_map(|remedy| self.reaching_both(remedy))?;
+        let cause = Cause::ShortChain { length: length.get() };
+        Some(self.diagnosis(cause, self.rig.moved_by(self.target).turned, vec![tried]))
     }
 
     /// A diagnosis of the solver with the residuals that its remedies leave in the rig.

@@ -57,7 +57,7 @@ impl RigCase<'_> {
     }
 
     /// A remedy with what it leaves, if the target then has its place and its turn.
-    fn reaching_both(&self, remedy: Remedy) -> Option<TriedRemedy> {
+    pub(super) fn reaching_both(&self, remedy: Remedy) -> Option<TriedRemedy> {
         self.left(remedy).filter(|it| self.is_reached(it.residual) && is_turned(it))
     }
 

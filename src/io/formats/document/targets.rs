@@ -2,6 +2,7 @@
 //! skeleton's rig.
 
 use core::f32::consts::PI;
+use core::num::NonZeroU32;
 use std::collections::HashSet;
 
 use glam::{Vec2, Vec3};
@@ -32,7 +33,10 @@ pub struct TargetFields {
     pinned: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     limb: Option<JsonObject<LimbFields>>,
-    /// The orientation of a whole-body target; that of a limb is in `limb`.
+    /// The number of joints that the target of a chain turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chain_length: Option<Whole>,
+    /// The orientation of the joint; that of a limb's hand is in `limb`.
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -188,10 +192,14 @@ impl TargetFields {
             pin: (target.is_pinned || target.pin != target.home).then_some(target.pin.into()),
             pinned: target.is_pinned.then_some(true),
             limb: match &target.kind {
-                TargetKind::WholeBody => None,
+                TargetKind::WholeBody | TargetKind::Chain(_) => None,
                 TargetKind::Limb(settings) => {
                     Some(JsonObject(LimbFields::new(settings, target.orientation)))
                 }
+            },
+            chain_length: match target.kind {
+                TargetKind::Chain(length) => Some(Whole(length.get())),
+                TargetKind::WholeBody | TargetKind::Limb(_) => None,
             },
             rotation: target.orientation.filter(|_| target.limb().is_none()).map(JsonPoint),
             aim: target.aim.map(|Aim { axis, point }| {
@@ -214,7 +222,11 @@ impl TargetFields {
         if aim.is_some() && (self.rotation.is_some() || self.limb.is_some()) {
             return Err("must not be beside `rotation` or `limb`").at("aim");
         }
+        let length = self.chain_length.map(chain_length).transpose().at("chain_length")?;
         let (kind, orientation) = match self.limb {
+            Some(_) if length.is_some() => {
+                return Err("must not be beside `limb`").at("chain_length");
+            }
             Some(_) if self.rotation.is_some() => {
                 return Err("must be `limb.orientation` for a limb").at("rotation");
             }
@@ -222,7 +234,10 @@ impl TargetFields {
                 let orientation = fields.orientation.map(Vec3::from);
                 (TargetKind::Limb(fields.settings(joints).at("limb")?), orientation)
             }
-            None => (TargetKind::WholeBody, self.rotation.map(Vec3::from)),
+            None => {
+                let kind = length.map_or(TargetKind::WholeBody, TargetKind::Chain);
+                (kind, self.rotation.map(Vec3::from))
+            }
         };
         let orientation_weight = value_or(self.rotation_weight, default.orientation_weight);
         if orientation_weight < 0.0 {
@@ -230,7 +245,8 @@ impl TargetFields {
                 .at("rotation_weight");
         }
         let weight = value_or(self.weight, default.weight);
-        let turns = kind == TargetKind::WholeBody && (orientation.is_some() || aim.is_some());
+        let is_limb = matches!(kind, TargetKind::Limb(_));
+        let turns = !is_limb && (orientation.is_some() || aim.is_some());
         if weight == 0.0 && !turns {
             return Err("must be above 0, or 0 with a rotation or an aim, got 0").at("weight");
         }
@@ -255,6 +271,10 @@ impl TargetFields {
             ..default
         })
     }
+}
+
+fn chain_length(Whole(length): Whole) -> Result<NonZeroU32, String> {
+    NonZeroU32::new(length).ok_or_else(|| "must be 1 or more, got 0".into())
 }
 
 impl AimFields {

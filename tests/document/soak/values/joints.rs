@@ -1,5 +1,7 @@
 //! Joints, targets, solver options and path following.
 
+use core::num::NonZeroU32;
+
 use glam::{Affine3A, Vec2, Vec3};
 use ik_arm::document::{
     BalanceOver, BalanceTarget, PathKind, Target, TargetMotion, TargetPath, WavyRing,
@@ -197,13 +199,22 @@ impl Values<'_> {
         let home = self.small_point();
         let (weight, enabled) = (self.above_0(2.0), self.chance(0.9));
         let influence = self.one_of(&[0.0, 0.4, 1.0, 1.5]);
-        let kind = if self.chance(0.5) { TargetKind::WholeBody } else { self.limb() };
+        let kind = match self.random.below(6) {
+            0..3 => TargetKind::WholeBody,
+            3 => TargetKind::Chain(self.chain_length()),
+            _ => self.limb(),
+        };
         let space = self.space();
         let orientation = self.chance(0.4).then(|| self.small_point());
-        let aims = kind == TargetKind::WholeBody && orientation.is_none() && self.chance(0.5);
+        let aims =
+            !matches!(kind, TargetKind::Limb(_)) && orientation.is_none() && self.chance(0.5);
         let aim = aims.then(|| Aim { axis: Vec3::Z, point: self.small_point() });
         let target = Target::new(joint, home, 1.0);
         Target { weight, enabled, motion, influence, kind, space, orientation, aim, ..target }
+    }
+
+    fn chain_length(&mut self) -> NonZeroU32 {
+        self.one_of(&[1, 2, 3, 1000]).try_into().expect("above 0")
     }
 
     fn limb(&mut self) -> TargetKind {
@@ -273,7 +284,7 @@ impl Values<'_> {
 
     pub fn remedy(&mut self) -> Remedy {
         let joint = self.aimed();
-        match self.random.below(16) {
+        match self.random.below(17) {
             0 => Remedy::MoveTarget { joint, point: self.small_point() },
             1 => Remedy::Lengthen { joint, factor: self.above_0(2.0) },
             2 => Remedy::SetRoot(self.one_of(&Root::ALL)),
@@ -298,6 +309,7 @@ impl Values<'_> {
             10 => Remedy::FullInfluence(joint),
             11 => Remedy::FollowBody,
             15 => Remedy::FreeBalance,
+            16 => Remedy::LengthenChain { joint, length: self.chain_length() },
             12 => Remedy::FreeTurn(joint),
             13 => Remedy::FreePlace(joint),
             _ => Remedy::Stretch { joint, max_stretch: self.above_0(3.0) },

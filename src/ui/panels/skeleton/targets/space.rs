@@ -1,37 +1,76 @@
 //! The joints that a target moves, the whole body or a limb; the space in which a target or a pole is
 //! fixed.
 
+use core::num::NonZeroU32;
+
 use egui::Ui;
 
 use crate::document::Target;
 use crate::kinematics::limb_ik::Limb;
 use crate::rig::{LimbSettings, SkeletonRig, TargetKind, TargetSpace};
 use crate::session::{Actions, Session, TargetEdit};
-use crate::ui::widgets::Choice;
+use crate::ui::widgets::{Choice, NumberField};
 
 pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut Actions) {
     let no_limb = Limb::ending_at(session.skeleton(), target.joint)
         .err()
         .map(|reason| format!("No limb: {reason}"));
-    let is_limb = target.limb().is_some();
     let choice = Choice {
         label: "Moves",
         name: "Target kind",
         tooltip: "Choose the joints that the target moves",
-        shown: if is_limb { "Limb" } else { "Whole body" },
+        shown: match target.kind {
+            TargetKind::WholeBody => "Whole body",
+            TargetKind::Chain(_) => "Chain",
+            TargetKind::Limb(_) => "Limb",
+        },
     };
-    // The orientation is about another joint then.
-    let changed = Target { orientation: None, ..target };
-    let mut set = |kind| actions.push(TargetEdit::SetTarget(Target { kind, ..changed }));
+    let mut set = |kind| actions.push(TargetEdit::SetTarget(target.with_kind(kind)));
     choice.show(ui, |list| {
         let by_body = "Solve from the root, together with the other whole-body targets";
-        if list.item(!is_limb, "Whole body", by_body, None) {
+        let is_body = target.kind == TargetKind::WholeBody;
+        if list.item(is_body, "Whole body", by_body, None) {
             set(TargetKind::WholeBody);
         }
+        let by_chain = "Turn a number of joints above the tip, after the body";
+        let is_chain = matches!(target.kind, TargetKind::Chain(_));
+        if list.item(is_chain, "Chain", by_chain, None) {
+            set(TargetKind::Chain(NEW_LENGTH));
+        }
         let by_limb = "Solve the two bones above the tip in closed form";
+        let is_limb = target.limb().is_some();
         if list.item(is_limb, "Limb", by_limb, no_limb.as_deref()) {
             set(TargetKind::Limb(LimbSettings::default()));
         }
+    });
+    if let TargetKind::Chain(length) = target.kind {
+        chain_length(ui, session, target, length, actions);
+    }
+}
+
+/// The length of a new chain, in joints.
+const NEW_LENGTH: NonZeroU32 = NonZeroU32::new(2).expect("above 0");
+
+fn chain_length(
+    ui: &mut Ui,
+    session: &Session,
+    target: Target,
+    length: NonZeroU32,
+    actions: &mut Actions,
+) {
+    let most = session.skeleton().ancestors(target.joint).count();
+    let field = NumberField {
+        name: "Chain length",
+        value: length.get() as f32,
+        unit: "joints",
+        step: 1.0,
+        digits: 0,
+        tooltip: "Set how many joints the target turns, from its own upwards",
+    };
+    field.row(ui, session, "Chain length", actions, |length: f32| {
+        let length = length.round().clamp(1.0, most as f32) as u32;
+        let kind = NonZeroU32::new(length).map_or(target.kind, TargetKind::Chain);
+        TargetEdit::SetTarget(target.with_kind(kind))
     });
 }
 
