@@ -56,7 +56,8 @@ impl Example {
             "two-targets", "Two targets on a Y" =>
                 "A tree with two branches, each with a target of its own.";
             "human", "Human" =>
-                "A figure whose hands and feet stay at their targets while its pelvis is dragged.";
+                "A figure whose hands and feet stay at their targets while its pelvis is dragged, and \
+                 whose head looks at a point.";
             "walk", "Walk" =>
                 "A figure that walks: its feet stand at their targets while the pelvis moves on, \
                  and its arms swing by FK; press Space to play.";
@@ -64,8 +65,8 @@ impl Example {
                 "A figure that squats to lift something from the floor: only its hands, its gaze \
                  and its balance are given, and its feet stay; press Space to play.";
             "looking-at-the-hand", "Looking at the hand" =>
-                "A figure whose head turns to its hand, by an aim; the neck is stiffer than the \
-                 head; press Space to play.";
+                "A figure whose neck and head turn to its hand, wherever it goes: drag it, or press \
+                 Space to play.";
             "wheel", "Two hands on a wheel" =>
                 "A figure whose hands hold a wheel that turns: their targets are on the wheel.";
             "candy-wrapper", "Candy wrapper" =>

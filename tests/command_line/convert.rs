@@ -100,7 +100,7 @@ fn a_list_tells_skeletons_animations_and_targets() {
     let told = list(&desk.path("human.json"), &[]);
     assert_eq!(told["skeletons"][0]["joints"], 19);
     assert_eq!(told["animations"], serde_json::json!([]));
-    assert_eq!(told["targets"].as_array().expect("a list").len(), 4);
+    assert_eq!(told["targets"].as_array().expect("a list").len(), 5);
 
     let desk = Desk::with("walk");
     assert!(desk.convert("walk.json", "walk.glb", &[]).status.success());

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use ik_arm::document::{Channel, Document, FramePop, Inspection, Target, Track};
 use ik_arm::kinematics::chain_ik::{Method, OrientRefusal, SolveError};
+use ik_arm::kinematics::limb_ik::LimbReach;
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::rig::{Aim, TargetOutcome, TargetSpace};
 use pollster::block_on;
@@ -88,6 +89,55 @@ fn a_hand_beyond_its_reach_takes_the_body_along_smoothly_and_the_feet_stay() {
             assert_eq!(pops(&track), vec![], "{case}");
         }
     }
+}
+
+#[test]
+fn a_hand_that_its_limits_stop_takes_the_body_along_without_a_jump_and_the_feet_stay() {
+    let mut random = Random(388);
+    let (shoulder, mut stopped) = (shoulder(), 0);
+    for method in [Method::DampedLeastSquares, Method::Transpose, Method::Ccd, Method::Fabrik] {
+        let mut of_method = 0;
+        while of_method < 6 {
+            // Behind the body and across it.
+            let way = random.direction() - 0.4 * Vec3::X - 0.4 * Vec3::Z;
+            let to = shoulder + 0.85 * ARM * way.normalize();
+            let mut document = reaching(method, to);
+            document.timeline.end = 4.0;
+            let mut alone = document.clone();
+            alone.rig.body_follows = false;
+            let at_far = Track::new(&alone).at(2.0);
+            let TargetOutcome::Limb(limb) = &at_far.targets()[0].outcome else { panic!("a limb") };
+            // Places near enough to turn to.
+            let is_stopped = matches!(limb.reach, LimbReach::Limited(_));
+            if !is_stopped || at_far.targets()[0].error > 0.15 {
+                continue;
+            }
+            of_method += 1;
+            let track = Track::new(&document);
+            let case = format!("{method}, {}", to - shoulder);
+            let error = track.at(2.0).targets()[0].error;
+            assert!(error < 1e-3, "{case}: {error}, alone {}", at_far.targets()[0].error);
+            for frame in 0..=120 {
+                let posed = track.at(f64::from(frame) / 30.0);
+                for foot in FEET {
+                    let error =
+                        posed.target_report(joint(&document, foot)).expect("a report").error;
+                    assert!(error < 1e-4, "{case}: {foot} is off by {error} at {frame}");
+                }
+            }
+            // The elbow may have to change sides at a limit; the body must not jump then.
+            let most = if method == Method::Transpose { 15.0 } else { 4.0 };
+            let step =
+                at_far.targets()[0].position.distance(track.at(0.0).targets()[0].position) / 60.0;
+            for frame in 1..=120 {
+                let times = [frame - 1, frame].map(|frame| f64::from(frame) / 30.0);
+                let way = moved(&document, &track, times, &["pelvis", "spine", "chest", "head"]);
+                assert!(way < most * step, "{case}: {} steps at {frame}", way / step);
+            }
+        }
+        stopped += of_method;
+    }
+    assert_eq!(stopped, 24);
 }
 
 #[test]

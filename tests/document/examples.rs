@@ -110,8 +110,12 @@ fn the_human_stands_at_its_targets_by_its_own_angles() {
         assert!(fk.tip(joint).distance(solved.tip(joint)) < 1e-5, "{}", fk[joint].name);
     }
     let ends = ["left_hand", "right_hand", "left_foot", "right_foot"];
-    assert_eq!(targets.len(), ends.len());
-    for (target, end) in human.rig.targets.iter().zip(ends) {
+    let [limbs @ .., look] = &human.rig.targets[..] else { panic!("targets") };
+    assert_eq!((limbs.len(), targets.len()), (ends.len(), ends.len() + 1));
+    assert_eq!(fk[look.joint].name, "head");
+    assert!(look.aim.is_some() && look.has_free_place() && look.is_posing());
+    assert!(human.rig.has_reached_all(&evaluated(&human, 0.0)));
+    for (target, end) in limbs.iter().zip(ends) {
         let limb = Limb::for_end(&fk, fk.find(end).expect("a joint")).expect("a limb");
         assert_eq!((target.joint, target.influence), (limb.lower, 1.0), "{end}");
         assert!(target.limb().is_some() && target.enabled, "{end}");

@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3, Vec3A};
 use ik_arm::io::Example;
 use ik_arm::kinematics::chain_ik::{ChainTarget, Method, SolverOptions, solve};
-use ik_arm::kinematics::skeleton::{Joint, JointId, Limit, RotationAxis, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton};
 use ik_arm::rig::{Carried, EvaluatedSkeleton, SkeletonRig};
 use ik_arm::words;
 use serde_json::Value;
@@ -11,6 +11,13 @@ use serde_json::Value;
 use crate::common::Random;
 
 const CASES: usize = 1_000;
+
+/// Ranges of the angles of a hip, in place of the cone in the file.
+const HIP: [Option<Limit>; 3] = [
+    Some(Limit { min: -2.1, max: 0.5 }),
+    Some(Limit { min: -0.7, max: 0.7 }),
+    Some(Limit { min: -0.8, max: 0.8 }),
+];
 
 /// The example figure in its bind pose, read from its file without the library's reader.
 fn human() -> Skeleton {
@@ -24,7 +31,10 @@ fn human() -> Skeleton {
         let mut joint = Joint::new(name, parent, vector(&json["axis"]).expect("axis"));
         joint.offset = vector(&json["offset"]).unwrap_or(tip);
         joint.locked = parent.is_none();
-        joint.limits = RotationAxis::ALL.map(|axis| limit(&json["limits"][axis.name()])).into();
+        joint.limits = match name {
+            "left_thigh" | "right_thigh" => JointLimits::new(HIP),
+            _ => RotationAxis::ALL.map(|axis| limit(&json["limits"][axis.name()])).into(),
+        };
         joints.push(joint);
     }
     Skeleton::from_joints(joints).expect("a tree")

@@ -71,13 +71,20 @@ impl Shoulder<'_> {
     }
 
     /// The turn that brings the tip nearest to its place, of about equal ones that which is nearest
-    /// to none and to that of the step before.
+    /// to none and to that of the step before. A limb that was turned aside stays there for long, so
+    /// that its elbow does not jump.
     fn nearest(&self, before: f64) -> f64 {
         /// Distance, in lengths of the limb, that a turn by half a circle must gain.
         const WORTH: f64 = 0.02;
+        /// The same of a turn away from that of the step before.
+        const WORTH_OF_CHANGE: f64 = 0.4;
         const HALVINGS: u32 = 12;
-        let length = WORTH * self.tip.length() / PI;
-        let cost = |turn: f64| self.miss(turn) + length * (turn.abs() + (turn - before).abs());
+        let length = self.tip.length() / PI;
+        let of_change = if before == 0.0 { WORTH } else { WORTH_OF_CHANGE };
+        let cost = |turn: f64| {
+            let turned = WORTH * turn.abs() + of_change * (turn - before).abs();
+            self.miss(turn) + length * turned
+        };
         let steps = -i16::from(STEPS)..=i16::from(STEPS);
         let turns = steps.map(|step| STEP * f64::from(step));
         let mut best = (0.0, cost(0.0));

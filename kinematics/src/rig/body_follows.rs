@@ -4,6 +4,11 @@
 //! from which the limb reaches the target, and is brought to the nearest such place from elsewhere.
 //! The bases of all limbs are solved together with the whole-body targets; the limbs are solved
 //! after them. So the body moves as far as limbs cannot, and planted feet stay.
+//!
+//! A limb that is long enough but that its limits keep from its target pulls the body, too: by the
+//! place of its tip, as if the limb were stiff. Then body and limbs are solved again.
+
+use glam::Vec3;
 
 use super::carried::BodyTarget;
 use super::skeleton_rig::SkeletonRig;
@@ -11,6 +16,16 @@ use super::target::{Target, TargetSpace};
 use crate::chain_ik::{ChainTarget, Root};
 use crate::limb_ik::{Limb, LimbRange};
 use crate::skeleton::{JointId, Skeleton};
+
+/// A limb that its limits keep from its target.
+pub(super) struct BlockedLimb {
+    /// The joint of its target.
+    target: JointId,
+    /// Where its tip is, in the space of the joint that it is on.
+    tip: Vec3,
+    /// Distance from there to the target, in the world.
+    pub miss: f32,
+}
 
 /// The part of a limb's reach to which its base is brought: a little less than all of it, since the
 /// joints of a limb that becomes straight race.
@@ -69,14 +84,44 @@ impl SkeletonRig {
         })
     }
 
-    /// The targets that pull the bases of limbs, for the FK pose at a time in seconds.
-    pub(super) fn base_targets(&self, fk: &Skeleton, time: f64) -> Vec<BodyTarget> {
+    /// The targets that pull the body by limbs, for the FK pose at a time in seconds.
+    pub(super) fn base_targets(
+        &self,
+        fk: &Skeleton,
+        time: f64,
+        blocked: &[BlockedLimb],
+    ) -> Vec<BodyTarget> {
         let pulling = self.targets.iter().filter(|target| self.pulls_body(target));
         let of_target = |target: &Target| {
-            let tip = self.base_target(target, fk, time)?;
+            let mut tip = self.base_target(target, fk, time)?;
+            if let Some(limb) = blocked.iter().find(|limb| limb.target == target.joint) {
+                tip = tip.with_grip(limb.tip).with_distances(0.0, 0.0);
+            }
             Some(BodyTarget { tip, influence: target.influence })
         };
         pulling.filter_map(of_target).collect()
+    }
+
+    /// Of targets whose limbs are stopped by their limits, those that pull the body by limbs that do
+    /// not reach them, in a pose.
+    pub(super) fn blocked_limbs<'a>(
+        &self,
+        posed: &Skeleton,
+        stopped: impl Iterator<Item = &'a Target>,
+        time: f64,
+    ) -> Vec<BlockedLimb> {
+        let blocked = |target: &Target| {
+            let limb = self.pulling_limb(target)?;
+            let (tip, place) = (posed.tip(target.joint), target.in_world(posed, time));
+            let miss = tip.distance(place);
+            if miss <= self.tolerance() || target.influence < 1.0 {
+                return None;
+            }
+            let above = posed.full_transform(posed[limb.upper].parent?);
+            let tip = above.inverse().transform_point3(tip);
+            Some(BlockedLimb { target: target.joint, tip, miss }).filter(|_| tip.is_finite())
+        };
+        stopped.filter_map(blocked).collect()
     }
 
     /// The places of the base of a target's limb from which the limb reaches the target; `None` for

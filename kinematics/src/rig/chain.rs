@@ -11,6 +11,9 @@ impl SkeletonRig {
     /// chains have joints in common. They are at the place of the last of them.
     pub(super) fn solved_together(&self, order: Vec<usize>) -> Vec<Vec<usize>> {
         let is_chain = |index: &usize| matches!(self.targets[*index].kind, TargetKind::Chain(_));
+        if !order.iter().any(is_chain) {
+            return order.into_iter().map(|index| vec![index]).collect();
+        }
         let groups = self.groups_of_chains(order.iter().copied().filter(is_chain));
         let together = |index: usize| match groups.iter().find(|group| group.contains(&index)) {
             Some(group) => (group.last() == Some(&index)).then(|| group.clone()),

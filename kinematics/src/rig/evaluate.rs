@@ -2,13 +2,14 @@ use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
 use super::balance_target::{BalanceReport, BalanceWay, Footing};
+use super::body_follows::BlockedLimb;
 use super::carried::{Bodies, BodyTarget, Carried, Start};
 use super::chain::with_others_locked;
 use super::skeleton_rig::SkeletonRig;
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind, TargetSpace};
 use crate::Shared;
 use crate::chain_ik::{ChainTarget, Method, Orientation, Report, Root, SolveError};
-use crate::limb_ik::{self, Limb, LimbReport, LimbTarget, NoLimb};
+use crate::limb_ik::{self, Limb, LimbReach, LimbReport, LimbTarget, NoLimb};
 use crate::skeleton::{JointId, Skeleton};
 use crate::soft_reach::SoftReach;
 
@@ -46,6 +47,38 @@ impl EvaluatedSkeleton {
             _ => None,
         });
         self.fk.joints().len() as u64 * (1 + u64::from(iterations.unwrap_or(0)))
+    }
+}
+
+/// What the body is solved with, beside the targets.
+#[derive(Clone, Copy)]
+struct BodyInputs<'a> {
+    start: &'a Start,
+    /// Of a figure that is balanced.
+    footing: Option<&'a Footing>,
+    blocked: &'a [BlockedLimb],
+}
+
+/// The turns by which body and limbs are solved in a step.
+#[derive(Default)]
+struct Turns {
+    made: usize,
+    /// The limbs that limits keep from their targets after the last one.
+    blocked: Vec<BlockedLimb>,
+}
+
+impl Turns {
+    const MOST: usize = 8;
+    /// Part of what is missing that a turn must leave at most to be worth another one.
+    const WORTH: f32 = 0.8;
+
+    /// Counts a turn. Returns true if limbs are blocked after it, and another one may help.
+    fn go_on(&mut self, blocked: Vec<BlockedLimb>) -> bool {
+        let most = |limbs: &[BlockedLimb]| limbs.iter().map(|it| it.miss).fold(0.0, f32::max);
+        let gains = self.blocked.is_empty() || most(&blocked) <= Self::WORTH * most(&self.blocked);
+        self.made += 1;
+        self.blocked = blocked;
+        !self.blocked.is_empty() && gains && self.made < Self::MOST
     }
 }
 
@@ -125,7 +158,8 @@ impl SkeletonRig {
     /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
     ///
     /// With a [balance](SkeletonRig::balance), both are repeated until the centre of mass is where it
-    /// should be, at most eight times.
+    /// should be, and with limbs that their limits keep from targets until these pull the body near
+    /// enough; at most eight times.
     ///
     /// Whole-body targets with different influences are solved once for each influence: together
     /// with all targets of at least that influence. Each such pose is blended with the one of the
@@ -223,12 +257,22 @@ impl SkeletonRig {
         if self.active_balance().is_some() {
             return self.balanced(fk, time, carried, &start, of);
         }
-        let mut step = self.begin_step(fk);
-        let poses = of != StepUse::State || !self.parts().is_empty();
-        self.solve_body(&mut step, None, time, carried, &start, poses);
-        let carried = (of != StepUse::Pose).then_some(carried);
-        self.solve_parts(&mut step, time, carried, &start);
-        step
+        let has_parts = self.targets.iter().any(|target| self.is_part(target));
+        let poses = of != StepUse::State || has_parts;
+        let limbs_before = self.body_follows.then(|| carried.limbs().clone());
+        let mut turns = Turns::default();
+        loop {
+            let mut step = self.begin_step(fk.clone());
+            let inputs = BodyInputs { start: &start, footing: None, blocked: &turns.blocked };
+            self.solve_body(&mut step, inputs, time, carried, poses);
+            let carried_on = (of != StepUse::Pose).then_some(&mut *carried);
+            self.solve_parts(&mut step, time, carried_on, &start);
+            let goes_on = turns.go_on(self.blocked_limbs_of(&step, time));
+            match &limbs_before {
+                Some(limbs) if goes_on => carried.restore_limbs(limbs),
+                _ => return step,
+            }
+        }
     }
 
     /// A step that begins with the FK pose.
@@ -250,32 +294,32 @@ impl SkeletonRig {
         start: &Start,
         of: StepUse,
     ) -> StepPose {
-        const MOST_TURNS: usize = 8;
-        /// Part of the distance of the centre of mass that a turn must leave at most to be worth
-        /// another one.
-        const WORTH: f32 = 0.8;
         let limbs_before = carried.limbs().clone();
         let mut footing = carried
             .take_footing()
             .unwrap_or_else(|| self.footing(&self.with_limbs(start.first_pose(&fk), time)));
         let mut way = BalanceWay::default();
-        let mut turn = 0;
+        let mut turns = Turns::default();
         loop {
-            turn += 1;
             carried.restore_limbs(&limbs_before);
             let mut step = self.begin_step(fk.clone());
-            self.solve_body(&mut step, Some(&footing), time, carried, start, true);
+            let inputs = BodyInputs { start, footing: Some(&footing), blocked: &turns.blocked };
+            self.solve_body(&mut step, inputs, time, carried, true);
             let carried_on = (of != StepUse::Pose).then_some(&mut *carried);
             self.solve_parts(&mut step, time, carried_on, start);
             footing = self.footing(&step.solved);
             let left = way.left;
             let report = self.balance_report(&step.solved);
             let next = report.and_then(|report| way.next_place(&report));
+            let goes_on = turns.go_on(self.blocked_limbs_of(&step, time));
+            let turn = turns.made;
             // A pose that is blended with another one shows nothing of the way.
-            let gains = turn < 2 || footing.is_full && (turn < 3 || way.left <= WORTH * left);
-            match next.filter(|_| turn < MOST_TURNS && way.left > self.tolerance() && gains) {
+            let gains =
+                turn < 2 || footing.is_full && (turn < 3 || way.left <= Turns::WORTH * left);
+            match next.filter(|_| turn < Turns::MOST && way.left > self.tolerance() && gains) {
                 Some(place) if footing.is_full => footing.aim_at(place),
                 Some(_) => {}
+                None if goes_on => {}
                 None => {
                     carried.set_footing(footing);
                     return step;
@@ -288,12 +332,12 @@ impl SkeletonRig {
     fn solve_body(
         &self,
         step: &mut StepPose,
-        footing: Option<&Footing>,
+        inputs: BodyInputs<'_>,
         time: f64,
         carried: &mut Carried,
-        start: &Start,
         poses: bool,
     ) {
+        let BodyInputs { start, footing, blocked } = inputs;
         let StepPose { solved, outcomes, body_refused, .. } = step;
         let is_body = |index: &usize| {
             let target = &self.targets[*index];
@@ -307,7 +351,7 @@ impl SkeletonRig {
             // Limbs pull more joints than the closed form has.
             options.method = Method::DampedLeastSquares;
         }
-        let pulled = self.base_targets(solved, time);
+        let pulled = self.base_targets(solved, time, blocked);
         let is_pulled = !pulled.is_empty();
         let balance = footing.and_then(|footing| self.body_target_of_balance(footing));
         let limbs = footing.map_or(&[][..], |footing| &footing.limbs);
@@ -362,11 +406,24 @@ impl SkeletonRig {
 
     /// Indices of the targets that are solved after the body, those of chains and limbs.
     fn parts(&self) -> Vec<usize> {
-        let is_part = |index: &usize| {
-            let target = &self.targets[*index];
-            self.is_solved_for(target) && target.kind != TargetKind::WholeBody
+        let all = 0..self.targets.len();
+        all.filter(|index| self.is_part(&self.targets[*index])).collect()
+    }
+
+    /// True if a target is solved after the body.
+    fn is_part(&self, target: &Target) -> bool {
+        target.kind != TargetKind::WholeBody && self.is_solved_for(target)
+    }
+
+    /// The limbs that their limits keep from their targets after a turn.
+    fn blocked_limbs_of(&self, step: &StepPose, time: f64) -> Vec<BlockedLimb> {
+        let is_stopped = |outcome: &TargetOutcome| match outcome {
+            TargetOutcome::Limb(report) => matches!(report.reach, LimbReach::Limited(_)),
+            _ => false,
         };
-        (0..self.targets.len()).filter(is_part).collect()
+        let outcomes = self.targets.iter().zip(&step.outcomes);
+        let stopped = outcomes.filter(|(_, outcome)| is_stopped(outcome)).map(|(target, _)| target);
+        self.blocked_limbs(&step.solved, stopped, time)
     }
 
     /// Solves the targets of chains and limbs.
