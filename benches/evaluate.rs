@@ -31,7 +31,7 @@ fn human(kind: impl Fn(Target) -> Target) -> SkeletonRig {
 }
 
 /// The Human with six targets: hands, feet with their rotations, a place of the pelvis, and an aim
-/// of the head.
+/// of the head, for which the whole body turns.
 fn six_targets() -> SkeletonRig {
     let mut rig = example("human").rig;
     let pose = rig.skeleton_at(0.0);
@@ -39,9 +39,9 @@ fn six_targets() -> SkeletonRig {
     let place = rig.new_target(pelvis, &pose).expect("no target yet");
     let home = place.home - 0.03 * Vec3::Y;
     rig.targets.push(Target { home, influence: 1.0, ..place });
-    let look = rig.new_target(head, &pose).expect("no target yet");
+    let look = rig.target(head).expect("a look");
     let aim = Some(Aim { axis: Vec3::Z, point: Vec3::new(0.2, 1.2, 1.0) });
-    rig.targets.push(Target { weight: 0.0, influence: 1.0, aim, ..look });
+    rig.targets[look] = Target { aim, kind: TargetKind::WholeBody, ..rig.targets[look] };
     rig
 }
 
@@ -76,6 +76,14 @@ fn evaluate(criterion: &mut Criterion) {
     });
     group.bench_function("human, six targets, 120 frames of a drag beyond reach", |it| {
         it.iter(|| drag(&mut six, far));
+    });
+
+    let mut own = example("human").rig;
+    group.bench_function("human, its own targets, 120 frames of a drag within reach", |it| {
+        it.iter(|| drag(&mut own, near));
+    });
+    group.bench_function("human, its own targets, 120 frames of a drag beyond reach", |it| {
+        it.iter(|| drag(&mut own, far));
     });
 
     let mut balanced = example("human").rig;

@@ -16,7 +16,7 @@ use crate::common::documents::open_example;
 const MENUS: [&str; 5] = ["File", "Edit", "View", "Examples", "Help"];
 
 /// High enough that no panel scrolls.
-const TALL: Vec2 = vec2(1280.0, 2400.0);
+const TALL: Vec2 = vec2(1280.0, 2500.0);
 
 /// First words of tooltips.
 const VERBS: [&str; 50] = [
@@ -108,7 +108,9 @@ fn skeletons() -> Vec<Bench> {
         for page in pages {
             let mut bench = example(name);
             let rig = bench.session().rig();
-            let target = rig.targets.last().map(|target| target.joint);
+            let mut limbs_last = rig.targets.iter().rev();
+            let limb = limbs_last.find(|target| target.limb().is_some());
+            let target = limb.or(rig.targets.last()).map(|target| target.joint);
             let id = target.or(rig.skeleton.iter().last().map(|(id, _)| id)).expect("a joint");
             bench.apply([
                 Action::from(SelectAction::Joints(vec![id])),

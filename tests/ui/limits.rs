@@ -21,6 +21,7 @@ use crate::bench::Bench;
 fn upper_arm() -> Bench {
     let mut bench = Bench::example("human");
     let joint = bench.joint("left_upper_arm");
+    bench.apply([JointEdit::SetLimits { joint, limits: JointLimits::NONE }]);
     bench.apply([SelectAction::Joints(vec![joint])]);
     bench.settle();
     bench

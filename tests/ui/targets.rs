@@ -39,6 +39,8 @@ fn with_targets() -> Bench {
 /// The Human with a whole-body target that was added to its head by T; the head is selected.
 fn with_head_target() -> Bench {
     let mut bench = human();
+    let own = bench.joint("head");
+    bench.apply([TargetEdit::RemoveTarget(own)]);
     select(&mut bench, "head");
     bench.key(Key::T);
     bench.settle();

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::kinematics::chain_ik::Swing;
 use crate::kinematics::skeleton::{JointId, RotationAxis, SkeletonPose};
-use crate::rig::{EvaluatedSkeleton, SkeletonRig};
+use crate::rig::{EvaluatedSkeleton, SkeletonRig, Target};
 
 /// An angle that swings to and fro in the view, to show what the Jacobian is; the document does not
 /// change.
@@ -108,7 +108,9 @@ fn wiggled_tip(
 ) -> (JointId, Option<Vec3>) {
     let skeleton = &*evaluated.solved;
     let targets = rig.targets.iter().zip(&evaluated.targets);
-    let below = targets.filter(|(it, _)| it.enabled && skeleton.is_in_subtree(it.joint, joint));
+    let is_below =
+        |it: &Target| it.enabled && !it.has_free_place() && skeleton.is_in_subtree(it.joint, joint);
+    let below = targets.filter(|(it, _)| is_below(it));
     let farthest = below.max_by(|(_, one), (_, other)| one.error.total_cmp(&other.error));
     if let Some((target, report)) = farthest {
         return (target.joint, Some(report.position));
