@@ -355,8 +355,6 @@ fn a_run_ends_when_there_is_nothing_to_solve() {
 #[test]
 fn a_run_ends_with_the_reason_if_its_solver_refuses_the_targets() {
     let mut session = example("human");
-    let head = session.skeleton().find("head").expect("a head");
-    session.apply(TargetEdit::RemoveTarget(head));
     step(&mut session, 1);
     let root = session.rig().targets[0].joint;
     let two_bone = session.rig().solver.with_method(Method::TwoBone);

@@ -7,8 +7,8 @@ use crate::chain_ik::{Root, SolverOptions};
 use crate::skeleton::{Joint, JointId, Skeleton};
 
 impl SkeletonRig {
-    /// Targets of chains and limbs, in the order in which they are solved, with those together whose
-    /// chains have joints in common. They are at the place of the last of them.
+    /// Targets of chains and limbs, in the order in which they are solved. Chains that have joints in
+    /// common are one group, which is solved when its last member is due.
     pub(super) fn solved_together(&self, order: Vec<usize>) -> Vec<Vec<usize>> {
         let is_chain = |index: &usize| matches!(self.targets[*index].kind, TargetKind::Chain(_));
         if !order.iter().any(is_chain) {

@@ -190,12 +190,16 @@ impl SkeletonRig {
         self.target(joint).is_none().then_some(Target { kind, influence: 1.0, ..target })
     }
 
-    /// The enabled targets at a time in seconds, for a solver, without those that lead a path;
-    /// those on joints are where the FK pose has them.
+    /// The enabled targets at a time in seconds, for a solver of the whole body, without those that
+    /// lead a path and, beside others, those of chains; those on joints are where the FK pose has
+    /// them.
     pub fn targets_at(&self, time: f64) -> Vec<ChainTarget> {
         let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
-        enabled.map(|target| self.tip_target(target, &fk, time)).collect()
+        let (chains, others): (Vec<_>, Vec<_>) =
+            enabled.partition(|target| matches!(target.kind, TargetKind::Chain(_)));
+        let targets = if others.is_empty() { chains } else { others };
+        targets.into_iter().map(|target| self.tip_target(target, &fk, time)).collect()
     }
 
     /// Writes the pose of [`SkeletonRig::skeleton_at`] into an existing pose, reusing its memory.

@@ -79,7 +79,8 @@ pub struct PoseArgs {
     /// target gets one with a free place: its tip may go anywhere
     #[arg(long = "aim", value_name = "JOINT=x,y,z", allow_hyphen_values = true)]
     aims: Vec<GivenTarget>,
-    /// Solve all enabled targets together from the FK pose with this solver, at full influence
+    /// Solve all enabled targets together from the FK pose with this solver, at full influence;
+    /// beside others, targets of chains are left out
     #[arg(long, value_parser = method())]
     solver: Option<Method>,
     /// Maximum number of iterations [default: the file's, else the solver's own]
