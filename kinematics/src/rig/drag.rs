@@ -11,10 +11,10 @@ use crate::skeleton::{Joint, JointId, RotationAxis, Skeleton};
 impl SkeletonRig {
     /// A drag of a point of a joint from a pose that this rig has at a time in seconds. All that
     /// targets hold stays: whole-body targets of full influence, where they are reached or as far
-    /// from it as they are, so those of chains, and with [`SkeletonRig::body_follows`] the hands and
-    /// feet of limb targets. The limbs themselves do not turn; solve them again for the dragged pose. Where limbs
-    /// could not follow, because of the limits of their joints, the point stays nearer to where it
-    /// was.
+    /// from it as they are, so those of chains, and with [`SkeletonRig::body_follows`] the hands
+    /// and feet of limb targets. The limbs themselves do not turn; solve them again for the dragged
+    /// pose. Where limbs could not follow, because of the limits of their joints, the point stays
+    /// nearer to where it was.
     ///
     /// # Errors
     ///

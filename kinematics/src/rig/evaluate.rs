@@ -152,10 +152,11 @@ impl SkeletonRig {
     /// since the step before, its targets and joints included.
     ///
     /// The whole-body targets are solved together, from the FK pose, and with
-    /// [`SkeletonRig::body_follows`] the bases that limb targets pull; the targets of chains and limbs
-    /// then one after the other, in the order of their joints, but each after those that move the
-    /// joints that it is on. Chains that have a joint in common are solved together. The work of the solver is bounded: see
-    /// [`Status::Bounded`](crate::chain_ik::Status::Bounded) and [`SolveError::TooMuchWork`].
+    /// [`SkeletonRig::body_follows`] the bases that limb targets pull; the targets of chains and
+    /// limbs then one after the other, in the order of their joints, but each after those that move
+    /// the joints that it is on. Chains that have a joint in common are solved together. The work
+    /// of the solver is bounded: see [`Status::Bounded`](crate::chain_ik::Status::Bounded) and
+    /// [`SolveError::TooMuchWork`].
     ///
     /// With a [balance](SkeletonRig::balance), both are repeated until the centre of mass is where it
     /// should be, and with limbs that their limits keep from targets until these pull the body near

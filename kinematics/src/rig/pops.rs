@@ -54,8 +54,8 @@ const JUMP: f64 = 0.1;
 
 impl<'a> RigMoment<'a> {
     /// The pops of a step from this moment to another one, at most one for the whole-body targets,
-    /// one for chains that are solved together, and one for each limb. `is_missed` says for both moments whether the target with an index is
-    /// missed.
+    /// one for chains that are solved together, and one for each limb. `is_missed` says for both
+    /// moments whether the target with an index is missed.
     pub fn pops_to(
         &self,
         after: &RigMoment<'_>,

@@ -31,8 +31,9 @@ pub struct Target {
     /// An axis of the joint that is aimed at a point; not together with an orientation, and not of a
     /// limb target.
     pub aim: Option<Aim>,
-    /// Weight of the orientation or aim of a target that is no limb's, relative to weights of places: a turn by 1
-    /// radian counts like a distance of a quarter of the chain's length. 0 or more.
+    /// Weight of the orientation or aim of a target that is no limb's, relative to weights of
+    /// places: a turn by 1 radian counts like a distance of a quarter of the chain's length. 0 or
+    /// more.
     pub orientation_weight: f32,
     /// Fraction of the way from the FK pose, 0, to the solved pose, 1.
     pub influence: f32,

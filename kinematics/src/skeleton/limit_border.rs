@@ -108,10 +108,10 @@ impl Joint {
         self.rotation_f64(angles).as_mat3() * self.axis
     }
 
-    /// Euler angles with which the bone has swung from the middle of its cone by an angle in radians,
-    /// with the twist in the middle of its range; `None` for a joint without a cone or a bone. The azimuth, in radians, is
-    /// that of the swing's axis around the bone; it begins at the axis of the frame that is nearest
-    /// to being across the bone.
+    /// Euler angles with which the bone has swung from the middle of its cone by an angle in
+    /// radians, with the twist in the middle of its range; `None` for a joint without a cone or a
+    /// bone. The azimuth, in radians, is that of the swing's axis around the bone; it begins at the
+    /// axis of the frame that is nearest to being across the bone.
     pub fn swung(&self, azimuth: f32, swing: f32) -> Option<Vec3> {
         let cone = self.limits.as_cone()?;
         let bone = (self.frame.transpose() * self.axis).try_normalize()?;

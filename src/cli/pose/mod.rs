@@ -24,8 +24,8 @@ use targets::GivenTarget;
 The file is not changed. The output is one line of JSON, in world space:
   {"joints":[{"index":0,"name":"…","parent":null,"rotation_deg":[x,y,z],"base":[x,y,z],
     "tip":[x,y,z],"transform":[16 numbers, column-major]}, …],
-   "targets":[{"joint":N,"kind":"limb"|"chain"|"whole_body","influence":I,"target":[x,y,z],"tip":[x,y,z],
-    "error":E,"rotation_error_deg":A,"aim_error_deg":A,
+   "targets":[{"joint":N,"kind":"limb"|"chain"|"whole_body","influence":I,"target":[x,y,z],
+    "tip":[x,y,z],"error":E,"rotation_error_deg":A,"aim_error_deg":A,
     "limb":{"root":[x,y,z],"pointer":[x,y,z],"twist_deg":T,
     "reach":"reached"|"too_far"|"too_close"|"limited"|null,"upper":D1,"lower":D2,"distance":D,
     "along":H,"out":O,"shoulder_angle_deg":A,"elbow_angle_deg":A}|null}, …],
@@ -47,7 +47,8 @@ causes for which targets are not reached, the most likely first, each with the r
 most and the distance from tip to target and the angle that it leaves, or null if no remedy was
 found; it is empty if all targets are reached, and with --fk. Causes: out_of_reach, limits,
 rotation_limits, turn, locked, conflict, stalled, lost, singular, out_of_iterations, balance,
-short_chain, influence. A solve that does not converge is not an error. `ik-arm solve` solves two bones without a file.
+short_chain, influence. A solve that does not converge is not an error. `ik-arm solve` solves two
+bones without a file.
 
   ik-arm pose human.json --target left_hand=0.4,1.3,0.3 --rotation left_hand=0,90,0"#,
     mut_arg("file", |file| file.help(open::input_help("File to pose")))
