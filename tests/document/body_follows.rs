@@ -41,6 +41,18 @@ fn pops(track: &Track) -> Vec<FramePop> {
     block_on(Inspection::new(track, timeline, false, async |_| true)).expect("not cancelled").pops
 }
 
+/// Asserts that the feet are at their targets in all frames of the four seconds.
+fn assert_feet_stay(track: &Track, within: f32, case: &str) {
+    for frame in 0..=120 {
+        let posed = track.at(f64::from(frame) / 30.0);
+        for foot in FEET {
+            let report = posed.target_report(joint(track.document(), foot)).expect("a report");
+            let error = report.error;
+            assert!(error < within, "{case}: {foot} is off by {error} at {frame}");
+        }
+    }
+}
+
 /// Points around a shoulder: in front of the body, from the hip to the top of the head.
 fn points_in_front(random: &mut Random, shoulder: Vec3, distance: f32) -> Vec3 {
     loop {
@@ -76,14 +88,7 @@ fn a_hand_beyond_its_reach_takes_the_body_along_smoothly_and_the_feet_stay() {
                 let way = moved(&document, &track, [0.0, 2.0], &[part]);
                 assert!(way > 0.05, "{case}: {part} moved by {way}");
             }
-            for frame in 0..=120 {
-                let posed = track.at(f64::from(frame) / 30.0);
-                for foot in FEET {
-                    let error =
-                        posed.target_report(joint(&document, foot)).expect("a report").error;
-                    assert!(error < 1e-6, "{case}: {foot} is off by {error}");
-                }
-            }
+            assert_feet_stay(&track, 1e-6, &case);
             let back = moved(&document, &track, [0.0, 4.0], &["pelvis", "chest", "head"]);
             assert!(back < 1e-4, "{case}: off by {back} after all");
             assert_eq!(pops(&track), vec![], "{case}");
@@ -117,14 +122,7 @@ fn a_hand_that_its_limits_stop_takes_the_body_along_without_a_jump_and_the_feet_
             let case = format!("{method}, {}", to - shoulder);
             let error = track.at(2.0).targets()[0].error;
             assert!(error < 1e-3, "{case}: {error}, alone {}", at_far.targets()[0].error);
-            for frame in 0..=120 {
-                let posed = track.at(f64::from(frame) / 30.0);
-                for foot in FEET {
-                    let error =
-                        posed.target_report(joint(&document, foot)).expect("a report").error;
-                    assert!(error < 1e-4, "{case}: {foot} is off by {error} at {frame}");
-                }
-            }
+            assert_feet_stay(&track, 1e-4, &case);
             // The elbow may have to change sides at a limit; the body must not jump then.
             let most = if method == Method::Transpose { 15.0 } else { 4.0 };
             let step =

@@ -2,7 +2,7 @@
 //! as a look-at target neck and head.
 
 use super::skeleton_rig::SkeletonRig;
-use super::target::{Target, TargetKind};
+use super::target::Target;
 use crate::chain_ik::{Root, SolverOptions};
 use crate::skeleton::{Joint, JointId, Skeleton};
 
@@ -10,7 +10,7 @@ impl SkeletonRig {
     /// Targets of chains and limbs, in the order in which they are solved. Chains that have joints in
     /// common are one group, which is solved when its last member is due.
     pub(super) fn solved_together(&self, order: Vec<usize>) -> Vec<Vec<usize>> {
-        let is_chain = |index: &usize| matches!(self.targets[*index].kind, TargetKind::Chain(_));
+        let is_chain = |index: &usize| self.targets[*index].kind.is_chain();
         if !order.iter().any(is_chain) {
             return order.into_iter().map(|index| vec![index]).collect();
         }
@@ -26,7 +26,7 @@ impl SkeletonRig {
     pub(super) fn chains_with(&self, index: usize) -> Vec<usize> {
         let is_chain = |index: &usize| {
             let target = &self.targets[*index];
-            matches!(target.kind, TargetKind::Chain(_)) && self.is_solved_for(target)
+            target.kind.is_chain() && self.is_solved_for(target)
         };
         let groups = self.groups_of_chains((0..self.targets.len()).filter(is_chain));
         groups.into_iter().find(|group| group.contains(&index)).unwrap_or_default()

@@ -340,12 +340,7 @@ impl SkeletonRig {
     ) {
         let BodyInputs { start, footing, blocked } = inputs;
         let StepPose { solved, outcomes, body_refused, .. } = step;
-        let is_body = |index: &usize| {
-            let target = &self.targets[*index];
-            self.is_solved_for(target) && target.kind == TargetKind::WholeBody
-        };
-        let indices: Vec<usize> = (0..self.targets.len()).filter(is_body).collect();
-        let active = self.accepted(&indices, solved, time, outcomes);
+        let active = self.accepted(&self.bodies(), solved, time, outcomes);
         let (indices, active): (Vec<usize>, Vec<BodyTarget>) = active.into_iter().unzip();
         let mut options = self.solver;
         if active.is_empty() && options.method.is_closed_form() {
@@ -403,6 +398,14 @@ impl SkeletonRig {
             self.solve_limb(&mut step, index, time, None);
         }
         step.solved
+    }
+
+    /// Indices of the whole-body targets that are solved.
+    pub(super) fn bodies(&self) -> Vec<usize> {
+        let is_body =
+            |target: &Target| target.kind == TargetKind::WholeBody && self.is_solved_for(target);
+        let all = 0..self.targets.len();
+        all.filter(|index| is_body(&self.targets[*index])).collect()
     }
 
     /// Indices of the targets that are solved after the body, those of chains and limbs.

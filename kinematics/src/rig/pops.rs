@@ -199,8 +199,7 @@ impl Step<'_> {
         let way = ((place(after.1) - place(before.1)) - taken).length();
         let way = if after.0.has_free_place() { 0.0 } else { way };
         // A short chain turns as a whole.
-        let is_chain = matches!(after.0.kind, TargetKind::Chain(_));
-        let lever = self.length(index) * if is_chain { 1.0 } else { 0.5 };
+        let lever = self.length(index) * if after.0.kind.is_chain() { 1.0 } else { 0.5 };
         let of_turn = self.wanted_turn(index) * lever;
         let influence = f64::from((after.0.influence - before.0.influence).abs());
         let of_influence = influence * self.distance_from_fk(after.0);

@@ -196,8 +196,7 @@ impl SkeletonRig {
     pub fn targets_at(&self, time: f64) -> Vec<ChainTarget> {
         let fk = self.fk_at(time);
         let enabled = self.targets.iter().filter(|it| it.enabled && !self.leads_path(it));
-        let (chains, others): (Vec<_>, Vec<_>) =
-            enabled.partition(|target| matches!(target.kind, TargetKind::Chain(_)));
+        let (chains, others): (Vec<_>, Vec<_>) = enabled.partition(|target| target.kind.is_chain());
         let targets = if others.is_empty() { chains } else { others };
         targets.into_iter().map(|target| self.tip_target(target, &fk, time)).collect()
     }

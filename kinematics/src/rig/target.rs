@@ -73,6 +73,13 @@ pub enum TargetKind {
     Limb(LimbSettings),
 }
 
+impl TargetKind {
+    /// True for the kind of a chain, of any length.
+    pub fn is_chain(&self) -> bool {
+        matches!(self, Self::Chain(_))
+    }
+}
+
 impl Target {
     /// An enabled whole-body target in the world, without influence, that stays at its home.
     /// `radius` is the radius of the path that it will have once it moves.

@@ -253,24 +253,30 @@ impl JointLimits {
     /// Takes from a change of angles the parts that lead out of the limits. Returns whether there was
     /// any.
     pub(crate) fn hold(&self, angles: Vec3, by: &mut Vec3) -> bool {
-        /// Length of what is new of an end beside those that hold the change.
-        const NEW: f32 = 1e-3;
         let mut held: [Vec3; 3] = [Vec3::ZERO; 3];
         for count in 0..held.len() {
-            let new_part = |out: Vec3| {
-                let new = held[..count].iter().fold(out, |new, held| new - *held * held.dot(new));
-                new.try_normalize().filter(|_| new.length() > NEW)
-            };
-            // With the end that is crossed most, the change often crosses no other one.
-            let crossed = self.crossed(angles, *by).into_iter().flatten();
-            let crossed = crossed.filter_map(|out| Some((out.dot(*by), new_part(out)?)));
-            let Some((_, out)) = crossed.max_by(|one, other| one.0.total_cmp(&other.0)) else {
+            let Some(out) = self.most_crossed(angles, *by, &held[..count]) else {
                 return count > 0;
             };
             *by -= out * out.dot(*by);
             held[count] = out;
         }
         true
+    }
+
+    /// Of the ends at which angles are, the one that a change `by` of them crosses most: with it
+    /// held, the change often crosses no other one. Returns the part of its unit vector, as that of
+    /// [`crossed`](Self::crossed), that is new beside the orthonormal `held`, as a unit vector.
+    pub(crate) fn most_crossed(&self, angles: Vec3, by: Vec3, held: &[Vec3]) -> Option<Vec3> {
+        /// Length of a part that counts as new.
+        const NEW: f32 = 1e-3;
+        let new_part = |out: Vec3| {
+            let new = held.iter().fold(out, |new, held| new - *held * held.dot(new));
+            new.try_normalize().filter(|_| new.length() > NEW)
+        };
+        let crossed = self.crossed(angles, by).into_iter().flatten();
+        let crossed = crossed.filter_map(|out| Some((out.dot(by), new_part(out)?)));
+        Some(crossed.max_by(|one, other| one.0.total_cmp(&other.0))?.1)
     }
 
     /// Of a cone, the direction of the bone in the joint's frame and the changes of its twist that

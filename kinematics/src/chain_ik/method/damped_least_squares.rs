@@ -592,24 +592,13 @@ pub(in crate::chain_ik) fn hold_in_cone(
     axes: &mut Mat3A,
     ends: &mut Vec<(usize, Vec3)>,
 ) -> bool {
-    /// Length of what is new of an end beside those at which the link is held.
-    const NEW: f32 = 1e-3;
     let of_link = |ends: &[(usize, Vec3)]| -> Vec<Vec3> {
         ends.iter().filter(|(at, _)| *at == index).map(|(_, out)| *out).collect()
     };
     for out in of_link(ends) {
         *by -= out * out.dot(*by);
     }
-    let new_part = |out: Vec3| {
-        let new = of_link(ends).into_iter().fold(out, |new, held| new - held * held.dot(new));
-        new.try_normalize().filter(|_| new.length() > NEW)
-    };
-    // With the end that is crossed most, the step often crosses no other one.
-    let crossed = link.limits.crossed(angles, *by).into_iter().flatten();
-    let crossed = crossed.filter_map(|out| Some((out.dot(*by), new_part(out)?)));
-    let Some((_, out)) = crossed.max_by(|one, other| one.0.total_cmp(&other.0)) else {
-        return false;
-    };
+    let Some(out) = link.limits.most_crossed(angles, *by, &of_link(ends)) else { return false };
     let along = Mat3A::from_cols(
         Vec3A::from(out) * out.x,
         Vec3A::from(out) * out.y,

@@ -121,15 +121,11 @@ impl SkeletonRig {
         let of_kind = |is_kind: fn(&TargetKind) -> bool| {
             missed.iter().copied().filter(move |index| is_kind(&self.targets[*index].kind))
         };
-        let is_body = |index: &usize| {
-            let target = &self.targets[*index];
-            self.is_solved_for(target) && target.kind == TargetKind::WholeBody
-        };
-        let body: Vec<usize> = (0..self.targets.len()).filter(is_body).collect();
+        let body = self.bodies();
         let missed_by_body: Vec<usize> = of_kind(|it| *it == TargetKind::WholeBody).collect();
         let mut found =
             self.diagnose_together(&evaluated.fk, &body, &missed_by_body, &self.solver, time);
-        for index in of_kind(|kind| matches!(kind, TargetKind::Chain(_))) {
+        for index in of_kind(TargetKind::is_chain) {
             let together = self.chains_with(index);
             let turned = self.turned_together(&together);
             let mut pose = with_others_locked(&evaluated.solved, &turned);
@@ -217,7 +213,7 @@ impl SkeletonRig {
             Remedy::FollowBody => self.body_follows = true,
             Remedy::FreeBalance => self.balance = None,
             Remedy::LengthenChain { joint, length } => self.change_target(joint, |target| {
-                if matches!(target.kind, TargetKind::Chain(_)) {
+                if target.kind.is_chain() {
                     target.kind = TargetKind::Chain(length);
                 }
             }),

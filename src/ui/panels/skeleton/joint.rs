@@ -127,12 +127,12 @@ fn cone(
     widgets::pair(ui, "Twist", |ui| {
         widgets::at_right(ui, |ui| {
             let Limit { min, max } = cone.twist;
-            angle(ui, session, actions, "Twist minimum", RANGE, min, &|to| {
+            end(ui, session, actions, "Twist minimum", min, &|to| {
                 let to = to.max(max - TAU);
                 set(Cone { twist: Limit { min: to, max: max.max(to) }, ..cone })
             });
             ui.weak("to");
-            angle(ui, session, actions, "Twist maximum", RANGE, max, &|to| {
+            end(ui, session, actions, "Twist maximum", max, &|to| {
                 let to = to.min(min + TAU);
                 set(Cone { twist: Limit { min: min.min(to), max: to }, ..cone })
             });
@@ -140,15 +140,13 @@ fn cone(
     });
     widgets::pair(ui, "Middle", |ui| {
         widgets::at_right(ui, |ui| {
-            let middle = cone.middle;
-            let set_middle =
-                |to: Vec2| set(Cone { middle: to.clamp_length_max(Cone::WIDEST), ..cone });
             let tooltip = "Turn the middle of the cone away from the bone at rest";
-            for (name, label, value) in [("Middle x", "x", middle.x), ("Middle z", "z", middle.y)] {
+            for (name, label, axis) in [("Middle x", "x", 0), ("Middle z", "z", 1)] {
                 ui.weak(label);
-                angle(ui, session, actions, name, tooltip, value, &|to| match label {
-                    "x" => set_middle(Vec2::new(to, middle.y)),
-                    _ => set_middle(Vec2::new(middle.x, to)),
+                angle(ui, session, actions, name, tooltip, cone.middle[axis], &|to| {
+                    let mut middle = cone.middle;
+                    middle[axis] = to;
+                    set(Cone { middle: middle.clamp_length_max(Cone::WIDEST), ..cone })
                 });
             }
         });
@@ -172,31 +170,29 @@ fn ranges(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions
             actions.extend(changed.map(|limited| set(limited.then_some(wide))));
             let Some(limit) = limit else { return };
             widgets::at_right(ui, |ui| {
-                angle(
-                    ui,
-                    session,
-                    actions,
-                    &format!("{label} minimum"),
-                    RANGE,
-                    limit.min,
-                    &|min| set(Some(Limit { min, max: limit.max.max(min) })).into(),
-                );
+                end(ui, session, actions, &format!("{label} minimum"), limit.min, &|min| {
+                    set(Some(Limit { min, max: limit.max.max(min) })).into()
+                });
                 ui.weak("to");
-                angle(
-                    ui,
-                    session,
-                    actions,
-                    &format!("{label} maximum"),
-                    RANGE,
-                    limit.max,
-                    &|max| set(Some(Limit { min: limit.min.min(max), max })).into(),
-                );
+                end(ui, session, actions, &format!("{label} maximum"), limit.max, &|max| {
+                    set(Some(Limit { min: limit.min.min(max), max })).into()
+                });
             });
         });
     }
 }
 
-const RANGE: &str = "Set the end of the range";
+/// Shows a field for an end of a range, as [`angle`] does.
+fn end(
+    ui: &mut Ui,
+    session: &Session,
+    actions: &mut Actions,
+    name: &str,
+    value: f32,
+    set: &dyn Fn(f32) -> Edit,
+) {
+    angle(ui, session, actions, name, "Set the end of the range", value, set);
+}
 
 /// Shows a field for an angle of a limit. `value` and the argument of `set` are in radians; the
 /// field shows degrees.

@@ -33,8 +33,7 @@ pub(super) fn kind(ui: &mut Ui, session: &Session, target: Target, actions: &mut
             set(TargetKind::WholeBody);
         }
         let by_chain = "Turn a number of joints above the tip, after the body";
-        let is_chain = matches!(target.kind, TargetKind::Chain(_));
-        if list.item(is_chain, "Chain", by_chain, None) {
+        if list.item(target.kind.is_chain(), "Chain", by_chain, None) {
             set(TargetKind::Chain(NEW_LENGTH));
         }
         let by_limb = "Solve the two bones above the tip in closed form";
