@@ -482,7 +482,12 @@ impl Bench {
 
     /// Clicks the number beside a rail, types another and enters it.
     pub fn enter(&mut self, slider: &str, text: &str) {
-        self.click(Role::SpinButton, &format!("{slider} value"));
+        self.type_into(&format!("{slider} value"), text);
+    }
+
+    /// Types into the field of a number.
+    pub fn type_into(&mut self, field: &str, text: &str) {
+        self.click(Role::SpinButton, field);
         self.key_with(Modifiers::COMMAND, Key::A);
         self.frame([Event::Text(text.to_owned())]);
         self.key(Key::Enter);

@@ -2,8 +2,8 @@
 
 use core::f32::consts::PI;
 
+use egui::PointerButton;
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton};
 use glam::{Quat, Vec2, Vec3};
 use ik_arm::document::Overlay;
 use ik_arm::kinematics::skeleton::{
@@ -45,11 +45,7 @@ fn choose_cone(bench: &mut Bench) {
 
 fn type_into(bench: &mut Bench, name: &str, text: &str) {
     bench.reveal(Role::SpinButton, name);
-    bench.click(Role::SpinButton, name);
-    bench.key_with(Modifiers::COMMAND, Key::A);
-    bench.frame([Event::Text(text.to_owned())]);
-    bench.key(Key::Enter);
-    bench.settle();
+    bench.type_into(name, text);
 }
 
 #[test]

@@ -531,6 +531,25 @@ fn the_point_of_an_aim_is_dragged_in_the_view_and_keyed() {
 }
 
 #[test]
+fn the_target_of_the_head_turns_as_many_joints_as_its_chain_is_long() {
+    let chain = |length: u32| TargetKind::Chain(length.try_into().expect("above 0"));
+    let mut bench = human();
+    select(&mut bench, "head");
+    bench.settle();
+    assert_eq!(target(&bench, "head").kind, chain(2));
+    for (typed, length) in [("3", 3), ("0", 1), ("99", 5)] {
+        bench.reveal(Role::SpinButton, "Chain length");
+        bench.type_into("Chain length", typed);
+        assert_eq!(target(&bench, "head").kind, chain(length), "{typed}");
+    }
+    let aim = target(&bench, "head").aim;
+    choose(&mut bench, "Target kind", "Whole body");
+    assert_eq!(target(&bench, "head").kind, TargetKind::WholeBody);
+    choose(&mut bench, "Target kind", "Chain");
+    assert_eq!((target(&bench, "head").kind, target(&bench, "head").aim), (chain(2), aim));
+}
+
+#[test]
 fn a_hand_that_follows_its_bone_has_rings_of_its_own_angles() {
     let mut bench = human();
     select(&mut bench, "left_hand");

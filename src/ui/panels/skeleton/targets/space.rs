@@ -61,7 +61,7 @@ fn chain_length(
     let field = NumberField {
         name: "Chain length",
         value: length.get() as f32,
-        unit: "joints",
+        unit: "",
         step: 1.0,
         digits: 0,
         tooltip: "Set how many joints the target turns, from its own upwards",
