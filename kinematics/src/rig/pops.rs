@@ -102,13 +102,16 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    /// The step of the joints of a target's limb.
+    /// The step of the two bones of a target's limb. Its hand hangs on them, or has the rotation that
+    /// the target sets.
     fn of_limb(
         [before, after]: [&RigMoment<'a>; 2],
         target: usize,
         is_missed: [&'a dyn Fn(usize) -> bool; 2],
     ) -> Self {
-        let joints = after.rig.moved_by(&after.rig.targets[target]).turned;
+        let limb = after.rig.targets[target].limb_in(&after.rig.skeleton);
+        let joints: Vec<JointId> =
+            limb.into_iter().flat_map(|limb| [limb.lower, limb.upper]).collect();
         let taken = taken_along(before, after, &joints);
         let frames = |moment: &RigMoment<'_>| moment.rig.limb_frames(moment.evaluated, target);
         let limb = frames(before).zip(frames(after)).map(<[LimbFrames; 2]>::from);
@@ -152,10 +155,8 @@ impl Step<'_> {
     /// The pop of the joints that targets turn together, if there is one.
     fn pop(&self, targets: &[usize]) -> Option<RigPop> {
         let length = targets.iter().map(|it| self.length(*it)).fold(0.0, f64::max);
-        // A hand that its target turns goes as it is told.
-        let is_told = |joint: &JointId| targets.iter().any(|index| self.turns_hand(*index, *joint));
-        let joints = self.joints.iter().filter(|joint| !is_told(joint));
-        let ways: Vec<(JointId, f64)> = joints.map(|joint| (*joint, self.moved(*joint))).collect();
+        let ways = self.joints.iter().map(|joint| (*joint, self.moved(*joint)));
+        let ways: Vec<(JointId, f64)> = ways.collect();
         let moved = ways.iter().map(|(_, way)| *way).max_by(f64::total_cmp)?;
         // Two joints share a point: of those that move alike, the one nearer to the root.
         let alike = ways.iter().filter(|(_, way)| *way >= ALIKE * moved);
@@ -180,14 +181,6 @@ impl Step<'_> {
         let after = places(&self.after.evaluated.solved, joint);
         let taken = self.taken[joint.index()];
         after.iter().zip(taken).map(|(after, taken)| after.distance(taken)).fold(0.0, f64::max)
-    }
-
-    /// True if a target sets the orientation of a joint, its hand.
-    fn turns_hand(&self, index: usize, joint: JointId) -> bool {
-        let target = &self.after.rig.targets[index];
-        target.orientation.is_some()
-            && joint != target.joint
-            && self.after.rig.end_of(target) == joint
     }
 
     /// Way of a target and of its other inputs.
