@@ -62,8 +62,9 @@ impl Example {
                 "A figure that walks: its feet stand at their targets while the pelvis moves on, \
                  and its arms swing by FK; press Space to play.";
             "reaching-down", "Reaching down" =>
-                "A figure that squats to lift something from the floor: only its hands, its gaze \
-                 and its balance are given, and its feet stay; press Space to play.";
+                "A figure that squats to lift something from the floor: only its hands with their \
+                 rotations, its gaze and its balance are given, and its feet stay; press Space to \
+                 play.";
             "looking-at-the-hand", "Looking at the hand" =>
                 "A figure whose neck and head turn to its hand, wherever it goes: drag it, or press \
                  Space to play.";
