@@ -2,9 +2,9 @@
 
 use glam::{EulerRot, Mat3A, Vec3, Vec3A};
 
-use super::Document;
 use super::channel::Channel;
 use super::track::{Posed, Track};
+use super::{Document, Timeline};
 use crate::kinematics::angle;
 use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, JointRemap, Skeleton, nearest_angles};
@@ -175,13 +175,25 @@ const TURN: Mat3A = Mat3A::from_cols(Vec3A::X, Vec3A::NEG_Z, Vec3A::Y);
 
 /// The axis that points up.
 impl Document {
-    /// True if the figure stands along the z axis in its bind pose, and not along the y axis at the
-    /// start of its motion.
+    /// True if the figure stands along the z axis: in its bind pose, unless it stands along the y
+    /// axis in more of its motion; or in most of its motion, if the bind pose stands along neither.
     pub fn looks_z_up(&self) -> bool {
+        /// Number of times of the motion that are looked at.
+        const TIMES: u32 = 9;
         let bind = UpAxis::of(self.skeleton(), &self.skeleton().bind_pose());
-        bind == Some(UpAxis::Z) && {
-            let start = self.at(self.timeline.start);
-            UpAxis::of(start.skeleton(), &start.skeleton().pose()) != Some(UpAxis::Y)
+        if bind == Some(UpAxis::Y) {
+            return false;
+        }
+        let Timeline { start, end, .. } = self.timeline;
+        let parts = (0..TIMES).map(|index| f64::from(index) / f64::from(TIMES - 1));
+        let axes = parts.filter_map(|part| {
+            let posed = self.at(start + part * (end - start));
+            UpAxis::of(posed.skeleton(), &posed.skeleton().pose())
+        });
+        let (along_z, along_y): (Vec<UpAxis>, Vec<UpAxis>) = axes.partition(|it| *it == UpAxis::Z);
+        match bind {
+            Some(_) => along_z.len() >= along_y.len(),
+            None => 2 * along_z.len() > TIMES as usize,
         }
     }
 

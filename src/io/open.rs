@@ -66,9 +66,12 @@ fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenErr
     if options.skeleton.is_none() {
         opened.warnings.extend(one_of_several(&opened.skeletons));
     }
-    // In a document of this program, y points up unless the caller knows better.
-    let is_told = matches!(options.up, Some(Upwards::Y | Upwards::Z));
-    let seems_z = !is_told && !reader.is_own() && opened.document.looks_z_up();
+    let is_doubtful = match options.up {
+        Some(Upwards::Y | Upwards::Z) => false,
+        Some(Upwards::Auto) => !reader.is_own(),
+        None => !reader.says_y_up(),
+    };
+    let seems_z = is_doubtful && opened.document.looks_z_up();
     turn_up(&mut opened, options.up, seems_z);
     Ok(opened)
 }

@@ -127,6 +127,27 @@ fn a_file_with_z_up_is_recognised_and_the_remark_says_what_turns_it() {
     }
 }
 
+#[test]
+fn a_figure_that_its_motion_stands_up_is_not_taken_for_one_with_z_up() {
+    let mut random = Random(76);
+    let z_up = bvh(&HUMAN, &Z_UP, &mut random);
+    let turn_root = |text: &str, turns: [i32; 3]| {
+        let (head, frames) = text.split_once("Frame Time: 0.04\n").expect("frames");
+        let frames = frames.lines().zip(turns).map(|(line, turn)| {
+            let mut words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            words[4] = turn.to_string();
+            words.join(" ") + "\n"
+        });
+        format!("{head}Frame Time: 0.04\n{}", frames.collect::<String>())
+    };
+    // In the first frame alone it lies.
+    assert_eq!(open(&turn_root(&z_up, [0, -90, -90]), None).warnings, []);
+    assert_eq!(open(&turn_root(&z_up, [0, 0, 0]), None).warnings.len(), 1);
+    // A figure that lies down in its motion has y up.
+    let y_up = bvh(&HUMAN, &Y_UP, &mut random);
+    assert_eq!(open(&turn_root(&y_up, [90, 90, 90]), None).warnings, []);
+}
+
 /// With y up, and as long or wide along z as many a figure is high.
 const FISH: [(&str, usize, [f32; 3]); 6] = [
     ("mouth", 0, [0.0, 30.0, 50.0]),

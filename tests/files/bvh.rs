@@ -5,7 +5,7 @@ use crate::common::arm::{ArmPosed, LOWER, UPPER, channels};
 use ik_arm::rig::LimbPart;
 use std::collections::HashMap;
 
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3, Vec3};
 use ik_arm::document::{Channel, Document, SkeletonRig, Timeline};
 use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
@@ -557,6 +557,58 @@ fn a_joint_rotates_by_the_product_of_its_channels_in_file_order() {
             }
         }
     }
+}
+
+#[test]
+fn between_frames_joints_turn_the_shortest_way_also_near_gimbal_lock() {
+    let mut random = Random(391);
+    for _ in 0..100 {
+        // In gimbal lock of z, y, x, with a little change from frame to frame.
+        let turn = |random: &mut Random| {
+            [0.0, 90.0, 0.0].map(|it| f64::from(it + random.within(-3.0..3.0)))
+        };
+        let frames = [turn(&mut random), turn(&mut random)];
+        let lines = frames.map(|turns| turns.map(|it| it.to_string()).join(" ")).join("\n");
+        let text = format!(
+            "HIERARCHY ROOT a {{ OFFSET 0 0 0 CHANNELS 3 Yrotation Xrotation Zrotation\n\
+             End Site {{ OFFSET 0 1 0 }} }}\nMOTION\nFrames: 2\nFrame Time: 1\n{lines}\n"
+        );
+        let rotation = |[y, x, z]: [f64; 3]| {
+            let [y, x, z] = [y, x, z].map(f64::to_radians);
+            DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x) * DQuat::from_rotation_z(z)
+        };
+        let [from, to] = frames.map(rotation);
+        let document = open(&text).document;
+        for part in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let expected = from.slerp(to, part) * DVec3::new(0.3, 0.5, 0.7);
+            let posed = document.at(part);
+            let found = posed.skeleton().pose().full(JointId::new(0));
+            let found = found.transform_point3(Vec3::new(0.3, 0.5, 0.7)).as_dvec3();
+            assert!(found.distance(expected) < 1e-6, "{found}, not {expected} at {part}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn joints_whose_positions_are_all_zero_keep_their_offsets() {
+    let file = |root: &str, positions: [&str; 2]| {
+        let channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
+        let [first, second] = positions;
+        format!(
+            "HIERARCHY ROOT a {{ OFFSET 0 9 0 {channels} JOINT b {{ OFFSET 0 2 0 {channels}\n\
+             JOINT c {{ OFFSET 0 0 0 {channels} End Site {{ OFFSET 0 1 0 }} }} }} }}\n\
+             MOTION\nFrames: 2\nFrame Time: 1\n{root} 0 0 0 {first} 0 0 0 0 0 0 0 0 0\n\
+             {root} 0 0 0 {second} 0 0 90 0 0 0 0 0 0\n"
+        )
+    };
+    let bases = |text: &str| {
+        let opened = open(text);
+        let pose = opened.document.at(1.0).skeleton().pose();
+        ([0, 1].map(|joint| pose.base(JointId::new(joint)).y), opened.warnings.len())
+    };
+    assert_eq!(bases(&file("0 5 0", ["0 0 0"; 2])), ([5.0, 7.0], 1), "the root goes");
+    assert_eq!(bases(&file("0 0 0", ["0 0 0"; 2])), ([9.0, 11.0], 1), "the root stays, too");
+    assert_eq!(bases(&file("0 5 0", ["0 0 0", "0 1 0"])), ([5.0, 6.0], 0), "a joint moves");
 }
 
 #[test]

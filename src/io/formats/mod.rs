@@ -52,6 +52,8 @@ pub struct Reader {
     signature: Signature,
     /// True if files have meshes on their skeletons, which the skin of a document can refer to.
     has_skins: bool,
+    /// True if y points up in all files, as the format says.
+    says_y_up: bool,
     /// Maximum size of a file in bytes.
     most_bytes: u64,
     read: fn(&Source, &OpenOptions) -> Result<Opened, OpenError>,
@@ -112,6 +114,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Key(js3d::KEY, "a .js3d file of Scotty3D"),
                 has_skins: true,
+                says_y_up: false,
                 most_bytes: OpenError::MAX_BYTES,
                 read: js3d::read,
                 former: |_| None,
@@ -125,6 +128,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Key(gltf::KEY, "glTF"),
                 has_skins: true,
+                says_y_up: true,
                 most_bytes: OpenError::MAX_GLTF_BYTES,
                 read: gltf::read,
                 former: gltf::former,
@@ -153,6 +157,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Text(bvh::is_bvh),
                 has_skins: false,
+                says_y_up: false,
                 most_bytes: OpenError::MAX_BYTES,
                 read: bvh::read,
                 former: |_| None,
@@ -224,6 +229,7 @@ impl FileFormat {
         reader: Some(Reader {
             signature: Signature::Key(document::KEY, "a document of ik-arm"),
             has_skins: false,
+            says_y_up: true,
             most_bytes: OpenError::MAX_BYTES,
             read: document::read,
             former: |_| None,
@@ -362,6 +368,11 @@ impl Reader {
     /// Returns whether files have meshes on their skeletons.
     pub fn has_skins(&self) -> bool {
         self.has_skins
+    }
+
+    /// Returns whether y points up in all files, as the format says.
+    pub fn says_y_up(&self) -> bool {
+        self.says_y_up
     }
 
     /// Maximum size of a file in bytes.

@@ -165,6 +165,8 @@ pub struct BvhNode {
     pub parent: Option<usize>,
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
+    /// True if position channels do not replace `offset`.
+    pub keeps_offset: bool,
     /// The tip of the joint's bone relative to its base; `None` without an End Site.
     pub end: Option<Vec3>,
 }
@@ -351,6 +353,7 @@ impl Hierarchy {
             parent,
             offset: Vec3::ZERO,
             channels: Vec::new(),
+            keeps_offset: false,
             end: None,
         });
         Ok(())

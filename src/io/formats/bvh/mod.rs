@@ -17,7 +17,7 @@
 //!
 //! Angles are in degrees. A joint's rotation is the product of its rotation channels in their
 //! order, with the first channel as the leftmost factor. Position channels replace the joint's
-//! offset.
+//! offset, unless those of all joints are 0 in all frames.
 //!
 //! # Export
 //!
@@ -30,7 +30,7 @@
 //!
 //! Channels can have any order and number. The bone of a joint goes to its End Site or to the child
 //! that continues the chain, see [`bones`](crate::io::bones), all at the first frame. Values that
-//! change over time become keys; constant values are set on the skeleton.
+//! change over time become keys, of rotations by slerp; constant values are set on the skeleton.
 
 mod hierarchy;
 mod read;

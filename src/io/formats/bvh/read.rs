@@ -10,6 +10,7 @@ use crate::io::frame_rate;
 use crate::io::opened::{OpenOptions, Opened};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton, exact_angles};
+use crate::kinematics::spline::{Interpolation, Knot, Spline};
 
 /// Returns whether a text is BVH, judged by its first word.
 pub fn is_bvh(text: &str) -> bool {
@@ -34,6 +35,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     }
     let mut warnings = rename(source, &mut nodes);
     warnings.extend(warning.map(|it| source.remark_about(it.at, &it.joint, &it.reason)));
+    if motion.keep_offsets(&mut nodes) {
+        let reason = "the positions of joints are 0 in all frames: the joints keep their OFFSETs";
+        warnings.push(Remark::new(reason.to_owned()));
+    }
     let document = document(&nodes, &motion).map_err(open_error)?;
     Ok(Opened {
         order: document.skeleton().ids().collect(),
@@ -145,21 +150,26 @@ fn add_keys(
     let mut angles = first_angles(node, first);
     let rotation = angles.as_vec3();
     if changes(|channel| matches!(channel, BvhChannel::Rotation(_))) {
-        for (frame, row) in rows.enumerate() {
+        let knot = |(frame, row)| {
             angles = exact_angles::nearest(rotation_of(node, row), angles);
             let time = motion.timing.time(frame);
-            keys.insert(document::Channel::Rotation(JointId::new(joint)), time, angles.as_vec3());
-        }
+            // Near gimbal lock, angles swing out and back within a frame; the joint does not.
+            Knot { interpolation: Interpolation::Slerp, ..Knot::new(time, angles.as_vec3()) }
+        };
+        let track: Spline<Vec3> = rows.enumerate().map(knot).collect();
+        keys.set_track(document::Channel::Rotation(JointId::new(joint)), track);
     }
     FirstFrame { offset: offset(node, first), rotation }
 }
 
-/// The joint's offset in a frame. Position channels replace the components of `node.offset`.
+/// The joint's offset in a frame. Position channels replace the components of `node.offset`, unless
+/// the joint keeps it.
 fn offset(node: &BvhNode, row: &[f32]) -> Vec3 {
     let mut offset = node.offset;
     for (channel, value) in node.channels.iter().zip(row) {
-        if let BvhChannel::Position(axis) = channel {
-            offset[*axis] = *value;
+        match channel {
+            BvhChannel::Position(axis) if !node.keeps_offset => offset[*axis] = *value,
+            _ => {}
         }
     }
     offset
@@ -293,6 +303,33 @@ fn read_frame(
 impl MotionData {
     pub fn frames(&self) -> usize {
         self.frames
+    }
+
+    /// Lets joints keep their offsets if the positions of all joints but the root are 0 in all frames
+    /// and some of these joints have another offset, as MakeHuman writes files: the joints would all
+    /// be at one point. Returns whether they do. A root moves by its positions unless they are 0, too.
+    fn keep_offsets(&self, nodes: &mut [BvhNode]) -> bool {
+        let mut start = 0;
+        let mut placed: Vec<(usize, bool)> = Vec::new();
+        for (index, node) in nodes.iter().enumerate() {
+            let channels = node.channels.iter().zip(start..);
+            let positions = channels.filter(|(it, _)| matches!(it, BvhChannel::Position(_)));
+            let columns: Vec<usize> = positions.map(|(_, column)| column).collect();
+            start += node.channels.len();
+            let rows = || self.values.chunks_exact(self.width.max(1));
+            let is_zero = rows().all(|row| columns.iter().all(|column| row[*column] == 0.0));
+            if !columns.is_empty() {
+                placed.push((index, is_zero));
+            }
+        }
+        let inner = || placed.iter().filter(|(index, _)| nodes[*index].parent.is_some());
+        let are_lost = self.frames > 0
+            && inner().all(|(_, is_zero)| *is_zero)
+            && inner().any(|(index, _)| nodes[*index].offset != Vec3::ZERO);
+        for (index, is_zero) in placed {
+            nodes[index].keeps_offset = are_lost && is_zero;
+        }
+        are_lost
     }
 
     /// For each frame, the values of the `width` channels that begin with channel `start`.
