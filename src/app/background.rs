@@ -159,8 +159,7 @@ pub(super) fn locate_skin(path: PathBuf, rig: &SkeletonRig, proxy: EventLoopProx
     let (skin, skeleton) = (skin.clone(), rig.skeleton.clone());
     platform::spawn(async move || {
         let before = skin.file().cloned();
-        let name = before.as_ref().map_or("", |file| &file.skeleton);
-        let read = Box::new(io::relocated_skin(&path, name, skin.joints(), &skeleton));
+        let read = Box::new(io::relocated_skin(&path, &skin, &skeleton));
         send(&proxy, UserEvent::SkinLocated { path, before, read });
     });
 }

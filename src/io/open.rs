@@ -10,7 +10,7 @@ use super::opened::{OpenOptions, Opened, Upwards};
 use super::source::Source;
 use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{JointId, Skeleton};
+use crate::kinematics::skeleton::Skeleton;
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinSource};
 
 /// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
@@ -113,7 +113,7 @@ fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
     let Some(file) = skin.file() else { return warnings };
     let path = folder.map_or_else(|| file.path.clone(), |folder| folder.join(&file.path));
     let located = SkinFile { path, ..file.clone() };
-    let read = relocated_skin(&located.path, &located.skeleton, skin.joints(), &rig.skeleton);
+    let read = relocated_skin(&located.path, skin, &rig.skeleton);
     let is_unchanged =
         |read: &MeshSkin| read.file().is_some_and(|file| file.checksum == located.checksum);
     *skin = match read {
@@ -129,7 +129,8 @@ fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
 }
 
 /// Takes the mesh of a skin from the file at `path` as it is now: from the skeleton of the same
-/// name, or from the file's only one.
+/// name as before, or from the file's only one, and in the animation of the same name, or in the
+/// first that moves the skeleton.
 ///
 /// # Errors
 ///
@@ -137,14 +138,26 @@ fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
 /// joints.
 pub fn relocated_skin(
     path: &Path,
-    skeleton_name: &str,
-    joints: &[Option<JointId>],
+    skin: &MeshSkin,
     skeleton: &Skeleton,
 ) -> Result<MeshSkin, SkinFileError> {
-    let found = match read_skin(path, Some(skeleton_name)) {
-        Err(OpenError::NoSkeleton { names, .. }) if names.len() == 1 => read_skin(path, None),
-        found => found,
+    let before = skin.file();
+    let skeleton_name = before.map_or("", |file| &file.skeleton);
+    let mut options = OpenOptions {
+        animation: before.and_then(|file| file.animation.clone()),
+        ..OpenOptions::of_skeleton(skeleton_name)
     };
+    let mut found = read_skin(path, &options);
+    if matches!(found, Err(OpenError::NoAnimation { .. })) {
+        options.animation = None;
+        found = read_skin(path, &options);
+    }
+    if let Err(OpenError::NoSkeleton { names, .. }) = &found
+        && names.len() == 1
+    {
+        options.skeleton = None;
+        found = read_skin(path, &options);
+    }
     let found = found.map_err(|error| match error {
         OpenError::Read { source, .. } if source.kind() == ErrorKind::NotFound => {
             SkinFileError::Missing(path.to_owned())
@@ -156,25 +169,24 @@ pub fn relocated_skin(
     let Some((mesh, file)) = found else {
         return invalid(format!("has no mesh on the skeleton {skeleton_name:?}"));
     };
-    let (expected, got) = (joints.len(), mesh.parents.len());
+    let (expected, got) = (skin.joints().len(), mesh.parents.len());
     if expected != got {
         return invalid(format!("must have a skeleton of {expected} joints, got {got}"));
     }
-    Ok(MeshSkin::new(mesh, Some(file), joints.to_vec(), skeleton))
+    Ok(MeshSkin::new(mesh, Some(file), skin.joints().to_vec(), skeleton))
 }
 
 /// The mesh on a skeleton of a file; `None` if it has none.
 fn read_skin(
     path: &Path,
-    skeleton: Option<&str>,
+    options: &OpenOptions,
 ) -> Result<Option<(Shared<FileMesh>, SkinFile)>, OpenError> {
     let source = Source::open(path)?;
-    let options = skeleton.map_or_else(OpenOptions::default, OpenOptions::of_skeleton);
     let reader = Reader::detect(&source)?;
     if !reader.has_skins() {
         return Ok(None);
     }
-    let opened = reader.read(&source, &options)?;
+    let opened = reader.read(&source, options)?;
     Ok(opened.document.rig.skin.and_then(|skin| match skin.source {
         SkinSource::Mesh(mesh) => Some((mesh.in_file()?.clone(), mesh.file()?.clone())),
         SkinSource::Bones(_) => None,

@@ -178,7 +178,8 @@ fn skin_of_a_file(session: &Session) -> Skin {
     let rig = session.rig();
     let mesh = rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh.clone();
     let parents = rig.skeleton.joints().iter().map(|joint| joint.parent).collect();
-    let file = SkinFile { path: "x.glb".into(), checksum: 5, skeleton: "x".to_owned() };
+    let skeleton = "x".to_owned();
+    let file = SkinFile { path: "x.glb".into(), checksum: 5, skeleton, animation: None };
     let joints = rig.skeleton.ids().map(Some).collect();
     let mesh = FileMesh { mesh, parents, parts: Vec::new() };
     Skin::new(SkinSource::Mesh(MeshSkin::new(mesh.into(), Some(file), joints, &rig.skeleton)))

@@ -169,8 +169,7 @@ fn a_changed_file_is_told_and_can_be_taken_as_it_is() {
     let skin = mesh_skin(&changed.document);
     assert!(matches!(skin.mesh(), Err(SkinFileError::Changed(_))));
     let file = skin.file().expect("a file");
-    let located =
-        io::relocated_skin(&file.path, &file.skeleton, skin.joints(), changed.document.skeleton());
+    let located = io::relocated_skin(&file.path, skin, changed.document.skeleton());
     let located = located.expect("it is read");
     assert_ne!(located.mesh().expect("a mesh").mesh, attached(&before).mesh);
     assert_ne!(located.file().expect("a file").checksum, file.checksum);
@@ -183,7 +182,7 @@ fn a_file_with_another_number_of_joints_or_without_a_mesh_cannot_be_located() {
     let document = project.open().document;
     let skin = mesh_skin(&document);
     let locate = |name: &str| {
-        io::relocated_skin(&project.path(name), "Armature", skin.joints(), document.skeleton())
+        io::relocated_skin(&project.path(name), skin, document.skeleton())
             .expect_err("refused")
             .to_string()
     };

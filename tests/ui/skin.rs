@@ -217,8 +217,7 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
             panic!("the mesh is from a file");
         };
         let before = skin.file().cloned();
-        let name = &skin.file().expect("a file").skeleton;
-        let read = Box::new(io::relocated_skin(path, name, skin.joints(), &rig.skeleton));
+        let read = Box::new(io::relocated_skin(path, skin, &rig.skeleton));
         bench.tell(FileAction::SkinLocated { path: path.to_owned(), before, read });
     };
     locate(&mut bench, &old);

@@ -29,6 +29,9 @@ pub struct SkinFile {
     pub checksum: u32,
     /// Name of the skeleton in the file.
     pub skeleton: String,
+    /// Name of the animation in the file in which the mesh was attached, if the mesh is another one
+    /// without it: an animation can scale joints.
+    pub animation: Option<String>,
 }
 
 /// The reason why a skin has no mesh.

@@ -788,7 +788,7 @@ fn too_many_joints_nodes_and_frames_are_refused() {
     text.json["nodes"][0]["scale"] = json!([1, 2, 1]);
     let error = refusal(&text.embedded());
     assert!(
-        error.contains("animations[0]: must have at most 1333333 frames of 3 nodes, got "),
+        error.contains("animations[0]: must have at most 1333333 frames and keys of 3 nodes, got "),
         "{error}"
     );
 }

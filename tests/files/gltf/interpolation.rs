@@ -147,7 +147,8 @@ impl File {
             let at = of("translation").map_or(at.as_vec3().as_dvec3(), |it| it.at(time).truncate());
             let given = turn.as_quat().as_dquat().normalize();
             let turn = of("rotation").map_or(given, |it| DQuat::from_vec4(it.at(time)).normalize());
-            let scale = DVec3::splat(f64::from(*scale as f32));
+            let given = DVec3::splat(f64::from(*scale as f32));
+            let scale = of("scale").map_or(given, |it| it.at(time).truncate());
             world *= DAffine3::from_scale_rotation_translation(scale, turn, at);
             world
         };
@@ -164,6 +165,42 @@ impl File {
     }
 }
 
+impl File {
+    /// A file of four nodes with linear keys, all at times of their own, and keys of the scales of
+    /// the first three, that are near `scale`, as much uneven as `uneven` says.
+    fn scaled(random: &mut Random, scale: core::ops::Range<f32>, uneven: f32) -> Self {
+        let mut file = Self::random(random, ["LINEAR"; 2]);
+        for node in 0..3 {
+            let mut curve = Curve::random(random, node, "scale", "LINEAR");
+            for row in &mut curve.rows {
+                let even = random.within(scale.clone());
+                *row = [0.0; 4].map(|_| even * (1.0 + uneven * random.within(-1.0..1.0)));
+            }
+            file.curves.push(curve);
+        }
+        file
+    }
+
+    /// Asserts that joints are where this file has them, to a hundred thousandth of their size.
+    fn assert_read(&self, document: &Document, times: &[f64], case: &str) {
+        for &time in times {
+            let (expected, evaluated) = (self.worlds(time), document.at(time).into_document());
+            let pose = evaluated.skeleton().pose();
+            let size = expected.iter().map(|world| world.translation.length()).fold(1.0, f64::max);
+            for (node, expected) in expected.iter().enumerate().skip(1) {
+                let joint = evaluated.skeleton().find(&format!("n{node}")).expect("a joint");
+                let (is, was) = (pose.base(joint).as_dvec3(), expected.translation);
+                let far = is.distance(was) / size;
+                assert!(far < 1e-5, "{case}, n{node} at {time}: {is}, not {was}: {far:e}");
+            }
+        }
+    }
+
+    fn key_times(&self) -> Vec<f64> {
+        self.curves.iter().flat_map(|it| &it.times).map(|time| f64::from(*time)).collect()
+    }
+}
+
 fn document(text: &Text) -> Document {
     let opened = io::parse("x.gltf", &text.embedded(), &io::OpenOptions::default());
     opened.unwrap_or_else(|error| panic!("{error}")).document
@@ -176,17 +213,79 @@ fn every_curve_is_where_an_independent_reader_has_it_at_keys_and_between() {
     for case in 0..90 {
         let file = File::random(&mut random, [kinds[case % 3], kinds[case / 3 % 3]]);
         let document = document(&file.text());
-        for time in file.times(&mut random) {
-            let (expected, evaluated) = (file.worlds(time), document.at(time).into_document());
-            let pose = evaluated.skeleton().pose();
-            let size = expected.iter().map(|world| world.translation.length()).fold(1.0, f64::max);
-            for (node, expected) in expected.iter().enumerate().skip(1) {
-                let joint = evaluated.skeleton().find(&format!("n{node}")).expect("a joint");
-                let (is, was) = (pose.base(joint).as_dvec3(), expected.translation);
-                let far = is.distance(was) / size;
-                assert!(far < 1e-5, "case {case}, n{node} at {time}: {is}, not {was}: {far:e}");
-            }
+        file.assert_read(&document, &file.times(&mut random), &format!("case {case}"));
+    }
+}
+
+#[test]
+fn scales_that_are_rounded_leave_the_keys_of_joints_as_they_are() {
+    let mut random = Random(392);
+    for case in 0..60 {
+        // Below 2·10⁻⁶, offsets do not depend on scales either; above, they have more keys.
+        let noise = [3e-7, 1e-6, 1e-5, 4e-5][case % 4];
+        let file = File::scaled(&mut random, 1.0 - noise..1.0 + noise, noise);
+        let document = document(&file.text());
+        let times = [file.key_times(), file.times(&mut random)].concat();
+        file.assert_read(&document, &times, &format!("noise {noise}"));
+        for curve in file.curves.iter().filter(|curve| curve.path == "rotation") {
+            let joint = document.skeleton().find(&format!("n{}", curve.node)).expect("a joint");
+            let knots = document.keys.track(Channel::Rotation(joint)).expect("keyed").knots();
+            let times: Vec<f32> = knots.iter().map(|knot| knot.time as f32).collect();
+            assert_eq!(times, curve.times);
+            assert!(knots.iter().all(|knot| knot.interpolation == Interpolation::Slerp));
         }
+    }
+}
+
+#[test]
+fn scales_that_change_evenly_move_joints_and_leave_their_turns() {
+    let mut random = Random(393);
+    for case in 0..40 {
+        let mut file = File::scaled(&mut random, 0.4..2.0, 0.0);
+        // The offset of a joint is then linear from key to key: its node stays, and one node above
+        // it scales.
+        let scaling = case % 3;
+        file.curves.retain(|it| match it.path {
+            "scale" => it.node == scaling,
+            "translation" => it.node == 0,
+            _ => true,
+        });
+        let document = document(&file.text());
+        let times = [file.key_times(), file.times(&mut random)].concat();
+        file.assert_read(&document, &times, &format!("case {case}"));
+    }
+}
+
+#[test]
+fn joints_are_at_the_last_key_also_if_it_is_no_frame() {
+    let mut random = Random(394);
+    for case in 0..40 {
+        let file = File::scaled(&mut random, 0.5..2.0, 0.6);
+        let document = document(&file.text());
+        file.assert_read(&document, &file.key_times(), &format!("case {case}"));
+    }
+}
+
+#[test]
+fn values_that_an_animation_gives_once_and_for_all_are_those_of_the_joints() {
+    let mut random = Random(395);
+    for case in 0..60 {
+        let mut file = File::random(&mut random, ["LINEAR"; 2]);
+        // A node above the joints has another place, turn and scale, and a joint another scale.
+        for (node, path) in [(0, "translation"), (0, "rotation"), (0, "scale"), (2, "scale")] {
+            let mut curve = Curve::random(&mut random, node, path, "LINEAR");
+            let first = match path {
+                "scale" => [random.within(0.4..2.0); 4],
+                _ => curve.rows[0],
+            };
+            curve.rows.fill(first);
+            file.curves.push(curve);
+        }
+        let document = document(&file.text());
+        let times = [file.key_times(), file.times(&mut random)].concat();
+        file.assert_read(&document, &times, &format!("case {case}"));
+        let joints = document.skeleton().joints().len();
+        assert_eq!(joints, 3, "the node above the joints does not move");
     }
 }
 

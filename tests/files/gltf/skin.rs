@@ -528,6 +528,44 @@ fn a_texture_is_decoded_when_it_is_drawn_and_drawn_as_white_if_its_pixels_are_br
 // Skins
 
 #[test]
+fn a_mesh_has_the_scales_that_the_chosen_animation_gives_and_keeps_them_in_documents() {
+    let mut text = Strip::new().text();
+    let times = text.floats(1, &[0.0, 1.0]);
+    // One animation doubles the figure and the other halves it.
+    for (name, scale) in [("two", 2.0), ("half", 0.5)] {
+        let scales = text.floats(3, &[scale; 6]);
+        text.json.as_object_mut().expect("an object").entry("animations").or_insert(json!([]));
+        let sampler = json!({ "input": times, "output": scales });
+        let channel = json!({ "sampler": 0, "target": { "node": 0, "path": "scale" } });
+        let animation = json!({ "name": name, "samplers": [sampler], "channels": [channel] });
+        push(&mut text.json["animations"], animation);
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let [file, saved] = ["x.gltf", "x.json"].map(|name| folder.path().join(name));
+    std::fs::write(&file, text.embedded()).expect("written");
+    for (name, scale) in [("two", 2.0), ("half", 0.5)] {
+        let opened = io::open(&file, &io::OpenOptions::of_animation(name)).expect("it opens");
+        io::save(&opened.document, &saved).expect("saved");
+        let again = io::open(&saved, &io::OpenOptions::default()).expect("it opens");
+        assert_eq!(warnings(&again), [""; 0]);
+        for opened in [&opened, &again] {
+            let mesh = &attached(opened).mesh;
+            let posed = mesh.posed(&mesh.pose(opened.document.skeleton()), Skinning::Linear);
+            let strip = Strip::new();
+            for (vertex, found) in posed.positions.iter().enumerate() {
+                // Without inverse bind matrices, a joint that is so high lifts the mesh.
+                let lifted = (0..2).map(|place| {
+                    let height = f32::from(strip.joints[vertex][place]);
+                    height * f32::from(strip.weights[vertex][place]) / 255.0
+                });
+                let expected = scale * (strip.positions[vertex] + Vec3::Y * lifted.sum::<f32>());
+                assert!(found.distance(expected) < 1e-5, "{name}: {found}, not {expected}");
+            }
+        }
+    }
+}
+
+#[test]
 fn of_several_skins_each_has_its_own_mesh() {
     let mut text = Strip::new().text();
     push(&mut text.json["skins"], json!({ "name": "other", "joints": [1, 2] }));

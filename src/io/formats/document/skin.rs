@@ -159,6 +159,8 @@ struct MeshSkinFields {
     checksum: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     skeleton: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    animation: Option<String>,
     joints: Vec<Option<Whole>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     packed: Option<JsonObject<FileMeshFields>>,
@@ -239,6 +241,7 @@ impl MeshSkinFields {
             file: file.map(|file| portable(&file.path)),
             checksum: file.map(|file| Whole(file.checksum)),
             skeleton: file.map(|file| file.skeleton.clone()),
+            animation: file.and_then(|file| file.animation.clone()),
             joints: wholes(skin.joints()),
             packed: packed.map(|mesh| JsonObject(FileMeshFields::new(mesh))),
         }
@@ -255,6 +258,7 @@ impl MeshSkinFields {
                     path: PathBuf::from(path),
                     checksum: value_or(self.checksum, 0),
                     skeleton: self.skeleton.unwrap_or_default(),
+                    animation: self.animation,
                 };
                 let missing = SkinFileError::Missing(file.path.clone());
                 Ok(MeshSkin::without_mesh(file, joints, missing))

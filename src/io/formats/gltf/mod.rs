@@ -21,10 +21,11 @@
 //! A skin's joints become a skeleton in the world, in metres, parents before their children, and so
 //! do other nodes of their hierarchy that an animation moves. Without a skin, the joints are the
 //! nodes that animations move, with their ancestors up to a common one. The nodes are the bind
-//! pose: a joint's frame is its node's rotation. A joint that moves has the keys of its node in the
+//! pose, with the scales with which the animation begins, and what it gives to nodes that are no
+//! joints and does not change: a joint's frame is its node's rotation. A joint that moves has the keys of its node in the
 //! chosen animation, with their interpolation: rotations turn by slerp, step, or follow a spline of
-//! angles that is as exact as single precision. Below scales that are uneven or change, joints have
-//! keys at every frame. A node `NAME_tip` without children is not a joint but the tip of NAME's
+//! angles that is as exact as single precision. Below scales that change, offsets have keys at every
+//! frame, and below uneven ones rotations, too. A node `NAME_tip` without children is not a joint but the tip of NAME's
 //! bone. The other bones follow from the joints, see [`bones`](crate::io::bones).
 //!
 //! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:

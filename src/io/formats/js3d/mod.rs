@@ -98,7 +98,13 @@ fn add_skin(
         Ok(mesh) => {
             let checksum = source.checksum().finalize();
             let skeleton = name.to_owned();
-            let file = source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
+            let path = source.path();
+            let file = path.map(|path| SkinFile {
+                path: path.into(),
+                checksum,
+                skeleton,
+                animation: None,
+            });
             let joints = document.skeleton().ids().map(Some).collect();
             attach_skin(document, mesh, file, joints);
         }

@@ -80,8 +80,12 @@ impl Values<'_> {
         let count = skeleton.joints().len();
         let joints: Vec<_> =
             skeleton.ids().map(|it| Some(it).filter(|_| self.chance(0.9))).collect();
-        let file =
-            SkinFile { path: "/nowhere/figure.glb".into(), checksum: 7, skeleton: self.name() };
+        let file = SkinFile {
+            path: "/nowhere/figure.glb".into(),
+            checksum: 7,
+            skeleton: self.name(),
+            animation: None,
+        };
         if self.chance(0.3) || count == 0 {
             let missing = SkinFileError::Missing(file.path.clone());
             return MeshSkin::without_mesh(file, joints, missing);

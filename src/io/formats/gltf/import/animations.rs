@@ -261,9 +261,26 @@ impl<'a> NodeTracks<'a> {
         self.tracks.get(*self.places.get(&(node, part))?)
     }
 
-    /// Returns whether the scale of a node changes.
-    pub fn scales(&self, node: usize) -> bool {
-        self.track(node, AnimatedPart::Scale).is_some_and(KeySampler::varies)
+    /// Returns whether the scale of a node changes by more than `least` of itself.
+    pub fn scales(&self, node: usize, least: f64) -> bool {
+        self.track(node, AnimatedPart::Scale).is_some_and(|track| track.varies_by(least))
+    }
+
+    /// Returns whether the scale of a node is ever uneven by more than `least` of itself, or mirrors
+    /// or vanishes.
+    pub fn scales_unevenly(&self, node: usize, least: f64) -> bool {
+        self.track(node, AnimatedPart::Scale).is_some_and(|track| track.is_uneven(least))
+    }
+
+    /// Sets scales in `locals` to those of their first keys, and other values that do not change if
+    /// their node `is_free`.
+    pub fn pose_still(&self, locals: &mut [NodeTransform], is_free: impl Fn(usize) -> bool) {
+        for track in &self.tracks {
+            let UsedChannel { node, part, .. } = track.channel;
+            if part == AnimatedPart::Scale || is_free(node) && !track.varies() {
+                track.pose(track.time(0), locals);
+            }
+        }
     }
 
     /// The nodes that some track moves, unsorted and with repetitions.
@@ -278,14 +295,6 @@ impl<'a> NodeTracks<'a> {
 
     /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.
     pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
-        for track in &self.tracks {
-            if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(track.channel.node) {
-                match track.channel.part {
-                    AnimatedPart::Translation => parts.translation = track.point(time),
-                    AnimatedPart::Rotation => parts.rotation = track.rotation(time),
-                    AnimatedPart::Scale => parts.scale = track.point(time),
-                }
-            }
-        }
+        self.tracks.iter().for_each(|track| track.pose(time, locals));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Let q be the rotation of a joint's node relative to the node above it, q₀ the same in the bind
 //! pose, T its translation, C the frame that remains of its own scale, and W the transform of the
-//! node above to the world in the bind pose. If no node above has an uneven or changing scale, the
+//! node above to the world in the bind pose. If no node above has an uneven or changing scale, a
 //! joint has relative to its parent, whatever the parent does,
 //!
 //! ```text
@@ -14,6 +14,9 @@
 //! the joint with the same interpolation. Only the quaternion splines of rotations are no splines
 //! of angles: they get keys in between, until the angles are as exact as f32.
 //!
+//! Scales above that are even leave rotations as they are also while they change; offsets then do
+//! not follow from the keys of the node alone.
+//!
 //! Files of this program have the keys of cubic splines beside them, see
 //! [`extras`](crate::io::formats::gltf::extras). They are taken if their curve is that of the file.
 
@@ -23,7 +26,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::animations;
 use super::animations::NodeTracks;
-use super::joint_tracks::{JointPlacement, JointTracks};
+use super::joint_tracks::{ExactJoint, JointPlacement};
 use super::nodes::{NodeTransform, NodeTree, SkinJoints};
 use super::sampler::{AnimatedPart, KeySampler};
 use crate::document::{Channel, Keys, Timeline};
@@ -46,8 +49,10 @@ pub struct ExactTracks<'a> {
     /// The file, if this program has written it.
     own: Option<&'a GltfFile<'a>>,
     worlds: Vec<DAffine3>,
-    /// For each node, whether it and all nodes above it scale evenly and constantly.
+    /// For each node, whether it and all nodes above it scale evenly.
     is_even: Vec<bool>,
+    /// For each node, whether it and all nodes above it scale evenly and constantly.
+    is_still: Vec<bool>,
     /// Number of pieces of curves that may still be tried. Bounds the time for curves that turn
     /// wildly.
     left: Cell<usize>,
@@ -63,10 +68,16 @@ impl<'a> ExactTracks<'a> {
         own: Option<&'a GltfFile<'a>>,
     ) -> Self {
         let mut is_even = vec![false; nodes.parents.len()];
+        let mut is_still = is_even.clone();
         for &node in &nodes.order {
-            is_even[node] = !tracks.scales(node)
-                && is_similarity(nodes.locals[node].affine().matrix3)
-                && nodes.parents[node].is_none_or(|parent| is_even[parent]);
+            let matrix = nodes.locals[node].affine().matrix3;
+            let above = nodes.parents[node];
+            is_even[node] = !tracks.scales_unevenly(node, EVEN)
+                && is_similarity(matrix, EVEN)
+                && above.is_none_or(|above| is_even[above]);
+            is_still[node] = !tracks.scales(node, STILL)
+                && is_similarity(matrix, STILL)
+                && above.is_none_or(|above| is_still[above]);
         }
         Self {
             nodes,
@@ -77,28 +88,32 @@ impl<'a> ExactTracks<'a> {
             own,
             worlds: nodes.worlds(),
             is_even,
+            is_still,
             left: Cell::new(MOST_PIECES),
         }
     }
 
-    /// The tracks of a joint; `None` if they depend on scales above it.
-    pub fn of(&self, joint: usize) -> Option<JointTracks> {
+    /// The tracks of a joint that do not depend on scales above it.
+    pub fn of(&self, joint: usize) -> ExactJoint {
         let node = self.joints.nodes[joint];
         let above = self.nodes.parents[node];
-        if self.tracks.scales(node) || above.is_some_and(|above| !self.is_even[above]) {
-            return None;
-        }
-        let (rotation, frame) = match self.own_rotation(node) {
+        let is_turned_evenly = !self.tracks.scales_unevenly(node, EVEN)
+            && above.is_none_or(|above| self.is_even[above]);
+        let rotation = is_turned_evenly.then(|| match self.own_rotation(node) {
             Some((keys, frame)) => (keys, Some(frame.as_mat3())),
             None => (self.rotation(node), None),
-        };
-        let offset = self.offset(joint, node);
-        let offset = self.own_offset(node, &offset).unwrap_or(offset);
-        Some(JointTracks {
-            rotation: self.on_frames(&rotation),
-            offset: self.on_frames(&offset),
-            frame,
-        })
+        });
+        let is_placed_evenly = above.is_none_or(|above| self.is_still[above]);
+        let offset = is_placed_evenly.then(|| {
+            let offset = self.offset(joint, node);
+            self.own_offset(node, &offset).unwrap_or(offset)
+        });
+        let (rotation, frame) = rotation.unzip();
+        ExactJoint {
+            rotation: rotation.map(|rotation| self.on_frames(&rotation)),
+            offset: offset.map(|offset| self.on_frames(&offset)),
+            frame: frame.flatten(),
+        }
     }
 
     /// The keys of angles that this program has written beside a rotation, and the frame of the
@@ -199,12 +214,18 @@ impl<'a> ExactTracks<'a> {
     }
 }
 
-/// Returns whether a matrix scales evenly, without mirroring.
-fn is_similarity(matrix: DMat3) -> bool {
-    const EVEN: f64 = 1e-6;
+/// Part of a scale by which it may be uneven, or change evenly, and still turns joints as if it were
+/// even: many programs round scales.
+const EVEN: f64 = 1e-4;
+/// Part of a scale by which it may change and be uneven, and still places joints as if it were even
+/// and constant.
+const STILL: f64 = 2e-6;
+
+/// Returns whether a matrix scales evenly but for a part `least`, without mirroring.
+fn is_similarity(matrix: DMat3, least: f64) -> bool {
     let square = matrix.transpose() * matrix;
     let size = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
-    let is_even = size > 0.0 && (square * size.recip()).abs_diff_eq(DMat3::IDENTITY, EVEN);
+    let is_even = size > 0.0 && (square * size.recip()).abs_diff_eq(DMat3::IDENTITY, 2.0 * least);
     is_even && matrix.determinant() > 0.0
 }
 

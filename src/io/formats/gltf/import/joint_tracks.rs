@@ -1,14 +1,14 @@
-//! The motions of joints, and their samples at every frame.
+//! The motions of joints, and their samples at frames.
 
-use glam::{DAffine3, DMat3, DVec3, Mat3, Mat3A, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Mat3, Vec3};
 
 use super::animations::NodeTracks;
 use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
-use crate::document::Timeline;
+use crate::document::{Channel, Keys};
 use crate::io::formats::gltf::frame;
 use crate::io::json::FieldError;
-use crate::kinematics::skeleton::Joint;
-use crate::kinematics::spline::{Knot, Spline};
+use crate::kinematics::skeleton::{Joint, JointId, exact_angles};
+use crate::kinematics::spline::{Interpolation, Knot, Spline};
 
 /// The placement of a joint in the world, in metres.
 #[derive(Clone, Copy)]
@@ -30,13 +30,7 @@ pub struct NodePoser<'a> {
 
 impl<'a> NodePoser<'a> {
     pub fn new(nodes: &'a NodeTree, joints: &'a SkinJoints) -> Self {
-        let mut is_needed = vec![false; nodes.parents.len()];
-        joints.nodes.iter().for_each(|node| is_needed[*node] = true);
-        for node in nodes.order.iter().rev().copied() {
-            if let Some(parent) = nodes.parents[node].filter(|_| is_needed[node]) {
-                is_needed[parent] = true;
-            }
-        }
+        let is_needed = nodes.with_ancestors(joints.nodes.iter().copied());
         Self {
             nodes,
             joints,
@@ -54,13 +48,6 @@ impl<'a> NodePoser<'a> {
     /// Number of nodes that are posed.
     pub fn len(&self) -> usize {
         self.needed.len()
-    }
-
-    /// For each node of the file, whether it is posed.
-    pub fn is_needed(&self) -> Vec<bool> {
-        let mut is_needed = vec![false; self.nodes.parents.len()];
-        self.needed.iter().for_each(|node| is_needed[*node] = true);
-        is_needed
     }
 
     /// Placements of the joints in the bind pose.
@@ -135,45 +122,84 @@ fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
     track.knots().iter().any(|knot| knot.value.distance(first) > least || leads_away(knot))
 }
 
-/// Samples the motions of all joints in the first `frames` frames of `timeline`: keys at every
-/// frame, with angles unwrapped from frame to frame. Leaves the angles of the last frame in
-/// `joints`.
+/// The tracks of a joint as far as they are those of its node; `None` for those that depend on
+/// scales that are uneven or change.
+pub struct ExactJoint {
+    pub rotation: Option<Spline<Vec3>>,
+    pub offset: Option<Spline<Vec3>>,
+    /// See [`JointTracks::frame`].
+    pub frame: Option<Mat3>,
+}
+
+impl ExactJoint {
+    pub fn is_complete(&self) -> bool {
+        self.rotation.is_some() && self.offset.is_some()
+    }
+}
+
+/// Completes the tracks of all joints by keys at the `times`, in seconds and ascending: offsets that
+/// bring joints to their places under the rotations that their parents have, and angles unwrapped
+/// from one time to the next.
 pub fn sample(
     poser: &mut NodePoser<'_>,
     tracks: &NodeTracks<'_>,
-    timeline: Timeline,
-    frames: usize,
-    joints: &mut [Joint],
+    times: &[f64],
+    joints: &[Joint],
+    exact: Vec<ExactJoint>,
     bind_pose: &[JointPlacement],
 ) -> Result<Vec<JointTracks>, FieldError> {
-    let mut motions: Vec<JointTracks> = joints.iter().map(|_| JointTracks::default()).collect();
-    for frame in 0..frames {
-        let time = timeline.time(frame);
+    let mut keys = Keys::default();
+    for (index, of_node) in exact.iter().enumerate() {
+        if let Some(rotation) = &of_node.rotation {
+            keys.set_track(Channel::Rotation(JointId::new(index)), rotation.clone());
+        }
+    }
+    // The turn that a joint with tracks of its node has against its parent, in world axes.
+    let turn = |index: usize, time: f64| {
+        let ExactJoint { rotation: Some(_), frame, .. } = &exact[index] else { return None };
+        let angles = keys.value(Channel::Rotation(JointId::new(index)), time).unwrap_or_default();
+        let frame = (joints[index].frame * frame.unwrap_or(Mat3::IDENTITY)).as_dmat3();
+        Some(frame * exact_angles::matrix(angles.as_dvec3()) * frame.transpose())
+    };
+    let mut sampled: Vec<SampledJoint> = joints.iter().map(|_| SampledJoint::default()).collect();
+    for &time in times {
         let placements = poser.at(tracks, time)?;
-        let rotations: Vec<DMat3> = placements
-            .iter()
-            .zip(bind_pose)
-            .map(|(now, bind)| now.frame * bind.frame.transpose())
-            .collect();
-        for (index, motion) in motions.iter_mut().enumerate() {
-            let joint = &mut joints[index];
-            let (parent_inverse, origin) = match joint.parent {
-                Some(parent) => {
-                    (rotations[parent.index()].transpose(), placements[parent.index()].base)
-                }
+        let mut rotations: Vec<DMat3> = Vec::with_capacity(joints.len());
+        for (index, (joint, now)) in joints.iter().zip(&placements).enumerate() {
+            let (above, origin) = match joint.parent {
+                Some(parent) => (rotations[parent.index()], placements[parent.index()].base),
                 None => (DMat3::IDENTITY, DVec3::ZERO),
             };
-            let offset = (parent_inverse * (placements[index].base - origin)).as_vec3();
+            let offset = (above.transpose() * (now.base - origin)).as_vec3();
             if !offset.is_finite() {
                 let reason = "must be within ±3.4028235e38 m of its parent";
                 return Err(FieldError::new(at_node(poser.joints()[index]), reason));
             }
-            // Unwrapped: the angles nearest to those of the previous frame.
-            joint.rotation =
-                joint.angles_of(Mat3A::from((parent_inverse * rotations[index]).as_mat3()));
-            motion.rotation.insert(time, joint.rotation);
-            motion.offset.insert(time, offset);
+            let own = turn(index, time).map(|turn| above * turn);
+            let rotation = own.unwrap_or(now.frame * bind_pose[index].frame.transpose());
+            rotations.push(rotation);
+            let of_joint = &mut sampled[index];
+            let frame = bind_pose[index].frame;
+            let local = frame.transpose() * (above.transpose() * rotation) * frame;
+            of_joint.last = exact_angles::nearest(local, of_joint.last);
+            let knot = |interpolation, value| Knot { interpolation, ..Knot::new(time, value) };
+            of_joint.rotation.push(knot(Interpolation::Slerp, of_joint.last.as_vec3()));
+            of_joint.offset.push(knot(Interpolation::Linear, offset));
         }
     }
-    Ok(motions)
+    let complete = |(exact, sampled): (ExactJoint, SampledJoint)| JointTracks {
+        rotation: exact.rotation.unwrap_or_else(|| sampled.rotation.into_iter().collect()),
+        offset: exact.offset.unwrap_or_else(|| sampled.offset.into_iter().collect()),
+        frame: exact.frame,
+    };
+    Ok(exact.into_iter().zip(sampled).map(complete).collect())
+}
+
+/// The keys of a joint at times that were sampled so far.
+#[derive(Default)]
+struct SampledJoint {
+    rotation: Vec<Knot<Vec3>>,
+    offset: Vec<Knot<Vec3>>,
+    /// The angles at the last time, in radians.
+    last: DVec3,
 }

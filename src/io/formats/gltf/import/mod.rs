@@ -17,20 +17,20 @@ use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::foreign::ForeignFormat;
 use crate::io::formats::gltf::extras::Extras;
-use crate::io::formats::gltf::file::{GltfFile, GltfSkin, VersionedFile};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, GltfSkin, VersionedFile};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::opened::{FileAnimation, OpenOptions, Opened, attach_skin};
 use crate::io::source::Source;
-use crate::kinematics::skeleton::{Joint, JointId};
+use crate::kinematics::skeleton::JointId;
 use crate::rig::SkinFile;
 use animations::NodeTracks;
 use animations::at_animation;
 use exact_tracks::ExactTracks;
-use joint_tracks::JointTracks;
-use joint_tracks::{JointPlacement, NodePoser};
+use joint_tracks::{ExactJoint, NodePoser};
 use nodes::{NodeTree, at_node};
 use nodes::{SkinJoints, at_skin};
 use rig::{BoneEnds, ImportedRig};
+use sampler::UsedChannel;
 use skin_mesh::MeshImport;
 
 /// Maximum number of node transforms in all frames.
@@ -72,8 +72,16 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         warnings.push(at_animation(chosen), reason);
     }
     warn_of_left_out(&moving, &joints, &mut warnings);
-    let import = GltfImport { source, file: &file, nodes: &nodes, index, joints: &joints };
-    let imported = import.read(animation, &names[index], &mut warnings);
+    let import = GltfImport {
+        source,
+        file: &file,
+        nodes: &nodes,
+        index,
+        name: &names[index],
+        joints: &joints,
+        animation: animation.map(|chosen| (chosen, &described[chosen])),
+    };
+    let imported = import.read(&mut warnings);
     let ImportedRig { mut document, kept } = imported.map_err(|error| source.error(&error))?;
     document.animation_name = animation.map(|chosen| described[chosen].name.clone());
     let order = joints.order.iter().chain(&joints.added);
@@ -147,24 +155,38 @@ struct GltfImport<'a> {
     nodes: &'a NodeTree,
     /// Index of the skin; for a file without skins 0.
     index: usize,
+    /// Name of the skeleton.
+    name: &'a str,
     joints: &'a SkinJoints,
+    /// The animation, with its number in the file.
+    animation: Option<(usize, &'a FileAnimation)>,
 }
 
 impl GltfImport<'_> {
-    fn read(
-        &self,
-        animation: Option<usize>,
-        name: &str,
-        warnings: &mut FieldWarnings,
-    ) -> Result<ImportedRig, FieldError> {
-        let Self { source, file, nodes, index, joints: skin_joints } = *self;
+    fn read(&self, warnings: &mut FieldWarnings) -> Result<ImportedRig, FieldError> {
+        let Self { source, file, index, joints: skin_joints, .. } = *self;
+        let at = at_animation(self.animation.map_or(0, |(chosen, _)| chosen));
+        let animation = self.animation.and_then(|(chosen, _)| file.animations.0.get(chosen));
+        let channels = self.channels(animation, &at)?;
+        let buffers = animations::buffers(source, file, &channels)?;
+        let tracks = NodeTracks::new(file, &buffers, &channels, &at, warnings)?;
+        let nodes = &self.nodes.at_rest_in(&tracks, skin_joints);
         let mut poser = NodePoser::new(nodes, skin_joints);
         let bind_pose = poser.bind_pose()?;
-        let mut joints = rig::joints(file, skin_joints, &bind_pose);
-        let (motions, timeline) = match animation {
-            None => (Vec::new(), None),
-            Some(chosen) => self.animate(chosen, &mut poser, &mut joints, &bind_pose, warnings)?,
+        let joints = rig::joints(file, skin_joints, &bind_pose);
+        let is_own = file.asset.0.is_of_this_program();
+        let extras = animation.and_then(|it| it.extras.as_ref()).and_then(Extras::own);
+        let own_rate = extras.filter(|_| is_own).and_then(|extras| extras.frame_rate());
+        let timeline = animations::timeline(&tracks, own_rate, &at)?;
+        let own = is_own.then_some(file);
+        let exact = ExactTracks::new(nodes, skin_joints, &tracks, &bind_pose, timeline, own);
+        let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
+        let times = match exact.iter().all(ExactJoint::is_complete) {
+            true => Vec::new(),
+            false => sampled_times(&tracks, timeline, poser.len(), at)?,
         };
+        let motions =
+            joint_tracks::sample(&mut poser, &tracks, &times, &joints, exact, &bind_pose)?;
         let ends = BoneEnds::new(file, nodes, skin_joints, &bind_pose);
         let built = rig::build(joints, &motions, timeline, &ends);
         let mut built =
@@ -182,9 +204,15 @@ impl GltfImport<'_> {
         match mesh.read(warnings) {
             Ok(Some((mesh, checksum))) => {
                 let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
-                let skeleton = name.to_owned();
-                let file =
-                    source.path().map(|path| SkinFile { path: path.into(), checksum, skeleton });
+                let file = source.path().map(|path| SkinFile {
+                    path: path.into(),
+                    checksum,
+                    skeleton: self.name.to_owned(),
+                    animation: self
+                        .animation
+                        .filter(|_| nodes.locals != self.nodes.locals)
+                        .map(|(_, animation)| animation.name.clone()),
+                });
                 attach_skin(&mut built.document, mesh, file, joints);
             }
             Ok(None) => {}
@@ -197,47 +225,43 @@ impl GltfImport<'_> {
         Ok(built)
     }
 
-    /// Reads the motion of an animation.
-    fn animate(
+    /// The channels of an animation that move joints, meshes and nodes above them.
+    fn channels<'b>(
         &self,
-        chosen: usize,
-        poser: &mut NodePoser<'_>,
-        joints: &mut [Joint],
-        bind_pose: &[JointPlacement],
-        warnings: &mut FieldWarnings,
-    ) -> Result<(Vec<JointTracks>, Option<Timeline>), FieldError> {
-        let at = at_animation(chosen);
-        let Some(animation) = self.file.animations.0.get(chosen) else {
-            return Ok((Vec::new(), None));
-        };
-        let channels = animations::used_channels(animation, &at, self.nodes, &poser.is_needed())?;
-        let buffers = animations::buffers(self.source, self.file, &channels)?;
-        let tracks = NodeTracks::new(self.file, &buffers, &channels, &at, warnings)?;
-        let Some((start, _)) = animations::time_range(&tracks) else {
-            return Ok((Vec::new(), None));
-        };
-        let is_own = self.file.asset.0.is_of_this_program();
-        let extras = animation.extras.as_ref().and_then(Extras::own).filter(|_| is_own);
-        let own_rate = extras.and_then(|extras| extras.frame_rate());
-        let timeline = animations::timeline(&tracks, own_rate, &at)?;
-        let own = is_own.then_some(self.file);
-        let exact = ExactTracks::new(self.nodes, self.joints, &tracks, bind_pose, timeline, own);
-        let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
-        if exact.iter().all(Option::is_some) {
-            return Ok((exact.into_iter().flatten().collect(), timeline));
-        }
-        // Joints below scales that are uneven or change have keys at every frame.
-        let frames = timeline.map_or(1, |timeline| timeline.frames());
-        if frames.saturating_mul(poser.len()) > MOST_SAMPLES {
-            let nodes = poser.len();
-            let most = MOST_SAMPLES / nodes;
-            let reason = format!("must have at most {most} frames of {nodes} nodes, got {frames}");
-            return Err(FieldError::new(at, reason));
-        }
-        let frame_times = timeline.unwrap_or(Timeline { start, ..Timeline::default() });
-        let sampled = joint_tracks::sample(poser, &tracks, frame_times, frames, joints, bind_pose)?;
-        let motions = exact.into_iter().zip(sampled);
-        let motions = motions.map(|(exact, sampled)| exact.unwrap_or(sampled)).collect();
-        Ok((motions, timeline))
+        animation: Option<&'b GltfAnimation>,
+        at: &JsonPath,
+    ) -> Result<Vec<UsedChannel<'b>>, FieldError> {
+        let Some(animation) = animation else { return Ok(Vec::new()) };
+        let nodes = self.file.nodes.0.iter().enumerate();
+        let with_meshes = nodes.filter(|(_, node)| node.mesh.is_some()).map(|(index, _)| index);
+        let joints = self.joints.nodes.iter().copied();
+        let is_needed = self.nodes.with_ancestors(joints.chain(with_meshes));
+        animations::used_channels(animation, at, self.nodes, &is_needed)
     }
+}
+
+/// The times at which joints below scales that are uneven or change have keys: all frames, and keys
+/// that are no frames. `posed` is the number of nodes that are posed at each.
+fn sampled_times(
+    tracks: &NodeTracks<'_>,
+    timeline: Option<Timeline>,
+    posed: usize,
+    at: JsonPath,
+) -> Result<Vec<f64>, FieldError> {
+    let frames = timeline.map_or(0, |timeline| timeline.frames());
+    let on_frame = |time| timeline.map_or(time, |timeline| animations::on_frame(time, timeline));
+    let mut times: Vec<f64> = tracks.times().map(on_frame).collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    let count = frames.saturating_add(times.len());
+    if count.saturating_mul(posed) > MOST_SAMPLES {
+        let most = MOST_SAMPLES / posed;
+        let reason =
+            format!("must have at most {most} frames and keys of {posed} nodes, got {count}");
+        return Err(FieldError::new(at, reason));
+    }
+    times.extend(timeline.into_iter().flat_map(|it| (0..frames).map(move |frame| it.time(frame))));
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    Ok(times)
 }

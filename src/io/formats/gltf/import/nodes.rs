@@ -2,12 +2,14 @@ use std::collections::{BTreeSet, HashSet};
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
+use super::animations::NodeTracks;
 use crate::io::formats::gltf::UniqueNames;
 use crate::io::formats::gltf::file::{GltfFile, GltfNode, GltfSkin, index_rule};
 use crate::io::json::{FieldError, JsonNumbers, JsonPath};
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
 /// The nodes of a file as a tree.
+#[derive(Clone)]
 pub struct NodeTree {
     pub parents: Vec<Option<usize>>,
     pub children: Vec<Vec<usize>>,
@@ -18,14 +20,14 @@ pub struct NodeTree {
 }
 
 /// The transform of a node relative to its parent, in the form that the file has.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum NodeTransform {
     TransformParts(TransformParts),
     Matrix(DAffine3),
 }
 
 /// A transform in parts, which animations can change one by one.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct TransformParts {
     pub translation: DVec3,
     /// A unit quaternion.
@@ -61,6 +63,27 @@ impl NodeTree {
             }
         }
         Ok(Self { order, locals: locals.collect::<Result<_, _>>()?, children, parents })
+    }
+
+    /// The tree with the scales with which an animation begins, and with the places and rotations
+    /// that it gives to nodes that are no joints and does not change.
+    pub fn at_rest_in(&self, tracks: &NodeTracks<'_>, joints: &SkinJoints) -> Self {
+        let is_joint: HashSet<usize> = joints.nodes.iter().copied().collect();
+        let mut tree = self.clone();
+        tracks.pose_still(&mut tree.locals, |node| !is_joint.contains(&node));
+        tree
+    }
+
+    /// For each node, whether it is one of `nodes` or above one of them.
+    pub fn with_ancestors(&self, nodes: impl IntoIterator<Item = usize>) -> Vec<bool> {
+        let mut is_in = vec![false; self.parents.len()];
+        nodes.into_iter().for_each(|node| is_in[node] = true);
+        for node in self.order.iter().rev().copied() {
+            if let Some(parent) = self.parents[node].filter(|_| is_in[node]) {
+                is_in[parent] = true;
+            }
+        }
+        is_in
     }
 
     /// For each node, the root of its tree.

@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3, DVec4, Vec3};
 
 use super::buffers::GltfBuffers;
-use super::nodes::unit;
+use super::nodes::{NodeTransform, unit};
 use super::rows::{AccessorRows, at_accessor};
 use crate::io::formats::gltf::extras::SamplerExtras;
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
@@ -139,11 +139,16 @@ impl<'a> KeySampler<'a> {
     /// Returns whether the value ever differs from that of the first key, or leaves it on a cubic
     /// spline.
     pub fn varies(&self) -> bool {
+        self.varies_by(LEAST)
+    }
+
+    /// [`KeySampler::varies`] by more than `least` of the value.
+    pub fn varies_by(&self, least: f64) -> bool {
         let width = self.width();
         let row = |row: usize| -> [f64; 4] { self.values.row(row) };
         let differs = |a: [f64; 4], b: [f64; 4]| {
             let size = a.iter().take(width).map(|part| part.abs()).fold(1e-3, f64::max);
-            (0..width).any(|part| (a[part] - b[part]).abs() > LEAST * size)
+            (0..width).any(|part| (a[part] - b[part]).abs() > least * size)
         };
         let is_cubic = self.is_cubic();
         let (each, value) = if is_cubic { (3, VALUE) } else { (1, 0) };
@@ -156,6 +161,33 @@ impl<'a> KeySampler<'a> {
                         .into_iter()
                         .any(|which| differs([0.0; 4], row(3 * key + which)))
                 })
+    }
+
+    /// Returns whether a scale is uneven by more than `least` of itself at a key or a tangent of a
+    /// key, or at a key not above 0.
+    pub fn is_uneven(&self, least: f64) -> bool {
+        let keys = 0..self.len();
+        let is_uneven =
+            |scale: DVec3, size: f64| scale.max_element() - scale.min_element() > least * size;
+        keys.into_iter().any(|key| {
+            let scale = self.key_point(key);
+            let slopes = self.tangents(key).into_iter().flatten();
+            let size = scale.abs().max_element();
+            scale.min_element() <= 0.0
+                || is_uneven(scale, size)
+                || slopes.into_iter().any(|slope| is_uneven(slope, size))
+        })
+    }
+
+    /// Sets the animated part of the node's transform in `locals` to its value at a time.
+    pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
+        if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(self.channel.node) {
+            match self.channel.part {
+                AnimatedPart::Translation => parts.translation = self.point(time),
+                AnimatedPart::Rotation => parts.rotation = self.rotation(time),
+                AnimatedPart::Scale => parts.scale = self.point(time),
+            }
+        }
     }
 
     pub fn is_cubic(&self) -> bool {
@@ -232,7 +264,8 @@ impl<'a> KeySampler<'a> {
     /// The fraction is `None` if the key's own value applies: at the key, after the last key, and
     /// with step interpolation. Before the first key, returns the first key with `None`.
     fn locate(&self, time: f64) -> (usize, Option<f64>) {
-        let near = tolerance(time);
+        // Only a step would be missed just before a key.
+        let near = if self.channel.curve == KeyCurve::Step { tolerance(time) } else { 0.0 };
         let (mut until, mut after) = (0, self.len());
         while until < after {
             let middle = until + (after - until) / 2;
