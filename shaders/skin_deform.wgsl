@@ -8,7 +8,7 @@ struct Skin {
     vertices: u32,
     skinning: u32, // linear, dual quaternion, spread twist
     weights_of: i32, // joint whose weight is passed on; -1 for none
-    padding: u32,
+    joints: u32, // in each set of inverse bind transforms
 }
 
 struct Joint {
@@ -123,7 +123,7 @@ fn compute(@builtin(global_invocation_id) id: vec3u) {
             break;
         }
         let joint = influences[i];
-        chosen += select(0.0, weight, i32(joint) == skin.weights_of);
+        chosen += select(0.0, weight, i32(joint % skin.joints) == skin.weights_of);
         if skin.skinning == LINEAR {
             blend = plus(blend, times(joints[joint].matrix, weight));
         } else if skin.skinning == DUAL_QUATERNION {

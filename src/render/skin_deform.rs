@@ -22,7 +22,10 @@ pub struct SkinDeformer {
 pub(super) struct SkinVertices {
     buffer: wgpu::Buffer,
     count: u32,
+    /// Number of joints in each set of inverse bind transforms.
     joints: u32,
+    /// Number of joints in all sets.
+    all_joints: u32,
 }
 
 /// A mesh and how it is to be moved.
@@ -56,7 +59,7 @@ struct SkinData {
     vertices: u32,
     skinning: u32,
     weights_of: i32,
-    padding: u32,
+    joints: u32,
 }
 
 #[repr(C)]
@@ -140,7 +143,7 @@ impl SkinDeformer {
         let storage = wgpu::BufferUsages::STORAGE;
         let uniform_size = size_of::<SkinData>() as u64;
         let uniform = gpu.buffer("skin", uniform_size, wgpu::BufferUsages::UNIFORM);
-        let size = u64::from(mesh.joints.max(1)) * size_of::<JointData>() as u64;
+        let size = u64::from(mesh.all_joints.max(1)) * size_of::<JointData>() as u64;
         let joints = gpu.buffer("skin joints", size, storage);
         let size = u64::from(mesh.count.max(1)) * size_of::<DeformedVertex>() as u64;
         let usage = storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
@@ -166,9 +169,9 @@ impl SkinDeformer {
             vertices: vertices.count,
             skinning: Skinning::ALL.iter().position(|it| *it == skinning).unwrap_or(0) as u32,
             weights_of: weights_of.map_or(-1, |joint| joint.index() as i32),
-            padding: 0,
+            joints: vertices.joints.max(1),
         };
-        let followed = pose.joints().iter().take(vertices.joints as usize);
+        let followed = pose.joints().iter().take(vertices.all_joints as usize);
         let is_same = deformed.data == Some(data)
             && followed.clone().map(JointData::new).eq(deformed.sent.iter().copied());
         if is_same {
@@ -217,8 +220,9 @@ impl SkinVertices {
         let triangles = mesh.mesh();
         let vertices = triangles.positions.iter().zip(&triangles.normals).zip(mesh.weights());
         let vertices: Vec<VertexData> = vertices
-            .map(|((position, normal), weights)| {
-                let [a, b, c, d] = weights.joints().map(u32::from);
+            .zip(mesh.first_joints())
+            .map(|(((position, normal), weights), first)| {
+                let [a, b, c, d] = weights.joints().map(|joint| first as u32 + u32::from(joint));
                 VertexData {
                     position: *position,
                     joints_low: a | b << 16,
@@ -229,7 +233,9 @@ impl SkinVertices {
             })
             .collect();
         let buffer = gpu.filled_buffer("skin mesh", &vertices, wgpu::BufferUsages::STORAGE);
-        Self { buffer, count: vertices.len() as u32, joints: mesh.inverse_binds().len() as u32 }
+        let joints = mesh.inverse_binds().len() as u32;
+        let all_joints = joints * mesh.bind_sets().len() as u32;
+        Self { buffer, count: vertices.len() as u32, joints, all_joints }
     }
 }
 

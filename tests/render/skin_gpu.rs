@@ -5,7 +5,9 @@ use ik_arm::document::{Camera, Document, Overlay, Skin, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
-use ik_arm::kinematics::skin::{SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights};
+use ik_arm::kinematics::skin::{
+    BindSet, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+};
 use ik_arm::render::SkinDeformer;
 use ik_arm::rig::{FileMesh, MeshSkin, SkeletonRig, SkinPart, SkinSource, SkinTexture};
 use ik_arm::scene::Scene;
@@ -62,10 +64,16 @@ fn the_device_moves_skins_of_random_trees_as_the_cpu_does() {
         skeleton.set_transform(transform(&mut random)).expect("transform");
         let shape = SkinShape { detail: SkinShape::LEAST_DETAIL, ..SkinShape::default() };
         let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
-        // Attached in another space, with a scale.
-        let attached = Affine3A::from_scale(Vec3::splat(random.within(0.5..2.0)));
-        let binds = mesh.inverse_binds().iter().map(|bind| *bind * attached).collect();
-        let mesh = SkinnedMesh::new(mesh.mesh().clone(), mesh.weights().to_vec(), binds);
+        // Attached in other spaces, with a scale: the first vertices in one, the others in another.
+        let count = mesh.mesh().positions.len();
+        let first = random.below(count);
+        let sets = [first, count - first].map(|vertices| {
+            let attached = Affine3A::from_scale(Vec3::splat(random.within(0.5..2.0)));
+            let binds = mesh.inverse_binds().iter().map(|bind| *bind * attached);
+            BindSet { vertices, inverse_binds: binds.collect() }
+        });
+        let weights = mesh.weights().to_vec();
+        let mesh = SkinnedMesh::with_bind_sets(mesh.mesh().clone(), weights, sets.into());
         shake(&mut random, &mut skeleton);
         assert_agrees(&skeleton, &mesh.expect("mesh"), &format!("seed {seed}"));
     }

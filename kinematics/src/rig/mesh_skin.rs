@@ -182,11 +182,11 @@ impl AttachedMesh {
         }
         let mut sums = vec![(0.0_f64, 0_u32); skeleton.joints().len()];
         let mut boxes = vec![None; sums.len()];
-        for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
+        let vertices = mesh.mesh().positions.iter().zip(mesh.weights());
+        for ((position, weights), set) in vertices.zip(mesh.sets_of_vertices()) {
             let joint = weights.first();
-            if let (Some(bone), Some(bind)) =
-                (skeleton.joint(joint), mesh.inverse_binds().get(joint.index()))
-            {
+            let binds = &mesh.bind_sets()[set].inverse_binds;
+            if let (Some(bone), Some(bind)) = (skeleton.joint(joint), binds.get(joint.index())) {
                 let at = bind.transform_point3(*position);
                 let distance = bone.distance(at);
                 // Numbers near the limit of f32 overflow.

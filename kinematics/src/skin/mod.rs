@@ -35,6 +35,6 @@ mod vertex_weights;
 
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
 pub use skin_pose::{JointDeform, SkinPose, Skinning, UnknownSkinning};
-pub use skinned_mesh::{SkinError, SkinnedMesh};
+pub use skinned_mesh::{BindSet, SkinError, SkinnedMesh};
 pub use triangle_mesh::{MeshHit, MeshSection, TriangleMesh};
 pub use vertex_weights::VertexWeights;

@@ -89,19 +89,25 @@ pub struct JointDeform {
 }
 
 impl SkinPose {
-    /// Writes the joints of a posed skeleton, with their inverse bind transforms. Joints beyond
+    /// Writes the joints of a posed skeleton, for each set of inverse bind transforms. Joints beyond
     /// these, which no vertex follows, are left out.
-    pub(super) fn refill(&mut self, inverse_binds: &[Affine3A], skeleton: &Skeleton) {
+    pub(super) fn refill<'a>(
+        &mut self,
+        bind_sets: impl Iterator<Item = &'a [Affine3A]>,
+        skeleton: &Skeleton,
+    ) {
         skeleton.write_pose_in_skeleton(&mut self.spaces);
         let deform = |((joint, parameters), inverse_bind)| {
             JointDeform::new(parameters, self.spaces.full(joint), inverse_bind)
         };
         self.joints.clear();
-        self.joints.extend(skeleton.iter().zip(inverse_binds.iter().copied()).map(deform));
+        for inverse_binds in bind_sets {
+            self.joints.extend(skeleton.iter().zip(inverse_binds.iter().copied()).map(deform));
+        }
         self.to_world = skeleton.transform();
     }
 
-    /// The joints in their order.
+    /// The joints in their order, for each [set](super::BindSet) of inverse bind transforms.
     pub fn joints(&self) -> &[JointDeform] {
         &self.joints
     }
@@ -111,34 +117,37 @@ impl SkinPose {
         self.to_world
     }
 
-    /// The transform of a vertex at `position` in mesh space, to skeleton space.
+    /// The transform of a vertex at `position` in mesh space, to skeleton space. `first` is the index
+    /// of the first joint of its set.
     pub(super) fn blend(
         &self,
+        first: usize,
         weights: &VertexWeights,
         position: Vec3,
         skinning: Skinning,
     ) -> Affine3A {
+        let joints = SetJoints(self.joints.get(first..).unwrap_or_default());
         match skinning {
-            Skinning::Linear => self.linear(weights),
-            Skinning::DualQuaternion => self.dual_quaternion(weights),
-            Skinning::SpreadTwist => self.spread_twist(weights, position),
+            Skinning::Linear => joints.sum(weights, |joint| joint.matrix),
+            Skinning::DualQuaternion => joints.dual_quaternion(weights),
+            Skinning::SpreadTwist => joints.sum(weights, |joint| joint.with_spread_roll(position)),
         }
     }
+}
 
-    /// Linear blend of the joints of a vertex.
-    fn linear(&self, weights: &VertexWeights) -> Affine3A {
-        self.sum(weights, |joint| joint.matrix)
-    }
+/// The joints of a set of inverse bind transforms, and those of the sets after it.
+struct SetJoints<'a>(&'a [JointDeform]);
 
+impl SetJoints<'_> {
     /// Blend of the joints' unit dual quaternions, after the linear blend of their scales.
     fn dual_quaternion(&self, weights: &VertexWeights) -> Affine3A {
-        let Some(first) = self.joints.get(weights.first().index()) else {
+        let Some(first) = self.0.get(weights.first().index()) else {
             return Affine3A::IDENTITY;
         };
         let mut scale = Mat3A::ZERO;
         let mut sum = DualQuaternion::ZERO;
         for (joint, weight) in weights.iter() {
-            let Some(joint) = self.joints.get(joint.index()) else { continue };
+            let Some(joint) = self.0.get(joint.index()) else { continue };
             scale += joint.scale * weight;
             let motion = DualQuaternion { real: joint.real, dual: joint.dual };
             sum.add(weight, &motion, first.real);
@@ -148,11 +157,7 @@ impl SkinPose {
         motion
     }
 
-    /// Linear blend of the joints of a vertex, each with the part of its roll at that vertex.
-    fn spread_twist(&self, weights: &VertexWeights, vertex: Vec3) -> Affine3A {
-        self.sum(weights, |joint| joint.with_spread_roll(vertex))
-    }
-
+    /// Linear blend of transforms of the joints of a vertex.
     fn sum(
         &self,
         weights: &VertexWeights,
@@ -160,7 +165,7 @@ impl SkinPose {
     ) -> Affine3A {
         let mut sum = [0.0; 12];
         for (joint, weight) in weights.iter() {
-            let Some(joint) = self.joints.get(joint.index()) else { continue };
+            let Some(joint) = self.0.get(joint.index()) else { continue };
             for (total, value) in sum.iter_mut().zip(transform(joint).to_cols_array()) {
                 *total += weight * value;
             }

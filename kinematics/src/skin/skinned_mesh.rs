@@ -10,7 +10,18 @@ use crate::skeleton::{JointId, Skeleton};
 pub struct SkinnedMesh {
     mesh: TriangleMesh,
     weights: Vec<VertexWeights>,
-    inverse_binds: Vec<Affine3A>,
+    /// All have the same number of joints.
+    bind_sets: Vec<BindSet>,
+}
+
+/// The inverse bind transforms of some vertices. A mesh that is put together from several files or
+/// parts can have been attached to the same joints in different poses.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BindSet {
+    /// Number of vertices, which follow those of the set before.
+    pub vertices: usize,
+    /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space.
+    pub inverse_binds: Vec<Affine3A>,
 }
 
 impl SkinnedMesh {
@@ -18,6 +29,8 @@ impl SkinnedMesh {
     pub const MOST_VERTICES: usize = 2_500_000;
     /// Maximum number of triangles.
     pub const MOST_TRIANGLES: usize = 5_000_000;
+    /// Maximum number of inverse bind transforms of all sets.
+    pub const MOST_BINDS: usize = 1 << 16;
 
     /// A mesh with the weights of its vertices and, for each joint, the inverse bind transform B⁻¹
     /// from mesh space to the joint's own space.
@@ -31,9 +44,26 @@ impl SkinnedMesh {
         inverse_binds: Vec<Affine3A>,
     ) -> Result<Self, SkinError> {
         let vertices = mesh.positions.len();
+        Self::with_bind_sets(mesh, weights, vec![BindSet { vertices, inverse_binds }])
+    }
+
+    /// [`SkinnedMesh::new`] with several sets of inverse bind transforms, one after the other for all
+    /// vertices.
+    ///
+    /// # Errors
+    ///
+    /// As [`SkinnedMesh::new`].
+    pub fn with_bind_sets(
+        mesh: TriangleMesh,
+        weights: Vec<VertexWeights>,
+        bind_sets: Vec<BindSet>,
+    ) -> Result<Self, SkinError> {
+        let vertices = mesh.positions.len();
+        let joints = bind_sets.first().map_or(0, |set| set.inverse_binds.len());
         for (list, most, got) in [
             ("vertices", Self::MOST_VERTICES, vertices),
             ("triangles", Self::MOST_TRIANGLES, mesh.triangles.len()),
+            ("inverse bind transforms", Self::MOST_BINDS, bind_sets.len().saturating_mul(joints)),
         ] {
             if got > most {
                 return Err(SkinError::TooMany { list, most, got });
@@ -47,6 +77,7 @@ impl SkinnedMesh {
             ("normals", mesh.normals.len()),
             ("texture coordinates", coordinates),
             ("weights", weights.len()),
+            ("sets of inverse bind transforms", bind_sets.iter().map(|set| set.vertices).sum()),
         ];
         for (list, got) in lists {
             if got != vertices {
@@ -58,7 +89,9 @@ impl SkinnedMesh {
                 return Err(SkinError::Triangle { triangle, vertices, got });
             }
         }
-        let joints = inverse_binds.len();
+        if let Some(set) = bind_sets.iter().find(|set| set.inverse_binds.len() != joints) {
+            return Err(SkinError::BindSet { joints, got: set.inverse_binds.len() });
+        }
         for (vertex, weights) in weights.iter().enumerate() {
             if let Some((got, _)) = weights.iter().find(|(joint, _)| joint.index() >= joints) {
                 return Err(SkinError::Joint { vertex, joints, got });
@@ -74,10 +107,12 @@ impl SkinnedMesh {
             let got = coordinates[vertex].extend(0.0);
             return Err(SkinError::NotFinite { vertex, got });
         }
-        if let Some(joint) = inverse_binds.iter().position(|bind| !bind.is_finite()) {
-            return Err(SkinError::Bind { joint: JointId::new(joint) });
+        for set in &bind_sets {
+            if let Some(joint) = set.inverse_binds.iter().position(|bind| !bind.is_finite()) {
+                return Err(SkinError::Bind { joint: JointId::new(joint) });
+            }
         }
-        Ok(Self { mesh, weights, inverse_binds })
+        Ok(Self { mesh, weights, bind_sets })
     }
 
     /// The mesh as it was attached, in mesh space.
@@ -90,9 +125,27 @@ impl SkinnedMesh {
         &self.weights
     }
 
-    /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space.
+    /// The sets of inverse bind transforms, one after the other for all vertices.
+    pub fn bind_sets(&self) -> &[BindSet] {
+        &self.bind_sets
+    }
+
+    /// For each joint the inverse bind transform B⁻¹, from mesh space to the joint's own space, for
+    /// the vertices of the first of the [sets](SkinnedMesh::bind_sets).
     pub fn inverse_binds(&self) -> &[Affine3A] {
-        &self.inverse_binds
+        self.bind_sets.first().map_or(&[], |set| &set.inverse_binds)
+    }
+
+    /// For each vertex the set of its inverse bind transforms, as its index.
+    pub fn sets_of_vertices(&self) -> impl Iterator<Item = usize> {
+        let sets = self.bind_sets.iter().enumerate();
+        sets.flat_map(|(set, BindSet { vertices, .. })| core::iter::repeat_n(set, *vertices))
+    }
+
+    /// For each vertex the index among [`SkinPose::joints`] of the first joint of its set.
+    pub fn first_joints(&self) -> impl Iterator<Item = usize> {
+        let joints = self.inverse_binds().len();
+        self.sets_of_vertices().map(move |set| set * joints)
     }
 
     /// Position in the world of a vertex of the posed mesh.
@@ -103,7 +156,13 @@ impl SkinnedMesh {
     pub fn posed_vertex(&self, pose: &SkinPose, skinning: Skinning, vertex: u32) -> Vec3 {
         let vertex = vertex as usize;
         let position = self.mesh.positions[vertex];
-        let blend = pose.blend(&self.weights[vertex], position, skinning);
+        let mut before = 0;
+        let ends = self.bind_sets.iter().map(|set| {
+            before += set.vertices;
+            before
+        });
+        let first = ends.take_while(|end| *end <= vertex).count() * self.inverse_binds().len();
+        let blend = pose.blend(first, &self.weights[vertex], position, skinning);
         pose.to_world().transform_point3(blend.transform_point3(position))
     }
 
@@ -137,14 +196,18 @@ impl SkinnedMesh {
             VertexWeights::heaviest(weights.iter().map(|(joint, weight)| (heir(joint), weight))).0
         };
         let count = joints.iter().flatten().map(|joint| joint.index() + 1).max().unwrap_or(1);
-        let mut inverse_binds = vec![Affine3A::IDENTITY; count];
-        for (joint, bind) in joints.iter().zip(&self.inverse_binds) {
-            if let Some(joint) = joint {
-                inverse_binds[joint.index()] = *bind;
+        let renumbered = |set: &BindSet| {
+            let mut inverse_binds = vec![Affine3A::IDENTITY; count];
+            for (joint, bind) in joints.iter().zip(&set.inverse_binds) {
+                if let Some(joint) = joint {
+                    inverse_binds[joint.index()] = *bind;
+                }
             }
-        }
+            BindSet { vertices: set.vertices, inverse_binds }
+        };
         let weights = self.weights.iter().map(of_heirs).collect();
-        Self { mesh: self.mesh.clone(), weights, inverse_binds }
+        let bind_sets = self.bind_sets.iter().map(renumbered).collect();
+        Self { mesh: self.mesh.clone(), weights, bind_sets }
     }
 
     /// Memory in bytes.
@@ -155,7 +218,7 @@ impl SkinnedMesh {
             + size_of_val(&texture_coordinates[..])
             + size_of_val(&triangles[..])
             + size_of_val(&self.weights[..])
-            + size_of_val(&self.inverse_binds[..])
+            + self.bind_sets.iter().map(|set| size_of_val(&set.inverse_binds[..])).sum::<usize>()
     }
 
     /// The motion that each joint of a posed skeleton gives to the mesh.
@@ -167,7 +230,7 @@ impl SkinnedMesh {
 
     /// Writes [`SkinnedMesh::pose`] into an existing pose, reusing its memory.
     pub fn write_pose(&self, skeleton: &Skeleton, pose: &mut SkinPose) {
-        pose.refill(&self.inverse_binds, skeleton);
+        pose.refill(self.bind_sets.iter().map(|set| &set.inverse_binds[..]), skeleton);
     }
 
     /// The mesh posed in the world, with the corners of its triangles counter-clockwise seen from
@@ -194,8 +257,8 @@ impl SkinnedMesh {
         positions.clear();
         normals.clear();
         let vertices = self.mesh.positions.iter().zip(&self.mesh.normals).zip(&self.weights);
-        for ((position, normal), weights) in vertices {
-            let blend = pose.to_world() * pose.blend(weights, *position, skinning);
+        for (((position, normal), weights), first) in vertices.zip(self.first_joints()) {
+            let blend = pose.to_world() * pose.blend(first, weights, *position, skinning);
             positions.push(blend.transform_point3(*position));
             normals.push(posed_normal(blend.matrix3, *normal));
         }
@@ -265,6 +328,14 @@ pub enum SkinError {
         vertex: usize,
         /// The value.
         got: glam::Vec3,
+    },
+    /// A set of inverse bind transforms has another number of joints than the first.
+    #[error("all sets must have {joints} inverse bind transforms, as the first, got {got}")]
+    BindSet {
+        /// Number of transforms of the first set.
+        joints: usize,
+        /// Number of transforms of the other one.
+        got: usize,
     },
     /// An inverse bind transform is not finite.
     #[error("the inverse bind transform of joint {} must be finite", joint.index())]

@@ -9,7 +9,7 @@ use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use serde_json::{Value, json};
 
 use crate::common::damage::message;
-use crate::gltf::text::{Text, base64, glb};
+use crate::gltf::text::{Text, base64, glb, push};
 
 fn open(text: &Text) -> Opened {
     io::parse("test.gltf", &text.embedded(), &io::OpenOptions::default())
@@ -150,12 +150,15 @@ fn a_leaf_called_the_tip_of_its_parent_ends_the_bone() {
 }
 
 #[test]
-fn of_several_skins_the_first_is_read_or_the_one_that_is_named() {
-    let mut text = Text::chain();
+fn of_several_figures_the_first_is_read_or_the_one_that_is_named() {
+    let mut text = Text::new(
+        json!([{ "name": "a", "children": [1] }, { "name": "a1" }, { "name": "b" }, { "name": "c" }]),
+        &[],
+    );
     text.json["skins"] = json!([
-        { "joints": [0, 1] }, { "name": "b", "joints": [1, 2] }, { "name": "b", "joints": [2] },
+        { "joints": [0, 1] }, { "name": "b", "joints": [2] }, { "name": "b", "joints": [3] },
     ]);
-    text.json["nodes"][3]["skin"] = json!(0);
+    push(&mut text.json["nodes"], json!({ "name": "lamp", "skin": 0 }));
     let named = |name: Option<&str>| {
         let skeleton = name.map(str::to_owned);
         let options = io::OpenOptions { skeleton, ..io::OpenOptions::default() };
@@ -168,10 +171,47 @@ fn of_several_skins_the_first_is_read_or_the_one_that_is_named() {
         (joints.len(), joints[0].name.clone())
     };
     assert_eq!(count(None), (2, "a".to_owned()));
-    assert_eq!(count(Some("b")), (2, "b".to_owned()));
+    assert_eq!(count(Some("b")), (1, "b".to_owned()));
     assert_eq!(count(Some("b_2")), (1, "c".to_owned()));
     let error = named(Some("d")).expect_err("there is none").to_string();
     assert_eq!(error, "x.gltf has no skeleton called \"d\"; it has \"lamp\", \"b\", \"b_2\"");
+}
+
+#[test]
+fn skins_that_share_joints_or_a_hierarchy_are_one_figure_by_any_of_their_names() {
+    // A body and its hair below the head, a hat beside the body, and another body.
+    let mut text = Text::new(
+        json!([
+            { "name": "armature", "children": [1, 4] },
+            { "name": "hips", "children": [2] },
+            { "name": "head", "children": [3] },
+            { "name": "hair" },
+            { "name": "hat" },
+            { "name": "other" },
+        ]),
+        &[],
+    );
+    text.json["skins"] = json!([
+        { "name": "hair", "joints": [3] },
+        { "name": "other", "joints": [5] },
+        { "name": "hat", "joints": [4] },
+        { "name": "body", "joints": [1, 2] },
+        { "name": "face", "joints": [2, 1] },
+    ]);
+    for (name, expected) in [
+        ("hair", &["hips", "head", "hair", "hat"][..]),
+        ("face", &["hips", "head", "hair", "hat"]),
+        ("other", &["other"]),
+    ] {
+        let options = io::OpenOptions::of_skeleton(name);
+        let opened = io::parse("x.gltf", &text.embedded(), &options).expect("it opens");
+        assert_eq!(opened.skeletons, ["hair", "other"]);
+        let joints = opened.document.skeleton().joints();
+        let mut names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        assert_eq!(opened.order.len(), names.len());
+        names.sort_by_key(|name| expected.iter().position(|other| other == name));
+        assert_eq!(names, expected);
+    }
 }
 
 // Motions

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use glam::{Affine3A, DMat4, DVec3, Mat3, Mat4, Quat, Vec2, Vec3};
+use glam::{Affine3A, DMat4, DQuat, DVec3, Mat3, Mat4, Quat, Vec2, Vec3};
 use ik_arm::document::{Document, Overlay, Skin};
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::JointId;
@@ -566,11 +566,13 @@ fn a_mesh_has_the_scales_that_the_chosen_animation_gives_and_keeps_them_in_docum
 }
 
 #[test]
-fn of_several_skins_each_has_its_own_mesh() {
+fn of_several_figures_each_has_its_own_mesh() {
     let mut text = Strip::new().text();
-    push(&mut text.json["skins"], json!({ "name": "other", "joints": [1, 2] }));
+    let of_other = json!({ "name": "other root", "children": [] });
+    let node = push(&mut text.json["nodes"], of_other);
+    push(&mut text.json["skins"], json!({ "name": "other", "joints": [node] }));
     let corner = text.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    let joints = text.accessor(&[1, 0, 0, 0].repeat(3), 5121, 3, "VEC4");
+    let joints = text.accessor(&[0; 12], 5121, 3, "VEC4");
     text.json["accessors"][joints]["normalized"] = json!(false);
     let weights = text.floats(4, &[1.0, 0.0, 0.0, 0.0].repeat(3));
     push(
@@ -585,6 +587,113 @@ fn of_several_skins_each_has_its_own_mesh() {
             .expect("it opens");
         assert_eq!(attached(&opened).mesh.mesh().triangles.len(), triangles, "{name}");
     }
+}
+
+#[test]
+fn all_skins_of_a_figure_are_shown_each_with_its_own_inverse_bind_matrices() {
+    let mut random = Random(390);
+    for case in 0..30 {
+        let strip = Strip::new();
+        let mut text = strip.text();
+        let mut worlds: Vec<DMat4> = Vec::new();
+        for node in 0..3 {
+            let (at, turn) = (random.vector(1.0), Quat::from_mat3(&random.rotation()).normalize());
+            let size = random.within(0.5..2.0);
+            text.json["nodes"][node]["translation"] = json!(at.to_array());
+            text.json["nodes"][node]["rotation"] = json!(turn.to_array());
+            text.json["nodes"][node]["scale"] = json!([size, size, size]);
+            let (turn, size) = (turn.as_dquat().normalize(), DVec3::splat(size.into()));
+            let local = DMat4::from_scale_rotation_translation(size, turn, at.as_dvec3());
+            worlds.push(worlds.last().copied().unwrap_or(DMat4::IDENTITY) * local);
+        }
+        let times = text.floats(1, &[0.0, 0.5, 1.0]);
+        let turns: Vec<f32> =
+            (0..3).flat_map(|_| Quat::from_scaled_axis(random.vector(2.0)).to_array()).collect();
+        let turned = text.floats(4, &turns);
+        text.animate(1, "rotation", "LINEAR", times, turned);
+        // The same mesh on three skins, each with joints in an order of its own. The second has the
+        // matrices of the first, the third other ones.
+        let orders = [[0, 1, 2], [2, 0, 1], [1, 2, 0]];
+        let first: Vec<Mat4> = (0..3).map(|_| placed(&mut random).1.as_mat4()).collect();
+        let third: Vec<Mat4> = (0..3).map(|_| placed(&mut random).1.as_mat4()).collect();
+        let binds = [&first, &first, &third];
+        text.json["skins"] = json!([]);
+        for (order, binds) in orders.iter().zip(binds) {
+            let numbers: Vec<f32> =
+                order.iter().flat_map(|node: &usize| binds[*node].to_cols_array()).collect();
+            let bytes = little_endian(numbers.iter().map(|number| number.to_le_bytes()));
+            let accessor = text.accessor(&bytes, 5126, 3, "MAT4");
+            let skin = json!({ "joints": order, "inverseBindMatrices": accessor });
+            let skin = push(&mut text.json["skins"], skin);
+            if skin > 0 {
+                push(&mut text.json["nodes"], json!({ "mesh": 0, "skin": skin }));
+            }
+        }
+        let opened = opened(&text);
+        assert_eq!(warnings(&opened), [""; 0]);
+        assert_eq!(opened.skeletons.len(), 1);
+        let exported = glb(&opened.document);
+        let again = io::read("x.glb", &exported[..], &io::OpenOptions::default()).expect("reads");
+        let packed = documents_again(&opened.document);
+        for (document, sets) in [(&opened.document, 2), (&again.document, 2), (&packed, 2)] {
+            let mesh = &document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
+            assert_eq!(mesh.bind_sets().len(), sets, "case {case}");
+            for time in [0.0, 0.2, 0.5, 0.7, 1.0] {
+                let quarter = |index: usize| {
+                    DQuat::from_array(std::array::from_fn(|at| f64::from(turns[4 * index + at])))
+                        .normalize()
+                };
+                let turn = match time {
+                    ..0.5 => quarter(0).slerp(quarter(1), time / 0.5),
+                    _ => quarter(1).slerp(quarter(2), time / 0.5 - 1.0),
+                };
+                let node = &text.json["nodes"][1];
+                let vector = |key: &str| {
+                    let numbers = node[key].as_array().expect("numbers");
+                    DVec3::from_array(std::array::from_fn(|at| numbers[at].as_f64().expect("f64")))
+                };
+                let local = DMat4::from_scale_rotation_translation(
+                    vector("scale"),
+                    turn,
+                    vector("translation"),
+                );
+                let turned = [
+                    worlds[0],
+                    worlds[0] * local,
+                    worlds[0] * local * worlds[1].inverse() * worlds[2],
+                ];
+                let posed = document.at(time).into_document();
+                let skeleton = posed.skeleton();
+                let found = mesh.posed(&mesh.pose(skeleton), Skinning::Linear).positions;
+                assert_eq!(found.len(), 18);
+                let mut expected: Vec<DVec3> = Vec::new();
+                for skin in 0..3 {
+                    for (vertex, position) in strip.positions.iter().enumerate() {
+                        let shares = (0..2).map(|place| {
+                            let node = orders[skin][usize::from(strip.joints[vertex][place])];
+                            let weight = f64::from(strip.weights[vertex][place]) / 255.0;
+                            let matrix = turned[node] * binds[skin][node].as_dmat4();
+                            weight * matrix.transform_point3(position.as_dvec3())
+                        });
+                        expected.push(shares.sum());
+                    }
+                }
+                for at in expected {
+                    let nearest = found.iter().map(|it| it.as_dvec3().distance(at));
+                    let nearest = nearest.fold(f64::INFINITY, f64::min);
+                    assert!(nearest < 1e-3, "case {case} at {time}: {nearest} from {at}");
+                }
+            }
+        }
+    }
+}
+
+/// A document, saved with its mesh in itself and read again.
+fn documents_again(document: &Document) -> Document {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("x.json");
+    io::save(document, &path).expect("saved");
+    io::open(&path, &io::OpenOptions::default()).expect("it opens").document
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{
-    Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+    BindSet, Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use crate::rig::{
     BoneSkin, FileMesh, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart, SkinSource, SkinTexture,
@@ -170,6 +170,9 @@ struct MeshSkinFields {
 struct FileMeshFields {
     parents: Vec<Option<Whole>>,
     inverse_binds: Bytes,
+    /// The number of vertices of each set of inverse bind transforms; without it, there is one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    bind_sets: Vec<Whole>,
     positions: Bytes,
     normals: Bytes,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -289,7 +292,11 @@ impl FileMeshFields {
         let triangles = mesh.mesh();
         let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
         let coordinates = triangles.texture_coordinates.iter().flat_map(Vec2::to_array);
-        let binds = mesh.inverse_binds().iter().flat_map(Affine3A::to_cols_array);
+        let sets = mesh.bind_sets();
+        let binds = sets.iter().flat_map(|set| &set.inverse_binds);
+        let binds = binds.flat_map(Affine3A::to_cols_array);
+        let whole = |set: &BindSet| Whole(u32::try_from(set.vertices).unwrap_or(u32::MAX));
+        let bind_sets = if sets.len() > 1 { sets.iter().map(whole).collect() } else { Vec::new() };
         let corners = triangles.triangles.iter().flatten();
         let weights = || mesh.weights().iter();
         let vertex_joints = weights().flat_map(VertexWeights::joints);
@@ -298,6 +305,7 @@ impl FileMeshFields {
         Self {
             parents: wholes(parents),
             inverse_binds: Bytes::of_floats(binds),
+            bind_sets,
             positions: points(&triangles.positions),
             normals: points(&triangles.normals),
             texture_coordinates: (!triangles.texture_coordinates.is_empty())
@@ -337,14 +345,28 @@ impl FileMeshFields {
         });
         let weights = joints.zip(self.vertex_weights.floats().at("vertex_weights")?);
         let binds: Vec<[f32; 12]> = self.inverse_binds.floats().at("inverse_binds")?;
-        let (expected, got) = (parents.len(), binds.len());
+        let vertices = match &self.bind_sets[..] {
+            [] => vec![triangles.positions.len()],
+            sets => sets.iter().map(|vertices| vertices.0 as usize).collect(),
+        };
+        let (expected, got) = (parents.len().saturating_mul(vertices.len()), binds.len());
         if expected != got {
-            let reason = format!("must have {expected} transforms, as `parents`, got {got}");
+            let reason = match vertices.len() {
+                1 => format!("must have {expected} transforms, as `parents`, got {got}"),
+                sets => format!(
+                    "must have {expected} transforms, {sets} times as many as `parents`, got {got}"
+                ),
+            };
             return Err(reason).at("inverse_binds");
         }
         let weights = weights.map(|(joints, weights)| VertexWeights::listed(joints, weights));
-        let binds = binds.iter().map(Affine3A::from_cols_array);
-        let mesh = SkinnedMesh::new(triangles, weights.collect(), binds.collect())
+        let mut binds = binds.iter().map(Affine3A::from_cols_array);
+        let set = |vertices| BindSet {
+            vertices,
+            inverse_binds: binds.by_ref().take(parents.len()).collect(),
+        };
+        let bind_sets = vertices.into_iter().map(set).collect();
+        let mesh = SkinnedMesh::with_bind_sets(triangles, weights.collect(), bind_sets)
             .map_err(|error| error.to_string())
             .at("positions")?;
         let mut reader = TextureReader::default();

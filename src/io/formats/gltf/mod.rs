@@ -18,8 +18,8 @@
 //!
 //! # Import
 //!
-//! A skin's joints become a skeleton in the world, in metres, parents before their children, and so
-//! do other nodes of their hierarchy that an animation moves. Without a skin, the joints are the
+//! The joints of the skins that make a figure become a skeleton in the world, in metres, parents
+//! before their children, and so do other nodes of their hierarchy that an animation moves. Without a skin, the joints are the
 //! nodes that animations move, with their ancestors up to a common one. The nodes are the bind
 //! pose, with the scales with which the animation begins, and what it gives to nodes that are no
 //! joints and does not change: a joint's frame is its node's rotation. A joint that moves has the keys of its node in the
@@ -28,7 +28,7 @@
 //! frame, and below uneven ones rotations, too. A node `NAME_tip` without children is not a joint but the tip of NAME's
 //! bone. The other bones follow from the joints, see [`bones`](crate::io::bones).
 //!
-//! The meshes of the skin, and those of nodes below its joints, become the skin of the skeleton:
+//! The meshes of the skins, and those of nodes below their joints, become the skin of the skeleton:
 //! triangles, normals, weights, and base colours with their textures. Other meshes and channels of
 //! materials and morph targets are not read, with one warning. If a mesh is damaged or compressed,
 //! the whole skin is left out, with a warning.

@@ -51,9 +51,15 @@ pub async fn glb(
         None => LimbMesh::new(&rig, &bones)?.into(),
     };
     let mut writer = GltfWriter::default();
-    let skin = writer.add_skin(&bones, &mesh.attached);
-    let mesh = writer.add_mesh(&mesh);
-    writer.add_nodes(&bones, &motion.frames, mesh, skin);
+    let mut skinned = Vec::new();
+    for (set, attached) in mesh.attached.iter().enumerate() {
+        let parts: Vec<&MeshPart> = mesh.parts.iter().filter(|part| part.set == set).collect();
+        if set == 0 || !parts.is_empty() {
+            let skin = writer.add_skin(&bones, attached);
+            skinned.push((writer.add_mesh(&parts), skin));
+        }
+    }
+    writer.add_nodes(&bones, &motion.frames, &skinned);
     writer.add_animation(&motion, document.animation_name.as_deref());
     writer.file()
 }
@@ -97,13 +103,13 @@ impl GltfWriter {
     }
 
     /// Adds the nodes of the joints, with the same indices as in `bones`, then a node above them
-    /// and the node of the mesh. `frames` has nodes with the frames of their joints' angles.
+    /// and a node for each mesh with its skin. `frames` has nodes with the frames of their joints'
+    /// angles.
     fn add_nodes(
         &mut self,
         bones: &JointNodes,
         frames: &[(usize, DQuat)],
-        mesh: Whole,
-        skin: Whole,
+        skinned: &[(Whole, Whole)],
     ) {
         let armature = bones.nodes.len();
         let mut children = vec![Vec::new(); armature + 1];
@@ -125,13 +131,16 @@ impl GltfWriter {
         for (node, frame) in frames {
             self.json.nodes.0[*node].extras = Some(Extras::Own(NodeExtras::new(*frame)));
         }
-        let mesh_node = self.json.nodes.push(GltfNode {
-            name: Some(JointNodes::MESH.to_owned()),
-            mesh: Some(mesh),
-            skin: Some(skin),
-            ..GltfNode::default()
-        });
-        self.json.scenes = [GltfScene { nodes: vec![whole(armature), mesh_node] }];
+        let mut scene = vec![whole(armature)];
+        for (mesh, skin) in skinned {
+            scene.push(self.json.nodes.push(GltfNode {
+                name: Some(JointNodes::MESH.to_owned()),
+                mesh: Some(*mesh),
+                skin: Some(*skin),
+                ..GltfNode::default()
+            }));
+        }
+        self.json.scenes = [GltfScene { nodes: scene }];
     }
 
     fn add_skin(&mut self, bones: &JointNodes, attached: &[DAffine3]) -> Whole {
@@ -155,8 +164,8 @@ impl GltfWriter {
         })
     }
 
-    fn add_mesh(&mut self, mesh: &RigMesh) -> Whole {
-        let parts = mesh.parts.iter().filter(|part| !part.indices.is_empty());
+    fn add_mesh(&mut self, parts: &[&MeshPart]) -> Whole {
+        let parts = parts.iter().filter(|part| !part.indices.is_empty());
         let primitives = List(parts.map(|part| self.add_primitive(part)).collect());
         self.json.meshes.push(GltfMesh { name: JointNodes::MESH.to_owned(), primitives })
     }

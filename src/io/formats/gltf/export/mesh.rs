@@ -9,16 +9,16 @@ use super::rig::{GltfRig, joint_spaces};
 use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
-use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{AttachedMesh, SkinPart, SkinTexture};
 
 /// The mesh of an exported rig.
 pub struct RigMesh {
-    /// One part for each material.
+    /// One part for each material, or for each set of the mesh's inverse bind transforms.
     pub parts: Vec<MeshPart>,
-    /// For each joint the transform from the mesh to the world in the bind pose, in metres;
-    /// identity for joints beyond the list.
-    pub attached: Vec<DAffine3>,
+    /// For each set, for each joint the transform from the mesh to the world in the bind pose, in
+    /// metres; identity for joints beyond the list. At least one set.
+    pub attached: Vec<Vec<DAffine3>>,
 }
 
 /// Triangles of one material.
@@ -26,6 +26,8 @@ pub struct RigMesh {
 pub struct MeshPart {
     /// Colour as sRGB channels from 0 to 1.
     pub colour: [f32; 3],
+    /// Index in [`RigMesh::attached`].
+    pub set: usize,
     /// Image that multiplies the colour.
     pub texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
@@ -59,21 +61,29 @@ impl RigMesh {
 /// The parts of a skin, each with its own vertices in the order of the mesh.
 fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart> {
     let is_mirrored = skeleton.transform().matrix3.determinant() < 0.0;
+    let sets: Vec<usize> = mesh.mesh.sets_of_vertices().collect();
     let mut rest = &mesh.mesh.mesh().triangles[..];
-    let part = |part: &SkinPart| {
+    let mut parts = Vec::with_capacity(mesh.parts.len());
+    for part in &mesh.parts {
         let (triangles, others) = rest.split_at(part.triangles.min(rest.len()));
         rest = others;
         let colour = std::array::from_fn(|channel| skin.colour[channel] * part.colour[channel]);
-        let corners = triangles
-            .iter()
-            .flat_map(|[a, b, c]| if is_mirrored { [*a, *c, *b] } else { [*a, *b, *c] });
-        MeshPart {
-            colour,
-            texture: part.texture.clone(),
-            ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), part.texture.is_some())
+        for set in 0..mesh.mesh.bind_sets().len() {
+            let of_set = triangles.iter().filter(|corners| sets[corners[0] as usize] == set);
+            let corners: Vec<u32> = of_set
+                .flat_map(|[a, b, c]| if is_mirrored { [*a, *c, *b] } else { [*a, *b, *c] })
+                .collect();
+            if !corners.is_empty() {
+                parts.push(MeshPart {
+                    colour,
+                    set,
+                    texture: part.texture.clone(),
+                    ..of_corners(&mesh.mesh, &corners, part.texture.is_some())
+                });
+            }
         }
-    };
-    mesh.parts.iter().map(part).collect()
+    }
+    parts
 }
 
 /// The triangles with these corners, and the vertices that they have.
@@ -98,13 +108,16 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
     }
 }
 
-/// For each joint the transform from mesh space to the world that its inverse bind transform gives
-/// in the bind pose of the skeleton, in metres.
-fn attached(mesh: &SkinnedMesh, skeleton: &Skeleton, metres: f64) -> Vec<DAffine3> {
+/// For each set, for each joint the transform from mesh space to the world that its inverse bind
+/// transform gives in the bind pose of the skeleton, in metres.
+fn attached(mesh: &SkinnedMesh, skeleton: &Skeleton, metres: f64) -> Vec<Vec<DAffine3>> {
     let to_metres = DAffine3::from_scale(DVec3::splat(metres));
-    let spaces = joint_spaces(skeleton, |_| DMat3::IDENTITY).into_iter();
-    let binds = mesh.inverse_binds().iter().map(Affine3A::as_daffine3);
-    spaces.zip(binds).map(|(space, bind)| to_metres * space * bind).collect()
+    let spaces = joint_spaces(skeleton, |_| DMat3::IDENTITY);
+    let of_set = |set: &BindSet| {
+        let binds = set.inverse_binds.iter().map(Affine3A::as_daffine3);
+        spaces.iter().zip(binds).map(|(space, bind)| to_metres * *space * bind).collect()
+    };
+    mesh.bind_sets().iter().map(of_set).collect()
 }
 
 /// The mesh in the bind pose: a cone for each bone, with balls at its ends. Each colour has its own
@@ -128,7 +141,7 @@ impl From<LimbMesh> for RigMesh {
             MeshPart { colour, ..part }
         });
         let parts = parts.collect();
-        Self { parts, attached: Vec::new() }
+        Self { parts, attached: vec![Vec::new()] }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::foreign::ForeignFormat;
 use crate::io::formats::gltf::extras::Extras;
-use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, GltfSkin, VersionedFile};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, VersionedFile};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::opened::{FileAnimation, OpenOptions, Opened, attach_skin};
 use crate::io::source::Source;
@@ -27,8 +27,7 @@ use animations::NodeTracks;
 use animations::at_animation;
 use exact_tracks::ExactTracks;
 use joint_tracks::{ExactJoint, NodePoser};
-use nodes::{NodeTree, at_node};
-use nodes::{SkinJoints, at_skin};
+use nodes::{Figure, NodeTree, SkinJoints, at_node, at_skin};
 use rig::{BoneEnds, ImportedRig};
 use sampler::UsedChannel;
 use skin_mesh::MeshImport;
@@ -45,12 +44,13 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let scans = animations::scan(source, &file, &nodes);
     let moving: BTreeSet<usize> =
         scans.iter().flat_map(|scan| scan.moving.iter().copied()).collect();
-    let names = nodes::names(&file, &nodes, &moving);
+    let figures = nodes::figures(&file, &nodes, &moving);
+    let names: Vec<String> = figures.iter().map(|figure| figure.name.clone()).collect();
     let chosen = match &options.skeleton {
-        Some(name) => names.iter().position(|other| other == name),
-        None => (!names.is_empty()).then_some(0),
+        Some(name) => figures.iter().find(|figure| figure.is_called(name)),
+        None => figures.first(),
     };
-    let Some(index) = chosen else {
+    let Some(figure) = chosen else {
         return Err(match &options.skeleton {
             Some(name) => {
                 OpenError::NoSkeleton { file: source.name().to_owned(), name: name.clone(), names }
@@ -58,7 +58,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
             None => source.error(&no_skeleton()),
         });
     };
-    let joints = skin_joints(&file, &nodes, index, &moving);
+    let joints = match figure.skins.is_empty() {
+        false => SkinJoints::new(&file, &nodes, &figure.skins, &moving),
+        true => SkinJoints::of_moving(&nodes, &moving).ok_or_else(no_skeleton),
+    };
     let joints = joints.map_err(|error| source.error(&error))?;
     let described: Vec<FileAnimation> = scans.iter().map(|scan| scan.described(&joints)).collect();
     let animation = animations::choose(source, &described, options.animation.as_deref())?;
@@ -76,19 +79,17 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         source,
         file: &file,
         nodes: &nodes,
-        index,
-        name: &names[index],
+        figure,
         joints: &joints,
         animation: animation.map(|chosen| (chosen, &described[chosen])),
     };
     let imported = import.read(&mut warnings);
     let ImportedRig { mut document, kept } = imported.map_err(|error| source.error(&error))?;
     document.animation_name = animation.map(|chosen| described[chosen].name.clone());
-    let order = joints.order.iter().chain(&joints.added);
     Ok(Opened {
         document,
         warnings: source.warnings(&warnings),
-        order: order.filter_map(|joint| kept[*joint]).map(JointId::new).collect(),
+        order: joints.in_order_of_file().filter_map(|it| kept[it]).map(JointId::new).collect(),
         skeletons: names,
         animations: described,
         animation,
@@ -119,18 +120,6 @@ fn no_skeleton() -> FieldError {
     FieldError::new(JsonPath::root().key("skins"), reason)
 }
 
-fn skin_joints(
-    file: &GltfFile<'_>,
-    nodes: &NodeTree,
-    index: usize,
-    moving: &BTreeSet<usize>,
-) -> Result<SkinJoints, FieldError> {
-    match file.skins.0.get(index) {
-        Some(skin) => SkinJoints::new(file, nodes, index, skin, moving),
-        None => SkinJoints::of_moving(nodes, moving).ok_or_else(no_skeleton),
-    }
-}
-
 /// Warns of nodes that move and are no joints.
 fn warn_of_left_out(moving: &BTreeSet<usize>, joints: &SkinJoints, warnings: &mut FieldWarnings) {
     let is_joint: BTreeSet<usize> = joints.nodes.iter().copied().collect();
@@ -148,15 +137,12 @@ fn warn_of_left_out(moving: &BTreeSet<usize>, joints: &SkinJoints, warnings: &mu
     }
 }
 
-/// A skeleton of a file that is imported.
+/// A figure of a file that is imported.
 struct GltfImport<'a> {
     source: &'a Source,
     file: &'a GltfFile<'a>,
     nodes: &'a NodeTree,
-    /// Index of the skin; for a file without skins 0.
-    index: usize,
-    /// Name of the skeleton.
-    name: &'a str,
+    figure: &'a Figure,
     joints: &'a SkinJoints,
     /// The animation, with its number in the file.
     animation: Option<(usize, &'a FileAnimation)>,
@@ -164,7 +150,7 @@ struct GltfImport<'a> {
 
 impl GltfImport<'_> {
     fn read(&self, warnings: &mut FieldWarnings) -> Result<ImportedRig, FieldError> {
-        let Self { source, file, index, joints: skin_joints, .. } = *self;
+        let Self { source, file, figure, joints: skin_joints, .. } = *self;
         let at = at_animation(self.animation.map_or(0, |(chosen, _)| chosen));
         let animation = self.animation.and_then(|(chosen, _)| file.animations.0.get(chosen));
         let channels = self.channels(animation, &at)?;
@@ -190,24 +176,16 @@ impl GltfImport<'_> {
         let ends = BoneEnds::new(file, nodes, skin_joints, &bind_pose);
         let built = rig::build(joints, &motions, timeline, &ends);
         let mut built =
-            built.map_err(|error| FieldError::new(at_skin(index), error.to_string()))?;
-        let no_skin = GltfSkin::default();
-        let mesh = MeshImport {
-            source,
-            file,
-            nodes,
-            index,
-            skin: file.skins.0.get(index).unwrap_or(&no_skin),
-            joints: skin_joints,
-            bind_pose: &bind_pose,
-        };
+            built.map_err(|error| FieldError::new(at_skin(figure.first()), error.to_string()))?;
+        let mesh =
+            MeshImport { source, file, nodes, figure, joints: skin_joints, bind_pose: &bind_pose };
         match mesh.read(warnings) {
             Ok(Some((mesh, checksum))) => {
                 let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
                 let file = source.path().map(|path| SkinFile {
                     path: path.into(),
                     checksum,
-                    skeleton: self.name.to_owned(),
+                    skeleton: figure.name.clone(),
                     animation: self
                         .animation
                         .filter(|_| nodes.locals != self.nodes.locals)

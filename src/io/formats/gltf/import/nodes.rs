@@ -1,4 +1,4 @@
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
@@ -177,7 +177,7 @@ pub fn unit(rotation: [f64; 4]) -> Option<DQuat> {
     (length > SHORTEST && length.is_finite()).then(|| DQuat::from_vec4(rotation / length))
 }
 
-/// The joints of a skeleton, parents before their children: those of a skin, and other nodes of its
+/// The joints of a figure, parents before their children: those of its skins, and other nodes of its
 /// hierarchy that animations move.
 pub struct SkinJoints {
     /// The node of each joint.
@@ -185,23 +185,66 @@ pub struct SkinJoints {
     /// The parent of each joint: the joint of its nearest ancestor node that is a joint. Nodes
     /// between the two joints are skipped. `None` for a root.
     pub parents: Vec<Option<usize>>,
-    /// For each joint in the order of the file's skin, its index in `nodes`.
-    pub order: Vec<usize>,
-    /// The joints that the skin does not list, in the order of the file's nodes.
+    /// For each skin of the figure, for each of its joints in the order of the file, the index in
+    /// `nodes`.
+    pub of_skins: Vec<Vec<usize>>,
+    /// The joints that no skin lists, in the order of the file's nodes.
     pub added: Vec<usize>,
 }
 
-/// Returns a unique name for each skin: its own name, otherwise the name of the first node with the
-/// skin, otherwise `skin_` and its number. A file without skins has one skeleton if nodes move,
-/// with the name of the first root of the `moving` nodes.
-pub fn names(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<String> {
+/// The skins that make one figure, or the nodes that move of a file without skins.
+pub struct Figure {
+    /// A unique name: that of the first skin, otherwise of the first node with it, otherwise `skin_`
+    /// and its number. Without skins, the name of the first root of the moving nodes.
+    pub name: String,
+    /// The names that the other skins would have.
+    aliases: Vec<String>,
+    /// The skins in the order of the file.
+    pub skins: Vec<usize>,
+}
+
+impl Figure {
+    /// The number of the first skin; 0 without one.
+    pub fn first(&self) -> usize {
+        self.skins.first().copied().unwrap_or_default()
+    }
+
+    /// Returns whether the figure or one of its skins is called `name`.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.aliases.iter().any(|alias| alias == name)
+    }
+}
+
+/// The figures of a file. Skins are of one figure if they share joints, if joints of one are below
+/// joints of the other, or if joints of both are children of the same node: exporters write a skin
+/// for each mesh.
+pub fn figures(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<Figure> {
     if file.skins.0.is_empty() {
         let roots = nodes.roots();
         let root = moving.first().and_then(|node| file.nodes.0.get(roots[*node]));
         let name = |root: &GltfNode| root.name.clone().filter(|name| !name.trim().is_empty());
         let name = root.map(|root| name(root).unwrap_or_else(|| "skeleton".to_owned()));
-        return name.into_iter().collect();
+        let figure = |name| Figure { name, aliases: Vec::new(), skins: Vec::new() };
+        return name.map(figure).into_iter().collect();
     }
+    let names = skin_names(file);
+    let mut figures: Vec<Figure> = Vec::new();
+    let mut of_first = HashMap::new();
+    for (skin, (first, name)) in first_skins(file, nodes).into_iter().zip(names).enumerate() {
+        if first == skin {
+            of_first.insert(first, figures.len());
+            figures.push(Figure { name, aliases: Vec::new(), skins: vec![skin] });
+        } else {
+            let figure = &mut figures[of_first[&first]];
+            figure.skins.push(skin);
+            figure.aliases.push(name);
+        }
+    }
+    figures
+}
+
+/// A unique name for each skin.
+fn skin_names(file: &GltfFile<'_>) -> Vec<String> {
     let mut users = vec![None; file.skins.0.len()];
     for node in &file.nodes.0 {
         let user = node.skin.and_then(|skin| users.get_mut(skin.0 as usize));
@@ -217,48 +260,109 @@ pub fn names(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) ->
     file.skins.0.iter().zip(users).enumerate().map(name).collect()
 }
 
+/// For each skin the first one of its figure.
+fn first_skins(file: &GltfFile<'_>, nodes: &NodeTree) -> Vec<usize> {
+    let joints_of = |skin: &GltfSkin| -> Vec<usize> {
+        let joints = skin.joints.iter().map(|joint| joint.0 as usize);
+        joints.filter(|joint| *joint < nodes.parents.len()).collect()
+    };
+    let mut owners: Vec<Option<usize>> = vec![None; nodes.parents.len()];
+    let mut above: HashMap<usize, usize> = HashMap::new();
+    let mut firsts: Vec<usize> = (0..file.skins.0.len()).collect();
+    let mut unite = |one: usize, other: usize| {
+        let root = |firsts: &[usize], mut skin: usize| {
+            while firsts[skin] != skin {
+                skin = firsts[skin];
+            }
+            skin
+        };
+        let (one, other) = (root(&firsts, one), root(&firsts, other));
+        firsts[one.max(other)] = one.min(other);
+    };
+    let all: Vec<Vec<usize>> = file.skins.0.iter().map(joints_of).collect();
+    for (skin, joints) in all.iter().enumerate() {
+        for &joint in joints {
+            match owners[joint] {
+                Some(owner) => unite(owner, skin),
+                None => owners[joint] = Some(skin),
+            }
+            if let Some(parent) = nodes.parents[joint] {
+                unite(*above.entry(parent).or_insert(skin), skin);
+            }
+        }
+    }
+    // The nearest joint above each node, parents first.
+    let mut nearest: Vec<Option<usize>> = vec![None; nodes.parents.len()];
+    for &node in &nodes.order {
+        let of_parent = nodes.parents[node].and_then(|parent| nearest[parent]);
+        if let (Some(own), Some(of_parent)) = (owners[node], of_parent) {
+            unite(own, of_parent);
+        }
+        nearest[node] = owners[node].or(of_parent);
+    }
+    // A first skin has a lower number than its figure's others.
+    for skin in 0..firsts.len() {
+        firsts[skin] = firsts[firsts[skin]];
+    }
+    firsts
+}
+
 pub fn at_skin(skin: usize) -> JsonPath {
     JsonPath::root().key("skins").index(skin)
 }
 
 impl SkinJoints {
-    /// The joints of a skin, and those `moving` nodes that have a root in common with one of them.
+    /// The joints of the skins of a figure, and those `moving` nodes that have a root in common with
+    /// one of them and are no joints of other skins.
     pub fn new(
         file: &GltfFile<'_>,
         nodes: &NodeTree,
-        index: usize,
-        skin: &GltfSkin,
+        skins: &[usize],
         moving: &BTreeSet<usize>,
     ) -> Result<Self, FieldError> {
-        let at = at_skin(index).key("joints");
-        if skin.joints.is_empty() {
-            return Err(FieldError::new(at, "must have at least one joint"));
-        }
-        // The maximum is doubled, because tips of bones are joints in the file, but not in the
-        // skeleton.
-        if skin.joints.len() > 2 * Skeleton::MOST_JOINTS {
-            return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
-        }
-        let mut seen = HashSet::new();
-        for (position, joint) in skin.joints.iter().enumerate() {
-            let joint = joint.0 as usize;
-            let error = |reason| FieldError::new(at.clone().index(position), reason);
-            if joint >= file.nodes.0.len() {
-                return Err(error(index_rule("nodes", file.nodes.0.len(), joint)));
+        let mut listed = Vec::new();
+        let mut all = HashSet::new();
+        for &skin in skins {
+            for joint in listed_joints(file, skin)? {
+                if all.insert(joint) {
+                    listed.push(joint);
+                }
             }
-            if !seen.insert(joint) {
-                return Err(error(format!("joints must be unique, got node {joint} twice")));
+            // The maximum is doubled, because tips of bones are joints in the file, but not in the
+            // skeleton.
+            if listed.len() > 2 * Skeleton::MOST_JOINTS {
+                let reason = SkeletonError::TooMany.to_string();
+                return Err(FieldError::new(at_skin(skin).key("joints"), reason));
             }
         }
-        let listed: Vec<usize> = skin.joints.iter().map(|joint| joint.0 as usize).collect();
         let roots = nodes.roots();
         let own: HashSet<usize> = listed.iter().map(|node| roots[*node]).collect();
-        let is_added = |node: &usize| own.contains(&roots[*node]) && !seen.contains(node);
+        let others = (0..file.skins.0.len()).filter(|skin| !skins.contains(skin));
+        let others = others.flat_map(|skin| &file.skins.0[skin].joints);
+        let of_others: HashSet<usize> = others.map(|joint| joint.0 as usize).collect();
+        let is_added = |node: &usize| {
+            own.contains(&roots[*node]) && !all.contains(node) && !of_others.contains(node)
+        };
         let added: Vec<usize> = moving.iter().copied().filter(is_added).collect();
         if listed.len() + added.len() > 2 * Skeleton::MOST_JOINTS {
+            let at = at_skin(skins.first().copied().unwrap_or_default()).key("joints");
             return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
         }
-        Ok(Self::sorted(nodes, &listed, &added))
+        let mut joints = Self::sorted(nodes, &listed, &added);
+        let places = joints.nodes.iter().enumerate();
+        let places: HashMap<usize, usize> = places.map(|(joint, node)| (*node, joint)).collect();
+        for &skin in skins {
+            let of_skin = file.skins.0[skin].joints.iter();
+            joints.of_skins.push(of_skin.map(|joint| places[&(joint.0 as usize)]).collect());
+        }
+        Ok(joints)
+    }
+
+    /// The joints in the order of the file: those that skins list, each once, and then others.
+    pub fn in_order_of_file(&self) -> impl Iterator<Item = usize> {
+        let mut seen = HashSet::new();
+        let listed = self.of_skins.iter().flatten().chain(&self.added).copied();
+        listed.filter(move |joint| seen.insert(*joint))
     }
 
     /// For a file without a skin, the `moving` nodes with their ancestors up to the nearest one
@@ -284,12 +388,16 @@ impl SkinJoints {
     }
 
     /// Sorts the joints so that parents come before their children, otherwise in the listed order.
-    fn sorted(nodes: &NodeTree, skin: &[usize], added: &[usize]) -> Self {
-        let listed: Vec<usize> = skin.iter().chain(added).copied().collect();
+    fn sorted(nodes: &NodeTree, of_skins: &[usize], added: &[usize]) -> Self {
+        let listed: Vec<usize> = of_skins.iter().chain(added).copied().collect();
         let parent_of = nearest_listed_ancestors(nodes, &listed);
         let mut joint_of = vec![None; nodes.parents.len()];
-        let mut joints =
-            Self { nodes: Vec::new(), parents: Vec::new(), order: Vec::new(), added: Vec::new() };
+        let mut joints = Self {
+            nodes: Vec::new(),
+            parents: Vec::new(),
+            of_skins: Vec::new(),
+            added: Vec::new(),
+        };
         for &node in &listed {
             let unplaced = |node: &usize| joint_of[*node].is_none();
             let path =
@@ -300,10 +408,33 @@ impl SkinJoints {
                 joints.nodes.push(node);
             }
         }
-        joints.order = skin.iter().filter_map(|node| joint_of[*node]).collect();
         joints.added = added.iter().filter_map(|node| joint_of[*node]).collect();
         joints
     }
+}
+
+/// The nodes that are joints of a skin.
+fn listed_joints(file: &GltfFile<'_>, skin: usize) -> Result<Vec<usize>, FieldError> {
+    let at = at_skin(skin).key("joints");
+    let joints = &file.skins.0[skin].joints;
+    if joints.is_empty() {
+        return Err(FieldError::new(at, "must have at least one joint"));
+    }
+    if joints.len() > 2 * Skeleton::MOST_JOINTS {
+        return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
+    }
+    let mut seen = HashSet::new();
+    for (position, joint) in joints.iter().enumerate() {
+        let joint = joint.0 as usize;
+        let error = |reason| FieldError::new(at.clone().index(position), reason);
+        if joint >= file.nodes.0.len() {
+            return Err(error(index_rule("nodes", file.nodes.0.len(), joint)));
+        }
+        if !seen.insert(joint) {
+            return Err(error(format!("joints must be unique, got node {joint} twice")));
+        }
+    }
+    Ok(joints.iter().map(|joint| joint.0 as usize).collect())
 }
 
 /// For each node, its nearest ancestor that is in `listed`; `None` if no ancestor is.

@@ -1,10 +1,11 @@
-//! The mesh of a skin: all surfaces that follow its joints.
+//! The mesh of a figure: all surfaces that follow joints of its skins.
 //!
 //! As the file's nodes stand, the node of joint i has the transform N_i in the world, and its
 //! inverse bind matrix IBM_i maps the mesh to the node's own space; so the joint places the mesh by
 //! A_i = N_i·IBM_i. The skeleton that is read has its joint i at the same place, but not turned:
 //! X_i is the translation to N_i's origin. The inverse bind transform of the skeleton's joint is
-//! therefore B_i⁻¹ = X_i⁻¹·A_i. A mesh on a node without a skin follows the nearest joint j above
+//! therefore B_i⁻¹ = X_i⁻¹·A_i. Skins that have the same A_i for the joints that they share are one
+//! set. A mesh on a node without a skin follows the nearest joint j above
 //! it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,27 +14,26 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
 use super::joint_tracks::JointPlacement;
-use super::nodes::{NodeTree, SkinJoints, at_node, at_skin};
+use super::nodes::{Figure, NodeTree, SkinJoints, at_node, at_skin};
 use super::primitive::{ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, image_view};
 use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
-use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, GltfSkin, index_rule};
+use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{GltfMaterial, Uri};
 use crate::io::json::{FieldError, FieldWarnings, JsonPath, Whole};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
-use crate::kinematics::skin::{SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{FileMesh, SkinPart};
 
 /// Maximum number of primitives of all meshes of a skin.
 const MOST_PARTS: usize = 10_000;
 
-/// A skin of a file, with the joints that it becomes.
+/// A figure of a file, with the joints that it becomes.
 pub struct MeshImport<'a> {
     pub source: &'a Source,
     pub file: &'a GltfFile<'a>,
     pub nodes: &'a NodeTree,
-    pub index: usize,
-    pub skin: &'a GltfSkin,
+    pub figure: &'a Figure,
     pub joints: &'a SkinJoints,
     pub bind_pose: &'a [JointPlacement],
 }
@@ -43,8 +43,23 @@ struct UsedMesh<'a> {
     node: usize,
     index: usize,
     mesh: &'a GltfMesh,
-    /// The joint that all vertices follow; `None` for a mesh with weights of its own.
-    joint: Option<usize>,
+    follows: Follows,
+}
+
+/// What the vertices of a mesh follow.
+#[derive(Clone, Copy)]
+enum Follows {
+    /// A joint.
+    Joint(usize),
+    /// The joints of a skin by weights of their own; which of the figure's skins.
+    Skin(usize),
+}
+
+/// Transforms A of all joints of the figure, for skins that agree about the joints that they share.
+struct BindTable {
+    attached: Vec<DAffine3>,
+    /// True for joints that a skin lists.
+    is_listed: Vec<bool>,
 }
 
 impl UsedMesh<'_> {
@@ -72,7 +87,7 @@ impl MeshImport<'_> {
         if let Some(reason) = file.compression() {
             return Err(FieldError::new(JsonPath::root().key("extensionsRequired"), reason));
         }
-        let meshes = self.meshes()?;
+        let mut meshes = self.meshes()?;
         if meshes.iter().all(|mesh| mesh.surfaces().next().is_none()) {
             return Ok(None);
         }
@@ -87,13 +102,24 @@ impl MeshImport<'_> {
             }
         }
         let worlds = nodes.worlds();
-        let attached = self.attached(&worlds, &buffers)?;
+        let (tables, of_skins) = self.bind_tables(&worlds, &buffers)?;
+        let attached = &tables[0].attached;
+        let table_of = |mesh: &UsedMesh<'_>| match mesh.follows {
+            Follows::Joint(_) => 0,
+            Follows::Skin(skin) => of_skins[skin],
+        };
+        meshes.sort_by_key(table_of);
         let mut builder = MeshBuilder::default();
+        let mut vertices = vec![0; tables.len()];
         let mut materials = BTreeMap::new();
         let mut images = ImageCache::default();
         for mesh in &meshes {
-            let rigid =
-                mesh.joint.map(|joint| (joint, attached[joint].inverse() * worlds[mesh.node]));
+            let (rigid, of_skin) = match mesh.follows {
+                Follows::Joint(joint) => {
+                    (Some((joint, attached[joint].inverse() * worlds[mesh.node])), &[][..])
+                }
+                Follows::Skin(skin) => (None, &joints.of_skins[skin][..]),
+            };
             if rigid.is_some_and(|(_, to_mesh)| !to_mesh.is_finite()) {
                 let reason = "its mesh is not read, because its joint has no volume";
                 warnings.push(at_node(mesh.node), reason);
@@ -102,8 +128,9 @@ impl MeshImport<'_> {
             for (at, primitive) in mesh.surfaces() {
                 let material = self.material(primitive, &at)?;
                 let set = material.map_or(0, |(_, material)| material.coordinates());
-                let count = self.skin.joints.len();
+                let count = of_skin.len();
                 let read = PrimitiveMesh::new(file, &buffers, primitive, set, count, &at)?;
+                vertices[table_of(mesh)] += read.positions.len();
                 let look = material.map(|(index, material)| {
                     let new = || {
                         images.material(
@@ -119,16 +146,21 @@ impl MeshImport<'_> {
                 let mirrors = rigid.map_or(worlds[mesh.node], |(_, to_mesh)| to_mesh);
                 let is_mirrored = mirrors.matrix3.determinant() < 0.0;
                 let look = look.unwrap_or(PartMaterial::WHITE);
-                builder.add(read, rigid, is_mirrored, look, joints);
+                builder.add(read, rigid, is_mirrored, look, of_skin);
             }
         }
         self.warn_of_unread(&meshes, &builder, warnings);
         let MeshBuilder { mesh, weights, parts, .. } = builder;
-        let binds = attached.iter().zip(self.bind_pose).map(|(attached, joint)| {
+        let bind = |(attached, joint): (&DAffine3, &JointPlacement)| {
             (DAffine3::from_translation(-joint.base) * *attached).as_affine3a()
-        });
-        let mesh = SkinnedMesh::new(mesh, weights, binds.collect())
-            .map_err(|error| FieldError::new(at_skin(self.index), error.to_string()))?;
+        };
+        let set = |(table, vertices): (&BindTable, usize)| BindSet {
+            vertices,
+            inverse_binds: table.attached.iter().zip(self.bind_pose).map(bind).collect(),
+        };
+        let sets = tables.iter().zip(vertices).map(set).collect();
+        let mesh = SkinnedMesh::with_bind_sets(mesh, weights, sets)
+            .map_err(|error| FieldError::new(at_skin(self.figure.first()), error.to_string()))?;
         let parents = joints.parents.iter().map(|parent| parent.map(JointId::new)).collect();
         Ok(Some((FileMesh { mesh, parents, parts }, checksum.finalize())))
     }
@@ -160,7 +192,7 @@ impl MeshImport<'_> {
         Ok(())
     }
 
-    /// The meshes of the nodes with the skin, and those of nodes below its joints.
+    /// The meshes of the nodes with the figure's skins, and those of nodes below its joints.
     fn meshes(&self) -> Result<Vec<UsedMesh<'_>>, FieldError> {
         let file = self.file;
         let nearest = self.nearest_joints();
@@ -172,13 +204,15 @@ impl MeshImport<'_> {
                 let reason = index_rule("meshes", file.meshes.0.len(), index);
                 FieldError::new(at_node(node).key("mesh"), reason)
             })?;
-            let joint = match (fields.skin, nearest[node]) {
+            let skin = fields.skin.map(|skin| skin.0 as usize);
+            let of_figure = |skin: usize| self.figure.skins.iter().position(|other| *other == skin);
+            let follows = match (skin, skin.and_then(of_figure), nearest[node]) {
                 // The place of its node makes no difference to a mesh with a skin.
-                (Some(skin), _) if skin.0 as usize == self.index && with_skin.insert(index) => None,
-                (None, Some(joint)) => Some(joint),
+                (_, Some(skin), _) if with_skin.insert((index, skin)) => Follows::Skin(skin),
+                (None, _, Some(joint)) => Follows::Joint(joint),
                 _ => continue,
             };
-            meshes.push(UsedMesh { node, index, mesh, joint });
+            meshes.push(UsedMesh { node, index, mesh, follows });
         }
         Ok(meshes)
     }
@@ -199,8 +233,9 @@ impl MeshImport<'_> {
     /// The buffers of meshes, of their images and of the inverse bind matrices.
     fn buffers(&self, meshes: &[UsedMesh<'_>]) -> Result<BTreeSet<usize>, FieldError> {
         let file = self.file;
+        let skins = self.figure.skins.iter().map(|skin| &file.skins.0[*skin]);
         let mut accessors: BTreeSet<usize> =
-            self.skin.inverse_binds.iter().map(|accessor| accessor.0 as usize).collect();
+            skins.filter_map(|skin| Some(skin.inverse_binds?.0 as usize)).collect();
         let mut buffers = BTreeSet::new();
         for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
             let material = self.material(primitive, &at)?;
@@ -233,27 +268,61 @@ impl MeshImport<'_> {
         Ok(Some((index, found)))
     }
 
-    /// The transforms A_i of the joints.
-    fn attached(
+    /// The tables of the transforms A of the joints, at least one, and for each skin its table.
+    fn bind_tables(
         &self,
         worlds: &[DAffine3],
         buffers: &GltfBuffers<'_>,
+    ) -> Result<(Vec<BindTable>, Vec<usize>), FieldError> {
+        let attached = || self.joints.nodes.iter().map(|node| worlds[*node]).collect();
+        let count = self.joints.nodes.len();
+        let new = || BindTable { attached: attached(), is_listed: vec![false; count] };
+        let (mut tables, mut of_skins): (Vec<BindTable>, Vec<usize>) = (Vec::new(), Vec::new());
+        for (skin, joints) in self.figure.skins.iter().zip(&self.joints.of_skins) {
+            let binds = self.attached(*skin, joints, worlds, buffers)?;
+            let listed = || joints.iter().copied().zip(binds.iter().copied());
+            let fitting = tables.iter().position(|table| table.fits(listed()));
+            let place = fitting.unwrap_or_else(|| {
+                tables.push(new());
+                tables.len() - 1
+            });
+            for (joint, bind) in listed() {
+                tables[place].attached[joint] = bind;
+                tables[place].is_listed[joint] = true;
+            }
+            of_skins.push(place);
+            if tables.len().saturating_mul(count) > SkinnedMesh::MOST_BINDS {
+                let most = SkinnedMesh::MOST_BINDS / count;
+                let reason = format!("must be at most the {most}th with transforms of its own");
+                return Err(FieldError::new(at_skin(*skin).key("inverseBindMatrices"), reason));
+            }
+        }
+        if tables.is_empty() {
+            tables.push(new());
+        }
+        Ok((tables, of_skins))
+    }
+
+    /// The transforms A of a skin's joints, in the order of the skin.
+    fn attached(
+        &self,
+        skin: usize,
+        joints: &[usize],
+        worlds: &[DAffine3],
+        buffers: &GltfBuffers<'_>,
     ) -> Result<Vec<DAffine3>, FieldError> {
-        let mut attached: Vec<DAffine3> =
-            self.joints.nodes.iter().map(|node| worlds[*node]).collect();
-        let Some(accessor) = self.skin.inverse_binds.map(|accessor| accessor.0 as usize) else {
-            return Ok(attached);
+        let nodes = joints.iter().map(|joint| worlds[self.joints.nodes[*joint]]);
+        let Some(accessor) = self.file.skins.0[skin].inverse_binds.map(|it| it.0 as usize) else {
+            return Ok(nodes.collect());
         };
         let rows = AccessorRows::new(self.file, buffers, accessor, "MAT4")?;
-        if rows.len() < self.joints.order.len() {
-            let (joints, got) = (self.joints.order.len(), rows.len());
+        if rows.len() < joints.len() {
+            let (joints, got) = (joints.len(), rows.len());
             let reason = format!("must be at least {joints}, the number of joints, got {got}");
             return Err(FieldError::new(at_accessor(accessor).key("count"), reason));
         }
-        for (row, joint) in self.joints.order.iter().enumerate() {
-            attached[*joint] *= DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
-        }
-        Ok(attached)
+        let bind = |row| DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
+        Ok(nodes.enumerate().map(|(row, world)| world * bind(row)).collect())
     }
 
     /// Warns once of weights beyond four, and once of everything else that is not read.
@@ -269,7 +338,7 @@ impl MeshImport<'_> {
                 "{cut} of {all} vertices follow more than four joints; the four heaviest are kept, and \
                  up to {most:.1} % of the weight of a vertex is lost"
             );
-            warnings.push(at_skin(self.index), reason);
+            warnings.push(at_skin(self.figure.first()), reason);
         }
         let mut unread: BTreeSet<String> = BTreeSet::new();
         let name = |name: &str| name.to_owned();
@@ -286,8 +355,8 @@ impl MeshImport<'_> {
         let others = self.other_meshes(meshes);
         match others {
             0 => {}
-            1 => unread.extend([name("1 mesh that follows no joint of the skin")]),
-            _ => unread.extend([format!("{others} meshes that follow no joint of the skin")]),
+            1 => unread.extend([name("1 mesh that follows no joint of the figure")]),
+            _ => unread.extend([format!("{others} meshes that follow no joint of the figure")]),
         }
         if !unread.is_empty() {
             let unread: Vec<String> = unread.into_iter().collect();
@@ -303,6 +372,19 @@ impl MeshImport<'_> {
         let others: BTreeSet<usize> =
             used.map(|mesh| mesh.0 as usize).filter(|mesh| !read.contains(mesh)).collect();
         others.len()
+    }
+}
+
+impl BindTable {
+    /// Returns whether the table has the same transforms for all of these joints that it lists.
+    fn fits(&self, mut joints: impl Iterator<Item = (usize, DAffine3)>) -> bool {
+        /// Part of the largest number by which transforms may differ: files have single precision.
+        const ALIKE: f64 = 1e-6;
+        joints.all(|(joint, bind)| {
+            let numbers = bind.to_cols_array();
+            let largest = numbers.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+            !self.is_listed[joint] || self.attached[joint].abs_diff_eq(bind, ALIKE * largest)
+        })
     }
 }
 
@@ -325,7 +407,7 @@ impl MeshBuilder {
         rigid: Option<(usize, DAffine3)>,
         is_mirrored: bool,
         PartMaterial { colour, texture }: PartMaterial,
-        joints: &SkinJoints,
+        of_skin: &[usize],
     ) {
         let PrimitiveMesh { mut positions, mut normals, coordinates, weights, mut triangles } =
             primitive;
@@ -353,7 +435,7 @@ impl MeshBuilder {
         self.mesh.texture_coordinates.resize(first + count, glam::Vec2::ZERO);
         for vertex in 0..count {
             let of_file = weights.get(vertex).map_or(&[][..], Vec::as_slice);
-            let listed = of_file.iter().map(|(joint, weight)| (joints.order[*joint], *weight));
+            let listed = of_file.iter().map(|(joint, weight)| (of_skin[*joint], *weight));
             let only = rigid.map(|(joint, _)| (joint, 1.0));
             let all = listed.filter(|_| rigid.is_none()).chain(only);
             let (kept, cut) =
