@@ -20,7 +20,7 @@ const COLLADA: ForeignFormat = ForeignFormat {
 };
 
 /// The first bytes of binary files.
-const BINARY: [(&[u8], ForeignFormat); 9] = [
+const BINARY: [(&[u8], ForeignFormat); 12] = [
     (b"Kaydara FBX Binary", FBX),
     (b"glTF\x01\0\0\0", ForeignFormat::GLTF_1),
     (b"BLENDER", BLENDER),
@@ -31,6 +31,9 @@ const BINARY: [(&[u8], ForeignFormat); 9] = [
     (b"PXR-USDC", USD),
     (b"PMX ", MMD),
     (b"Vocaloid Motion Data", MMD),
+    (b"INTERQUAKEMODEL\0", IQM),
+    (b"\xff\xfe", UTF_16),
+    (b"\xfe\xff", UTF_16),
 ];
 
 const BLENDER: ForeignFormat =
@@ -64,8 +67,39 @@ const OBJ: ForeignFormat = ForeignFormat {
     advice: "a rig needs .glb or .gltf",
 };
 
+const IQM: ForeignFormat = ForeignFormat {
+    what: "an IQM file (Inter-Quake Model)",
+    advice: "Noesis or Blender with an add-on for IQM imports it and exports .glb",
+};
+
+const UTF_16: ForeignFormat = ForeignFormat {
+    what: "a text in UTF-16",
+    advice: "iconv -f UTF-16 -t UTF-8 x > y, or an editor, saves it as UTF-8",
+};
+
+const GIT_LFS: ForeignFormat = ForeignFormat {
+    what: "a pointer of Git LFS, which stands for a file that was not downloaded",
+    advice: "git lfs pull downloads the file",
+};
+
+const MD5: ForeignFormat = ForeignFormat {
+    what: "an MD5 file of Doom 3 (.md5mesh, .md5anim)",
+    advice: "Blender with an add-on for MD5 imports it and exports .glb; assimp export x.md5mesh x.glb converts it, too",
+};
+
+const DIRECTX: ForeignFormat =
+    ForeignFormat { what: "a DirectX file (.x)", advice: "assimp export x.x x.glb converts it" };
+
+const HTML: ForeignFormat = ForeignFormat {
+    what: "a web page (HTML)",
+    advice: "download the file itself, often by a link \"Raw\" or \"Download\" on that page",
+};
+
 /// The first words of text files, after blanks.
-const TEXT: [(&str, ForeignFormat); 8] = [
+const TEXT: [(&str, ForeignFormat); 11] = [
+    ("version https://git-lfs.github.com/spec/", GIT_LFS),
+    ("MD5Version", MD5),
+    ("xof ", DIRECTX),
     ("; FBX", FBX),
     ("#usda", USD),
     (":version", ACCLAIM),
@@ -95,6 +129,10 @@ impl ForeignFormat {
         let first = lines.find(|line| !line.is_empty()).unwrap_or_default();
         if first.starts_with('<') && head.contains("<COLLADA") {
             return Some(COLLADA);
+        }
+        let lower = first.to_ascii_lowercase();
+        if lower.starts_with("<!doctype html") || lower.starts_with("<html") {
+            return Some(HTML);
         }
         let is_comment = |line: &&str| line.starts_with("# ") || line.is_empty();
         let word = [first].into_iter().chain(lines).find(|line| !is_comment(line));

@@ -13,6 +13,8 @@ fn a_format_is_recognised_by_its_first_bytes() {
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">"#;
     let gltf_1 =
         br#"{"accessors":{"a":{}},"asset":{"version":"1.0"},"nodes":{"n":{}},"scene":"s"}"#;
+    let gltf_1_number = br#"{"asset":{"version":1},"nodes":{"n":{}}}"#;
+    let gltf_1_unversioned = br#"{"nodes":{"n":{"children":[]}},"asset":{"generator":"g"}}"#;
     let gltf_1_1 = br#"{"asset":{"version":"1.1"},"nodes":[]}"#;
     for (bytes, what, tool) in [
         (&b"Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0"[..], "an FBX file", "FBX2glTF"),
@@ -30,6 +32,16 @@ fn a_format_is_recognised_by_its_first_bytes() {
         (b"#!OML:ASF F:\\VICON\n:FULLY-SPECIFIED\n", "Acclaim", "amc2bvh"),
         (b"Vocaloid Motion Data 0002\0", "MikuMikuDance", "Blender"),
         (b"//Maya ASCII 2020 scene\n", "Maya", "Blender"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:4d\n", "Git LFS", "git lfs pull"),
+        (b"MD5Version 10\ncommandline \"\"\n", "MD5", "assimp"),
+        (b"INTERQUAKEMODEL\0\x02\0\0\0", "IQM", "Blender"),
+        (b"xof 0303txt 0032\nFrame Root {", "DirectX", "assimp"),
+        (b"\n<!DOCTYPE html>\n<html lang=\"en\">", "HTML", "Raw"),
+        (b"<html>", "HTML", "Raw"),
+        (b"\xff\xfe{\0}\0", "UTF-16", "iconv"),
+        (b"\xfe\xff\0{\0}", "UTF-16", "iconv"),
+        (gltf_1_number, "glTF 1", "gltf-pipeline"),
+        (gltf_1_unversioned, "glTF 1", "gltf-pipeline"),
         (b"# Blender 4.0\nmtllib a.mtl\no Cube\n", "OBJ", ".glb"),
     ] {
         let error = refusal(bytes);
@@ -46,8 +58,8 @@ fn other_contents_keep_their_own_errors() {
         &b""[..],
         b"hello",
         b"{}",
-        b"<html>",
-        b"\xff\xfe",
+        b"<robots>",
+        b"\xff\xfc",
         b"HIERARCHY",
         b"{\"asset\":{\"version\":\"3\"}}",
     ] {

@@ -482,7 +482,7 @@ fn what_is_not_read_is_told_in_one_remark() {
     assert_eq!(
         warnings(&opened),
         [
-            "meshes: not read: 1 mesh that follows no joint of the skin, KHR_materials_clearcoat, emission, \
+            "meshes: not read: 1 mesh that follows no joint of the figure, KHR_materials_clearcoat, emission, \
           morph targets, normal textures, transparency"
         ]
     );

@@ -46,10 +46,23 @@ pub struct GltfFile<'a> {
     pub textures: List<GltfTexture>,
 }
 
-/// The version of a file, in which everything else may be as in another version.
+/// What tells the version of a file, in which everything else may be as in another version.
 #[derive(Deserialize)]
 pub struct VersionedFile {
-    pub asset: GltfAsset,
+    asset: serde_json::Value,
+    nodes: Option<serde_json::Value>,
+}
+
+impl VersionedFile {
+    /// Returns whether the file is of the first version of glTF: by its number, or without one by
+    /// its lists, which are objects.
+    pub fn is_version_1(&self) -> bool {
+        match self.asset.get("version") {
+            Some(serde_json::Value::String(version)) => version.split('.').next() == Some("1"),
+            Some(version) => version.as_f64().is_some_and(|version| version.trunc() == 1.0),
+            None => self.nodes.as_ref().is_some_and(serde_json::Value::is_object),
+        }
+    }
 }
 
 impl GltfFile<'_> {
@@ -95,11 +108,6 @@ impl GltfAsset {
     /// The asset of a file that this program writes.
     pub fn of_this_program() -> Self {
         Self { generator: Some(this_program()), min_version: None, version: "2.0".to_owned() }
-    }
-
-    /// Returns whether the file is of the first version of glTF.
-    pub fn is_version_1(&self) -> bool {
-        self.version.split('.').next() == Some("1")
     }
 
     /// Returns whether this program has written the file.

@@ -10,7 +10,7 @@ use crate::document::{Document, Skin};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
-use crate::rig::{AttachedMesh, SkinPart, SkinTexture};
+use crate::rig::{AttachedMesh, SkinTexture};
 
 /// The mesh of an exported rig.
 pub struct RigMesh {

@@ -99,7 +99,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
 /// The first version of glTF, in which lists are objects, if the file has it.
 pub fn former(source: &Source) -> Option<ForeignFormat> {
     let file = source.parse::<VersionedFile>(|_| {}).ok()?;
-    file.asset.is_version_1().then_some(ForeignFormat::GLTF_1)
+    file.is_version_1().then_some(ForeignFormat::GLTF_1)
 }
 
 fn check(file: &GltfFile<'_>) -> Result<(), FieldError> {

@@ -25,16 +25,12 @@ fn at_view(index: usize) -> JsonPath {
     JsonPath::root().key("bufferViews").index(index)
 }
 
-/// Finds the accessor `index`. Fails if it has no numbers.
+/// Finds the accessor `index`. Without a buffer view, its numbers are 0.
 fn find_accessor<'a>(file: &'a GltfFile<'_>, index: usize) -> Result<&'a GltfAccessor, FieldError> {
-    let accessor = file.accessors.0.get(index).ok_or_else(|| {
+    file.accessors.0.get(index).ok_or_else(|| {
         let reason = index_rule("accessors", file.accessors.0.len(), index);
         FieldError::new(at_accessor(index), reason)
-    })?;
-    if accessor.view.is_none() && accessor.sparse.is_none() {
-        return Err(FieldError::new(at_accessor(index), "must have a buffer view or be sparse"));
-    }
-    Ok(accessor)
+    })
 }
 
 /// Returns the indices of the buffers that contain the accessor `index`.
