@@ -6,6 +6,7 @@ use glam::{Quat, Vec3};
 use ik_arm::document::Channel;
 use ik_arm::io::{self, Opened};
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
+use ik_arm::kinematics::skin::Skinning;
 use serde_json::{Value, json};
 
 use crate::common::damage::message;
@@ -426,9 +427,6 @@ fn without_skin() -> Text {
 #[test]
 fn without_a_skin_the_nodes_that_move_are_the_joints_up_to_their_common_ancestor() {
     let mut text = without_skin();
-    assert!(
-        refusal(&text.embedded()).contains("skins: must have at least one skin, or an animation")
-    );
     let times = text.floats(1, &[0.0, 1.0]);
     let turned = text.floats(4, &quarters(&[0.0, 1.0]));
     for node in [2, 4] {
@@ -441,6 +439,138 @@ fn without_a_skin_the_nodes_that_move_are_the_joints_up_to_their_common_ancestor
     assert_eq!(opened.skeletons, ["scene"]);
     assert_near(base(&opened, 0.0, "head"), Vec3::new(0.0, 4.0, 0.0));
     assert_near(base(&opened, 1.0, "head"), Vec3::new(-2.0, 2.0, 0.0));
+}
+
+/// A triangle, as the only mesh of a file.
+fn with_triangle(text: &mut Text) {
+    let corners = text.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    text.json["meshes"] = json!([{ "primitives": [{ "attributes": { "POSITION": corners } }] }]);
+}
+
+fn names(opened: &Opened) -> Vec<String> {
+    opened.document.skeleton().joints().iter().map(|joint| joint.name.clone()).collect()
+}
+
+/// Corners of all triangles in the world.
+fn corners(opened: &Opened, time: f64) -> Vec<Vec3> {
+    let skin = opened.document.rig.skin.as_ref().expect("a skin");
+    let mesh = &skin.mesh().expect("a mesh").mesh;
+    let posed = opened.document.at(time);
+    let posed = mesh.posed(&mesh.pose(posed.skeleton()), Skinning::Linear);
+    posed.triangles.iter().flatten().map(|corner| posed.positions[*corner as usize]).collect()
+}
+
+#[test]
+fn meshes_beside_moving_nodes_stay_at_a_joint_of_their_own() {
+    let mut text = Text::new(
+        json!([
+            { "name": "scene", "children": [1, 4] },
+            { "name": "helicopter", "translation": [0, 5, 0], "children": [2, 3] },
+            { "name": "body", "mesh": 0 },
+            { "name": "rotor", "translation": [0, 2, 0], "mesh": 0 },
+            { "name": "sun" },
+            { "name": "ground", "children": [6] },
+            { "name": "stone", "translation": [9, 0, 0], "mesh": 0 },
+        ]),
+        &[],
+    );
+    text.json["skins"] = json!([]);
+    with_triangle(&mut text);
+    let times = text.floats(1, &[0.0, 1.0]);
+    let turned = text.floats(4, &quarters(&[0.0, 1.0]));
+    text.animate(3, "rotation", "LINEAR", times, turned);
+    let opened = open(&text);
+    assert_eq!(opened.warnings, []);
+    assert_eq!(names(&opened), ["helicopter", "rotor", "ground"]);
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let quarter = |at: Vec3| Vec3::new(-at.y, at.x, at.z);
+    let expected = [
+        triangle.map(|at| at + 5.0 * Vec3::Y),
+        triangle.map(|at| quarter(at) + 7.0 * Vec3::Y),
+        triangle.map(|at| at + 9.0 * Vec3::X),
+    ];
+    for (found, expected) in corners(&opened, 1.0).iter().zip(expected.as_flattened()) {
+        assert_near(*found, *expected);
+    }
+}
+
+#[test]
+fn without_skin_and_motion_the_nodes_with_meshes_are_joints_or_else_all_named_ones() {
+    let nodes = json!([
+        { "name": "robot", "children": [1, 4] },
+        { "name": "base", "mesh": 0, "children": [2] },
+        { "name": "turn", "translation": [0, 1, 0], "children": [3] },
+        { "name": "link", "translation": [0, 1, 0], "mesh": 0 },
+        { "name": "camera", "camera": 0 },
+    ]);
+    let mut text = Text::new(nodes, &[]);
+    text.json["skins"] = json!([]);
+    with_triangle(&mut text);
+    let mut opened = open(&text);
+    assert_eq!(names(&opened), ["base", "turn", "link"]);
+    assert_eq!(corners(&opened, 0.0).len(), 6);
+    // The meshes follow the joints.
+    let turn = opened.document.skeleton().find("turn").expect("a joint");
+    let quarter = Vec3::new(0.0, 0.0, FRAC_PI_2);
+    opened.document.skeleton_mut().change(turn, |turn| turn.rotation = quarter).expect("a joint");
+    assert_near(corners(&opened, 0.0)[3], Vec3::new(-1.0, 1.0, 0.0));
+
+    for node in [1, 3] {
+        text.json["nodes"][node].as_object_mut().expect("an object").remove("mesh");
+    }
+    assert_eq!(names(&open(&text)), ["robot", "base", "turn", "link"]);
+
+    let mut one = Text::new(json!([{ "name": "alone" }]), &[]);
+    one.json["skins"] = json!([]);
+    let refused = refusal(&one.embedded());
+    assert!(refused.contains("nodes: must have at least one node with a mesh, or"), "{refused}");
+}
+
+#[test]
+fn all_bones_of_a_humanoid_are_joints_and_a_figure_of_vrm_0_faces_the_viewer() {
+    let nodes = json!([
+        { "name": "root", "children": [1, 4] },
+        { "name": "hips", "translation": [0, 1, 0], "children": [2] },
+        { "name": "spine", "translation": [0, 0.5, 0], "children": [3] },
+        { "name": "head", "translation": [0, 0.5, -0.25] },
+        { "name": "springs", "children": [5] },
+        { "name": "collider" },
+    ]);
+    let mut text = Text::new(nodes, &[]);
+    text.json["skins"] = json!([]);
+    let humanoid = json!({ "humanoid": { "humanBones": {
+        "hips": { "node": 1 }, "spine": { "node": 2 }, "head": { "node": 3 }, "jaw": { "node": 77 }
+    } } });
+    text.json["extensions"] = json!({ "VRMC_vrm": humanoid });
+    let is_at = |opened: &Opened, z: f32| {
+        assert_eq!(names(opened), ["hips", "spine", "head"]);
+        assert_near(base(opened, 0.0, "head"), Vec3::new(0.0, 2.0, z));
+    };
+    is_at(&open(&text), -0.25);
+
+    // A motion moves one of them.
+    let mut moved = text.json.clone();
+    moved["extensions"] = json!({ "VRMC_vrm_animation": humanoid });
+    let mut motion = Text::new(json!([]), &[]);
+    let times = motion.floats(1, &[0.0, 1.0]);
+    let turned = motion.floats(4, &quarters(&[0.0, 1.0]));
+    for (key, value) in moved.as_object().expect("an object") {
+        if !["accessors", "bufferViews", "buffers"].contains(&key.as_str()) {
+            motion.json[key] = value.clone();
+        }
+    }
+    motion.animate(1, "rotation", "LINEAR", times, turned);
+    is_at(&open(&motion), -0.25);
+
+    let bone = |(bone, node): (&str, usize)| json!({ "bone": bone, "node": node });
+    let bones: Vec<_> = [("hips", 1), ("spine", 2), ("head", 3)].into_iter().map(bone).collect();
+    text.json["extensions"] = json!({ "VRM": { "humanoid": { "humanBones": bones } } });
+    is_at(&open(&text), 0.25);
+
+    // Nonsense in an extension is no error.
+    text.json["extensions"] =
+        json!({ "VRM": 5, "VRMC_vrm": { "humanoid": { "humanBones": [1] } } });
+    assert_eq!(open(&text).document.skeleton().joints().len(), 6);
 }
 
 #[test]

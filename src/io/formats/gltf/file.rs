@@ -28,6 +28,8 @@ pub struct GltfFile<'a> {
     pub views: List<GltfBufferView>,
     #[serde(skip_deserializing)]
     pub scene: u32,
+    #[serde(default, skip_serializing)]
+    pub extensions: GltfExtensions,
     #[serde(default, rename = "extensionsRequired", skip_serializing)]
     pub required: Vec<String>,
     #[serde(borrow, default, skip_serializing_if = "List::is_empty")]
@@ -44,6 +46,48 @@ pub struct GltfFile<'a> {
     pub skins: List<GltfSkin>,
     #[serde(default, skip_serializing_if = "List::is_empty")]
     pub textures: List<GltfTexture>,
+}
+
+/// Extensions of a file that are read: which nodes are bones of a humanoid, as VRM tells it.
+#[derive(Default, Deserialize)]
+pub struct GltfExtensions {
+    /// VRM 0.x.
+    #[serde(rename = "VRM")]
+    vrm_0: Option<serde_json::Value>,
+    #[serde(rename = "VRMC_vrm")]
+    vrm_1: Option<serde_json::Value>,
+    #[serde(rename = "VRMC_vrm_animation")]
+    vrm_animation: Option<serde_json::Value>,
+}
+
+impl GltfExtensions {
+    /// The nodes of a humanoid by the names of their bones in VRM, like `leftUpperArm`; empty without
+    /// one. What is no number of a node is left out.
+    pub fn humanoid(&self) -> BTreeMap<String, usize> {
+        let number = |node: Option<&serde_json::Value>| usize::try_from(node?.as_u64()?).ok();
+        let bones = |value: &serde_json::Value| value.get("humanoid")?.get("humanBones").cloned();
+        let all = [&self.vrm_1, &self.vrm_animation, &self.vrm_0];
+        match all.into_iter().flatten().find_map(bones) {
+            Some(serde_json::Value::Object(bones)) => {
+                let bone = |(name, bone): (String, serde_json::Value)| {
+                    Some((name, number(bone.get("node"))?))
+                };
+                bones.into_iter().filter_map(bone).collect()
+            }
+            Some(serde_json::Value::Array(bones)) => {
+                let bone = |bone: serde_json::Value| {
+                    Some((bone.get("bone")?.as_str()?.to_owned(), number(bone.get("node"))?))
+                };
+                bones.into_iter().filter_map(bone).collect()
+            }
+            _ => BTreeMap::new(),
+        }
+    }
+
+    /// Returns whether the file is a figure of VRM 0.x, which looks along −z.
+    pub fn looks_back(&self) -> bool {
+        self.vrm_0.is_some() && self.vrm_1.is_none()
+    }
 }
 
 /// What tells the version of a file, in which everything else may be as in another version.

@@ -19,9 +19,10 @@
 //! # Import
 //!
 //! The joints of the skins that make a figure become a skeleton in the world, in metres, parents
-//! before their children, and so do other nodes of their hierarchy that an animation moves. Without a skin, the joints are the
-//! nodes that animations move, with their ancestors up to a common one. The nodes are the bind
-//! pose, with the scales with which the animation begins, and what it gives to nodes that are no
+//! before their children, and so do other nodes of their hierarchy that an animation moves, or that
+//! VRM names as bones of a humanoid. Without a skin, the joints are such nodes alone, or those with
+//! meshes, with their ancestors up to a common one. The nodes are the bind pose, with the scales with
+//! which the animation begins, and what it gives to nodes that are no
 //! joints and does not change: a joint's frame is its node's rotation. A joint that moves has the keys of its node in the
 //! chosen animation, with their interpolation: rotations turn by slerp, step, or follow a spline of
 //! angles that is as exact as single precision. Below scales that change, offsets have keys at every

@@ -13,6 +13,8 @@ mod skin_mesh;
 
 use std::collections::BTreeSet;
 
+use glam::{Affine3A, Mat3, Vec3};
+
 use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::foreign::ForeignFormat;
@@ -21,7 +23,7 @@ use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, VersionedFile};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::opened::{FileAnimation, OpenOptions, Opened, attach_skin};
 use crate::io::source::Source;
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, SkeletonError};
 use crate::rig::SkinFile;
 use animations::NodeTracks;
 use animations::at_animation;
@@ -35,8 +37,8 @@ use skin_mesh::MeshImport;
 /// Maximum number of node transforms in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
 
-/// Reads a skeleton and one of the animations: the skin's joints, or without a skin the nodes that
-/// the animations move.
+/// Reads a skeleton and one of the animations: the joints of skins, or without a skin the nodes that
+/// move, that are bones of a humanoid, or that have meshes.
 pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError> {
     let JsonObject(file) = source.parse::<JsonObject<GltfFile<'_>>>(|_| {})?;
     check(&file).map_err(|error| source.error(&error))?;
@@ -44,7 +46,8 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let scans = animations::scan(source, &file, &nodes);
     let moving: BTreeSet<usize> =
         scans.iter().flat_map(|scan| scan.moving.iter().copied()).collect();
-    let figures = nodes::figures(&file, &nodes, &moving);
+    let parts = nodes::parts(&file, &nodes, &moving);
+    let figures = nodes::figures(&file, &nodes, &parts);
     let names: Vec<String> = figures.iter().map(|figure| figure.name.clone()).collect();
     let chosen = match &options.skeleton {
         Some(name) => figures.iter().find(|figure| figure.is_called(name)),
@@ -59,8 +62,8 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         });
     };
     let joints = match figure.skins.is_empty() {
-        false => SkinJoints::new(&file, &nodes, &figure.skins, &moving),
-        true => SkinJoints::of_moving(&nodes, &moving).ok_or_else(no_skeleton),
+        false => SkinJoints::new(&file, &nodes, &figure.skins, &parts),
+        true => Ok(SkinJoints::of_parts(&file, &nodes, &parts)),
     };
     let joints = joints.map_err(|error| source.error(&error))?;
     let described: Vec<FileAnimation> = scans.iter().map(|scan| scan.described(&joints)).collect();
@@ -116,8 +119,8 @@ fn check(file: &GltfFile<'_>) -> Result<(), FieldError> {
 }
 
 fn no_skeleton() -> FieldError {
-    let reason = "must have at least one skin, or an animation that moves a node";
-    FieldError::new(JsonPath::root().key("skins"), reason)
+    let reason = "must have at least one node with a mesh, or several named nodes";
+    FieldError::new(JsonPath::root().key("nodes"), reason)
 }
 
 /// Warns of nodes that move and are no joints.
@@ -198,6 +201,14 @@ impl GltfImport<'_> {
                 let reason = format!("{}; the skin is left out", error.reason);
                 warnings.push(error.field, reason);
             }
+        }
+        if file.extensions.looks_back() {
+            let turned = Affine3A::from_mat3(Mat3::from_diagonal(Vec3::new(-1.0, 1.0, -1.0)));
+            let error = |error: SkeletonError| {
+                let at = JsonPath::root().key("extensions").key("VRM");
+                FieldError::new(at, error.to_string())
+            };
+            built.document.skeleton_mut().set_transform(turned).map_err(error)?;
         }
         built.document.camera = built.document.framing_camera();
         Ok(built)

@@ -86,6 +86,18 @@ impl NodeTree {
         is_in
     }
 
+    /// For each node, the number of nodes that are counted, of itself and those below.
+    fn count_below(&self, is_counted: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut below = vec![0_usize; self.parents.len()];
+        for node in self.order.iter().rev().copied() {
+            below[node] += usize::from(is_counted(node));
+            if let Some(parent) = self.parents[node] {
+                below[parent] += below[node];
+            }
+        }
+        below
+    }
+
     /// For each node, the root of its tree.
     pub fn roots(&self) -> Vec<usize> {
         let mut roots: Vec<usize> = (0..self.parents.len()).collect();
@@ -192,10 +204,10 @@ pub struct SkinJoints {
     pub added: Vec<usize>,
 }
 
-/// The skins that make one figure, or the nodes that move of a file without skins.
+/// The skins that make one figure, or the parts of a file without skins.
 pub struct Figure {
     /// A unique name: that of the first skin, otherwise of the first node with it, otherwise `skin_`
-    /// and its number. Without skins, the name of the first root of the moving nodes.
+    /// and its number. Without skins, the name of the root of the first part.
     pub name: String,
     /// The names that the other skins would have.
     aliases: Vec<String>,
@@ -218,10 +230,10 @@ impl Figure {
 /// The figures of a file. Skins are of one figure if they share joints, if joints of one are below
 /// joints of the other, or if joints of both are children of the same node: exporters write a skin
 /// for each mesh.
-pub fn figures(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> Vec<Figure> {
+pub fn figures(file: &GltfFile<'_>, nodes: &NodeTree, parts: &BTreeSet<usize>) -> Vec<Figure> {
     if file.skins.0.is_empty() {
         let roots = nodes.roots();
-        let root = moving.first().and_then(|node| file.nodes.0.get(roots[*node]));
+        let root = parts.first().and_then(|node| file.nodes.0.get(roots[*node]));
         let name = |root: &GltfNode| root.name.clone().filter(|name| !name.trim().is_empty());
         let name = root.map(|root| name(root).unwrap_or_else(|| "skeleton".to_owned()));
         let figure = |name| Figure { name, aliases: Vec::new(), skins: Vec::new() };
@@ -241,6 +253,28 @@ pub fn figures(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) 
         }
     }
     figures
+}
+
+/// The nodes that are joints even if no skin lists them: those that move, and the bones of a humanoid.
+/// In a file with neither and without skins, the nodes with meshes; without these, if several nodes
+/// have names, all but cameras.
+pub fn parts(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> BTreeSet<usize> {
+    let humanoid = file.extensions.humanoid();
+    let humanoid = humanoid.into_values().filter(|node| *node < nodes.parents.len());
+    let parts: BTreeSet<usize> = moving.iter().copied().chain(humanoid).collect();
+    if !(parts.is_empty() && file.skins.0.is_empty()) {
+        return parts;
+    }
+    let chosen = |is_part: fn(&GltfNode) -> bool| -> BTreeSet<usize> {
+        let all = file.nodes.0.iter().enumerate();
+        all.filter(|(_, node)| is_part(node)).map(|(index, _)| index).collect()
+    };
+    let with_meshes = chosen(|node| node.mesh.is_some());
+    let named = file.nodes.0.iter().filter(|node| node.name.is_some()).count();
+    match with_meshes.is_empty() && named > 1 {
+        true => chosen(|node| node.camera.is_none()),
+        false => with_meshes,
+    }
 }
 
 /// A unique name for each skin.
@@ -312,13 +346,13 @@ pub fn at_skin(skin: usize) -> JsonPath {
 }
 
 impl SkinJoints {
-    /// The joints of the skins of a figure, and those `moving` nodes that have a root in common with
-    /// one of them and are no joints of other skins.
+    /// The joints of the skins of a figure, and those `parts` that have a root in common with one of
+    /// them and are no joints of other skins.
     pub fn new(
         file: &GltfFile<'_>,
         nodes: &NodeTree,
         skins: &[usize],
-        moving: &BTreeSet<usize>,
+        parts: &BTreeSet<usize>,
     ) -> Result<Self, FieldError> {
         let mut listed = Vec::new();
         let mut all = HashSet::new();
@@ -343,7 +377,7 @@ impl SkinJoints {
         let is_added = |node: &usize| {
             own.contains(&roots[*node]) && !all.contains(node) && !of_others.contains(node)
         };
-        let added: Vec<usize> = moving.iter().copied().filter(is_added).collect();
+        let added: Vec<usize> = parts.iter().copied().filter(is_added).collect();
         if listed.len() + added.len() > 2 * Skeleton::MOST_JOINTS {
             let at = at_skin(skins.first().copied().unwrap_or_default()).key("joints");
             return Err(FieldError::new(at, SkeletonError::TooMany.to_string()));
@@ -365,26 +399,27 @@ impl SkinJoints {
         listed.filter(move |joint| seen.insert(*joint))
     }
 
-    /// For a file without a skin, the `moving` nodes with their ancestors up to the nearest one
-    /// that all moving nodes of a tree have in common. `None` if no node moves.
-    pub fn of_moving(nodes: &NodeTree, moving: &BTreeSet<usize>) -> Option<Self> {
-        let mut below = vec![0_usize; nodes.parents.len()];
-        for node in nodes.order.iter().rev().copied() {
-            below[node] += usize::from(moving.contains(&node));
-            if let Some(parent) = nodes.parents[node] {
-                below[parent] += below[node];
-            }
-        }
+    /// For a file without a skin, these `parts` with their ancestors, up to the nearest one that all
+    /// parts and meshes of a tree have in common, so that meshes beside moving nodes have a joint
+    /// to stay at. A tree with meshes and without parts has its root as a joint.
+    pub fn of_parts(file: &GltfFile<'_>, nodes: &NodeTree, parts: &BTreeSet<usize>) -> Self {
+        let has_mesh = |node: usize| file.nodes.0[node].mesh.is_some();
+        let parts_below = nodes.count_below(|node| parts.contains(&node));
+        let all_below = nodes.count_below(|node| parts.contains(&node) || has_mesh(node));
         let roots = nodes.roots();
-        // An ancestor above which all moving nodes of the tree are in one branch is left out.
+        // An ancestor above which all of the tree is in one branch is left out.
         let is_above = |node: usize| {
-            let all = below[roots[node]];
+            let all = all_below[roots[node]];
             let mut children = nodes.children[node].iter();
-            !moving.contains(&node) && children.any(|child| below[*child] == all)
+            let is_one = parts.contains(&node) || has_mesh(node);
+            !is_one && children.any(|child| all_below[*child] == all)
         };
-        let is_joint = |node: &usize| below[*node] > 0 && !is_above(*node);
+        let is_joint = |node: &usize| match parts_below[*node] {
+            0 => roots[*node] == *node && all_below[*node] > 0,
+            _ => !is_above(*node),
+        };
         let added: Vec<usize> = (0..nodes.parents.len()).filter(is_joint).collect();
-        (!added.is_empty()).then(|| Self::sorted(nodes, &[], &added))
+        Self::sorted(nodes, &[], &added)
     }
 
     /// Sorts the joints so that parents come before their children, otherwise in the listed order.
