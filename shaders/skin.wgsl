@@ -12,10 +12,13 @@ struct Look {
 
 // A constant, because a software adapter samples the texture even if a uniform selects the other branch.
 override IS_TEXTURED = false;
+// Side of triangles that is outside, of parts that are seen from both: 1 for the front, -1 for the back of
+// mirrored skins; 0 for parts that are seen from outside alone.
+override OUTER_SIDE = 0.0;
 
 // Material of a part. Colours are multiplied in sRGB instead of linear light. sRGB is nearly a power of
 // linear light, and the power of a product is the product of the powers, so the error is small.
-@group(2) @binding(0) var<uniform> part_colour: vec3f;
+@group(2) @binding(0) var<uniform> part_look: vec4f; // colour; opacity of the texture below which nothing is drawn
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;
 
@@ -41,13 +44,21 @@ fn vertex(v: Vertex) -> Surface {
 }
 
 @fragment
-fn fragment(s: Surface) -> @location(0) vec4f {
-    var own = look.colour.rgb * part_colour;
+fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
+    var own = look.colour.rgb * part_look.rgb;
     if IS_TEXTURED {
-        own *= textureSample(part_texture, part_sampler, s.coordinates).rgb;
+        let texel = textureSample(part_texture, part_sampler, s.coordinates);
+        if texel.a < part_look.a {
+            discard;
+        }
+        own *= texel.rgb;
+    }
+    var normal = normalize(s.normal);
+    if OUTER_SIDE != 0.0 && is_front != (OUTER_SIDE > 0.0) {
+        normal = -normal;
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
-    let colour = lit(mix(own, of_weight, look.has_weights), normalize(s.normal));
+    let colour = lit(mix(own, of_weight, look.has_weights), normal);
     return vec4f(in_scene(colour, s.world, s.position.xy), look.colour.a);
 }
 

@@ -42,17 +42,20 @@ struct SkinPipelines {
     deformer: SkinDeformer,
     materials: SkinMaterials,
     opaque: SurfacePipelines,
-    /// Depth of the nearest surface of see-through skins, for skins that are not mirrored and for
-    /// mirrored ones.
-    depth: [wgpu::RenderPipeline; 2],
+    /// Depth of the nearest surface of see-through skins.
+    depth: SidedPipelines,
     see_through: SurfacePipelines,
     wire: wgpu::RenderPipeline,
 }
 
-/// Pipelines for parts of skins without a texture and with one, each for skins that are not
-/// mirrored and for mirrored ones.
+/// Pipelines for parts of skins without a texture and with one.
 #[derive(Debug)]
-struct SurfacePipelines([[wgpu::RenderPipeline; 2]; 2]);
+struct SurfacePipelines([SidedPipelines; 2]);
+
+/// Pipelines for parts that are seen from outside and for those that are seen from both sides, each
+/// for skins that are not mirrored and for mirrored ones.
+#[derive(Debug)]
+struct SidedPipelines([[wgpu::RenderPipeline; 2]; 2]);
 
 /// A mesh on the device.
 #[derive(Debug)]
@@ -135,7 +138,7 @@ impl Skins {
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
-            self.draw(pass, skin, |_| &pipelines.depth[usize::from(skin.is_mirrored)]);
+            self.draw(pass, skin, |material| pipelines.depth.of(material, skin));
             self.draw(pass, skin, |material| pipelines.see_through.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
@@ -222,7 +225,7 @@ impl SkinPipelines {
         Self {
             deformer: SkinDeformer::new(gpu),
             opaque: SurfacePipelines::new(gpu, &plain),
-            depth: mirrored_or_not(gpu, &depth),
+            depth: SidedPipelines::new(gpu, &depth, 0.0),
             see_through: SurfacePipelines::new(gpu, &see_through),
             wire: wire.build(gpu),
             materials,
@@ -232,21 +235,32 @@ impl SkinPipelines {
 
 impl SurfacePipelines {
     fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> Self {
-        Self([0.0, 1.0].map(|is_textured| {
-            let constants = &[("IS_TEXTURED", is_textured)];
-            mirrored_or_not(gpu, &PipelineDescriptor { constants, ..*descriptor })
-        }))
+        let of = |is_textured| SidedPipelines::new(gpu, descriptor, is_textured);
+        Self([0.0, 1.0].map(of))
     }
 
     fn of(&self, material: &SkinMaterial, skin: &DrawnSkin) -> &wgpu::RenderPipeline {
-        &self.0[usize::from(material.is_textured)][usize::from(skin.is_mirrored)]
+        self.0[usize::from(material.is_textured)].of(material, skin)
     }
 }
 
-/// Pipelines for skins that are not mirrored and for mirrored ones.
-fn mirrored_or_not(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> [wgpu::RenderPipeline; 2] {
-    [wgpu::Face::Back, wgpu::Face::Front]
-        .map(|cull| PipelineDescriptor { cull: Some(cull), ..*descriptor }.build(gpu))
+impl SidedPipelines {
+    fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>, is_textured: f64) -> Self {
+        let hidden = [wgpu::Face::Back, wgpu::Face::Front];
+        let outside = hidden.map(|face| {
+            let constants = &[("IS_TEXTURED", is_textured)];
+            PipelineDescriptor { cull: Some(face), constants, ..*descriptor }.build(gpu)
+        });
+        let both = [1.0, -1.0].map(|outer| {
+            let constants = &[("IS_TEXTURED", is_textured), ("OUTER_SIDE", outer)];
+            PipelineDescriptor { cull: None, constants, ..*descriptor }.build(gpu)
+        });
+        Self([outside, both])
+    }
+
+    fn of(&self, material: &SkinMaterial, skin: &DrawnSkin) -> &wgpu::RenderPipeline {
+        &self.0[usize::from(material.is_double_sided)][usize::from(skin.is_mirrored)]
+    }
 }
 
 impl SkinMesh {

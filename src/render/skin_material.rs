@@ -24,6 +24,7 @@ pub(super) struct SkinMaterial {
     pub corners: Range<u32>,
     pub group: wgpu::BindGroup,
     pub is_textured: bool,
+    pub is_double_sided: bool,
 }
 
 impl SkinMaterials {
@@ -67,13 +68,14 @@ impl SkinMaterials {
             let view = view.map_or(&self.white, |view| &views[view].1);
             let corners = 3 * start as u32..3 * end as u32;
             let group = self.group(gpu, part, view);
-            materials.push(SkinMaterial { corners, group, is_textured });
+            let is_double_sided = part.is_double_sided;
+            materials.push(SkinMaterial { corners, group, is_textured, is_double_sided });
         }
         materials
     }
 
     fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
-        let colour = [Vec3::from(part.colour).extend(0.0)];
+        let colour = [Vec3::from(part.colour).extend(part.alpha_cutoff)];
         let colour = gpu.filled_buffer("skin colour", &colour, wgpu::BufferUsages::UNIFORM);
         let resources = [
             colour.as_entire_binding(),

@@ -40,7 +40,13 @@ fn figure(joints: usize, seed: u64) -> Document {
     let pose = skeleton.bind_pose_in_skeleton();
     let binds: Vec<Affine3A> = skeleton.ids().map(|joint| pose.full(joint).inverse()).collect();
     let mesh = SkinnedMesh::new(mesh, weights, binds).expect("a mesh");
-    let part = |triangles, texture| SkinPart { triangles, colour: [1.0, 0.5, 0.25], texture };
+    let part = |triangles, texture| SkinPart {
+        colour: [1.0, 0.5, 0.25],
+        texture,
+        is_double_sided: triangles > 5,
+        alpha_cutoff: 0.25,
+        ..SkinPart::white(triangles)
+    };
     let mesh = FileMesh {
         mesh,
         parents: skeleton.joints().iter().map(|joint| joint.parent).collect(),

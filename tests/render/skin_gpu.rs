@@ -116,8 +116,50 @@ fn channel_at(picture: &image::RgbaImage, x: f32, y: f32) -> usize {
 }
 
 #[test]
+fn a_double_sided_part_is_seen_from_behind_and_lit_as_from_outside() {
+    let seen = |is_double_sided: bool, yaw: f32| {
+        let part = SkinPart { colour: [1.0, 0.1, 0.1], is_double_sided, ..SkinPart::white(2) };
+        let mut document = square(vec![part]);
+        document.camera.yaw = yaw;
+        let picture = draw(&Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark));
+        let [red, green, _, _] =
+            picture.get_pixel(picture.width() / 2 + 9, picture.height() / 2 + 9).0;
+        (red > green.saturating_mul(3)).then_some(red)
+    };
+    let front = seen(false, 0.0).expect("the front is drawn");
+    assert_eq!(seen(true, 0.0), Some(front));
+    assert_eq!(seen(false, std::f32::consts::PI), None, "the back is not drawn");
+    let back = seen(true, std::f32::consts::PI).expect("the back is drawn");
+    // The light comes from the front right: the back is darker than the front, but lit by its own
+    // normal and not black.
+    assert!(back > 40 && back != front, "{back}, {front}");
+}
+
+#[test]
+fn texels_below_the_cutoff_are_not_drawn() {
+    // Opaque on the left, half as opaque on the right.
+    let pixels: Vec<[u8; 4]> =
+        (0..64).map(|at| [255, 0, 0, if at % 8 < 4 { 255 } else { 128 }]).collect();
+    let texture = SkinTexture::new(Vec::new(), [8, 8]);
+    texture.pixels(|_| Ok(pixels)).expect("pixels");
+    let texture = Some(Shared::from(texture));
+    let red_at = |alpha_cutoff: f32, x: f32| {
+        let part = SkinPart { texture: texture.clone(), alpha_cutoff, ..SkinPart::white(2) };
+        let picture =
+            draw(&Scene::new(&square(vec![part]).at(0.0), &Overlays::default(), Theme::Dark));
+        let (width, height) = (picture.width() as f32, picture.height() as f32);
+        let [red, green, _, _] = picture
+            .get_pixel((0.5 * width + 0.2 * height * x) as u32, (0.5 * height - 9.0) as u32)
+            .0;
+        red > green.saturating_mul(3)
+    };
+    assert_eq!([-0.6, 0.6].map(|x| red_at(0.4, x)), [true, true]);
+    assert_eq!([-0.6, 0.6].map(|x| red_at(0.6, x)), [true, false]);
+}
+
+#[test]
 fn each_part_has_its_colour_and_its_texture_the_right_way_up() {
-    let part = |colour, texture| SkinPart { triangles: 1, colour, texture };
+    let part = |colour, texture| SkinPart { colour, texture, ..SkinPart::white(1) };
     // Red at the upper left, green at the upper right, blue below.
     let [red, green, blue] = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]];
     let pixels: Vec<[u8; 4]> = (0..64)

@@ -178,7 +178,7 @@ impl AttachedMesh {
         let listed: usize = parts.iter().map(|part| part.triangles).sum();
         let rest = mesh.mesh().triangles.len().saturating_sub(listed);
         if rest > 0 {
-            parts.push(SkinPart { triangles: rest, colour: [1.0; 3], texture: None });
+            parts.push(SkinPart::white(rest));
         }
         let mut sums = vec![(0.0_f64, 0_u32); skeleton.joints().len()];
         let mut boxes = vec![None; sums.len()];
@@ -232,9 +232,19 @@ pub struct SkinPart {
     pub colour: [f32; 3],
     /// Image that colours the triangles by the mesh's texture coordinates, repeated beyond 0 to 1.
     pub texture: Option<Shared<SkinTexture>>,
+    /// True if the triangles are seen from both sides.
+    pub is_double_sided: bool,
+    /// Opacity of the texture, from 0 to 1, below which nothing is drawn; 0 to draw all.
+    pub alpha_cutoff: f32,
 }
 
 impl SkinPart {
+    /// A white part with so many triangles, seen from outside.
+    pub fn white(triangles: usize) -> Self {
+        let (colour, texture) = ([1.0; 3], None);
+        Self { triangles, colour, texture, is_double_sided: false, alpha_cutoff: 0.0 }
+    }
+
     /// The textures of parts, each once, in the order of the parts that have them first.
     pub fn textures(parts: &[Self]) -> Vec<&Shared<SkinTexture>> {
         let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();

@@ -473,7 +473,7 @@ fn what_is_not_read_is_told_in_one_remark() {
     primitive(&mut text)["targets"] = json!([{}]);
     primitive(&mut text)["material"] = json!(0);
     text.json["materials"] = json!([{
-        "normalTexture": { "index": 0 }, "emissiveFactor": [1, 0, 0], "alphaMode": "MASK",
+        "normalTexture": { "index": 0 }, "emissiveFactor": [1, 0, 0], "alphaMode": "BLEND",
         "extensions": { "KHR_materials_clearcoat": {} },
     }]);
     push(&mut text.json["meshes"], json!({ "primitives": [] }));
@@ -486,6 +486,64 @@ fn what_is_not_read_is_told_in_one_remark() {
           morph targets, normal textures, transparency"
         ]
     );
+}
+
+#[test]
+fn both_sides_masks_and_moved_textures_are_read_and_written() {
+    let strip = Strip::new();
+    let mut text = strip.text();
+    let first = primitive(&mut text).clone();
+    let primitives: Vec<Value> = (0..4)
+        .map(|material| {
+            let mut primitive = first.clone();
+            primitive["material"] = json!(material);
+            primitive
+        })
+        .collect();
+    text.json["meshes"][0]["primitives"] = json!(primitives);
+    let uri = format!("data:image/png;base64,{}", base64(&png([10, 20, 30])));
+    text.json["images"] = json!([{ "uri": uri }]);
+    text.json["textures"] = json!([{ "source": 0 }]);
+    let transform = json!({ "offset": [0.25, -1.0], "rotation": 0.5, "scale": [2.0, 3.0] });
+    let moved = json!({ "index": 0, "extensions": { "KHR_texture_transform": transform } });
+    text.json["extensionsRequired"] = json!(["KHR_texture_transform"]);
+    let masked = |cutoff: Option<f64>, opacity: f64, texture: Value| {
+        let mut material = json!({ "alphaMode": "MASK", "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 1.0, 1.0, opacity], "baseColorTexture": texture
+        } });
+        if let Some(cutoff) = cutoff {
+            material["alphaCutoff"] = json!(cutoff);
+        }
+        material
+    };
+    text.json["materials"] = json!([
+        { "doubleSided": true },
+        masked(None, 0.8, moved),
+        masked(Some(0.3), 1.0, json!({ "index": 0 })),
+        // Hidden: no texel is as opaque as that.
+        masked(Some(0.9), 0.5, json!({ "index": 0 })),
+    ]);
+    let opened = opened(&text);
+    assert_eq!(warnings(&opened), [""; 0]);
+    let exported = glb(&opened.document);
+    let again = io::read("x.glb", &exported[..], &io::OpenOptions::default()).expect("reads");
+    for opened in [&opened, &again] {
+        let parts = &attached(opened).parts;
+        let told: Vec<_> = parts
+            .iter()
+            .map(|part| (part.is_double_sided, (part.alpha_cutoff * 1000.0).round() as u32))
+            .collect();
+        assert_eq!(told, [(true, 0), (false, 625), (false, 300)]);
+        let coordinates = &attached(opened).mesh.mesh().texture_coordinates;
+        let count = strip.coordinates.len();
+        for (found, own) in coordinates[count..2 * count].iter().zip(&strip.coordinates) {
+            let (sin, cos) = 0.5_f32.sin_cos();
+            let at = *own * Vec2::new(2.0, 3.0);
+            let turned = Vec2::new(cos * at.x + sin * at.y, cos * at.y - sin * at.x);
+            let expected = turned + Vec2::new(0.25, -1.0);
+            assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
+        }
+    }
 }
 
 #[test]

@@ -193,6 +193,10 @@ struct SkinPartFields {
     /// Index in the list of textures.
     #[serde(skip_serializing_if = "Option::is_none")]
     texture: Option<Whole>,
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    double_sided: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha_cutoff: Option<JsonNumber>,
 }
 
 /// Bytes in base64.
@@ -385,6 +389,8 @@ impl SkinPartFields {
             triangles: whole(part.triangles),
             colour: JsonNumbers(part.colour),
             texture: part.texture.as_ref().and_then(index).map(whole),
+            double_sided: part.is_double_sided,
+            alpha_cutoff: (part.alpha_cutoff > 0.0).then(|| part.alpha_cutoff.into()),
         }
     }
 
@@ -395,7 +401,13 @@ impl SkinPartFields {
                 format!("must be below {count}, the number of textures, got {index}")
             })
         };
+        let JsonNumber(alpha_cutoff) = self.alpha_cutoff.unwrap_or(JsonNumber(0.0));
+        if !(0.0..=1.0).contains(&alpha_cutoff) {
+            return Err(format!("must be 0 to 1, got {alpha_cutoff}")).at("alpha_cutoff");
+        }
         Ok(SkinPart {
+            is_double_sided: self.double_sided,
+            alpha_cutoff,
             triangles: self.triangles.0 as usize,
             colour: colour(self.colour)?,
             texture: self.texture.map(texture).transpose().at("texture")?,

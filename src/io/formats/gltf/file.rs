@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use super::extras::{
     AnimationExtras, Extras, NodeExtras, SamplerExtras, is_this_program, this_program,
 };
-use super::material::{GltfImage, GltfMaterial, GltfTexture, Uri};
+use super::material::{GltfImage, GltfMaterial, GltfTexture, TEXTURE_TRANSFORM, Uri};
 use crate::io::json::{FieldError, JsonNumbers, JsonObject, JsonPath, JsonPoint, Whole};
 
 #[derive(Default, Deserialize, Serialize)]
@@ -125,7 +125,7 @@ impl GltfFile<'_> {
     /// Names of required extensions that are not read, except for those that compress data.
     pub fn unread_extensions(&self) -> impl Iterator<Item = &str> {
         /// Extensions that need nothing beyond what is read.
-        const READ: [&str; 1] = ["KHR_mesh_quantization"];
+        const READ: [&str; 2] = ["KHR_mesh_quantization", TEXTURE_TRANSFORM];
         let names = self.required.iter().map(String::as_str);
         names.filter(|name| !READ.contains(name) && !name.ends_with("_compression"))
     }

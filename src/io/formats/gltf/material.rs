@@ -3,16 +3,18 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Affine2, Vec2, Vec3};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::io::json::{JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 
 #[derive(Default, Deserialize, Serialize)]
 pub struct GltfMaterial {
     #[serde(rename = "alphaMode")]
     pub alpha_mode: Option<String>,
+    #[serde(rename = "alphaCutoff", skip_serializing_if = "Option::is_none")]
+    alpha_cutoff: Option<JsonNumber>,
     #[serde(rename = "doubleSided")]
     pub double_sided: Option<bool>,
     #[serde(rename = "pbrMetallicRoughness")]
@@ -30,8 +32,11 @@ pub struct GltfMaterial {
 }
 
 impl GltfMaterial {
-    /// An opaque surface without gloss. `colour` has sRGB channels from 0 to 1.
-    pub fn matte(colour: [f32; 3], texture: Option<Whole>) -> Self {
+    /// A surface without gloss, with the look of a part of a skin and the index of its texture.
+    /// `colour` has sRGB channels from 0 to 1.
+    pub fn matte(colour: [f32; 3], texture: Option<Whole>, look: &MaterialLook) -> Self {
+        let MaterialLook { is_double_sided, alpha_cutoff } = *look;
+        let is_masked = alpha_cutoff > 0.0;
         let [red, green, blue] = colour.map(linear);
         let texture = texture.map(|index| GltfTextureUse {
             index,
@@ -39,8 +44,9 @@ impl GltfMaterial {
             extensions: BTreeMap::new(),
         });
         Self {
-            alpha_mode: Some("OPAQUE".to_owned()),
-            double_sided: Some(false),
+            alpha_mode: Some(if is_masked { "MASK" } else { "OPAQUE" }.to_owned()),
+            alpha_cutoff: is_masked.then_some(JsonNumber(alpha_cutoff)),
+            double_sided: Some(is_double_sided),
             roughness: Some(JsonObject(GltfRoughness {
                 factor: Some(JsonNumbers([red, green, blue, 1.0])),
                 texture: texture.map(JsonObject),
@@ -59,9 +65,28 @@ impl GltfMaterial {
         texture.as_ref().map(|JsonObject(texture)| texture)
     }
 
+    /// How the surface is drawn.
+    pub fn look(&self) -> MaterialLook {
+        /// The least opacity that is drawn if the file does not tell it.
+        const CUTOFF: f32 = 0.5;
+        let alpha_cutoff = match self.alpha_mode.as_deref() {
+            Some("MASK") => {
+                let JsonNumber(cutoff) = self.alpha_cutoff.unwrap_or(JsonNumber(CUTOFF));
+                let factor = self.roughness.as_ref().map_or(1.0, |JsonObject(it)| it.opacity());
+                // The opacity is that of the texture times the factor.
+                if cutoff > 0.0 { (cutoff / factor.max(f32::MIN_POSITIVE)).min(2.0) } else { 0.0 }
+            }
+            _ => 0.0,
+        };
+        MaterialLook { is_double_sided: self.double_sided.unwrap_or(false), alpha_cutoff }
+    }
+
     /// Number of the set of texture coordinates that the base colour takes.
     pub fn coordinates(&self) -> u32 {
-        self.texture_use().and_then(|used| used.coordinates).map_or(0, |set| set.0)
+        let Some(used) = self.texture_use() else { return 0 };
+        let of_transform = used.transform().and_then(|it| it.get("texCoord")?.as_u64());
+        let of_transform = of_transform.and_then(|set| u32::try_from(set).ok());
+        of_transform.or(used.coordinates.map(|set| set.0)).unwrap_or_default()
     }
 
     /// Names of the channels that are not read.
@@ -75,14 +100,25 @@ impl GltfMaterial {
             ("occlusion textures", self.occlusion.is_some()),
             ("emission", glow || self.emissive_texture.is_some()),
             ("metallic and roughness textures", of_roughness.is_some()),
-            ("transparency", alpha != "OPAQUE"),
-            ("back faces of double-sided materials", self.double_sided.unwrap_or(false)),
+            ("transparency", alpha == "BLEND"),
         ];
         let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());
         let of_texture = self.texture_use().into_iter().flat_map(|used| used.extensions.keys());
+        let of_texture = of_texture.filter(|name| *name != TEXTURE_TRANSFORM);
         named.chain(self.extensions.keys().chain(of_texture).cloned())
     }
 }
+
+/// How a surface is drawn, beside its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MaterialLook {
+    pub is_double_sided: bool,
+    /// Opacity of the texture below which nothing is drawn; 0 to draw all, above 1 to draw nothing.
+    pub alpha_cutoff: f32,
+}
+
+/// The extension that moves texture coordinates.
+pub const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
 
 #[derive(Default, Deserialize, Serialize)]
 pub struct GltfRoughness {
@@ -99,6 +135,11 @@ pub struct GltfRoughness {
 }
 
 impl GltfRoughness {
+    /// The factor of the opacity, from 0 to 1.
+    fn opacity(&self) -> f32 {
+        self.factor.as_ref().map_or(1.0, |JsonNumbers([.., opacity])| opacity.clamp(0.0, 1.0))
+    }
+
     /// The base colour as sRGB channels from 0 to 1.
     pub fn colour(&self) -> [f32; 3] {
         let factor = self.factor.as_ref();
@@ -128,7 +169,31 @@ pub struct GltfTextureUse {
     #[serde(rename = "texCoord")]
     pub coordinates: Option<Whole>,
     #[serde(default, skip_serializing)]
-    pub extensions: BTreeMap<String, IgnoredAny>,
+    pub extensions: BTreeMap<String, serde_json::Value>,
+}
+
+impl GltfTextureUse {
+    fn transform(&self) -> Option<&serde_json::Value> {
+        self.extensions.get(TEXTURE_TRANSFORM)
+    }
+
+    /// What moves texture coordinates: a scale, then a rotation, then an offset. Numbers that are not
+    /// there, or are none, leave them as they are.
+    pub fn moved(&self) -> Option<Affine2> {
+        let transform = self.transform()?;
+        let number = |value: Option<&serde_json::Value>, default: f64| {
+            value.and_then(serde_json::Value::as_f64).unwrap_or(default) as f32
+        };
+        let pair = |key: &str, default: f64| {
+            let values = transform.get(key);
+            [0, 1].map(|index| number(values.and_then(|it| it.get(index)), default))
+        };
+        let [scale, offset] = [pair("scale", 1.0), pair("offset", 0.0)].map(Vec2::from);
+        // Counter-clockwise with v downwards.
+        let angle = -number(transform.get("rotation"), 0.0);
+        Some(Affine2::from_scale_angle_translation(scale, angle, offset))
+            .filter(|moved| moved.is_finite())
+    }
 }
 
 #[derive(Deserialize, Serialize)]

@@ -106,7 +106,8 @@ impl Values<'_> {
             let missing = SkinFileError::Missing(file.path.clone());
             return MeshSkin::without_mesh(file, joints, missing);
         };
-        let part = SkinPart { triangles: 2, colour: [1.0, 0.5, 0.0], texture: None };
+        let part =
+            SkinPart { colour: [1.0, 0.5, 0.0], is_double_sided: true, ..SkinPart::white(2) };
         let parents = skeleton.joints().iter().map(|joint| joint.parent).collect();
         let mesh = FileMesh { mesh, parents, parts: vec![part] };
         MeshSkin::new(mesh.into(), None, joints, &skeleton)

@@ -187,7 +187,8 @@ impl GltfWriter {
         let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
         let count = part.indices.len();
         let indices = self.add(indices, ELEMENT_ARRAY, count, Component::U32, "SCALAR");
-        let material = self.json.materials.push(GltfMaterial::matte(part.colour, texture));
+        let material =
+            self.json.materials.push(GltfMaterial::matte(part.colour, texture, &part.look));
         GltfPrimitive {
             attributes,
             indices: Some(indices),

@@ -7,6 +7,7 @@ use super::GlbError;
 use super::nodes::JointNodes;
 use super::rig::{GltfRig, joint_spaces};
 use crate::document::{Document, Skin};
+use crate::io::formats::gltf::material::MaterialLook;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
@@ -28,6 +29,7 @@ pub struct MeshPart {
     pub colour: [f32; 3],
     /// Index in [`RigMesh::attached`].
     pub set: usize,
+    pub look: MaterialLook,
     /// Image that multiplies the colour.
     pub texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
@@ -77,6 +79,10 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
                 parts.push(MeshPart {
                     colour,
                     set,
+                    look: MaterialLook {
+                        is_double_sided: part.is_double_sided,
+                        alpha_cutoff: part.alpha_cutoff,
+                    },
                     texture: part.texture.clone(),
                     ..of_corners(&mesh.mesh, &corners, part.texture.is_some())
                 });

@@ -1,12 +1,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{Vec2, Vec3};
+use glam::{Affine2, Vec2, Vec3};
 
 use super::buffers::{GltfBuffers, is_file, read_uri};
 use super::rows::{AccessorRows, at_accessor, view_bytes};
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
-use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTextureUse, Uri};
+use crate::io::formats::gltf::material::{
+    GltfImage, GltfMaterial, GltfTextureUse, MaterialLook, Uri,
+};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::source::Source;
 use crate::io::texture::TextureReader;
@@ -19,11 +21,21 @@ pub struct PartMaterial {
     /// Colour as sRGB channels from 0 to 1.
     pub colour: [f32; 3],
     pub texture: Option<Shared<SkinTexture>>,
+    /// What moves the texture coordinates.
+    pub moved: Option<Affine2>,
+    pub look: MaterialLook,
 }
 
 impl PartMaterial {
-    /// White, for primitives without a material.
-    pub const WHITE: Self = Self { colour: [1.0; 3], texture: None };
+    /// White with a look.
+    pub fn white(look: MaterialLook) -> Self {
+        Self { colour: [1.0; 3], texture: None, moved: None, look }
+    }
+
+    /// Returns whether the alpha of the material hides all of it.
+    pub fn is_hidden(&self) -> bool {
+        self.look.alpha_cutoff > 1.0
+    }
 }
 
 /// Where the images of materials are.
@@ -51,8 +63,10 @@ impl ImageCache {
         warnings: &mut FieldWarnings,
     ) -> PartMaterial {
         let Some(JsonObject(roughness)) = &material.roughness else {
-            return PartMaterial::WHITE;
+            return PartMaterial::white(material.look());
         };
+        let moved = material.texture_use().and_then(GltfTextureUse::moved);
+        let look = material.look();
         let colour = roughness.colour();
         let texture = roughness.texture.as_ref().and_then(|JsonObject(used)| {
             let texture = self.texture(from, used, checksum);
@@ -61,7 +75,7 @@ impl ImageCache {
                 .ok()
                 .flatten()
         });
-        PartMaterial { colour, texture }
+        PartMaterial { colour, texture, moved, look }
     }
 
     /// The image of a texture; `None` if it has failed before.

@@ -10,7 +10,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{DAffine3, DMat4, DVec3, Vec3};
+use glam::{Affine2, DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
 use super::joint_tracks::JointPlacement;
@@ -18,7 +18,7 @@ use super::nodes::{Figure, NodeTree, SkinJoints, at_node, at_skin};
 use super::primitive::{ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, image_view};
 use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
 use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
-use crate::io::formats::gltf::material::{GltfMaterial, Uri};
+use crate::io::formats::gltf::material::{GltfMaterial, MaterialLook, Uri};
 use crate::io::json::{FieldError, FieldWarnings, JsonPath, Whole};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
@@ -130,7 +130,6 @@ impl MeshImport<'_> {
                 let set = material.map_or(0, |(_, material)| material.coordinates());
                 let count = of_skin.len();
                 let read = PrimitiveMesh::new(file, &buffers, primitive, set, count, &at)?;
-                vertices[table_of(mesh)] += read.positions.len();
                 let look = material.map(|(index, material)| {
                     let new = || {
                         images.material(
@@ -145,7 +144,11 @@ impl MeshImport<'_> {
                 // The corners of a mesh on a mirrored node are in reverse order.
                 let mirrors = rigid.map_or(worlds[mesh.node], |(_, to_mesh)| to_mesh);
                 let is_mirrored = mirrors.matrix3.determinant() < 0.0;
-                let look = look.unwrap_or(PartMaterial::WHITE);
+                let look = look.unwrap_or(PartMaterial::white(MaterialLook::default()));
+                if look.is_hidden() {
+                    continue;
+                }
+                vertices[table_of(mesh)] += read.positions.len();
                 builder.add(read, rigid, is_mirrored, look, of_skin);
             }
         }
@@ -406,7 +409,7 @@ impl MeshBuilder {
         primitive: PrimitiveMesh,
         rigid: Option<(usize, DAffine3)>,
         is_mirrored: bool,
-        PartMaterial { colour, texture }: PartMaterial,
+        PartMaterial { colour, texture, moved, look }: PartMaterial,
         of_skin: &[usize],
     ) {
         let PrimitiveMesh { mut positions, mut normals, coordinates, weights, mut triangles } =
@@ -425,12 +428,23 @@ impl MeshBuilder {
             triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
         let first = self.mesh.positions.len();
-        self.parts.push(SkinPart { triangles: triangles.len(), colour, texture });
+        let MaterialLook { is_double_sided, alpha_cutoff } = look;
+        let alpha_cutoff = if texture.is_some() { alpha_cutoff } else { 0.0 };
+        let triangles_of_part = triangles.len();
+        self.parts.push(SkinPart {
+            triangles: triangles_of_part,
+            colour,
+            texture,
+            is_double_sided,
+            alpha_cutoff,
+        });
         let shifted = triangles.into_iter().map(|it| it.map(|corner| corner + first as u32));
         self.mesh.triangles.extend(shifted);
         let count = positions.len();
         self.mesh.normals.extend(normals.into_iter().map(|it| it.normalize_or(Vec3::Y)));
         self.mesh.positions.extend(positions);
+        let moved = moved.unwrap_or(Affine2::IDENTITY);
+        let coordinates = coordinates.into_iter().map(|it| moved.transform_point2(it));
         self.mesh.texture_coordinates.extend(coordinates);
         self.mesh.texture_coordinates.resize(first + count, glam::Vec2::ZERO);
         for vertex in 0..count {
