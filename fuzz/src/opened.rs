@@ -45,7 +45,8 @@ pub fn is_readable(message: &str) {
 }
 
 fn check(opened: &Opened) {
-    let Opened { document, warnings, order, skeletons, animations, animation } = opened;
+    let Opened { document, warnings, order, skeletons, skeleton, animations, animation } = opened;
+    assert!(skeleton.is_none_or(|skeleton| skeleton < skeletons.len()));
     assert!(animation.is_none_or(|animation| animation < animations.len()));
     warnings.iter().for_each(|warning| is_readable(&warning.to_string()));
     let names: HashSet<_> = skeletons.iter().collect();

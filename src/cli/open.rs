@@ -92,6 +92,16 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
     Ok(opened)
 }
 
+/// Opens another skeleton of a file that was opened, without its warnings; `None` if it cannot be
+/// read, or for standard input, which cannot be read twice.
+pub fn another(path: &Path, skeleton: &str) -> Option<Opened> {
+    if path == Path::new(STANDARD_INPUT) {
+        return None;
+    }
+    open_file(path, &OpenOptions { without_camera: true, ..OpenOptions::of_skeleton(skeleton) })
+        .ok()
+}
+
 /// Opens a file, or standard input for `-`, to draw its skin, too, and prints its warnings.
 pub fn open_to_draw(path: &Path, options: &OpenOptions) -> Result<Opened, OpenError> {
     let opened = open(path, options)?;

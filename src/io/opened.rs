@@ -60,6 +60,8 @@ pub struct Opened {
     /// The names of the file's skeletons, one of which was opened; empty for this program's own
     /// format, in which the one skeleton has no name.
     pub skeletons: Vec<String>,
+    /// Index of the skeleton that was read; `None` for this program's own format.
+    pub skeleton: Option<usize>,
     /// The animations of a glTF file; empty for other formats.
     pub animations: Vec<FileAnimation>,
     /// Index of the animation that was read; `None` if there is none.

@@ -112,3 +112,33 @@ fn a_list_tells_skeletons_animations_and_targets() {
     let told = list(&desk.path("walk.glb"), &["--animation", "0"]);
     assert_eq!(told["animations"][0]["open"], true);
 }
+
+#[test]
+fn a_list_tells_the_joints_of_all_skeletons_and_a_document_keeps_the_name_of_its_animation() {
+    let desk = Desk::with("walk");
+    let figures = serde_json::json!({
+        "asset": { "version": "2.0" },
+        "nodes": [{ "name": "a", "children": [1] }, { "name": "b" }, { "name": "c" }],
+        "skins": [{ "name": "long", "joints": [0, 1] }, { "name": "short", "joints": [2] }],
+    });
+    std::fs::write(desk.path("two.gltf"), figures.to_string()).expect("written");
+    let told = |more: &[&str]| list(&desk.path("two.gltf"), more)["skeletons"].clone();
+    let of = |open: [bool; 2]| {
+        serde_json::json!([
+            { "name": "long", "joints": 2, "open": open[0] },
+            { "name": "short", "joints": 1, "open": open[1] },
+        ])
+    };
+    assert_eq!(told(&[]), of([true, false]));
+    assert_eq!(told(&["--skeleton", "short"]), of([false, true]));
+
+    let walk = ik_arm::io::open(&desk.path("walk.json"), &ik_arm::io::OpenOptions::default());
+    let mut walk = walk.expect("it opens").document;
+    walk.animation_name = Some("Stroll".to_owned());
+    ik_arm::io::save(&walk, &desk.path("stroll.json")).expect("saved");
+    assert!(desk.convert("stroll.json", "stroll.glb", &[]).status.success());
+    assert!(desk.convert("stroll.glb", "again.json", &[]).status.success());
+    for file in ["stroll.glb", "again.json"] {
+        assert_eq!(list(&desk.path(file), &[])["animations"][0]["name"], "Stroll", "{file}");
+    }
+}

@@ -120,7 +120,7 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
     let options = OpenOptions { without_camera: args.list, ..args.input.options() };
     let opened = open::open(&args.input.file, &options)?;
     if args.list {
-        let list = FileList::new(&opened, options.skeleton.as_deref());
+        let list = FileList::new(&opened, |name| open::another(&args.input.file, name));
         let text = serde_json::to_string_pretty(&list).map_err(io::Error::from)?;
         return Ok(writeln!(io::stdout(), "{text}")?);
     }

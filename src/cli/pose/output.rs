@@ -301,9 +301,11 @@ pub struct FileList {
 #[derive(Serialize)]
 struct ListedSkeleton {
     name: String,
-    /// Number of joints of the open skeleton; `None` for the others.
+    /// Number of joints; `None` if the skeleton cannot be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     joints: Option<usize>,
+    /// True if it is the open one.
+    open: bool,
 }
 
 #[derive(Serialize)]
@@ -318,15 +320,20 @@ struct ListedAnimation {
 }
 
 impl FileList {
-    pub fn new(opened: &Opened, skeleton: Option<&str>) -> Self {
+    /// What a file has of which a skeleton was opened. `others` opens the skeleton of a name.
+    pub fn new(opened: &Opened, others: impl Fn(&str) -> Option<Opened>) -> Self {
         let document = &opened.document;
         let rig = &document.rig;
         let names = match &opened.skeletons[..] {
             [] => vec!["skeleton".to_owned()],
             names => names.to_vec(),
         };
-        let open = skeleton.unwrap_or(names.first().map_or("", String::as_str)).to_owned();
-        let joints = |name: &String| (*name == open).then(|| rig.skeleton.joints().len());
+        let joints = |opened: &Opened| opened.document.skeleton().joints().len();
+        let skeleton = |(index, name): (usize, &String)| {
+            let open = opened.skeleton.is_none_or(|skeleton| skeleton == index);
+            let count = if open { Some(joints(opened)) } else { others(name).as_ref().map(joints) };
+            ListedSkeleton { name: name.clone(), joints: count, open }
+        };
         let animations = match (&opened.animations[..], document.is_animated()) {
             ([], true) => vec![own_motion(document)],
             (animations, _) => animations.to_vec(),
@@ -341,22 +348,19 @@ impl FileList {
             joint.map_or_else(String::new, |joint| joint.name.clone())
         };
         Self {
-            skeletons: names
-                .iter()
-                .map(|name| ListedSkeleton { name: name.clone(), joints: joints(name) })
-                .collect(),
+            skeletons: names.iter().enumerate().map(skeleton).collect(),
             animations: animations.into_iter().enumerate().map(listed).collect(),
             targets: rig.targets.iter().map(target).collect(),
         }
     }
 }
 
-/// The motion of a format whose files have one motion without a name.
+/// The motion of a format whose files have one motion.
 fn own_motion(document: &Document) -> FileAnimation {
     let keys = &document.keys;
     let moves = |joint| keys.has(Channel::Rotation(joint)) || keys.has(Channel::Offset(joint));
     FileAnimation {
-        name: "motion".to_owned(),
+        name: document.animation_name.clone().unwrap_or_else(|| "motion".to_owned()),
         start: document.timeline.start,
         end: document.timeline.end,
         moving_joints: document.skeleton().ids().filter(|joint| moves(*joint)).count(),

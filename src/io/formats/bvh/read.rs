@@ -45,6 +45,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         document,
         warnings,
         skeletons,
+        skeleton: Some(0),
         animations: Vec::new(),
         animation: None,
     })

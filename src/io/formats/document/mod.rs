@@ -66,6 +66,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         document,
         warnings: source.warnings(&warnings),
         skeletons: Vec::new(),
+        skeleton: None,
         animations: Vec::new(),
         animation: None,
     })

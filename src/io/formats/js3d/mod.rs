@@ -74,6 +74,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         document,
         warnings: source.warnings(&warnings),
         order,
+        skeleton: names.iter().position(|name| name == chosen),
         skeletons: names,
         animations: Vec::new(),
         animation: None,

@@ -93,6 +93,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         document,
         warnings: source.warnings(&warnings),
         order: joints.in_order_of_file().filter_map(|it| kept[it]).map(JointId::new).collect(),
+        skeleton: names.iter().position(|name| *name == figure.name),
         skeletons: names,
         animations: described,
         animation,
