@@ -191,8 +191,7 @@ impl GltfTextureUse {
         let [scale, offset] = [pair("scale", 1.0), pair("offset", 0.0)].map(Vec2::from);
         // Counter-clockwise with v downwards.
         let angle = -number(transform.get("rotation"), 0.0);
-        Some(Affine2::from_scale_angle_translation(scale, angle, offset))
-            .filter(|moved| moved.is_finite())
+        Some(Affine2::from_scale_angle_translation(scale, angle, offset)).filter(Affine2::is_finite)
     }
 }
 
