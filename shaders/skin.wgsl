@@ -26,6 +26,7 @@ struct Vertex {
     @location(0) position_weight: vec4f,
     @location(1) normal: vec4f,
     @location(2) coordinates: vec2f,
+    @location(3) colour: vec4f, // sRGB
 }
 
 struct Surface {
@@ -34,18 +35,19 @@ struct Surface {
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) weight: f32,
     @location(3) coordinates: vec2f,
+    @location(4) colour: vec3f,
 }
 
 @vertex
 fn vertex(v: Vertex) -> Surface {
     let world = v.position_weight.xyz + look.offset;
     let position = view.clip_from_world * vec4f(world, 1.0);
-    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates);
+    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates, v.colour.rgb);
 }
 
 @fragment
 fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    var own = look.colour.rgb * part_look.rgb;
+    var own = look.colour.rgb * part_look.rgb * s.colour;
     if IS_TEXTURED {
         let texel = textureSample(part_texture, part_sampler, s.coordinates);
         if texel.a < part_look.a {

@@ -99,7 +99,9 @@ pub fn attach_skin(
 ) {
     let skin = MeshSkin::new(mesh.into(), file, joints, document.skeleton());
     let is_plain = |part: &SkinPart| part.colour == [1.0; 3] && part.texture.is_none();
-    let has_colours = !skin.in_file().is_some_and(|mesh| mesh.parts.iter().all(is_plain));
+    let is_colourless =
+        |mesh: &FileMesh| mesh.parts.iter().all(is_plain) && mesh.mesh.mesh().colours.is_empty();
+    let has_colours = !skin.in_file().is_some_and(|mesh| is_colourless(mesh));
     let skin = Skin::new(SkinSource::Mesh(skin));
     let colour = if has_colours { skin.colour } else { Skin::DEFAULT_COLOUR };
     document.rig.skin = Some(Skin { colour, ..skin });

@@ -29,6 +29,17 @@ struct Look {
 
 const _: () = assert!(size_of::<Look>() == 8 * 16);
 
+/// What poses do not change of a vertex.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct FixedVertex {
+    coordinates: Vec2,
+    /// sRGB.
+    colour: [u8; 4],
+}
+
+const _: () = assert!(size_of::<FixedVertex>() == 12);
+
 /// Draws skins. Nothing is created before the first skin is drawn.
 #[derive(Debug, Default)]
 pub(super) struct Skins {
@@ -62,7 +73,7 @@ struct SidedPipelines([[wgpu::RenderPipeline; 2]; 2]);
 struct SkinMesh {
     mesh: Shared<AttachedMesh>,
     vertices: SkinVertices,
-    coordinates: wgpu::Buffer,
+    fixed: wgpu::Buffer,
     triangles: wgpu::Buffer,
     indices: u32,
     materials: Vec<SkinMaterial>,
@@ -186,7 +197,7 @@ impl SkinPipelines {
         let look = Uniforms::<Look>::new(gpu, "skin look");
         let materials = SkinMaterials::new(gpu);
         let moved = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let fixed = wgpu::vertex_attr_array![2 => Float32x2];
+        let fixed = wgpu::vertex_attr_array![2 => Float32x2, 3 => Unorm8x4];
         let buffers = [
             wgpu::VertexBufferLayout {
                 array_stride: size_of::<DeformedVertex>() as u64,
@@ -194,7 +205,7 @@ impl SkinPipelines {
                 attributes: &moved,
             },
             wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vec2>() as u64,
+                array_stride: size_of::<FixedVertex>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
                 attributes: &fixed,
             },
@@ -265,16 +276,19 @@ impl SidedPipelines {
 
 impl SkinMesh {
     fn new(gpu: &Gpu, materials: &SkinMaterials, mesh: Shared<AttachedMesh>) -> Self {
-        let TriangleMesh { positions, texture_coordinates, triangles, .. } = mesh.mesh.mesh();
-        let mut coordinates = texture_coordinates.clone();
-        coordinates.resize(positions.len(), Vec2::ZERO);
-        let usage = wgpu::BufferUsages::VERTEX;
-        let coordinates = gpu.filled_buffer("skin texture coordinates", &coordinates, usage);
+        let TriangleMesh { positions, texture_coordinates, colours, triangles, .. } =
+            mesh.mesh.mesh();
+        let fixed = |vertex: usize| FixedVertex {
+            coordinates: texture_coordinates.get(vertex).copied().unwrap_or_default(),
+            colour: colours.get(vertex).copied().unwrap_or([u8::MAX; 4]),
+        };
+        let fixed: Vec<FixedVertex> = (0..positions.len()).map(fixed).collect();
+        let fixed = gpu.filled_buffer("skin look", &fixed, wgpu::BufferUsages::VERTEX);
         let materials = materials.of_parts(gpu, &mesh.parts, triangles.len());
         let (triangles, indices) = index_buffer(gpu, "skin triangles", triangles.as_flattened());
         let vertices = SkinVertices::new(gpu, &mesh.mesh);
         let (edges, is_used) = (None, true);
-        Self { vertices, coordinates, triangles, indices, materials, mesh, edges, is_used }
+        Self { vertices, fixed, triangles, indices, materials, mesh, edges, is_used }
     }
 
     fn make_edges(&mut self, gpu: &Gpu) {
@@ -312,7 +326,7 @@ impl DrawnSkin {
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>, mesh: &SkinMesh) {
         pass.set_bind_group(1, &self.look.group, &[]);
         pass.set_vertex_buffer(0, self.deformed.vertices.slice(..));
-        pass.set_vertex_buffer(1, mesh.coordinates.slice(..));
+        pass.set_vertex_buffer(1, mesh.fixed.slice(..));
     }
 
     fn upload(

@@ -81,6 +81,11 @@ fn the_device_moves_skins_of_random_trees_as_the_cpu_does() {
 
 /// A square of the size 2 about the origin, with the colours and textures of its two halves.
 fn square(parts: Vec<SkinPart>) -> Document {
+    coloured_square(parts, Vec::new())
+}
+
+/// A square whose corners have colours, from the lower left counter-clockwise.
+fn coloured_square(parts: Vec<SkinPart>, colours: Vec<[u8; 4]>) -> Document {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
     let positions: Vec<Vec3> =
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| corner(x, y)).into();
@@ -89,6 +94,7 @@ fn square(parts: Vec<SkinPart>) -> Document {
         normals: vec![Vec3::Z; 4],
         texture_coordinates: coordinates.collect(),
         positions,
+        colours,
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     };
     let weights = vec![VertexWeights::rigid(JointId::new(0)); 4];
@@ -133,6 +139,14 @@ fn a_double_sided_part_is_seen_from_behind_and_lit_as_from_outside() {
     // The light comes from the front right: the back is darker than the front, but lit by its own
     // normal and not black.
     assert!(back > 40 && back != front, "{back}, {front}");
+}
+
+#[test]
+fn vertices_have_their_colours() {
+    let [red, green] = [[255, 0, 0, 255], [0, 255, 0, 255]];
+    let square = coloured_square(vec![SkinPart::white(2)], vec![red, red, green, green]);
+    let picture = draw(&Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark));
+    assert_eq!((channel_at(&picture, 0.6, -0.8), channel_at(&picture, -0.6, 0.8)), (0, 1));
 }
 
 #[test]

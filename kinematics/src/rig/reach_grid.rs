@@ -95,7 +95,7 @@ pub(super) fn surface(lattice: &Lattice, cells: &[Cell]) -> TriangleMesh {
     triangles.sort_unstable();
     let normals = normals(&positions, &triangles);
     let positions = positions.into_iter().map(DVec3::as_vec3).collect();
-    TriangleMesh { positions, normals, texture_coordinates: Vec::new(), triangles }
+    TriangleMesh { positions, normals, triangles, ..TriangleMesh::default() }
 }
 
 struct Grid<'a> {

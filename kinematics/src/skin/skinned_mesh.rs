@@ -69,13 +69,11 @@ impl SkinnedMesh {
                 return Err(SkinError::TooMany { list, most, got });
             }
         }
-        let coordinates = match mesh.texture_coordinates.len() {
-            0 => vertices,
-            some => some,
-        };
+        let or_none = |count: usize| if count == 0 { vertices } else { count };
         let lists = [
             ("normals", mesh.normals.len()),
-            ("texture coordinates", coordinates),
+            ("texture coordinates", or_none(mesh.texture_coordinates.len())),
+            ("colours", or_none(mesh.colours.len())),
             ("weights", weights.len()),
             ("sets of inverse bind transforms", bind_sets.iter().map(|set| set.vertices).sum()),
         ];
@@ -212,10 +210,12 @@ impl SkinnedMesh {
 
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
-        let TriangleMesh { positions, normals, texture_coordinates, triangles } = &self.mesh;
+        let TriangleMesh { positions, normals, texture_coordinates, colours, triangles } =
+            &self.mesh;
         size_of_val(&positions[..])
             + size_of_val(&normals[..])
             + size_of_val(&texture_coordinates[..])
+            + size_of_val(&colours[..])
             + size_of_val(&triangles[..])
             + size_of_val(&self.weights[..])
             + self.bind_sets.iter().map(|set| size_of_val(&set.inverse_binds[..])).sum::<usize>()

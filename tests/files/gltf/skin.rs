@@ -108,7 +108,7 @@ fn attributes_of(text: &mut Text) -> &mut Value {
 #[track_caller]
 fn assert_is_strip(opened: &Opened, strip: &Strip, what: &str) {
     let mesh = &attached(opened).mesh;
-    let TriangleMesh { positions, normals, texture_coordinates, triangles } = mesh.mesh();
+    let TriangleMesh { positions, normals, texture_coordinates, triangles, .. } = mesh.mesh();
     assert_eq!(triangles, &strip.triangles, "{what}");
     let vertices = positions.iter().zip(normals).zip(texture_coordinates).zip(mesh.weights());
     assert_eq!(positions.len(), 6, "{what}");
@@ -542,6 +542,56 @@ fn both_sides_masks_and_moved_textures_are_read_and_written() {
             let turned = Vec2::new(cos * at.x + sin * at.y, cos * at.y - sin * at.x);
             let expected = turned + Vec2::new(0.25, -1.0);
             assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn colours_of_vertices_are_read_in_every_form_and_written() {
+    let strip = Strip::new();
+    let linear = [0.0, 0.1, 0.5, 1.0, 0.25, 0.01];
+    let srgb = |linear: f32| match linear {
+        ..0.003_130_8 => 12.92 * linear,
+        _ => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+    };
+    let expected = |vertex: usize, places: f32| -> [u8; 3] {
+        let of = |channel: usize| {
+            let stored = (linear[(vertex + channel) % 6] * places).round() / places;
+            (255.0 * srgb(stored)).round() as u8
+        };
+        [of(0), of(1), of(2)]
+    };
+    let channels =
+        |vertex: usize, count: usize| (0..count).map(move |at| linear[(vertex + at) % 6]);
+    let byte = |number: f32| (255.0 * number).round() as u8;
+    let short = |number: f32| (65535.0 * number).round() as u16;
+    for (form, places) in [("floats", 1e6), ("bytes", 255.0), ("shorts", 65535.0)] {
+        let mut text = strip.text();
+        let numbers = |count: usize| (0..6).flat_map(move |vertex| channels(vertex, count));
+        let accessor = match form {
+            "floats" => text.floats(3, &numbers(3).collect::<Vec<_>>()),
+            "bytes" => {
+                let bytes: Vec<u8> = numbers(4).map(byte).collect();
+                text.accessor(&bytes, 5121, 6, "VEC4")
+            }
+            _ => {
+                let bytes = little_endian(numbers(4).map(|number| short(number).to_le_bytes()));
+                text.accessor(&bytes, 5123, 6, "VEC4")
+            }
+        };
+        attributes_of(&mut text)["COLOR_0"] = json!(accessor);
+        let opened = opened(&text);
+        assert_eq!(warnings(&opened), [""; 0]);
+        assert_eq!(skin(&opened).colour, [1.0; 3], "the file has colours");
+        let exported = glb(&opened.document);
+        let again = io::read("x.glb", &exported[..], &io::OpenOptions::default()).expect("reads");
+        let packed = documents_again(&opened.document);
+        for document in [&opened.document, &again.document, &packed] {
+            let mesh = &document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh").mesh;
+            for (vertex, found) in mesh.mesh().colours.iter().enumerate() {
+                assert_eq!(found[..3], expected(vertex, places), "{form}, vertex {vertex}");
+            }
+            assert_eq!(mesh.mesh().colours.len(), 6);
         }
     }
 }

@@ -177,6 +177,8 @@ struct FileMeshFields {
     normals: Bytes,
     #[serde(skip_serializing_if = "Option::is_none")]
     texture_coordinates: Option<Bytes>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colours: Option<Bytes>,
     triangles: Bytes,
     vertex_joints: Bytes,
     vertex_weights: Bytes,
@@ -314,6 +316,8 @@ impl FileMeshFields {
             normals: points(&triangles.normals),
             texture_coordinates: (!triangles.texture_coordinates.is_empty())
                 .then(|| Bytes::of_floats(coordinates)),
+            colours: (!triangles.colours.is_empty())
+                .then(|| Bytes::of(triangles.colours.as_flattened())),
             triangles: Bytes::new(corners.flat_map(|corner| corner.to_le_bytes())),
             vertex_joints: Bytes::new(vertex_joints.flat_map(u16::to_le_bytes)),
             vertex_weights: Bytes::of_floats(weights().flat_map(VertexWeights::weights)),
@@ -336,6 +340,10 @@ impl FileMeshFields {
             positions: self.positions.vectors().at("positions")?,
             normals: self.normals.vectors().at("normals")?,
             texture_coordinates: coordinates.into_iter().map(Vec2::from_array).collect(),
+            colours: match self.colours {
+                Some(bytes) => bytes.decoded().at("colours")?.as_chunks().0.to_vec(),
+                None => Vec::new(),
+            },
             triangles: packed::wholes(&self.triangles.decoded().at("triangles")?)
                 .as_chunks()
                 .0

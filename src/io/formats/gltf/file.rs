@@ -224,7 +224,7 @@ pub struct GltfPrimitive {
 }
 
 /// Attributes that are written, in their order.
-const WRITTEN: [&str; 5] = ["POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"];
+const WRITTEN: [&str; 6] = ["POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0", "JOINTS_0", "WEIGHTS_0"];
 
 fn write_attributes<S: Serializer>(
     all: &BTreeMap<String, Whole>,

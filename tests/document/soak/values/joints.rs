@@ -98,8 +98,8 @@ impl Values<'_> {
         let mesh = TriangleMesh {
             normals: vec![Vec3::Y; positions.len()],
             positions,
-            texture_coordinates: Vec::new(),
             triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+            ..TriangleMesh::default()
         };
         let binds = vec![Affine3A::from_scale(Vec3::splat(0.5)); count];
         let Ok(mesh) = SkinnedMesh::new(mesh, weights, binds) else {

@@ -183,6 +183,9 @@ impl GltfWriter {
             let coordinates = self.add_floats(&part.coordinates, ARRAY);
             attributes.insert("TEXCOORD_0".to_owned(), coordinates);
         }
+        if !part.colours.is_empty() {
+            attributes.insert("COLOR_0".to_owned(), self.add_floats(&part.colours, ARRAY));
+        }
         let texture = part.texture.as_ref().map(|texture| self.add_texture(texture));
         let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
         let count = part.indices.len();

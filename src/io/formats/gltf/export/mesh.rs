@@ -7,7 +7,7 @@ use super::GlbError;
 use super::nodes::JointNodes;
 use super::rig::{GltfRig, joint_spaces};
 use crate::document::{Document, Skin};
-use crate::io::formats::gltf::material::MaterialLook;
+use crate::io::formats::gltf::material::{MaterialLook, linear};
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
@@ -34,6 +34,8 @@ pub struct MeshPart {
     pub texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
     pub coordinates: Vec<[f32; 2]>,
+    /// Colours of the vertices as linear light with opacity; empty for white ones.
+    pub colours: Vec<[f32; 4]>,
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     /// The four joints that each vertex follows.
@@ -94,7 +96,7 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
 
 /// The triangles with these corners, and the vertices that they have.
 fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPart {
-    let TriangleMesh { positions, normals, texture_coordinates, .. } = mesh.mesh();
+    let TriangleMesh { positions, normals, texture_coordinates, colours, .. } = mesh.mesh();
     let mut places: Vec<Option<u32>> = vec![None; positions.len()];
     corners.iter().for_each(|corner| places[*corner as usize] = Some(0));
     let vertices: Vec<usize> = (0..places.len()).filter(|at| places[*at].is_some()).collect();
@@ -103,7 +105,16 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
     }
     let weights = || vertices.iter().map(|vertex| &mesh.weights()[*vertex]);
     let coordinates = vertices.iter().filter_map(|vertex| texture_coordinates.get(*vertex));
+    let colours = vertices.iter().filter_map(|vertex| colours.get(*vertex));
+    let in_light = |[red, green, blue, opacity]: &[u8; 4]| {
+        let [red, green, blue, opacity] =
+            [*red, *green, *blue, *opacity].map(|byte| f32::from(byte) / 255.0);
+        [linear(red), linear(green), linear(blue), opacity]
+    };
+    let colours: Vec<[f32; 4]> = colours.map(in_light).collect();
+    let is_coloured = colours.iter().any(|colour| *colour != [1.0; 4]);
     MeshPart {
+        colours: if is_coloured { colours } else { Vec::new() },
         positions: vertices.iter().map(|vertex| positions[*vertex].to_array()).collect(),
         normals: vertices.iter().map(|vertex| normals[*vertex].to_array()).collect(),
         joints: weights().map(VertexWeights::joints).collect(),

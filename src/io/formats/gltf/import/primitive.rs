@@ -7,7 +7,7 @@ use super::rows::{AccessorRows, at_accessor, view_bytes};
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{
-    GltfImage, GltfMaterial, GltfTextureUse, MaterialLook, Uri,
+    GltfImage, GltfMaterial, GltfTextureUse, MaterialLook, Uri, srgb,
 };
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::source::Source;
@@ -152,11 +152,16 @@ pub struct PrimitiveMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates; empty if the file has none.
     pub coordinates: Vec<Vec2>,
+    /// Colours as sRGB with opacity; empty if the file has none.
+    pub colours: Vec<[u8; 4]>,
     /// For each vertex the joints, numbered as in the skin's list, with their weights; empty for a
     /// primitive without weights.
     pub weights: Vec<Vec<(usize, f32)>>,
     pub triangles: Vec<[u32; 3]>,
 }
+
+/// The attribute of the colours of vertices.
+const COLOURS: &str = "COLOR_0";
 
 /// Maximum number of sets of four joints for each vertex.
 const MOST_SETS: usize = 16;
@@ -219,7 +224,7 @@ impl GltfPrimitive {
 
     /// The accessors that [`PrimitiveMesh::new`] reads with the texture coordinates `set`.
     pub fn accessors(&self, set: u32) -> BTreeSet<usize> {
-        let names = ["POSITION", "NORMAL", &format!("TEXCOORD_{set}")];
+        let names = ["POSITION", "NORMAL", COLOURS, &format!("TEXCOORD_{set}")];
         let attributes = names.into_iter().filter_map(|name| self.attribute(name));
         let weights = self.weights().flat_map(|(joints, weights)| [joints, weights]);
         let indices = self.indices.iter().map(|indices| indices.0 as usize);
@@ -260,6 +265,11 @@ impl PrimitiveMesh {
             None => Vec::new(),
         };
         has_as_many(&name, coordinates.len())?;
+        let colours = match primitive.attribute(COLOURS) {
+            Some(accessor) => colours(file, buffers, accessor)?,
+            None => Vec::new(),
+        };
+        has_as_many(COLOURS, colours.len())?;
         let mut weights = Vec::new();
         for (of_joints, of_weights) in primitive.weights() {
             let (numbers, shares) = (rows(of_joints, "VEC4")?, rows(of_weights, "VEC4")?);
@@ -273,6 +283,7 @@ impl PrimitiveMesh {
             positions,
             normals,
             coordinates,
+            colours,
             weights,
         })
     }
@@ -289,6 +300,25 @@ fn coordinates(rows: &AccessorRows<'_>) -> Vec<Vec2> {
         if vector.is_finite() { vector } else { Vec2::ZERO }
     };
     (0..rows.len()).map(vector).collect()
+}
+
+/// Colours of vertices, of which the file has linear light, with or without opacity.
+fn colours(
+    file: &GltfFile<'_>,
+    buffers: &GltfBuffers<'_>,
+    accessor: usize,
+) -> Result<Vec<[u8; 4]>, FieldError> {
+    let shape = file.accessors.0.get(accessor).map_or("", |accessor| &accessor.shape);
+    let has_opacity = shape != "VEC3";
+    let rows =
+        AccessorRows::new(file, buffers, accessor, if has_opacity { "VEC4" } else { "VEC3" })?;
+    let byte = |part: f32| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
+    let colour = |row| {
+        let [red, green, blue, opacity] = rows.row::<4>(row).map(|number| number as f32);
+        let [red, green, blue] = [red, green, blue].map(|linear| byte(srgb(linear)));
+        [red, green, blue, if has_opacity { byte(opacity) } else { u8::MAX }]
+    };
+    Ok((0..rows.len()).map(colour).collect())
 }
 
 /// Adds a set of joints with their weights to the weights of the vertices.

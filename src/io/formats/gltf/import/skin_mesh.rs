@@ -349,8 +349,6 @@ impl MeshImport<'_> {
         for primitive in primitives {
             unread.extend((!primitive.is_surface()).then(|| name("points and lines")));
             unread.extend(primitive.targets.is_some().then(|| name("morph targets")));
-            let is_coloured = primitive.attributes.keys().any(|key| key.starts_with("COLOR_"));
-            unread.extend(is_coloured.then(|| name("colours of vertices")));
             let material =
                 primitive.material.and_then(|it| self.file.materials.0.get(it.0 as usize));
             unread.extend(material.into_iter().flat_map(GltfMaterial::unread));
@@ -412,8 +410,14 @@ impl MeshBuilder {
         PartMaterial { colour, texture, moved, look }: PartMaterial,
         of_skin: &[usize],
     ) {
-        let PrimitiveMesh { mut positions, mut normals, coordinates, weights, mut triangles } =
-            primitive;
+        let PrimitiveMesh {
+            mut positions,
+            mut normals,
+            coordinates,
+            colours,
+            weights,
+            mut triangles,
+        } = primitive;
         if normals.is_empty() {
             normals = smooth_normals(&positions, &triangles);
         }
@@ -447,6 +451,11 @@ impl MeshBuilder {
         let coordinates = coordinates.into_iter().map(|it| moved.transform_point2(it));
         self.mesh.texture_coordinates.extend(coordinates);
         self.mesh.texture_coordinates.resize(first + count, glam::Vec2::ZERO);
+        if !(colours.is_empty() && self.mesh.colours.is_empty()) {
+            self.mesh.colours.resize(first, [u8::MAX; 4]);
+            self.mesh.colours.extend(colours);
+            self.mesh.colours.resize(first + count, [u8::MAX; 4]);
+        }
         for vertex in 0..count {
             let of_file = weights.get(vertex).map_or(&[][..], Vec::as_slice);
             let listed = of_file.iter().map(|(joint, weight)| (of_skin[*joint], *weight));
