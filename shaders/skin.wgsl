@@ -15,10 +15,19 @@ override IS_TEXTURED = false;
 // Side of triangles that is outside, of parts that are seen from both: 1 for the front, -1 for the back of
 // mirrored skins; 0 for parts that are seen from outside alone.
 override OUTER_SIDE = 0.0;
+// Whether the opacity of parts counts.
+override IS_BLENDED = false;
 
 // Material of a part. Colours are multiplied in sRGB instead of linear light. sRGB is nearly a power of
 // linear light, and the power of a product is the product of the powers, so the error is small.
-@group(2) @binding(0) var<uniform> part_look: vec4f; // colour; opacity of the texture below which nothing is drawn
+struct Part {
+    colour: vec3f, // sRGB
+    alpha_cutoff: f32, // opacity of the texture below which nothing is drawn
+    emission: vec3f, // sRGB
+    opacity: f32,
+}
+
+@group(2) @binding(0) var<uniform> part: Part;
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;
 
@@ -35,33 +44,41 @@ struct Surface {
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) weight: f32,
     @location(3) coordinates: vec2f,
-    @location(4) colour: vec3f,
+    @location(4) colour: vec4f,
 }
 
 @vertex
 fn vertex(v: Vertex) -> Surface {
     let world = v.position_weight.xyz + look.offset;
     let position = view.clip_from_world * vec4f(world, 1.0);
-    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates, v.colour.rgb);
+    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates, v.colour);
 }
 
 @fragment
 fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    var own = look.colour.rgb * part_look.rgb * s.colour;
+    var own = look.colour.rgb * part.colour * s.colour.rgb;
+    var opacity = look.colour.a;
+    if IS_BLENDED {
+        opacity *= part.opacity * s.colour.a;
+    }
     if IS_TEXTURED {
         let texel = textureSample(part_texture, part_sampler, s.coordinates);
-        if texel.a < part_look.a {
+        if texel.a < part.alpha_cutoff {
             discard;
         }
         own *= texel.rgb;
+        if IS_BLENDED {
+            opacity *= texel.a;
+        }
     }
     var normal = normalize(s.normal);
     if OUTER_SIDE != 0.0 && is_front != (OUTER_SIDE > 0.0) {
         normal = -normal;
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
-    let colour = lit(mix(own, of_weight, look.has_weights), normal);
-    return vec4f(in_scene(colour, s.world, s.position.xy), look.colour.a);
+    let reflected = lit(mix(own, of_weight, look.has_weights), normal);
+    let colour = saturate(encoded(decoded(reflected) + decoded(part.emission * (1.0 - look.has_weights))));
+    return vec4f(in_scene(colour, s.world, s.position.xy), opacity);
 }
 
 @fragment

@@ -56,6 +56,8 @@ struct SkinPipelines {
     /// Depth of the nearest surface of see-through skins.
     depth: SidedPipelines,
     see_through: SurfacePipelines,
+    /// For see-through parts of opaque skins.
+    blended: SurfacePipelines,
     wire: wgpu::RenderPipeline,
 }
 
@@ -140,17 +142,24 @@ impl Skins {
     pub fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
-            self.draw(pass, skin, |material| pipelines.opaque.of(material, skin));
+            let opaque = |material: &SkinMaterial| !material.is_blended;
+            self.draw(pass, skin, opaque, |material| pipelines.opaque.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
 
-    /// Draws the nearest surfaces of the see-through skins over what is drawn already.
+    /// Draws the see-through parts of opaque skins, and the nearest surfaces of see-through skins,
+    /// over what is drawn already.
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
+        for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
+            let blended = |material: &SkinMaterial| material.is_blended;
+            self.draw(pass, skin, blended, |material| pipelines.blended.of(material, skin));
+        }
         for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
-            self.draw(pass, skin, |material| pipelines.depth.of(material, skin));
-            self.draw(pass, skin, |material| pipelines.see_through.of(material, skin));
+            let all = |_: &SkinMaterial| true;
+            self.draw(pass, skin, all, |material| pipelines.depth.of(material, skin));
+            self.draw(pass, skin, all, |material| pipelines.see_through.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
     }
@@ -159,12 +168,13 @@ impl Skins {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         skin: &DrawnSkin,
+        is_drawn: impl Fn(&SkinMaterial) -> bool,
         pipeline: impl Fn(&SkinMaterial) -> &'a wgpu::RenderPipeline,
     ) {
         let Some(mesh) = self.mesh(skin) else { return };
         skin.bind(pass, mesh);
         pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
-        for material in &mesh.materials {
+        for material in mesh.materials.iter().filter(|material| is_drawn(material)) {
             pass.set_pipeline(pipeline(material));
             pass.set_bind_group(2, &material.group, &[]);
             pass.draw_indexed(material.corners.clone(), 0, 0..1);
@@ -224,6 +234,11 @@ impl SkinPipelines {
             output: PipelineOutput::Blended,
             ..plain
         };
+        let blended = PipelineDescriptor {
+            label: "skin, see-through parts",
+            output: PipelineOutput::Blended,
+            ..plain
+        };
         let wire = PipelineDescriptor {
             label: "skin wireframe",
             fragment: "fragment_wire",
@@ -235,9 +250,10 @@ impl SkinPipelines {
         };
         Self {
             deformer: SkinDeformer::new(gpu),
-            opaque: SurfacePipelines::new(gpu, &plain),
-            depth: SidedPipelines::new(gpu, &depth, 0.0),
-            see_through: SurfacePipelines::new(gpu, &see_through),
+            opaque: SurfacePipelines::new(gpu, &plain, 0.0),
+            depth: SidedPipelines::new(gpu, &depth, [0.0, 0.0]),
+            see_through: SurfacePipelines::new(gpu, &see_through, 0.0),
+            blended: SurfacePipelines::new(gpu, &blended, 1.0),
             wire: wire.build(gpu),
             materials,
         }
@@ -245,8 +261,8 @@ impl SkinPipelines {
 }
 
 impl SurfacePipelines {
-    fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>) -> Self {
-        let of = |is_textured| SidedPipelines::new(gpu, descriptor, is_textured);
+    fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>, is_blended: f64) -> Self {
+        let of = |is_textured| SidedPipelines::new(gpu, descriptor, [is_textured, is_blended]);
         Self([0.0, 1.0].map(of))
     }
 
@@ -256,14 +272,19 @@ impl SurfacePipelines {
 }
 
 impl SidedPipelines {
-    fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>, is_textured: f64) -> Self {
+    fn new(
+        gpu: &Gpu,
+        descriptor: &PipelineDescriptor<'_>,
+        [is_textured, is_blended]: [f64; 2],
+    ) -> Self {
         let hidden = [wgpu::Face::Back, wgpu::Face::Front];
         let outside = hidden.map(|face| {
-            let constants = &[("IS_TEXTURED", is_textured)];
+            let constants = &[("IS_TEXTURED", is_textured), ("IS_BLENDED", is_blended)];
             PipelineDescriptor { cull: Some(face), constants, ..*descriptor }.build(gpu)
         });
         let both = [1.0, -1.0].map(|outer| {
-            let constants = &[("IS_TEXTURED", is_textured), ("OUTER_SIDE", outer)];
+            let constants =
+                &[("IS_TEXTURED", is_textured), ("IS_BLENDED", is_blended), ("OUTER_SIDE", outer)];
             PipelineDescriptor { cull: None, constants, ..*descriptor }.build(gpu)
         });
         Self([outside, both])

@@ -25,6 +25,7 @@ pub(super) struct SkinMaterial {
     pub group: wgpu::BindGroup,
     pub is_textured: bool,
     pub is_double_sided: bool,
+    pub is_blended: bool,
 }
 
 impl SkinMaterials {
@@ -68,17 +69,25 @@ impl SkinMaterials {
             let view = view.map_or(&self.white, |view| &views[view].1);
             let corners = 3 * start as u32..3 * end as u32;
             let group = self.group(gpu, part, view);
-            let is_double_sided = part.is_double_sided;
-            materials.push(SkinMaterial { corners, group, is_textured, is_double_sided });
+            materials.push(SkinMaterial {
+                corners,
+                group,
+                is_textured,
+                is_double_sided: part.is_double_sided,
+                is_blended: part.opacity.is_some(),
+            });
         }
         materials
     }
 
     fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
-        let colour = [Vec3::from(part.colour).extend(part.alpha_cutoff)];
-        let colour = gpu.filled_buffer("skin colour", &colour, wgpu::BufferUsages::UNIFORM);
+        let look = [
+            Vec3::from(part.colour).extend(part.alpha_cutoff),
+            Vec3::from(part.emission).extend(part.opacity.unwrap_or(1.0)),
+        ];
+        let look = gpu.filled_buffer("skin part", &look, wgpu::BufferUsages::UNIFORM);
         let resources = [
-            colour.as_entire_binding(),
+            look.as_entire_binding(),
             wgpu::BindingResource::TextureView(view),
             wgpu::BindingResource::Sampler(&self.sampler),
         ];

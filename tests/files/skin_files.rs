@@ -46,6 +46,8 @@ fn figure(joints: usize, seed: u64) -> Document {
         texture,
         is_double_sided: triangles > 5,
         alpha_cutoff: 0.25,
+        opacity: (triangles > 5).then_some(0.5),
+        emission: [0.5, 0.0, 1.0],
         ..SkinPart::white(triangles)
     };
     let mesh = FileMesh {

@@ -142,6 +142,26 @@ fn a_double_sided_part_is_seen_from_behind_and_lit_as_from_outside() {
 }
 
 #[test]
+fn see_through_parts_let_what_is_behind_through_and_shining_ones_are_as_bright_as_their_light() {
+    let middle = |part: SkinPart| {
+        let square = square(vec![part]);
+        let picture = draw(&Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark));
+        picture.get_pixel(picture.width() / 2 + 9, picture.height() / 2 + 9).0
+    };
+    let of = |opacity| middle(SkinPart { colour: [1.0, 0.1, 0.1], opacity, ..SkinPart::white(2) });
+    let (opaque, half, none) = (of(None), of(Some(0.5)), of(Some(0.0)));
+    assert_eq!(of(Some(1.0)), opaque);
+    for channel in 0..3 {
+        let mean = (u16::from(opaque[channel]) + u16::from(none[channel])) / 2;
+        assert!(mean.abs_diff(half[channel].into()) <= 25, "{opaque:?}, {half:?}, {none:?}");
+    }
+    assert!(half[0] < opaque[0] && half[0] > none[0], "{opaque:?}, {half:?}, {none:?}");
+    let shining =
+        middle(SkinPart { colour: [0.0; 3], emission: [0.1, 0.9, 0.1], ..SkinPart::white(2) });
+    assert!(shining[1] > 200 && shining[0] < 90, "{shining:?}");
+}
+
+#[test]
 fn vertices_have_their_colours() {
     let [red, green] = [[255, 0, 0, 255], [0, 255, 0, 255]];
     let square = coloured_square(vec![SkinPart::white(2)], vec![red, red, green, green]);

@@ -236,13 +236,25 @@ pub struct SkinPart {
     pub is_double_sided: bool,
     /// Opacity of the texture, from 0 to 1, below which nothing is drawn; 0 to draw all.
     pub alpha_cutoff: f32,
+    /// Opacity from 0 to 1, which multiplies those of the texture and of vertices; `None` for an
+    /// opaque part.
+    pub opacity: Option<f32>,
+    /// Light that the part gives off, as sRGB channels from 0 to 1.
+    pub emission: [f32; 3],
 }
 
 impl SkinPart {
     /// A white part with so many triangles, seen from outside.
     pub fn white(triangles: usize) -> Self {
-        let (colour, texture) = ([1.0; 3], None);
-        Self { triangles, colour, texture, is_double_sided: false, alpha_cutoff: 0.0 }
+        Self {
+            triangles,
+            colour: [1.0; 3],
+            texture: None,
+            is_double_sided: false,
+            alpha_cutoff: 0.0,
+            opacity: None,
+            emission: [0.0; 3],
+        }
     }
 
     /// The textures of parts, each once, in the order of the parts that have them first.

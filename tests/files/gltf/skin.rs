@@ -473,7 +473,7 @@ fn what_is_not_read_is_told_in_one_remark() {
     primitive(&mut text)["targets"] = json!([{}]);
     primitive(&mut text)["material"] = json!(0);
     text.json["materials"] = json!([{
-        "normalTexture": { "index": 0 }, "emissiveFactor": [1, 0, 0], "alphaMode": "BLEND",
+        "normalTexture": { "index": 0 }, "emissiveTexture": { "index": 0 },
         "extensions": { "KHR_materials_clearcoat": {} },
     }]);
     push(&mut text.json["meshes"], json!({ "primitives": [] }));
@@ -482,18 +482,18 @@ fn what_is_not_read_is_told_in_one_remark() {
     assert_eq!(
         warnings(&opened),
         [
-            "meshes: not read: 1 mesh that follows no joint of the figure, KHR_materials_clearcoat, emission, \
-          morph targets, normal textures, transparency"
+            "meshes: not read: 1 mesh that follows no joint of the figure, KHR_materials_clearcoat, emission \
+          textures, morph targets, normal textures"
         ]
     );
 }
 
 #[test]
-fn both_sides_masks_and_moved_textures_are_read_and_written() {
+fn both_sides_alpha_emission_and_moved_textures_are_read_and_written() {
     let strip = Strip::new();
     let mut text = strip.text();
     let first = primitive(&mut text).clone();
-    let primitives: Vec<Value> = (0..4)
+    let primitives: Vec<Value> = (0..5)
         .map(|material| {
             let mut primitive = first.clone();
             primitive["material"] = json!(material);
@@ -522,6 +522,8 @@ fn both_sides_masks_and_moved_textures_are_read_and_written() {
         masked(Some(0.3), 1.0, json!({ "index": 0 })),
         // Hidden: no texel is as opaque as that.
         masked(Some(0.9), 0.5, json!({ "index": 0 })),
+        { "alphaMode": "BLEND", "emissiveFactor": [0.0, 0.2140411, 1.0],
+          "pbrMetallicRoughness": { "baseColorFactor": [1.0, 1.0, 1.0, 0.25] } },
     ]);
     let opened = opened(&text);
     assert_eq!(warnings(&opened), [""; 0]);
@@ -533,7 +535,11 @@ fn both_sides_masks_and_moved_textures_are_read_and_written() {
             .iter()
             .map(|part| (part.is_double_sided, (part.alpha_cutoff * 1000.0).round() as u32))
             .collect();
-        assert_eq!(told, [(true, 0), (false, 625), (false, 300)]);
+        assert_eq!(told, [(true, 0), (false, 625), (false, 300), (false, 0)]);
+        let opacities: Vec<_> = parts.iter().map(|part| part.opacity).collect();
+        assert_eq!(opacities, [None, None, None, Some(0.25)]);
+        let emission = parts[3].emission;
+        assert!((emission[1] - 0.5).abs() < 1e-4 && emission[2] == 1.0, "{emission:?}");
         let coordinates = &attached(opened).mesh.mesh().texture_coordinates;
         let count = strip.coordinates.len();
         for (found, own) in coordinates[count..2 * count].iter().zip(&strip.coordinates) {

@@ -199,6 +199,10 @@ struct SkinPartFields {
     double_sided: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     alpha_cutoff: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    opacity: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    emission: Option<JsonNumbers<3>>,
 }
 
 /// Bytes in base64.
@@ -399,6 +403,8 @@ impl SkinPartFields {
             texture: part.texture.as_ref().and_then(index).map(whole),
             double_sided: part.is_double_sided,
             alpha_cutoff: (part.alpha_cutoff > 0.0).then(|| part.alpha_cutoff.into()),
+            opacity: part.opacity.map(JsonNumber),
+            emission: (part.emission != [0.0; 3]).then_some(JsonNumbers(part.emission)),
         }
     }
 
@@ -409,13 +415,17 @@ impl SkinPartFields {
                 format!("must be below {count}, the number of textures, got {index}")
             })
         };
-        let JsonNumber(alpha_cutoff) = self.alpha_cutoff.unwrap_or(JsonNumber(0.0));
-        if !(0.0..=1.0).contains(&alpha_cutoff) {
-            return Err(format!("must be 0 to 1, got {alpha_cutoff}")).at("alpha_cutoff");
-        }
+        let fraction = |number: Option<JsonNumber>| match number {
+            Some(JsonNumber(number)) if !(0.0..=1.0).contains(&number) => {
+                Err(format!("must be 0 to 1, got {number}"))
+            }
+            number => Ok(number.map(|JsonNumber(number)| number)),
+        };
         Ok(SkinPart {
             is_double_sided: self.double_sided,
-            alpha_cutoff,
+            alpha_cutoff: fraction(self.alpha_cutoff).at("alpha_cutoff")?.unwrap_or(0.0),
+            opacity: fraction(self.opacity).at("opacity")?,
+            emission: self.emission.map(colour).transpose().at("emission")?.unwrap_or([0.0; 3]),
             triangles: self.triangles.0 as usize,
             colour: colour(self.colour)?,
             texture: self.texture.map(texture).transpose().at("texture")?,

@@ -35,8 +35,13 @@ impl GltfMaterial {
     /// A surface without gloss, with the look of a part of a skin and the index of its texture.
     /// `colour` has sRGB channels from 0 to 1.
     pub fn matte(colour: [f32; 3], texture: Option<Whole>, look: &MaterialLook) -> Self {
-        let MaterialLook { is_double_sided, alpha_cutoff } = *look;
+        let MaterialLook { is_double_sided, alpha_cutoff, opacity, emission } = *look;
         let is_masked = alpha_cutoff > 0.0;
+        let alpha_mode = match opacity {
+            Some(_) => "BLEND",
+            None if is_masked => "MASK",
+            None => "OPAQUE",
+        };
         let [red, green, blue] = colour.map(linear);
         let texture = texture.map(|index| GltfTextureUse {
             index,
@@ -44,17 +49,17 @@ impl GltfMaterial {
             extensions: BTreeMap::new(),
         });
         Self {
-            alpha_mode: Some(if is_masked { "MASK" } else { "OPAQUE" }.to_owned()),
-            alpha_cutoff: is_masked.then_some(JsonNumber(alpha_cutoff)),
+            alpha_mode: Some(alpha_mode.to_owned()),
+            alpha_cutoff: (alpha_mode == "MASK").then_some(JsonNumber(alpha_cutoff)),
             double_sided: Some(is_double_sided),
             roughness: Some(JsonObject(GltfRoughness {
-                factor: Some(JsonNumbers([red, green, blue, 1.0])),
+                factor: Some(JsonNumbers([red, green, blue, opacity.unwrap_or(1.0)])),
                 texture: texture.map(JsonObject),
                 metallic: 0.0,
                 roughness: 1.0,
                 roughness_texture: None,
             })),
-            emissive: Some(JsonPoint(Vec3::ZERO)),
+            emissive: Some(JsonPoint(Vec3::from(emission.map(linear)))),
             ..Self::default()
         }
     }
@@ -69,16 +74,24 @@ impl GltfMaterial {
     pub fn look(&self) -> MaterialLook {
         /// The least opacity that is drawn if the file does not tell it.
         const CUTOFF: f32 = 0.5;
+        let factor = self.roughness.as_ref().map_or(1.0, |JsonObject(it)| it.opacity());
         let alpha_cutoff = match self.alpha_mode.as_deref() {
             Some("MASK") => {
                 let JsonNumber(cutoff) = self.alpha_cutoff.unwrap_or(JsonNumber(CUTOFF));
-                let factor = self.roughness.as_ref().map_or(1.0, |JsonObject(it)| it.opacity());
                 // The opacity is that of the texture times the factor.
                 if cutoff > 0.0 { (cutoff / factor.max(f32::MIN_POSITIVE)).min(2.0) } else { 0.0 }
             }
             _ => 0.0,
         };
-        MaterialLook { is_double_sided: self.double_sided.unwrap_or(false), alpha_cutoff }
+        let is_blended = self.alpha_mode.as_deref() == Some("BLEND");
+        let emission = self.emissive.map_or(Vec3::ZERO, |it| it.0).to_array().map(srgb);
+        MaterialLook {
+            is_double_sided: self.double_sided.unwrap_or(false),
+            alpha_cutoff,
+            opacity: is_blended.then_some(factor),
+            // Without its texture, the whole surface would shine.
+            emission: if self.emissive_texture.is_some() { [0.0; 3] } else { emission },
+        }
     }
 
     /// Number of the set of texture coordinates that the base colour takes.
@@ -93,14 +106,11 @@ impl GltfMaterial {
     pub fn unread(&self) -> impl Iterator<Item = String> {
         let roughness = self.roughness.as_ref().map(|JsonObject(roughness)| roughness);
         let of_roughness = roughness.and_then(|it| it.roughness_texture.as_ref());
-        let glow = self.emissive.is_some_and(|it| it.0 != Vec3::ZERO);
-        let alpha = self.alpha_mode.as_deref().unwrap_or("OPAQUE");
         let channels = [
             ("normal textures", self.normal.is_some()),
             ("occlusion textures", self.occlusion.is_some()),
-            ("emission", glow || self.emissive_texture.is_some()),
+            ("emission textures", self.emissive_texture.is_some()),
             ("metallic and roughness textures", of_roughness.is_some()),
-            ("transparency", alpha == "BLEND"),
         ];
         let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());
         let of_texture = self.texture_use().into_iter().flat_map(|used| used.extensions.keys());
@@ -115,6 +125,10 @@ pub struct MaterialLook {
     pub is_double_sided: bool,
     /// Opacity of the texture below which nothing is drawn; 0 to draw all, above 1 to draw nothing.
     pub alpha_cutoff: f32,
+    /// Factor of the opacity of what is drawn over what is behind it; `None` for opaque surfaces.
+    pub opacity: Option<f32>,
+    /// Light that is given off, as sRGB channels from 0 to 1.
+    pub emission: [f32; 3],
 }
 
 /// The extension that moves texture coordinates.

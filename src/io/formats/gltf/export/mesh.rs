@@ -84,6 +84,8 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
                     look: MaterialLook {
                         is_double_sided: part.is_double_sided,
                         alpha_cutoff: part.alpha_cutoff,
+                        opacity: part.opacity,
+                        emission: part.emission,
                     },
                     texture: part.texture.clone(),
                     ..of_corners(&mesh.mesh, &corners, part.texture.is_some())

@@ -272,15 +272,18 @@ impl<'a> NodeTracks<'a> {
         self.track(node, AnimatedPart::Scale).is_some_and(|track| track.is_uneven(least))
     }
 
-    /// Sets scales in `locals` to those of their first keys, and other values that do not change if
-    /// their node `is_free`.
-    pub fn pose_still(&self, locals: &mut [NodeTransform], is_free: impl Fn(usize) -> bool) {
+    /// Nodes with the scales with which the animation begins, and with the places and rotations that
+    /// it gives to nodes that are no joints and does not change.
+    pub fn at_rest(&self, nodes: &NodeTree, joints: &SkinJoints) -> NodeTree {
+        let is_joint: HashSet<usize> = joints.nodes.iter().copied().collect();
+        let mut nodes = nodes.clone();
         for track in &self.tracks {
             let UsedChannel { node, part, .. } = track.channel;
-            if part == AnimatedPart::Scale || is_free(node) && !track.varies() {
-                track.pose(track.time(0), locals);
+            if part == AnimatedPart::Scale || !is_joint.contains(&node) && !track.varies() {
+                track.pose(track.time(0), &mut nodes.locals);
             }
         }
+        nodes
     }
 
     /// The nodes that some track moves, unsorted and with repetitions.

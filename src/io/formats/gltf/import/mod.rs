@@ -3,6 +3,7 @@
 mod animations;
 mod buffers;
 mod exact_tracks;
+mod figures;
 mod joint_tracks;
 mod nodes;
 mod primitive;
@@ -28,8 +29,9 @@ use crate::rig::SkinFile;
 use animations::NodeTracks;
 use animations::at_animation;
 use exact_tracks::ExactTracks;
+use figures::Figure;
 use joint_tracks::{ExactJoint, NodePoser};
-use nodes::{Figure, NodeTree, SkinJoints, at_node, at_skin};
+use nodes::{NodeTree, SkinJoints, at_node, at_skin};
 use rig::{BoneEnds, ImportedRig};
 use sampler::UsedChannel;
 use skin_mesh::MeshImport;
@@ -46,8 +48,8 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let scans = animations::scan(source, &file, &nodes);
     let moving: BTreeSet<usize> =
         scans.iter().flat_map(|scan| scan.moving.iter().copied()).collect();
-    let parts = nodes::parts(&file, &nodes, &moving);
-    let figures = nodes::figures(&file, &nodes, &parts);
+    let parts = figures::parts(&file, &nodes, &moving);
+    let figures = figures::figures(&file, &nodes, &parts);
     let names: Vec<String> = figures.iter().map(|figure| figure.name.clone()).collect();
     let chosen = match &options.skeleton {
         Some(name) => figures.iter().find(|figure| figure.is_called(name)),
@@ -160,7 +162,7 @@ impl GltfImport<'_> {
         let channels = self.channels(animation, &at)?;
         let buffers = animations::buffers(source, file, &channels)?;
         let tracks = NodeTracks::new(file, &buffers, &channels, &at, warnings)?;
-        let nodes = &self.nodes.at_rest_in(&tracks, skin_joints);
+        let nodes = &tracks.at_rest(self.nodes, skin_joints);
         let mut poser = NodePoser::new(nodes, skin_joints);
         let bind_pose = poser.bind_pose()?;
         let joints = rig::joints(file, skin_joints, &bind_pose);

@@ -13,8 +13,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{Affine2, DAffine3, DMat4, DVec3, Vec3};
 
 use super::buffers::{GltfBuffers, is_file};
+use super::figures::Figure;
 use super::joint_tracks::JointPlacement;
-use super::nodes::{Figure, NodeTree, SkinJoints, at_node, at_skin};
+use super::nodes::{NodeTree, SkinJoints, at_node, at_skin};
 use super::primitive::{ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, image_view};
 use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
 use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
@@ -432,7 +433,7 @@ impl MeshBuilder {
             triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
         let first = self.mesh.positions.len();
-        let MaterialLook { is_double_sided, alpha_cutoff } = look;
+        let MaterialLook { is_double_sided, alpha_cutoff, opacity, emission } = look;
         let alpha_cutoff = if texture.is_some() { alpha_cutoff } else { 0.0 };
         let triangles_of_part = triangles.len();
         self.parts.push(SkinPart {
@@ -441,6 +442,8 @@ impl MeshBuilder {
             texture,
             is_double_sided,
             alpha_cutoff,
+            opacity,
+            emission,
         });
         let shifted = triangles.into_iter().map(|it| it.map(|corner| corner + first as u32));
         self.mesh.triangles.extend(shifted);
