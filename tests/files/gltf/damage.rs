@@ -104,3 +104,18 @@ fn accessors_shared_by_too_many_channels_are_refused_early() {
         .expect_err("it is refused");
     assert!(message(error).contains("must have at most 20000000 keys"));
 }
+
+#[test]
+fn a_hundred_thousand_skins_of_one_joint_are_read_in_time() {
+    // Each shares a joint with the next, from the last to the first.
+    let count = 100_000;
+    let nodes = "{},".repeat(count);
+    let skins: Vec<String> =
+        (0..count).rev().map(|skin| format!("{{\"joints\":[{},{}]}}", skin, skin + 1)).collect();
+    let text = format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}{{}}],\"skins\":[{}]}}",
+        skins.join(",")
+    );
+    let error = io::parse("x.gltf", &text, &io::OpenOptions::default()).expect_err("refused");
+    assert!(error.to_string().contains("must have at most"), "{error}");
+}

@@ -106,13 +106,15 @@ fn first_skins(file: &GltfFile<'_>, nodes: &NodeTree) -> Vec<usize> {
     let mut above: HashMap<usize, usize> = HashMap::new();
     let mut firsts: Vec<usize> = (0..file.skins.0.len()).collect();
     let mut unite = |one: usize, other: usize| {
-        let root = |firsts: &[usize], mut skin: usize| {
+        // Each skin that is passed comes nearer to its first one, so that ways stay short.
+        let mut root = |mut skin: usize| {
             while firsts[skin] != skin {
+                firsts[skin] = firsts[firsts[skin]];
                 skin = firsts[skin];
             }
             skin
         };
-        let (one, other) = (root(&firsts, one), root(&firsts, other));
+        let (one, other) = (root(one), root(other));
         firsts[one.max(other)] = one.min(other);
     };
     let all: Vec<Vec<usize>> = file.skins.0.iter().map(joints_of).collect();

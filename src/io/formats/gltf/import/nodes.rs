@@ -223,7 +223,8 @@ impl SkinJoints {
         }
         let roots = nodes.roots();
         let own: HashSet<usize> = listed.iter().map(|node| roots[*node]).collect();
-        let others = (0..file.skins.0.len()).filter(|skin| !skins.contains(skin));
+        let own_skins: HashSet<usize> = skins.iter().copied().collect();
+        let others = (0..file.skins.0.len()).filter(|skin| !own_skins.contains(skin));
         let others = others.flat_map(|skin| &file.skins.0[skin].joints);
         let of_others: HashSet<usize> = others.map(|joint| joint.0 as usize).collect();
         let is_added = |node: &usize| {

@@ -8,7 +8,7 @@
 //! set. A mesh on a node without a skin follows the nearest joint j above
 //! it rigidly: with the node's transform N, its vertices become A_j⁻¹·N·v.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::{Affine2, DAffine3, DMat4, DVec3, Vec3};
 
@@ -200,6 +200,8 @@ impl MeshImport<'_> {
     fn meshes(&self) -> Result<Vec<UsedMesh<'_>>, FieldError> {
         let file = self.file;
         let nearest = self.nearest_joints();
+        let skins = self.figure.skins.iter().enumerate();
+        let places: HashMap<usize, usize> = skins.map(|(place, skin)| (*skin, place)).collect();
         let mut meshes: Vec<UsedMesh<'_>> = Vec::new();
         let mut with_skin = BTreeSet::new();
         for (node, fields) in file.nodes.0.iter().enumerate() {
@@ -209,8 +211,8 @@ impl MeshImport<'_> {
                 FieldError::new(at_node(node).key("mesh"), reason)
             })?;
             let skin = fields.skin.map(|skin| skin.0 as usize);
-            let of_figure = |skin: usize| self.figure.skins.iter().position(|other| *other == skin);
-            let follows = match (skin, skin.and_then(of_figure), nearest[node]) {
+            let of_figure = skin.and_then(|skin| places.get(&skin).copied());
+            let follows = match (skin, of_figure, nearest[node]) {
                 // The place of its node makes no difference to a mesh with a skin.
                 (_, Some(skin), _) if with_skin.insert((index, skin)) => Follows::Skin(skin),
                 (None, _, Some(joint)) => Follows::Joint(joint),
