@@ -76,8 +76,10 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
         normal = -normal;
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
-    let reflected = lit(mix(own, of_weight, look.has_weights), normal);
-    let colour = saturate(encoded(decoded(reflected) + decoded(part.emission * (1.0 - look.has_weights))));
+    let emitted = decoded(part.emission * (1.0 - look.has_weights));
+    let light = reflected(mix(own, of_weight, look.has_weights), normal) + emitted;
+    // As bright as `encoded` is exact.
+    let colour = encoded(min(light, vec3f(1.4)));
     return vec4f(in_scene(colour, s.world, s.position.xy), opacity);
 }
 

@@ -81,12 +81,17 @@ fn encoded(light: vec3f) -> vec3f {
     return select(high, light * 12.92, light <= vec3f(0.0031308));
 }
 
-// Diffuse shading by both lights and the ambient light.
-fn lit(colour: vec3f, normal: vec3f) -> vec3f {
+// Light that a surface reflects from both lights and the ambient light.
+fn reflected(colour: vec3f, normal: vec3f) -> vec3f {
     let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, normal.y * 0.5 + 0.5);
     let key = KEY * max(dot(normal, KEY_DIRECTION), 0.0);
     let fill = FILL * max(dot(normal, FILL_DIRECTION), 0.0);
-    return encoded(decoded(colour) * (ambient + key + fill));
+    return decoded(colour) * (ambient + key + fill);
+}
+
+// Diffuse shading.
+fn lit(colour: vec3f, normal: vec3f) -> vec3f {
+    return encoded(reflected(colour, normal));
 }
 
 // Radii at which the ground and the vertical grids have faded out, as multiples of the planes'

@@ -73,8 +73,8 @@ impl SkinMaterials {
                 corners,
                 group,
                 is_textured,
-                is_double_sided: part.is_double_sided,
-                is_blended: part.opacity.is_some(),
+                is_double_sided: part.look.is_double_sided,
+                is_blended: part.look.opacity.is_some(),
             });
         }
         materials
@@ -82,8 +82,8 @@ impl SkinMaterials {
 
     fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
         let look = [
-            Vec3::from(part.colour).extend(part.alpha_cutoff),
-            Vec3::from(part.emission).extend(part.opacity.unwrap_or(1.0)),
+            Vec3::from(part.colour).extend(part.look.alpha_cutoff),
+            Vec3::from(part.look.emission).extend(part.look.opacity.unwrap_or(1.0)),
         ];
         let look = gpu.filled_buffer("skin part", &look, wgpu::BufferUsages::UNIFORM);
         let resources = [

@@ -9,7 +9,8 @@ use ik_arm::io::{self, Opened, Progress};
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::skin::{SkinnedMesh, Skinning, TriangleMesh, VertexWeights};
 use ik_arm::rig::{
-    AttachedMesh, FileMesh, MeshSkin, SkeletonRig, SkinFileError, SkinPart, SkinSource, SkinTexture,
+    AttachedMesh, FileMesh, MeshSkin, PartLook, SkeletonRig, SkinFileError, SkinPart, SkinSource,
+    SkinTexture,
 };
 use pollster::block_on;
 
@@ -44,10 +45,12 @@ fn figure(joints: usize, seed: u64) -> Document {
     let part = |triangles, texture| SkinPart {
         colour: [1.0, 0.5, 0.25],
         texture,
-        is_double_sided: triangles > 5,
-        alpha_cutoff: 0.25,
-        opacity: (triangles > 5).then_some(0.5),
-        emission: [0.5, 0.0, 1.0],
+        look: PartLook {
+            is_double_sided: triangles > 5,
+            alpha_cutoff: 0.25,
+            opacity: (triangles > 5).then_some(0.5),
+            emission: [0.5, 0.0, 1.0],
+        },
         ..SkinPart::white(triangles)
     };
     let mesh = FileMesh {

@@ -9,7 +9,7 @@ use ik_arm::kinematics::skin::{
     BindSet, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use ik_arm::render::SkinDeformer;
-use ik_arm::rig::{FileMesh, MeshSkin, SkeletonRig, SkinPart, SkinSource, SkinTexture};
+use ik_arm::rig::{FileMesh, MeshSkin, PartLook, SkeletonRig, SkinPart, SkinSource, SkinTexture};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
 use pollster::block_on;
@@ -124,7 +124,8 @@ fn channel_at(picture: &image::RgbaImage, x: f32, y: f32) -> usize {
 #[test]
 fn a_double_sided_part_is_seen_from_behind_and_lit_as_from_outside() {
     let seen = |is_double_sided: bool, yaw: f32| {
-        let part = SkinPart { colour: [1.0, 0.1, 0.1], is_double_sided, ..SkinPart::white(2) };
+        let look = PartLook { is_double_sided, ..PartLook::default() };
+        let part = SkinPart { colour: [1.0, 0.1, 0.1], look, ..SkinPart::white(2) };
         let mut document = square(vec![part]);
         document.camera.yaw = yaw;
         let picture = draw(&Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark));
@@ -148,7 +149,10 @@ fn see_through_parts_let_what_is_behind_through_and_shining_ones_are_as_bright_a
         let picture = draw(&Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark));
         picture.get_pixel(picture.width() / 2 + 9, picture.height() / 2 + 9).0
     };
-    let of = |opacity| middle(SkinPart { colour: [1.0, 0.1, 0.1], opacity, ..SkinPart::white(2) });
+    let of = |opacity| {
+        let look = PartLook { opacity, ..PartLook::default() };
+        middle(SkinPart { colour: [1.0, 0.1, 0.1], look, ..SkinPart::white(2) })
+    };
     let (opaque, half, none) = (of(None), of(Some(0.5)), of(Some(0.0)));
     assert_eq!(of(Some(1.0)), opaque);
     for channel in 0..3 {
@@ -156,8 +160,8 @@ fn see_through_parts_let_what_is_behind_through_and_shining_ones_are_as_bright_a
         assert!(mean.abs_diff(half[channel].into()) <= 25, "{opaque:?}, {half:?}, {none:?}");
     }
     assert!(half[0] < opaque[0] && half[0] > none[0], "{opaque:?}, {half:?}, {none:?}");
-    let shining =
-        middle(SkinPart { colour: [0.0; 3], emission: [0.1, 0.9, 0.1], ..SkinPart::white(2) });
+    let look = PartLook { emission: [0.1, 0.9, 0.1], ..PartLook::default() };
+    let shining = middle(SkinPart { colour: [0.0; 3], look, ..SkinPart::white(2) });
     assert!(shining[1] > 200 && shining[0] < 90, "{shining:?}");
 }
 
@@ -178,7 +182,8 @@ fn texels_below_the_cutoff_are_not_drawn() {
     texture.pixels(|_| Ok(pixels)).expect("pixels");
     let texture = Some(Shared::from(texture));
     let red_at = |alpha_cutoff: f32, x: f32| {
-        let part = SkinPart { texture: texture.clone(), alpha_cutoff, ..SkinPart::white(2) };
+        let look = PartLook { alpha_cutoff, ..PartLook::default() };
+        let part = SkinPart { texture: texture.clone(), look, ..SkinPart::white(2) };
         let picture =
             draw(&Scene::new(&square(vec![part]).at(0.0), &Overlays::default(), Theme::Dark));
         let (width, height) = (picture.width() as f32, picture.height() as f32);

@@ -232,6 +232,13 @@ pub struct SkinPart {
     pub colour: [f32; 3],
     /// Image that colours the triangles by the mesh's texture coordinates, repeated beyond 0 to 1.
     pub texture: Option<Shared<SkinTexture>>,
+    /// How the triangles are drawn, beside their colour.
+    pub look: PartLook,
+}
+
+/// How triangles of a skin are drawn, beside their colour; by default opaque and from outside alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PartLook {
     /// True if the triangles are seen from both sides.
     pub is_double_sided: bool,
     /// Opacity of the texture, from 0 to 1, below which nothing is drawn; 0 to draw all.
@@ -244,17 +251,9 @@ pub struct SkinPart {
 }
 
 impl SkinPart {
-    /// A white part with so many triangles, seen from outside.
+    /// A white part with so many triangles.
     pub fn white(triangles: usize) -> Self {
-        Self {
-            triangles,
-            colour: [1.0; 3],
-            texture: None,
-            is_double_sided: false,
-            alpha_cutoff: 0.0,
-            opacity: None,
-            emission: [0.0; 3],
-        }
+        Self { triangles, colour: [1.0; 3], texture: None, look: PartLook::default() }
     }
 
     /// The textures of parts, each once, in the order of the parts that have them first.

@@ -34,7 +34,7 @@ pub use evaluate::{EvaluatedSkeleton, TargetOutcome, TargetReport, TargetSpaceEr
 pub use follow_path::{FollowPath, PathKind, WavyRing};
 pub use limb_frames::{LimbFrames, LimbPart};
 pub use mesh_skin::{
-    AttachedMesh, FileMesh, MeshSkin, SkinFile, SkinFileError, SkinPart, SkinTexture,
+    AttachedMesh, FileMesh, MeshSkin, PartLook, SkinFile, SkinFileError, SkinPart, SkinTexture,
 };
 pub use pop_cause::RigPopCause;
 pub use pops::{RigMoment, RigPop};

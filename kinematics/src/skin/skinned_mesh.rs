@@ -154,12 +154,8 @@ impl SkinnedMesh {
     pub fn posed_vertex(&self, pose: &SkinPose, skinning: Skinning, vertex: u32) -> Vec3 {
         let vertex = vertex as usize;
         let position = self.mesh.positions[vertex];
-        let mut before = 0;
-        let ends = self.bind_sets.iter().map(|set| {
-            before += set.vertices;
-            before
-        });
-        let first = ends.take_while(|end| *end <= vertex).count() * self.inverse_binds().len();
+        let set = self.sets_of_vertices().nth(vertex).unwrap_or_default();
+        let first = set * self.inverse_binds().len();
         let blend = pose.blend(first, &self.weights[vertex], position, skinning);
         pose.to_world().transform_point3(blend.transform_point3(position))
     }

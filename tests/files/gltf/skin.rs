@@ -416,6 +416,17 @@ fn encoded(colour: [u8; 3], format: image::ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// Repeats the only primitive, once with each of the first materials.
+fn repeat_with_materials(text: &mut Text, count: usize) {
+    let first = primitive(text).clone();
+    let with = |material: usize| {
+        let mut primitive = first.clone();
+        primitive["material"] = json!(material);
+        primitive
+    };
+    text.json["meshes"][0]["primitives"] = (0..count).map(with).collect();
+}
+
 #[test]
 fn base_colours_and_their_textures_are_read_from_every_place() {
     let strip = Strip::new();
@@ -423,15 +434,7 @@ fn base_colours_and_their_textures_are_read_from_every_place() {
     let jpeg = encoded([200, 100, 50], image::ImageFormat::Jpeg);
     std::fs::write(folder.path().join("skin 1.jpg"), &jpeg).expect("a file");
     let mut text = strip.text();
-    let first = primitive(&mut text).clone();
-    let primitives: Vec<Value> = (0..4)
-        .map(|material| {
-            let mut primitive = first.clone();
-            primitive["material"] = json!(material);
-            primitive
-        })
-        .collect();
-    text.json["meshes"][0]["primitives"] = json!(primitives);
+    repeat_with_materials(&mut text, 4);
     let view = text.view(&png([10, 20, 30]));
     text.json["images"] = json!([
         { "bufferView": view, "mimeType": "image/png" },
@@ -492,15 +495,7 @@ fn what_is_not_read_is_told_in_one_remark() {
 fn both_sides_alpha_emission_and_moved_textures_are_read_and_written() {
     let strip = Strip::new();
     let mut text = strip.text();
-    let first = primitive(&mut text).clone();
-    let primitives: Vec<Value> = (0..5)
-        .map(|material| {
-            let mut primitive = first.clone();
-            primitive["material"] = json!(material);
-            primitive
-        })
-        .collect();
-    text.json["meshes"][0]["primitives"] = json!(primitives);
+    repeat_with_materials(&mut text, 5);
     let uri = format!("data:image/png;base64,{}", base64(&png([10, 20, 30])));
     text.json["images"] = json!([{ "uri": uri }]);
     text.json["textures"] = json!([{ "source": 0 }]);
@@ -533,12 +528,14 @@ fn both_sides_alpha_emission_and_moved_textures_are_read_and_written() {
         let parts = &attached(opened).parts;
         let told: Vec<_> = parts
             .iter()
-            .map(|part| (part.is_double_sided, (part.alpha_cutoff * 1000.0).round() as u32))
+            .map(|part| {
+                (part.look.is_double_sided, (part.look.alpha_cutoff * 1000.0).round() as u32)
+            })
             .collect();
         assert_eq!(told, [(true, 0), (false, 625), (false, 300), (false, 0)]);
-        let opacities: Vec<_> = parts.iter().map(|part| part.opacity).collect();
+        let opacities: Vec<_> = parts.iter().map(|part| part.look.opacity).collect();
         assert_eq!(opacities, [None, None, None, Some(0.25)]);
-        let emission = parts[3].emission;
+        let emission = parts[3].look.emission;
         assert!((emission[1] - 0.5).abs() < 1e-4 && emission[2] == 1.0, "{emission:?}");
         let coordinates = &attached(opened).mesh.mesh().texture_coordinates;
         let count = strip.coordinates.len();

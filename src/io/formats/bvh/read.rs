@@ -313,15 +313,15 @@ impl MotionData {
         let mut start = 0;
         let mut placed: Vec<(usize, bool)> = Vec::new();
         for (index, node) in nodes.iter().enumerate() {
-            let channels = node.channels.iter().zip(start..);
-            let positions = channels.filter(|(it, _)| matches!(it, BvhChannel::Position(_)));
-            let columns: Vec<usize> = positions.map(|(_, column)| column).collect();
-            start += node.channels.len();
-            let rows = || self.values.chunks_exact(self.width.max(1));
-            let is_zero = rows().all(|row| columns.iter().all(|column| row[*column] == 0.0));
-            if !columns.is_empty() {
-                placed.push((index, is_zero));
+            let is_position = |channel: &BvhChannel| matches!(channel, BvhChannel::Position(_));
+            if node.channels.iter().any(is_position) {
+                let is_still = |row: &[f32]| {
+                    let mut values = node.channels.iter().zip(row);
+                    values.all(|(channel, value)| !is_position(channel) || *value == 0.0)
+                };
+                placed.push((index, self.channels(start, node.channels.len()).all(is_still)));
             }
+            start += node.channels.len();
         }
         let inner = || placed.iter().filter(|(index, _)| nodes[*index].parent.is_some());
         let are_lost = self.frames > 0

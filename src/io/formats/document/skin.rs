@@ -21,7 +21,8 @@ use crate::kinematics::skin::{
     BindSet, Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use crate::rig::{
-    BoneSkin, FileMesh, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart, SkinSource, SkinTexture,
+    BoneSkin, FileMesh, MeshSkin, PartLook, Skin, SkinFile, SkinFileError, SkinPart, SkinSource,
+    SkinTexture,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -198,9 +199,9 @@ struct SkinPartFields {
     #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     double_sided: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    alpha_cutoff: Option<JsonNumber>,
+    alpha_cutoff: Option<Fraction>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    opacity: Option<JsonNumber>,
+    opacity: Option<Fraction>,
     #[serde(skip_serializing_if = "Option::is_none")]
     emission: Option<JsonNumbers<3>>,
 }
@@ -396,15 +397,16 @@ impl FileMeshFields {
 impl SkinPartFields {
     fn new(part: &SkinPart, textures: &[&Shared<SkinTexture>]) -> Self {
         let whole = |number| Whole(u32::try_from(number).unwrap_or(u32::MAX));
+        let PartLook { is_double_sided, alpha_cutoff, opacity, emission } = part.look;
         let index = |texture| textures.iter().position(|known| known.is_same(texture));
         Self {
             triangles: whole(part.triangles),
             colour: JsonNumbers(part.colour),
             texture: part.texture.as_ref().and_then(index).map(whole),
-            double_sided: part.is_double_sided,
-            alpha_cutoff: (part.alpha_cutoff > 0.0).then(|| part.alpha_cutoff.into()),
-            opacity: part.opacity.map(JsonNumber),
-            emission: (part.emission != [0.0; 3]).then_some(JsonNumbers(part.emission)),
+            double_sided: is_double_sided,
+            alpha_cutoff: (alpha_cutoff > 0.0).then(|| alpha_cutoff.into()),
+            opacity: opacity.map(Fraction::from),
+            emission: (emission != [0.0; 3]).then_some(JsonNumbers(emission)),
         }
     }
 
@@ -415,17 +417,14 @@ impl SkinPartFields {
                 format!("must be below {count}, the number of textures, got {index}")
             })
         };
-        let fraction = |number: Option<JsonNumber>| match number {
-            Some(JsonNumber(number)) if !(0.0..=1.0).contains(&number) => {
-                Err(format!("must be 0 to 1, got {number}"))
-            }
-            number => Ok(number.map(|JsonNumber(number)| number)),
+        let look = PartLook {
+            is_double_sided: self.double_sided,
+            alpha_cutoff: value_or(self.alpha_cutoff, 0.0),
+            opacity: self.opacity.map(f32::from),
+            emission: self.emission.map(colour).transpose().at("emission")?.unwrap_or_default(),
         };
         Ok(SkinPart {
-            is_double_sided: self.double_sided,
-            alpha_cutoff: fraction(self.alpha_cutoff).at("alpha_cutoff")?.unwrap_or(0.0),
-            opacity: fraction(self.opacity).at("opacity")?,
-            emission: self.emission.map(colour).transpose().at("emission")?.unwrap_or([0.0; 3]),
+            look,
             triangles: self.triangles.0 as usize,
             colour: colour(self.colour)?,
             texture: self.texture.map(texture).transpose().at("texture")?,

@@ -61,27 +61,21 @@ pub struct GltfExtensions {
 }
 
 impl GltfExtensions {
-    /// The nodes of a humanoid by the names of their bones in VRM, like `leftUpperArm`; empty without
-    /// one. What is no number of a node is left out.
-    pub fn humanoid(&self) -> BTreeMap<String, usize> {
-        let number = |node: Option<&serde_json::Value>| usize::try_from(node?.as_u64()?).ok();
-        let bones = |value: &serde_json::Value| value.get("humanoid")?.get("humanBones").cloned();
+    /// The nodes that are bones of a humanoid; none without one. What is no number of a node is left
+    /// out.
+    pub fn humanoid(&self) -> Vec<usize> {
+        let bones = |vrm: &'_ serde_json::Value| {
+            let bones = vrm.get("humanoid")?.get("humanBones")?;
+            let node = |bone: &serde_json::Value| usize::try_from(bone.get("node")?.as_u64()?).ok();
+            // By names, or in VRM 0.x as a list.
+            Some(match bones {
+                serde_json::Value::Object(bones) => bones.values().filter_map(node).collect(),
+                serde_json::Value::Array(bones) => bones.iter().filter_map(node).collect(),
+                _ => Vec::new(),
+            })
+        };
         let all = [&self.vrm_1, &self.vrm_animation, &self.vrm_0];
-        match all.into_iter().flatten().find_map(bones) {
-            Some(serde_json::Value::Object(bones)) => {
-                let bone = |(name, bone): (String, serde_json::Value)| {
-                    Some((name, number(bone.get("node"))?))
-                };
-                bones.into_iter().filter_map(bone).collect()
-            }
-            Some(serde_json::Value::Array(bones)) => {
-                let bone = |bone: serde_json::Value| {
-                    Some((bone.get("bone")?.as_str()?.to_owned(), number(bone.get("node"))?))
-                };
-                bones.into_iter().filter_map(bone).collect()
-            }
-            _ => BTreeMap::new(),
-        }
+        all.into_iter().flatten().find_map(bones).unwrap_or_default()
     }
 
     /// Returns whether the file is a figure of VRM 0.x, which looks along −z.

@@ -8,6 +8,7 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::rig::PartLook;
 
 #[derive(Default, Deserialize, Serialize)]
 pub struct GltfMaterial {
@@ -34,8 +35,8 @@ pub struct GltfMaterial {
 impl GltfMaterial {
     /// A surface without gloss, with the look of a part of a skin and the index of its texture.
     /// `colour` has sRGB channels from 0 to 1.
-    pub fn matte(colour: [f32; 3], texture: Option<Whole>, look: &MaterialLook) -> Self {
-        let MaterialLook { is_double_sided, alpha_cutoff, opacity, emission } = *look;
+    pub fn matte(colour: [f32; 3], texture: Option<Whole>, look: &PartLook) -> Self {
+        let PartLook { is_double_sided, alpha_cutoff, opacity, emission } = *look;
         let is_masked = alpha_cutoff > 0.0;
         let alpha_mode = match opacity {
             Some(_) => "BLEND",
@@ -70,8 +71,8 @@ impl GltfMaterial {
         texture.as_ref().map(|JsonObject(texture)| texture)
     }
 
-    /// How the surface is drawn.
-    pub fn look(&self) -> MaterialLook {
+    /// How the surface is drawn; with an `alpha_cutoff` above 1, not at all.
+    pub fn look(&self) -> PartLook {
         /// The least opacity that is drawn if the file does not tell it.
         const CUTOFF: f32 = 0.5;
         let factor = self.roughness.as_ref().map_or(1.0, |JsonObject(it)| it.opacity());
@@ -85,7 +86,7 @@ impl GltfMaterial {
         };
         let is_blended = self.alpha_mode.as_deref() == Some("BLEND");
         let emission = self.emissive.map_or(Vec3::ZERO, |it| it.0).to_array().map(srgb);
-        MaterialLook {
+        PartLook {
             is_double_sided: self.double_sided.unwrap_or(false),
             alpha_cutoff,
             opacity: is_blended.then_some(factor),
@@ -117,18 +118,6 @@ impl GltfMaterial {
         let of_texture = of_texture.filter(|name| *name != TEXTURE_TRANSFORM);
         named.chain(self.extensions.keys().chain(of_texture).cloned())
     }
-}
-
-/// How a surface is drawn, beside its colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MaterialLook {
-    pub is_double_sided: bool,
-    /// Opacity of the texture below which nothing is drawn; 0 to draw all, above 1 to draw nothing.
-    pub alpha_cutoff: f32,
-    /// Factor of the opacity of what is drawn over what is behind it; `None` for opaque surfaces.
-    pub opacity: Option<f32>,
-    /// Light that is given off, as sRGB channels from 0 to 1.
-    pub emission: [f32; 3],
 }
 
 /// The extension that moves texture coordinates.

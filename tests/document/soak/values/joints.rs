@@ -14,8 +14,8 @@ use ik_arm::kinematics::skin::{
 };
 use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{
-    Aim, BoneSkin, FileMesh, LimbSettings, MeshSkin, Skin, SkinFile, SkinFileError, SkinPart,
-    SkinSource, TargetKind, TargetSpace,
+    Aim, BoneSkin, FileMesh, LimbSettings, MeshSkin, PartLook, Skin, SkinFile, SkinFileError,
+    SkinPart, SkinSource, TargetKind, TargetSpace,
 };
 
 use super::Values;
@@ -106,8 +106,11 @@ impl Values<'_> {
             let missing = SkinFileError::Missing(file.path.clone());
             return MeshSkin::without_mesh(file, joints, missing);
         };
-        let part =
-            SkinPart { colour: [1.0, 0.5, 0.0], is_double_sided: true, ..SkinPart::white(2) };
+        let part = SkinPart {
+            colour: [1.0, 0.5, 0.0],
+            look: PartLook { is_double_sided: true, ..PartLook::default() },
+            ..SkinPart::white(2)
+        };
         let parents = skeleton.joints().iter().map(|joint| joint.parent).collect();
         let mesh = FileMesh { mesh, parents, parts: vec![part] };
         MeshSkin::new(mesh.into(), None, joints, &skeleton)

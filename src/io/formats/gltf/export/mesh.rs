@@ -7,11 +7,11 @@ use super::GlbError;
 use super::nodes::JointNodes;
 use super::rig::{GltfRig, joint_spaces};
 use crate::document::{Document, Skin};
-use crate::io::formats::gltf::material::{MaterialLook, linear};
+use crate::io::formats::gltf::material::linear;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
-use crate::rig::{AttachedMesh, SkinTexture};
+use crate::rig::{AttachedMesh, PartLook, SkinTexture};
 
 /// The mesh of an exported rig.
 pub struct RigMesh {
@@ -29,7 +29,7 @@ pub struct MeshPart {
     pub colour: [f32; 3],
     /// Index in [`RigMesh::attached`].
     pub set: usize,
-    pub look: MaterialLook,
+    pub look: PartLook,
     /// Image that multiplies the colour.
     pub texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
@@ -72,25 +72,18 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
         let (triangles, others) = rest.split_at(part.triangles.min(rest.len()));
         rest = others;
         let colour = std::array::from_fn(|channel| skin.colour[channel] * part.colour[channel]);
-        for set in 0..mesh.mesh.bind_sets().len() {
-            let of_set = triangles.iter().filter(|corners| sets[corners[0] as usize] == set);
-            let corners: Vec<u32> = of_set
-                .flat_map(|[a, b, c]| if is_mirrored { [*a, *c, *b] } else { [*a, *b, *c] })
-                .collect();
-            if !corners.is_empty() {
-                parts.push(MeshPart {
-                    colour,
-                    set,
-                    look: MaterialLook {
-                        is_double_sided: part.is_double_sided,
-                        alpha_cutoff: part.alpha_cutoff,
-                        opacity: part.opacity,
-                        emission: part.emission,
-                    },
-                    texture: part.texture.clone(),
-                    ..of_corners(&mesh.mesh, &corners, part.texture.is_some())
-                });
-            }
+        let set_of = |corners: &[u32; 3]| sets[corners[0] as usize];
+        for of_set in triangles.chunk_by(|one, other| set_of(one) == set_of(other)) {
+            let corners = of_set
+                .iter()
+                .flat_map(|[a, b, c]| if is_mirrored { [*a, *c, *b] } else { [*a, *b, *c] });
+            parts.push(MeshPart {
+                colour,
+                set: set_of(&of_set[0]),
+                look: part.look,
+                texture: part.texture.clone(),
+                ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), part.texture.is_some())
+            });
         }
     }
     parts

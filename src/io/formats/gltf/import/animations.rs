@@ -102,9 +102,7 @@ pub fn timeline(
     if start == end {
         return Ok(None);
     }
-    let mut times: Vec<f64> = tracks.times().map(|time| time - start).collect();
-    times.sort_unstable_by(f64::total_cmp);
-    times.dedup();
+    let times: Vec<f64> = tracks.distinct_times().into_iter().map(|time| time - start).collect();
     let rounded = |time: f64| ((time + start) * f64::from(f32::EPSILON)).max(1e-7);
     let found = own_rate.or_else(|| frame_rate::of_times(&times, rounded));
     let found = found.or_else(|| frame_rate::of_times(&times, |_| 2e-6));
@@ -294,6 +292,14 @@ impl<'a> NodeTracks<'a> {
     /// Times of all keys in seconds, unsorted.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
         self.tracks.iter().flat_map(|track| (0..track.len()).map(|key| track.time(key)))
+    }
+
+    /// Times of all keys in seconds, ascending, each once.
+    pub fn distinct_times(&self) -> Vec<f64> {
+        let mut times: Vec<f64> = self.times().collect();
+        times.sort_unstable_by(f64::total_cmp);
+        times.dedup();
+        times
     }
 
     /// Sets the transforms of the animated nodes in `locals` to their values at `time`, in seconds.

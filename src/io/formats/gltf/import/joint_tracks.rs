@@ -149,7 +149,8 @@ pub fn sample(
     bind_pose: &[JointPlacement],
 ) -> Result<Vec<JointTracks>, FieldError> {
     let mut keys = Keys::default();
-    for (index, of_node) in exact.iter().enumerate() {
+    let sampled_by = exact.iter().enumerate().filter(|_| !times.is_empty());
+    for (index, of_node) in sampled_by {
         if let Some(rotation) = &of_node.rotation {
             keys.set_track(Channel::Rotation(JointId::new(index)), rotation.clone());
         }
@@ -179,12 +180,16 @@ pub fn sample(
             let rotation = own.unwrap_or(now.frame * bind_pose[index].frame.transpose());
             rotations.push(rotation);
             let of_joint = &mut sampled[index];
-            let frame = bind_pose[index].frame;
-            let local = frame.transpose() * (above.transpose() * rotation) * frame;
-            of_joint.last = exact_angles::nearest(local, of_joint.last);
             let knot = |interpolation, value| Knot { interpolation, ..Knot::new(time, value) };
-            of_joint.rotation.push(knot(Interpolation::Slerp, of_joint.last.as_vec3()));
-            of_joint.offset.push(knot(Interpolation::Linear, offset));
+            if exact[index].rotation.is_none() {
+                let frame = bind_pose[index].frame;
+                let local = frame.transpose() * (above.transpose() * rotation) * frame;
+                of_joint.last = exact_angles::nearest(local, of_joint.last);
+                of_joint.rotation.push(knot(Interpolation::Slerp, of_joint.last.as_vec3()));
+            }
+            if exact[index].offset.is_none() {
+                of_joint.offset.push(knot(Interpolation::Linear, offset));
+            }
         }
     }
     let complete = |(exact, sampled): (ExactJoint, SampledJoint)| JointTracks {

@@ -1,6 +1,7 @@
 //! Import of the skeleton of a skin, with its motion.
 
 mod animations;
+mod bind_tables;
 mod buffers;
 mod exact_tracks;
 mod figures;
@@ -52,10 +53,10 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     let figures = figures::figures(&file, &nodes, &parts);
     let names: Vec<String> = figures.iter().map(|figure| figure.name.clone()).collect();
     let chosen = match &options.skeleton {
-        Some(name) => figures.iter().find(|figure| figure.is_called(name)),
-        None => figures.first(),
+        Some(name) => figures.iter().position(|figure| figure.is_called(name)),
+        None => (!figures.is_empty()).then_some(0),
     };
-    let Some(figure) = chosen else {
+    let Some(index) = chosen else {
         return Err(match &options.skeleton {
             Some(name) => {
                 OpenError::NoSkeleton { file: source.name().to_owned(), name: name.clone(), names }
@@ -63,6 +64,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
             None => source.error(&no_skeleton()),
         });
     };
+    let figure = &figures[index];
     let joints = match figure.skins.is_empty() {
         false => SkinJoints::new(&file, &nodes, &figure.skins, &parts),
         true => Ok(SkinJoints::of_parts(&file, &nodes, &parts)),
@@ -95,7 +97,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
         document,
         warnings: source.warnings(&warnings),
         order: joints.in_order_of_file().filter_map(|it| kept[it]).map(JointId::new).collect(),
-        skeleton: names.iter().position(|name| *name == figure.name),
+        skeleton: Some(index),
         skeletons: names,
         animations: described,
         animation,
@@ -241,10 +243,7 @@ fn sampled_times(
     at: JsonPath,
 ) -> Result<Vec<f64>, FieldError> {
     let frames = timeline.map_or(0, |timeline| timeline.frames());
-    let on_frame = |time| timeline.map_or(time, |timeline| animations::on_frame(time, timeline));
-    let mut times: Vec<f64> = tracks.times().map(on_frame).collect();
-    times.sort_unstable_by(f64::total_cmp);
-    times.dedup();
+    let mut times = tracks.distinct_times();
     let count = frames.saturating_add(times.len());
     if count.saturating_mul(posed) > MOST_SAMPLES {
         let most = MOST_SAMPLES / posed;
@@ -252,7 +251,10 @@ fn sampled_times(
             format!("must have at most {most} frames and keys of {posed} nodes, got {count}");
         return Err(FieldError::new(at, reason));
     }
-    times.extend(timeline.into_iter().flat_map(|it| (0..frames).map(move |frame| it.time(frame))));
+    if let Some(timeline) = timeline {
+        times.iter_mut().for_each(|time| *time = animations::on_frame(*time, timeline));
+        times.extend((0..frames).map(|frame| timeline.time(frame)));
+    }
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     Ok(times)

@@ -6,14 +6,12 @@ use super::buffers::{GltfBuffers, is_file, read_uri};
 use super::rows::{AccessorRows, at_accessor, view_bytes};
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
-use crate::io::formats::gltf::material::{
-    GltfImage, GltfMaterial, GltfTextureUse, MaterialLook, Uri, srgb,
-};
+use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTextureUse, Uri, srgb};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::source::Source;
 use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
-use crate::rig::SkinTexture;
+use crate::rig::{PartLook, SkinTexture};
 
 /// The part of a material that a skin uses.
 #[derive(Clone)]
@@ -23,12 +21,12 @@ pub struct PartMaterial {
     pub texture: Option<Shared<SkinTexture>>,
     /// What moves the texture coordinates.
     pub moved: Option<Affine2>,
-    pub look: MaterialLook,
+    pub look: PartLook,
 }
 
 impl PartMaterial {
     /// White with a look.
-    pub fn white(look: MaterialLook) -> Self {
+    pub fn white(look: PartLook) -> Self {
         Self { colour: [1.0; 3], texture: None, moved: None, look }
     }
 

@@ -166,10 +166,9 @@ impl<'a> KeySampler<'a> {
     /// Returns whether a scale is uneven by more than `least` of itself at a key or a tangent of a
     /// key, or at a key not above 0.
     pub fn is_uneven(&self, least: f64) -> bool {
-        let keys = 0..self.len();
         let is_uneven =
             |scale: DVec3, size: f64| scale.max_element() - scale.min_element() > least * size;
-        keys.into_iter().any(|key| {
+        (0..self.len()).any(|key| {
             let scale = self.key_point(key);
             let slopes = self.tangents(key).into_iter().flatten();
             let size = scale.abs().max_element();

@@ -10,21 +10,22 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use glam::{Affine2, DAffine3, DMat4, DVec3, Vec3};
+use glam::{Affine2, DAffine3, DVec3, Vec3};
 
+use super::bind_tables::{BindTable, BindTables};
 use super::buffers::{GltfBuffers, is_file};
 use super::figures::Figure;
 use super::joint_tracks::JointPlacement;
 use super::nodes::{NodeTree, SkinJoints, at_node, at_skin};
 use super::primitive::{ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, image_view};
-use super::rows::{AccessorRows, at_accessor, buffer_of_view, buffers_of};
+use super::rows::{buffer_of_view, buffers_of};
 use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
-use crate::io::formats::gltf::material::{GltfMaterial, MaterialLook, Uri};
+use crate::io::formats::gltf::material::{GltfMaterial, Uri};
 use crate::io::json::{FieldError, FieldWarnings, JsonPath, Whole};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
-use crate::rig::{FileMesh, SkinPart};
+use crate::rig::{FileMesh, PartLook, SkinPart};
 
 /// Maximum number of primitives of all meshes of a skin.
 const MOST_PARTS: usize = 10_000;
@@ -54,13 +55,6 @@ enum Follows {
     Joint(usize),
     /// The joints of a skin by weights of their own; which of the figure's skins.
     Skin(usize),
-}
-
-/// Transforms A of all joints of the figure, for skins that agree about the joints that they share.
-struct BindTable {
-    attached: Vec<DAffine3>,
-    /// True for joints that a skin lists.
-    is_listed: Vec<bool>,
 }
 
 impl UsedMesh<'_> {
@@ -103,7 +97,8 @@ impl MeshImport<'_> {
             }
         }
         let worlds = nodes.worlds();
-        let (tables, of_skins) = self.bind_tables(&worlds, &buffers)?;
+        let BindTables { tables, of_skins } =
+            BindTables::new(file, &buffers, self.figure, joints, &worlds)?;
         let attached = &tables[0].attached;
         let table_of = |mesh: &UsedMesh<'_>| match mesh.follows {
             Follows::Joint(_) => 0,
@@ -145,7 +140,7 @@ impl MeshImport<'_> {
                 // The corners of a mesh on a mirrored node are in reverse order.
                 let mirrors = rigid.map_or(worlds[mesh.node], |(_, to_mesh)| to_mesh);
                 let is_mirrored = mirrors.matrix3.determinant() < 0.0;
-                let look = look.unwrap_or(PartMaterial::white(MaterialLook::default()));
+                let look = look.unwrap_or(PartMaterial::white(PartLook::default()));
                 if look.is_hidden() {
                     continue;
                 }
@@ -274,63 +269,6 @@ impl MeshImport<'_> {
         Ok(Some((index, found)))
     }
 
-    /// The tables of the transforms A of the joints, at least one, and for each skin its table.
-    fn bind_tables(
-        &self,
-        worlds: &[DAffine3],
-        buffers: &GltfBuffers<'_>,
-    ) -> Result<(Vec<BindTable>, Vec<usize>), FieldError> {
-        let attached = || self.joints.nodes.iter().map(|node| worlds[*node]).collect();
-        let count = self.joints.nodes.len();
-        let new = || BindTable { attached: attached(), is_listed: vec![false; count] };
-        let (mut tables, mut of_skins): (Vec<BindTable>, Vec<usize>) = (Vec::new(), Vec::new());
-        for (skin, joints) in self.figure.skins.iter().zip(&self.joints.of_skins) {
-            let binds = self.attached(*skin, joints, worlds, buffers)?;
-            let listed = || joints.iter().copied().zip(binds.iter().copied());
-            let fitting = tables.iter().position(|table| table.fits(listed()));
-            let place = fitting.unwrap_or_else(|| {
-                tables.push(new());
-                tables.len() - 1
-            });
-            for (joint, bind) in listed() {
-                tables[place].attached[joint] = bind;
-                tables[place].is_listed[joint] = true;
-            }
-            of_skins.push(place);
-            if tables.len().saturating_mul(count) > SkinnedMesh::MOST_BINDS {
-                let most = SkinnedMesh::MOST_BINDS / count;
-                let reason = format!("must be at most the {most}th with transforms of its own");
-                return Err(FieldError::new(at_skin(*skin).key("inverseBindMatrices"), reason));
-            }
-        }
-        if tables.is_empty() {
-            tables.push(new());
-        }
-        Ok((tables, of_skins))
-    }
-
-    /// The transforms A of a skin's joints, in the order of the skin.
-    fn attached(
-        &self,
-        skin: usize,
-        joints: &[usize],
-        worlds: &[DAffine3],
-        buffers: &GltfBuffers<'_>,
-    ) -> Result<Vec<DAffine3>, FieldError> {
-        let nodes = joints.iter().map(|joint| worlds[self.joints.nodes[*joint]]);
-        let Some(accessor) = self.file.skins.0[skin].inverse_binds.map(|it| it.0 as usize) else {
-            return Ok(nodes.collect());
-        };
-        let rows = AccessorRows::new(self.file, buffers, accessor, "MAT4")?;
-        if rows.len() < joints.len() {
-            let (joints, got) = (joints.len(), rows.len());
-            let reason = format!("must be at least {joints}, the number of joints, got {got}");
-            return Err(FieldError::new(at_accessor(accessor).key("count"), reason));
-        }
-        let bind = |row| DAffine3::from_mat4(DMat4::from_cols_array(&rows.row(row)));
-        Ok(nodes.enumerate().map(|(row, world)| world * bind(row)).collect())
-    }
-
     /// Warns once of weights beyond four, and once of everything else that is not read.
     fn warn_of_unread(
         &self,
@@ -379,19 +317,6 @@ impl MeshImport<'_> {
     }
 }
 
-impl BindTable {
-    /// Returns whether the table has the same transforms for all of these joints that it lists.
-    fn fits(&self, mut joints: impl Iterator<Item = (usize, DAffine3)>) -> bool {
-        /// Part of the largest number by which transforms may differ: files have single precision.
-        const ALIKE: f64 = 1e-6;
-        joints.all(|(joint, bind)| {
-            let numbers = bind.to_cols_array();
-            let largest = numbers.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
-            !self.is_listed[joint] || self.attached[joint].abs_diff_eq(bind, ALIKE * largest)
-        })
-    }
-}
-
 /// A mesh in progress.
 #[derive(Default)]
 struct MeshBuilder {
@@ -435,18 +360,9 @@ impl MeshBuilder {
             triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
         let first = self.mesh.positions.len();
-        let MaterialLook { is_double_sided, alpha_cutoff, opacity, emission } = look;
-        let alpha_cutoff = if texture.is_some() { alpha_cutoff } else { 0.0 };
-        let triangles_of_part = triangles.len();
-        self.parts.push(SkinPart {
-            triangles: triangles_of_part,
-            colour,
-            texture,
-            is_double_sided,
-            alpha_cutoff,
-            opacity,
-            emission,
-        });
+        let alpha_cutoff = if texture.is_some() { look.alpha_cutoff } else { 0.0 };
+        let look = PartLook { alpha_cutoff, ..look };
+        self.parts.push(SkinPart { triangles: triangles.len(), colour, texture, look });
         let shifted = triangles.into_iter().map(|it| it.map(|corner| corner + first as u32));
         self.mesh.triangles.extend(shifted);
         let count = positions.len();
