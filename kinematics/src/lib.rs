@@ -25,7 +25,7 @@
 //! | [`batch`], [`soft_reach`], [`twist`] | many arms at once; a hand that slows down before the arm is straight; twist references |
 //! | [`fk`], [`ik`], [`job`], [`pop`] | the arm by its joint angles and by its hand; correcting a limb of another program's skeleton; why an elbow jumped |
 //! | [`skeleton`] | trees of joints, their forward kinematics, their limits and their balance |
-//! | [`limb_ik`], [`skin`] | limbs of skeletons in closed form; skins and how they follow the joints |
+//! | [`humanoid`], [`limb_ik`], [`skin`] | which joints are a person's arms, legs and head; limbs of skeletons in closed form; skins and how they follow the joints |
 //! | [`chain_ik`], [`diagnosis`] | iterative solvers, seen from inside; why a target is not reached and what would help |
 //! | [`rig`] | what is posed: the arm as Root → Limb → Socket, a skeleton with its targets, balance and skin, crowds of arms; steps of motions and their pops; reach regions |
 //!
@@ -46,6 +46,7 @@ pub mod chain_ik;
 pub mod diagnosis;
 pub mod fk;
 pub mod follow;
+pub mod humanoid;
 pub mod ik;
 pub mod job;
 pub mod limb_ik;

@@ -54,6 +54,9 @@ pub struct ConvertArgs {
     /// Length unit of .bvh; scene writes the file's numbers unchanged [default: cm]
     #[arg(long, value_enum)]
     unit: Option<BvhUnit>,
+    /// Add targets to the hands, feet and head of a human-like figure in a document
+    #[arg(long)]
+    add_targets: bool,
     #[command(flatten)]
     time_limit: TimeLimitArgs,
 }
@@ -70,8 +73,15 @@ pub fn run(args: &ConvertArgs) -> Result<(), CommandError> {
             return Err(CommandError::Usage(error));
         }
     }
+    if args.add_targets && !format.is_document() {
+        let error = "--add-targets does not apply to this format".to_owned();
+        return Err(CommandError::Usage(error));
+    }
     let limit = args.time_limit.start_long(&input.file);
-    let document = input.open()?.document;
+    let mut document = input.open()?.document;
+    if args.add_targets {
+        open::add_targets(&mut document, 0.0, &input.name())?;
+    }
     if format.is_document() {
         return save(&document, output).map_err(|error| CommandError::of_file(input.name(), error));
     }

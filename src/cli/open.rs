@@ -7,6 +7,7 @@ use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
 use super::report::{CommandError, say};
+use crate::document::{Document, Track};
 use crate::io::{
     FileFormat, OpenError, OpenOptions, Opened, Remark, Upwards, open as open_file, read,
     undrawn_textures,
@@ -79,6 +80,14 @@ impl OpenArgs {
             without_camera: false,
         }
     }
+}
+
+/// Adds targets to the hands, feet and head of a human-like figure, where they are at a time in
+/// seconds. Errors call the file `name`.
+pub fn add_targets(document: &mut Document, time: f64, name: &str) -> Result<(), CommandError> {
+    let posed = Track::new(document).at(time);
+    let added = document.rig.add_humanoid_targets(&posed.evaluated_skeleton().solved);
+    added.map(drop).map_err(|why| CommandError::of_file(name.to_owned(), why))
 }
 
 /// Opens a file, or standard input for `-`, and prints its warnings.

@@ -7,7 +7,7 @@ use crate::document::{Channel, Overlay, Theme};
 use crate::io::{Example, ExampleGroup, OpenOptions};
 use crate::session::{
     Action, Actions, Dialog, FileAction, FrameBudget, JointEdit, KeysEdit, Navigation, Session,
-    ShellAction, TourAction, TransactionAction, ViewAction,
+    ShellAction, TargetEdit, TourAction, TransactionAction, ViewAction,
 };
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -125,6 +125,11 @@ fn edit(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.separator();
     ui.menu_button("Key", |ui| key(ui, session, actions));
     bake(ui, session, actions);
+    let too_few = "The figure has too few joints for two arms and two legs";
+    let why_not = (!panels::may_be_person(session)).then_some(too_few);
+    if explained_item(ui, Button::new("Add targets"), panels::ADD_TARGETS, why_not) {
+        actions.push(TargetEdit::AddHumanoidTargets);
+    }
     let tooltip = "Turn a figure that stands along z by −90° about x";
     if explained_item(ui, Button::new("Turn to y up"), tooltip, None) {
         actions.push(JointEdit::TurnYUp);

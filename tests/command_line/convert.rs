@@ -81,6 +81,7 @@ fn what_cannot_be_converted_is_a_usage_error() {
         ("a", &[], "OUT must end in .json, .glb or .bvh"),
         ("a.json", &["--fps", "20"], "--fps does not apply"),
         ("a.glb", &["--unit", "m"], "--unit does not apply"),
+        ("a.glb", &["--add-targets"], "--add-targets does not apply"),
         ("a.glb", &["--fps", "0"], "frames per second must be a number like 29.97"),
     ] {
         let output = desk.convert("walk.json", to, more);
@@ -92,6 +93,34 @@ fn what_cannot_be_converted_is_a_usage_error() {
     let output = desk.convert("walk.json", "a.glb", &["--animation", "Run"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).expect("UTF-8").contains("has no animation \"Run\""));
+}
+
+#[test]
+fn a_person_of_another_program_gets_targets() {
+    let desk = Desk::with("walk");
+    assert!(desk.convert("walk.json", "walk.bvh", &[]).status.success());
+    let output = desk.convert("walk.bvh", "posed.json", &["--add-targets"]);
+    assert!(output.status.success(), "{output:?}");
+    let targets = list(&desk.path("posed.json"), &[])["targets"].clone();
+    assert_eq!(targets.as_array().map(Vec::len), Some(5), "{targets}");
+    let walk = desk.path("walk.bvh");
+    let goal = ["--add-targets", "--time", "0.4", "--target", "left_forearm=30,120,20"];
+    let output = run(&[&["pose", path(&walk)], goal.as_slice()].concat());
+    assert!(output.status.success(), "{output:?}");
+    let posed: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let errors: Vec<_> = posed["targets"].as_array().expect("a list").iter().collect();
+    assert_eq!(errors.len(), 5);
+    assert!(errors.iter().all(|it| it["error"].as_f64() < Some(0.1)), "{errors:?}");
+
+    let desk = Desk::with("snake");
+    let output = desk.convert("snake.json", "posed.json", &["--add-targets"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(
+        error.contains("found head, but no left arm, right arm, left leg or right leg"),
+        "{error}"
+    );
+    assert!(!desk.path("posed.json").exists());
 }
 
 #[test]

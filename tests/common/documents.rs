@@ -156,6 +156,7 @@ fn target_kind(random: &mut Random) -> TargetKind {
         pole,
         map: map.filter(|_| random.coin()).unwrap_or_default(),
         fk_stretch: if random.coin() { random.positive() } else { 1.0 },
+        bends_about: random.coin().then(|| random.direction()),
         twist: random.finite(),
         soft_reach: soft_reach.expect("in range"),
         pole_space: TargetSpace::World,

@@ -104,6 +104,7 @@ examples! {
     }
     Target(TargetEdit) {
         AddTarget: [TargetEdit::AddTarget(JointId::new(INNER))];
+        AddHumanoidTargets: [TargetEdit::AddHumanoidTargets];
         RemoveTarget: [TargetEdit::RemoveTarget(JointId::new(AIMED))];
         SetTarget: [TargetEdit::SetTarget(Target::new(JointId::new(AIMED), Vec3::Z * 3.0, 1.0))];
         MatchTargetToFk: [TargetEdit::MatchTargetToFk(JointId::new(AIMED))];
@@ -226,6 +227,9 @@ fn session_for(edit: &Edit) -> Session {
         session.apply(TargetEdit::SetTarget(target));
         session.apply(TargetEdit::SetTarget(Target { home: target.home * 0.9, ..target }));
         assert!(session.document().rig.posture.is_some());
+    }
+    if *edit == Edit::Target(TargetEdit::AddHumanoidTargets) {
+        session.apply(TargetEdit::RemoveTarget(JointId::new(AIMED)));
     }
     if *edit == Edit::Solver(SolverEdit::ApplyPose) {
         session.apply(SolverAction::Step);

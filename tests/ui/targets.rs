@@ -47,6 +47,42 @@ fn with_head_target() -> Bench {
     bench
 }
 
+#[test]
+fn one_button_adds_targets_to_hands_feet_and_head() {
+    let mut bench = figure();
+    let before = tips(&bench);
+    bench.click(Role::Button, "Add targets");
+    bench.settle();
+    let rig = bench.session().rig();
+    let ends: Vec<&str> =
+        rig.targets.iter().map(|it| rig.skeleton[rig.end_of(it)].name.as_str()).collect();
+    assert_eq!(ends, ["left_hand", "right_hand", "left_foot", "right_foot", "head"]);
+    assert!(rig.targets[4].aim.is_some() && rig.body_follows);
+    assert!(bench.says("Added targets: left_hand, right_hand, left_foot, right_foot and head"));
+    assert!(farthest(&before, &tips(&bench)) < 1e-3 * bench.session().rig().reach());
+    assert!(!bench.shows(Role::Button, "Add targets"), "there are targets");
+    bench.choose(&["Edit", "Add targets"]);
+    assert!(bench.says("Hands, feet and head have targets already"));
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    assert!(bench.session().rig().targets.is_empty(), "one step adds them all");
+}
+
+#[test]
+fn a_figure_that_is_no_person_gets_no_targets_and_is_told_why() {
+    let mut bench = figure();
+    let shin = bench.joint("left_shin");
+    bench.apply([JointEdit::RenameJoint { joint: shin, name: "pipe".into() }]);
+    bench.apply([JointEdit::DeleteJoints(vec![bench.joint("right_foot")])]);
+    bench.settle();
+    bench.reveal(Role::Button, "Add targets");
+    bench.click(Role::Button, "Add targets");
+    let found = "Found left arm, right arm and head, but no left leg or right leg";
+    assert!(bench.says(&format!("{found}: add targets by hand, with a joint selected and T")));
+    assert!(bench.session().rig().targets.is_empty());
+    let small = Bench::example("two-targets");
+    assert!(!small.shows(Role::Button, "Add targets"), "too few joints");
+}
+
 fn select(bench: &mut Bench, name: &str) {
     let joint = bench.joint(name);
     bench.apply([SelectAction::Joints(vec![joint])]);

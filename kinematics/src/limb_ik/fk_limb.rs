@@ -35,7 +35,9 @@ const STRAIGHT_FK: f64 = 2.0 * core::f64::consts::PI / 180.0;
 const BENT_FK: f64 = 5.0 * core::f64::consts::PI / 180.0;
 
 impl FkLimb {
-    pub fn new(skeleton: &Skeleton, limb: Limb) -> Option<Self> {
+    /// The limb in the skeleton's pose. While it is straight, and its lower joint is no hinge, it
+    /// bends about `bends_about`, which is in the space of the lower joint's base.
+    pub fn new(skeleton: &Skeleton, limb: Limb, bends_about: Option<Vec3>) -> Option<Self> {
         let (upper, lower) = (skeleton.joint(limb.upper)?, skeleton.joint(limb.lower)?);
         let above = JointSpace::of(skeleton, upper.parent);
         let between = skeleton.ancestors(limb.lower).skip(1).take_while(|it| *it != limb.upper);
@@ -43,7 +45,7 @@ impl FkLimb {
         let upper_rotation = above.rotation * upper.rotation_f64(upper.rotation);
         let (bend, angle, free_angle) = bend_of(lower, lower.rotation, mount);
         let base = above.point(upper.offset);
-        Some(Self {
+        let of_fk = Self {
             above,
             base,
             upper_rotation,
@@ -53,7 +55,42 @@ impl FkLimb {
             free_angle,
             kept_outward: None,
             is_reversed: false,
+        };
+        let axis = bends_about.and_then(|axis| axis.as_dvec3().try_normalize());
+        Some(match axis.filter(|_| !is_hinge(lower)) {
+            Some(axis) => of_fk.bending_about(mount.rotation * axis),
+            None => of_fk,
         })
+    }
+
+    /// The limb with this unit axis, in the upper joint's space, for the one about which it bends,
+    /// where the FK pose is nearly straight. A limb that is bent the other way by FK bends back.
+    fn bending_about(self, axis: DVec3) -> Self {
+        let turned = self.bend.tip(self.angle) - self.bend.upper;
+        let Some(outward) = turned.cross(axis).try_normalize() else { return self };
+        let (share, of_fk) = (self.own_share(), self.way());
+        let is_bent_back = of_fk.axis.dot(axis) < 0.0;
+        let of_fk = if is_bent_back { of_fk.reversed() } else { of_fk };
+        let way = BendWay { axis, outward }.towards(of_fk, share);
+        if share < 1.0 || is_bent_back { self.bending(way) } else { self }
+    }
+
+    /// The limb with another way in which it bends.
+    fn bending(mut self, way: BendWay) -> Self {
+        let turned = self.bend.tip(self.angle) - self.bend.upper;
+        let unlimited = (f64::NEG_INFINITY, f64::INFINITY);
+        self.bend = Bend::new(way.axis, self.bend.upper, turned, unlimited);
+        self.bend.kept_side = Some(1.0);
+        (self.angle, self.free_angle) = (0.0, None);
+        self.kept_outward = Some(way.outward);
+        self
+    }
+
+    /// Fraction to which the FK pose has a direction of its own: 0 where it is straight, 1 where it
+    /// is bent.
+    fn own_share(&self) -> f64 {
+        let bent = self.bend.bent_by(self.angle);
+        ((bent - STRAIGHT_FK) / (BENT_FK - STRAIGHT_FK)).clamp(0.0, 1.0)
     }
 
     /// The limb with the way in which it bent before, where the FK pose is nearly straight; carries
@@ -64,9 +101,8 @@ impl FkLimb {
             carried.way = Some(of_fk);
             return self;
         };
-        let bent = self.bend.bent_by(self.angle);
-        let share = ((bent - STRAIGHT_FK) / (BENT_FK - STRAIGHT_FK)).clamp(0.0, 1.0);
-        let is_hinge = lower.hinge().is_some() || lower.locked;
+        let share = self.own_share();
+        let is_hinge = is_hinge(lower);
         self.is_reversed = is_hinge && before.axis.dot(of_fk.axis) < 0.0;
         let goal = if self.is_reversed { of_fk.reversed() } else { of_fk };
         let way = before.towards(goal, share);
@@ -76,13 +112,11 @@ impl FkLimb {
         if is_hinge {
             self.bend.kept_side = Some(goal.axis.dot(self.bend.axis).signum());
         } else if share < 1.0 {
-            let turned = self.bend.tip(self.angle) - self.bend.upper;
-            let unlimited = (f64::NEG_INFINITY, f64::INFINITY);
-            self.bend = Bend::new(way.axis, self.bend.upper, turned, unlimited);
-            self.bend.kept_side = Some(1.0);
-            (self.angle, self.free_angle) = (0.0, None);
+            return self.bending(way);
         }
-        self.kept_outward = (share < 1.0 || self.is_reversed).then_some(way.outward);
+        if share < 1.0 || self.is_reversed {
+            self.kept_outward = Some(way.outward);
+        }
         self
     }
 
@@ -100,7 +134,8 @@ impl FkLimb {
     /// The way in which the FK pose bends.
     fn way(&self) -> BendWay {
         let side = self.bend.side(self.angle);
-        let outward = self.aim_of(self.bend.tip(self.angle), self.angle).outward;
+        let of_tip = || self.aim_of(self.bend.tip(self.angle), self.angle).outward;
+        let outward = self.kept_outward.unwrap_or_else(of_tip);
         BendWay { axis: side * self.bend.axis, outward }
     }
 
@@ -151,11 +186,16 @@ impl LimbRange {
         soft_reach: SoftReach,
         fk_stretch: f32,
     ) -> Option<Self> {
-        let fk = FkLimb::new(skeleton, limb)?;
+        let fk = FkLimb::new(skeleton, limb, None)?;
         let present = fk.bend.tip(fk.angle).length();
         let [least, most] = fk.unstretched(fk_stretch.into()).range(soft_reach);
         Some(Self { least, most, present })
     }
+}
+
+/// True if a lower joint can turn about one axis, or not at all.
+fn is_hinge(lower: &Joint) -> bool {
+    lower.locked || lower.hinge().is_some()
 }
 
 /// The bend of a lower joint with these Euler angles, the angle β that they give it, and the Euler

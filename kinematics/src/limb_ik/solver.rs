@@ -28,6 +28,9 @@ pub struct LimbTarget {
     pub influence: f32,
     /// Factor by which the FK pose that the skeleton has lengthens the bones, above 0.
     pub fk_stretch: f32,
+    /// Axis in the space of the lower joint's base about which a limb bends that is straight by
+    /// FK; see [`bends_about`](crate::rig::LimbSettings::bends_about).
+    pub bends_about: Option<Vec3>,
 }
 
 impl LimbTarget {
@@ -41,6 +44,7 @@ impl LimbTarget {
             hand: None,
             influence: 1.0,
             fk_stretch: 1.0,
+            bends_about: None,
         }
     }
 }
@@ -132,7 +136,8 @@ pub fn step(
     target: &LimbTarget,
     carried: &mut CarriedLimb,
 ) -> Option<LimbReport> {
-    let fk = FkLimb::new(skeleton, limb)?.carrying(&skeleton[limb.lower], carried);
+    let fk = FkLimb::new(skeleton, limb, target.bends_about)?;
+    let fk = fk.carrying(&skeleton[limb.lower], carried);
     let local = LocalTarget::new(skeleton, limb, target, &fk)?;
     let fk = fk.unstretched(target.fk_stretch.into());
     let solved = SolvedLimb::new(skeleton, limb, &fk, &local, carried);
@@ -154,9 +159,15 @@ pub fn step(
     Some(LimbReport { error, reach, stretch, turned_aside, solution })
 }
 
-/// The twist at which the limb keeps the elbow that it has by FK, radians.
-pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> Option<f32> {
-    let fk = FkLimb::new(skeleton, limb)?;
+/// The twist at which the limb keeps the elbow that it has by FK, radians. `bends_about` is as in
+/// [`LimbTarget`].
+pub fn fk_twist(
+    skeleton: &Skeleton,
+    limb: Limb,
+    reference: ElbowReference,
+    bends_about: Option<Vec3>,
+) -> Option<f32> {
+    let fk = FkLimb::new(skeleton, limb, bends_about)?;
     let aim = fk.aim();
     let target = LimbTarget { reference, ..LimbTarget::new(Vec3::ZERO) };
     let local = LocalTarget::new(skeleton, limb, &target, &fk)?;
@@ -166,7 +177,7 @@ pub fn fk_twist(skeleton: &Skeleton, limb: Limb, reference: ElbowReference) -> O
 /// True if the lower joint of a limb is no hinge, or a hinge whose limits let the limb bend to both
 /// sides of straight.
 pub fn bends_to_several_sides(skeleton: &Skeleton, limb: Limb) -> bool {
-    let Some(fk) = FkLimb::new(skeleton, limb) else { return false };
+    let Some(fk) = FkLimb::new(skeleton, limb, None) else { return false };
     let lower = &skeleton[limb.lower];
     let is_fixed = lower.locked || lower.movable_axes().next().is_none();
     !is_fixed && (lower.hinge().is_none() || fk.bend.has_both_sides(fk.angle))

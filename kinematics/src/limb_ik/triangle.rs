@@ -46,7 +46,7 @@ pub struct LimbSolution {
 impl LimbTriangle {
     /// The triangle of a limb in the pose that a skeleton has; `None` for missing joints.
     pub fn of(skeleton: &Skeleton, limb: Limb) -> Option<Self> {
-        let fk = FkLimb::new(skeleton, limb)?;
+        let fk = FkLimb::new(skeleton, limb, None)?;
         let tip = fk.bend.tip(fk.angle);
         let sides = [fk.bend.upper.length(), fk.bend.lower.length()];
         let aim = fk.aim().rotated(fk.above.rotation.transpose());

@@ -595,6 +595,7 @@ impl Target {
             hand: self.orientation_in_world(pose),
             fk_stretch: settings.fk_stretch,
             influence: self.influence,
+            bends_about: settings.bends_about,
         }
     }
 }

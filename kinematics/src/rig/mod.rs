@@ -12,6 +12,7 @@ mod diagnose;
 mod drag;
 mod evaluate;
 mod follow_path;
+mod humanoid_targets;
 mod limb_frames;
 mod mesh_skin;
 mod path_following;

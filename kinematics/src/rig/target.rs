@@ -400,6 +400,11 @@ pub struct LimbSettings {
     pub soft_reach: SoftReach,
     /// Factor by which the bones are lengthened in the FK pose, above 0.
     pub fk_stretch: f32,
+    /// Axis in the space of the lower joint's base, of any length above 0, about which a positive
+    /// rotation bends the limb while its FK pose is straight, by less than 2°; up to 5° it is
+    /// blended into the axis of the FK pose. `None` for the axis about which the limits of the
+    /// lower joint allow most. Hinges bend about their own axis.
+    pub bends_about: Option<Vec3>,
 }
 
 impl Default for LimbSettings {
@@ -413,6 +418,7 @@ impl Default for LimbSettings {
             twist: 0.0,
             soft_reach: SoftReach::default(),
             fk_stretch: 1.0,
+            bends_about: None,
         }
     }
 }
@@ -460,6 +466,7 @@ impl LimbSettings {
             && self.twist.is_finite()
             && self.fk_stretch.is_finite()
             && self.fk_stretch > 0.0
+            && self.bends_about.is_none_or(|axis| axis.is_finite() && axis != Vec3::ZERO)
     }
 }
 

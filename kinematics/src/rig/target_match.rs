@@ -106,7 +106,9 @@ impl LimbSettings {
         // Radians; rounding turns no pole and no twist.
         const SAME: f32 = 1e-5;
         let reference = self.reference_in_world(pose);
-        let Some(twist) = limb_ik::fk_twist(pose, limb, reference) else { return };
+        let Some(twist) = limb_ik::fk_twist(pose, limb, reference, self.bends_about) else {
+            return;
+        };
         let twist = angle::nearest(twist, self.twist);
         if (twist - self.twist).abs() <= SAME {
             return;

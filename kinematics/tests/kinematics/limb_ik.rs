@@ -268,7 +268,7 @@ fn the_fk_twist_of_every_reference_keeps_the_elbow() {
             ElbowReference::Pole(Vec3::new(3.0, 4.0, -5.0)),
             ElbowReference::Stereographic(Stereographic::default()),
         ]);
-        let twist = fk_twist(&skeleton, limb, reference).expect("an invertible transform");
+        let twist = fk_twist(&skeleton, limb, reference, None).expect("an invertible transform");
         let target = LimbTarget { reference, twist, ..LimbTarget::new(skeleton.tip(limb.lower)) };
         let (after, _) = solved(&skeleton, limb, &target);
         let length = length(&skeleton, limb);

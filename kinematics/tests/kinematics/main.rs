@@ -11,6 +11,7 @@ mod diagnose;
 mod evaluate;
 mod figure_limbs;
 mod fk;
+mod humanoid;
 mod ik;
 mod limb_frames;
 mod limb_ik;

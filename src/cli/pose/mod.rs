@@ -65,6 +65,9 @@ pub struct PoseArgs {
     /// Print the FK pose, without the targets
     #[arg(long, conflicts_with_all = ["solver", "targets", "rotations", "aims"])]
     fk: bool,
+    /// Add targets to the hands, feet and head of a human-like figure, where they are at this time
+    #[arg(long, conflicts_with_all = ["list", "fk"])]
+    add_targets: bool,
     /// Put a target at a point in the world, or move the one that is there; repeatable. JOINT is a
     /// name or an index. A hand or foot at the end of two bones gets a limb target for its base,
     /// any other joint a whole-body target for its tip; a target of influence 0 gets influence 1
@@ -124,7 +127,10 @@ pub fn run(args: &PoseArgs) -> Result<(), CommandError> {
         let text = serde_json::to_string_pretty(&list).map_err(io::Error::from)?;
         return Ok(writeln!(io::stdout(), "{text}")?);
     }
-    let Opened { document, order, .. } = opened;
+    let Opened { mut document, order, .. } = opened;
+    if args.add_targets {
+        open::add_targets(&mut document, args.time, &file)?;
+    }
     let track = Track::new(&document);
     let given = [&args.targets, &args.rotations, &args.aims].map(Vec::as_slice);
     let posed = targets::with_targets(&track, args.time, given, &order)

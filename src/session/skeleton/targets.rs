@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use crate::document::{Channel, Document, PathKind, SkeletonRig, Target};
+use crate::io::enumerated;
 use crate::kinematics::diagnosis::{Diagnosis, Remedy};
 use crate::kinematics::skeleton::{Joint, JointId};
 use crate::kinematics::twist::TwistReferenceKind;
@@ -15,6 +16,8 @@ use crate::words::{self, significant};
 pub enum TargetEdit {
     /// Adds a target at the tip of a joint.
     AddTarget(JointId),
+    /// Adds targets for hands, feet and head of a human-like figure, where they are.
+    AddHumanoidTargets,
     /// Removes the target of a joint, with its keys.
     RemoveTarget(JointId),
     /// Replaces the target of the joint [`Target::joint`].
@@ -82,6 +85,7 @@ impl TargetEdit {
     pub fn label(&self) -> &'static str {
         match self {
             Self::AddTarget(_) => "Add target",
+            Self::AddHumanoidTargets => "Add targets",
             Self::RemoveTarget(_) => "Remove target",
             // A finer one is given by `changed_label`.
             Self::SetTarget(_) => "Change target",
@@ -103,6 +107,7 @@ impl TargetEdit {
         let (shown, time) = (session.shown(), session.playback().time());
         match self {
             Self::AddTarget(joint) => add(session, joint),
+            Self::AddHumanoidTargets => add_humanoid(session),
             Self::RemoveTarget(joint) => remove(shown, joint),
             Self::SetTarget(target) => set_target(session, target),
             Self::MatchTargetToFk(joint) => {
@@ -243,6 +248,28 @@ fn add(session: &Session, joint: JointId) -> Outcome {
         return Outcome::fail(format!("The position of a target must be finite, got {home}"));
     }
     Outcome::change(session.shown(), |document| document.rig.targets.push(target))
+}
+
+/// Adds targets for hands, feet and head of a human-like figure, and says which.
+fn add_humanoid(session: &Session) -> Outcome {
+    let pose = &session.posed().evaluated_skeleton().solved;
+    let edited = Outcome::edit_with(session.shown(), |document| {
+        let added = document
+            .rig
+            .add_humanoid_targets(pose)
+            .map_err(|why| format!("{why}: add targets by hand, with a joint selected and T"))?;
+        let end = |joint: JointId| document.rig.end_of_target(joint).unwrap_or(joint);
+        let name = |joint: JointId| document.skeleton()[joint].name.clone();
+        let names: Vec<String> = added.into_iter().map(|joint| name(end(joint))).collect();
+        Ok::<_, String>(enumerated(&names, "and"))
+    });
+    match edited {
+        Err(refused) => refused,
+        Ok((_, names)) if names.is_empty() => {
+            Outcome::fail("Hands, feet and head have targets already")
+        }
+        Ok((written, names)) => written.and(Outcome::say(format!("Added targets: {names}"))),
+    }
 }
 
 /// Removes the target of a joint, with its keys.

@@ -139,6 +139,7 @@ kinds! {
     }
     Edit (Target) (TargetEdit) {
         AddTarget: Solve 5, |v| TargetEdit::AddTarget(v.joint());
+        AddHumanoidTargets: Solve 1, |_| TargetEdit::AddHumanoidTargets;
         RemoveTarget: Solve 2, |v| TargetEdit::RemoveTarget(v.aimed());
         SetTarget: Arm 20, |v| TargetEdit::SetTarget(v.target());
         MatchTargetToFk: Solve 2, |v| TargetEdit::MatchTargetToFk(v.aimed());

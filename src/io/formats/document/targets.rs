@@ -68,6 +68,9 @@ struct LimbFields {
     orientation: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fk_stretch: Option<Above0>,
+    /// The axis in the space of the lower joint's base about which a straight limb bends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bends_about: Option<JsonPoint>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -302,6 +305,7 @@ impl LimbFields {
             orientation: orientation.map(JsonPoint),
             fk_stretch: (settings.fk_stretch != default.fk_stretch)
                 .then_some(settings.fk_stretch.into()),
+            bends_about: settings.bends_about.map(JsonPoint),
         }
     }
 
@@ -310,6 +314,10 @@ impl LimbFields {
         let reference = self.reference.unwrap_or(default.reference);
         if reference == TwistReferenceKind::Pole && self.pole.is_none() {
             return Err("must have `pole` for reference `pole`".into());
+        }
+        let bends_about = self.bends_about.map(Vec3::from);
+        if bends_about == Some(Vec3::ZERO) {
+            return Err("must not be zero").at("bends_about");
         }
         let map = self.map.map(|JsonObject(fields)| fields.map());
         let soft_reach = self.soft_reach.map(|JsonObject(fields)| fields.soft_reach());
@@ -321,6 +329,7 @@ impl LimbFields {
             twist: value_or(self.twist, default.twist),
             soft_reach: soft_reach.transpose().at("soft_reach")?.unwrap_or_default(),
             fk_stretch: value_or(self.fk_stretch, default.fk_stretch),
+            bends_about,
         })
     }
 }

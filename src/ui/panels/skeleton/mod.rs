@@ -19,6 +19,7 @@ use crate::ui::panels::limb::{self, LimbTarget};
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
 pub(super) use skin::areas as skin_areas;
+pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person};
 pub(super) use targets::{note, note_height, space};
 
 /// The target of the selected joint or of its limb, of which the panel has a note; `None` without

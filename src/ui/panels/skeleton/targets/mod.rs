@@ -19,11 +19,23 @@ use crate::ui::{labels, pose_summary, style};
 
 const NO_INFLUENCE: &str = "Enable the target and give it influence first";
 
+/// Tooltip of the button and the item that add targets to a person.
+pub(in crate::ui) const ADD_TARGETS: &str = "Add targets to the hands, feet and head of a person";
+
+/// True if a figure has enough joints for two arms and two legs.
+pub(in crate::ui) fn may_be_person(session: &Session) -> bool {
+    const LIMBS: usize = 4;
+    session.skeleton().joints().len() > LIMBS * 3
+}
+
 /// Shows the list of targets.
 pub(in crate::ui) fn list(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.rig();
     if rig.targets.is_empty() {
         ui.weak("No targets. Select a joint and press T.");
+        if may_be_person(session) && widgets::wide_button(ui, "Add targets", ADD_TARGETS, None) {
+            actions.push(TargetEdit::AddHumanoidTargets);
+        }
     }
     for (target, report) in rig.targets.iter().zip(&session.posed().evaluated_skeleton().targets) {
         row(ui, session, target, report, actions);
