@@ -51,6 +51,11 @@ fn motions_are_refused_or_have_valid_skeletons() {
 }
 
 #[test]
+fn robots_are_refused_or_have_valid_skeletons() {
+    replay("urdf", checks::urdf);
+}
+
+#[test]
 fn gltf_is_refused_or_has_valid_skeletons() {
     replay("gltf", checks::gltf);
 }

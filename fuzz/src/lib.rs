@@ -14,6 +14,7 @@ mod js3d;
 mod json_lines;
 mod opened;
 mod two_bone;
+mod urdf;
 
 pub use bvh::bvh;
 pub use chain::chain;
@@ -22,3 +23,4 @@ pub use gltf::gltf;
 pub use js3d::js3d;
 pub use json_lines::json_lines;
 pub use two_bone::two_bone;
+pub use urdf::urdf;

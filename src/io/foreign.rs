@@ -90,6 +90,12 @@ const MD5: ForeignFormat = ForeignFormat {
 const DIRECTX: ForeignFormat =
     ForeignFormat { what: "a DirectX file (.x)", advice: "assimp export x.x x.glb converts it" };
 
+const SDF: ForeignFormat =
+    ForeignFormat { what: "an SDF file of Gazebo", advice: "most robots have a URDF file, too" };
+
+const MUJOCO: ForeignFormat =
+    ForeignFormat { what: "a model of MuJoCo (MJCF)", advice: "most robots have a URDF file, too" };
+
 const HTML: ForeignFormat = ForeignFormat {
     what: "a web page (HTML)",
     advice: "download the file itself, often by a link \"Raw\" or \"Download\" on that page",
@@ -127,8 +133,10 @@ impl ForeignFormat {
         let head = String::from_utf8_lossy(bytes.get(..HEAD).unwrap_or(bytes));
         let mut lines = head.trim_start_matches('\u{feff}').lines().map(str::trim_start);
         let first = lines.find(|line| !line.is_empty()).unwrap_or_default();
-        if first.starts_with('<') && head.contains("<COLLADA") {
-            return Some(COLLADA);
+        let roots = [("<COLLADA", COLLADA), ("<sdf", SDF), ("<mujoco", MUJOCO)];
+        let root = roots.into_iter().find(|(root, _)| head.contains(root));
+        if let Some((_, format)) = root.filter(|_| first.starts_with('<')) {
+            return Some(format);
         }
         let lower = first.to_ascii_lowercase();
         if lower.starts_with("<!doctype html") || lower.starts_with("<html") {

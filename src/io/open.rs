@@ -66,13 +66,17 @@ fn open_source(source: &Source, options: &OpenOptions) -> Result<Opened, OpenErr
     if options.skeleton.is_none() {
         opened.warnings.extend(one_of_several(&opened.skeletons));
     }
-    let is_doubtful = match options.up {
+    let up = match (options.up, reader.says_up()) {
+        (None | Some(Upwards::Auto), Some(Upwards::Z)) => Some(Upwards::Z),
+        (up, _) => up,
+    };
+    let is_doubtful = match up {
         Some(Upwards::Y | Upwards::Z) => false,
         Some(Upwards::Auto) => !reader.is_own(),
-        None => !reader.says_y_up(),
+        None => reader.says_up().is_none(),
     };
     let seems_z = is_doubtful && opened.document.looks_z_up();
-    turn_up(&mut opened, options.up, seems_z);
+    turn_up(&mut opened, up, seems_z);
     Ok(opened)
 }
 

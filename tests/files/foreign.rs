@@ -38,6 +38,8 @@ fn a_format_is_recognised_by_its_first_bytes() {
         (b"xof 0303txt 0032\nFrame Root {", "DirectX", "assimp"),
         (b"\n<!DOCTYPE html>\n<html lang=\"en\">", "HTML", "Raw"),
         (b"<html>", "HTML", "Raw"),
+        (b"<?xml version=\"1.0\"?>\n<sdf version=\"1.6\">", "Gazebo", "URDF"),
+        (b"<mujoco model=\"arm\">", "MuJoCo", "URDF"),
         (b"\xff\xfe{\0}\0", "UTF-16", "iconv"),
         (b"\xfe\xff\0{\0}", "UTF-16", "iconv"),
         (gltf_1_number, "glTF 1", "gltf-pipeline"),
@@ -48,7 +50,7 @@ fn a_format_is_recognised_by_its_first_bytes() {
         assert!(matches!(error, OpenError::Foreign { .. }), "{error}");
         let told = error.to_string();
         assert!(told.contains(what) && told.contains(tool), "{told}");
-        assert!(told.contains(".json, .js3d, .glb, .gltf and .bvh"), "{told}");
+        assert!(told.contains(".json, .js3d, .glb, .gltf, .bvh and .urdf"), "{told}");
     }
 }
 

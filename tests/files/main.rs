@@ -13,4 +13,5 @@ mod js3d;
 #[cfg(unix)]
 mod saving;
 mod skin_files;
+mod urdf;
 mod version_2_tables;

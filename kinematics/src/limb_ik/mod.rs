@@ -123,7 +123,7 @@ impl Limb {
     /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body,
     /// the last is the hand or foot, and the limb ends at its base. Any other chain is better posed
     /// as a whole, and so is one whose lower joint cannot bend through a right angle, such as a
-    /// neck: `None`.
+    /// neck, or whose upper joint is a hinge, which cannot aim at a target: `None`.
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
@@ -142,6 +142,7 @@ impl Limb {
         }
         .filter(|limb| limb.lower == joint || limb.hand == Some(joint))
         .filter(|limb| can_bend(&skeleton[limb.lower]))
+        .filter(|limb| skeleton[limb.upper].hinge().is_none())
     }
 
     /// The joints that a solve turns.

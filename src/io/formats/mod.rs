@@ -9,6 +9,7 @@ pub mod document;
 pub mod gltf;
 pub mod js3d;
 pub mod obj;
+pub mod urdf;
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -25,7 +26,7 @@ use super::exported::{
 };
 use super::foreign::ForeignFormat;
 use super::json::{FieldError, JsonPath, Whole};
-use super::opened::{OpenOptions, Opened};
+use super::opened::{OpenOptions, Opened, Upwards};
 use super::source::Source;
 use crate::document::Document;
 use gltf::GlbError;
@@ -52,8 +53,8 @@ pub struct Reader {
     signature: Signature,
     /// True if files have meshes on their skeletons, which the skin of a document can refer to.
     has_skins: bool,
-    /// True if y points up in all files, as the format says.
-    says_y_up: bool,
+    /// The axis that points up in all files, as the format says; `None` if it does not say.
+    says_up: Option<Upwards>,
     /// Maximum size of a file in bytes.
     most_bytes: u64,
     read: fn(&Source, &OpenOptions) -> Result<Opened, OpenError>,
@@ -114,7 +115,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Key(js3d::KEY, "a .js3d file of Scotty3D"),
                 has_skins: true,
-                says_y_up: false,
+                says_up: None,
                 most_bytes: OpenError::MAX_BYTES,
                 read: js3d::read,
                 former: |_| None,
@@ -128,7 +129,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Key(gltf::KEY, "glTF"),
                 has_skins: true,
-                says_y_up: true,
+                says_up: Some(Upwards::Y),
                 most_bytes: OpenError::MAX_GLTF_BYTES,
                 read: gltf::read,
                 former: gltf::former,
@@ -157,7 +158,7 @@ impl FileFormat {
             reader: Some(Reader {
                 signature: Signature::Text(bvh::is_bvh),
                 has_skins: false,
-                says_y_up: false,
+                says_up: None,
                 most_bytes: OpenError::MAX_BYTES,
                 read: bvh::read,
                 former: |_| None,
@@ -177,6 +178,20 @@ impl FileFormat {
                     })
                 },
             )),
+        },
+        Self {
+            title: None,
+            extensions: &["urdf"],
+            holds: "robots",
+            reader: Some(Reader {
+                signature: Signature::Text(urdf::is_urdf),
+                has_skins: true,
+                says_up: Some(Upwards::Z),
+                most_bytes: OpenError::MAX_BYTES,
+                read: urdf::read,
+                former: |_| None,
+            }),
+            writer: None,
         },
         Self {
             title: None,
@@ -229,7 +244,7 @@ impl FileFormat {
         reader: Some(Reader {
             signature: Signature::Key(document::KEY, "a document of ik-arm"),
             has_skins: false,
-            says_y_up: true,
+            says_up: Some(Upwards::Y),
             most_bytes: OpenError::MAX_BYTES,
             read: document::read,
             former: |_| None,
@@ -370,9 +385,9 @@ impl Reader {
         self.has_skins
     }
 
-    /// Returns whether y points up in all files, as the format says.
-    pub fn says_y_up(&self) -> bool {
-        self.says_y_up
+    /// The axis that points up in all files, as the format says; `None` if it does not say.
+    pub fn says_up(&self) -> Option<Upwards> {
+        self.says_up
     }
 
     /// Maximum size of a file in bytes.
