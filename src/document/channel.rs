@@ -18,6 +18,8 @@ pub enum Channel {
     Translation,
     /// Influence of the balance, from 0 (without) to 1 (balanced).
     BalanceInfluence,
+    /// Weight of a morph target of the skin, by its index: 0 without it, 1 in its shape.
+    Morph(u16),
     /// Euler angles of a joint in radians, unwrapped.
     Rotation(JointId),
     /// Vector from the base of a joint's parent to the joint's base, in the parent's space; from
@@ -59,6 +61,8 @@ pub enum Quantity {
     Length,
     /// A number from 0 to 1.
     Fraction,
+    /// Any number without a unit.
+    Number,
     /// An angle in radians.
     Angle,
     /// Euler angles in radians of a rotation, R_z · R_y · R_x. Keys can turn it the shortest way:
@@ -73,7 +77,7 @@ impl Quantity {
     pub fn width(self) -> usize {
         match self {
             Self::Point | Self::Rotation => 3,
-            Self::Length | Self::Fraction | Self::Angle | Self::Switch => 1,
+            Self::Length | Self::Fraction | Self::Number | Self::Angle | Self::Switch => 1,
         }
     }
 }
@@ -107,12 +111,18 @@ impl Channel {
         ]
     }
 
-    /// The channel that has this [`name`](Self::name), for the given joint or overlay if the
-    /// channel belongs to one. `None` if the name is unknown, or the joint or overlay is missing.
-    pub fn named(name: &str, joint: Option<JointId>, overlay: Option<Overlay>) -> Option<Self> {
+    /// The channel that has this [`name`](Self::name), for the given joint, overlay or morph target
+    /// if the channel belongs to one. `None` if the name is unknown, or its owner is missing.
+    pub fn named(
+        name: &str,
+        joint: Option<JointId>,
+        overlay: Option<Overlay>,
+        morph: Option<u16>,
+    ) -> Option<Self> {
         let of_joint = joint.into_iter().flat_map(Self::of_joint);
         let of_rig = [Self::Translation, Self::BalanceInfluence].into_iter();
-        let mut channels = of_rig.chain(of_joint).chain(overlay.map(Self::Overlay));
+        let of_skin = morph.map(Self::Morph);
+        let mut channels = of_rig.chain(of_joint).chain(overlay.map(Self::Overlay)).chain(of_skin);
         channels.find(|channel| channel.name() == name)
     }
 
@@ -138,18 +148,21 @@ impl Channel {
 /// A text that names no channel.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "channel must be translation, balance_influence, a name and a joint's index such as \"rotation 3\", or \
-     \"overlay\" and an overlay's name, got {0:?}"
+    "channel must be translation, balance_influence, a name and a joint's index such as \"rotation 3\", \
+     \"morph\" and a morph target's index, or \"overlay\" and an overlay's name, got {0:?}"
 )]
 pub struct UnknownChannel(String);
 
-/// Writes the name and, if the channel belongs to a joint or an overlay, a space and the joint's
-/// index or the overlay's name.
+/// Writes the name and, if the channel belongs to a joint, a morph target or an overlay, a space and
+/// the index or the overlay's name.
 impl fmt::Display for Channel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())?;
         if let Self::Overlay(overlay) = self {
             write!(f, " {}", overlay.name())?;
+        }
+        if let Self::Morph(morph) = self {
+            write!(f, " {morph}")?;
         }
         self.joint().map_or(Ok(()), |joint| write!(f, " {joint}"))
     }
@@ -162,7 +175,8 @@ impl FromStr for Channel {
     fn from_str(text: &str) -> Result<Self, UnknownChannel> {
         let (name, owner) = text.split_once(' ').unwrap_or((text, ""));
         let joint = owner.parse().ok().map(JointId::new);
-        let channel = Self::named(name, joint, Overlay::from_name(owner));
+        let (overlay, morph) = (Overlay::from_name(owner), owner.parse().ok());
+        let channel = Self::named(name, joint, overlay, morph);
         // Refuses an owner of a channel that has none, and joints such as "+1".
         let channel = channel.filter(|channel| channel.to_string() == text);
         channel.ok_or_else(|| UnknownChannel(text.to_owned()))
@@ -177,7 +191,7 @@ mod tests {
     fn every_channel_reads_back_from_its_text() {
         let joint = JointId::new(12);
         let of_owners = Overlay::all().map(Channel::Overlay).chain(Channel::of_joint(joint));
-        let of_rig = [Channel::Translation, Channel::BalanceInfluence];
+        let of_rig = [Channel::Translation, Channel::BalanceInfluence, Channel::Morph(7)];
         for channel in of_rig.into_iter().chain(of_owners) {
             assert_eq!(channel.to_string().parse(), Ok(channel), "{channel}");
         }
@@ -197,6 +211,8 @@ mod tests {
             "overlay",
             "translation ",
             "offset +1",
+            "morph",
+            "morph 70000",
         ] {
             let error = text.parse::<Channel>().expect_err(text);
             assert!(error.to_string().ends_with(&format!("got {text:?}")), "{error}");

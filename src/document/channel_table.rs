@@ -45,6 +45,8 @@ enum Access {
         /// True if the channel affects the pose with the target's present settings.
         shapes: fn(&Target) -> bool,
     },
+    /// Weight of a morph target of the skin, by its index.
+    Morph(u16),
     Overlay(Overlay),
 }
 
@@ -80,6 +82,10 @@ impl Heading {
         ChannelRow { heading: self, access: Access::Target { joint, get, set, shapes } }
     }
 
+    fn of_morph(self, morph: u16) -> ChannelRow {
+        ChannelRow { heading: self, access: Access::Morph(morph) }
+    }
+
     fn of_overlay(self, overlay: Overlay) -> ChannelRow {
         ChannelRow { heading: self, access: Access::Overlay(overlay) }
     }
@@ -88,12 +94,13 @@ impl Heading {
 /// The table.
 impl Channel {
     fn row(self) -> ChannelRow {
-        use Quantity::{Angle, Fraction, Length, Point, Rotation, Switch};
+        use Quantity::{Angle, Fraction, Length, Number, Point, Rotation, Switch};
         match self {
             Self::Translation => named("translation", "Skeleton translation", Point)
                 .of_rig(|rig| Some(rig.skeleton.transform().translation.into()), translate),
             Self::BalanceInfluence => named("balance_influence", "Balance influence", Fraction)
                 .of_rig(|rig| Some(number(rig.balance?.influence)), set_balance),
+            Self::Morph(morph) => named("morph", "morph target", Number).of_morph(morph),
             Self::Rotation(joint) => named("rotation", "rotation", Rotation).of_joint(
                 joint,
                 |it| Some(it.rotation),
@@ -202,7 +209,7 @@ impl Channel {
     pub fn joint(self) -> Option<JointId> {
         match self.access() {
             Access::Joint { joint, .. } | Access::Target { joint, .. } => Some(joint),
-            Access::Rig { .. } | Access::Overlay(_) => None,
+            Access::Rig { .. } | Access::Morph(_) | Access::Overlay(_) => None,
         }
     }
 
@@ -284,6 +291,7 @@ impl Channel {
             Access::Rig { get, .. } => get(rig),
             Access::Joint { joint, get, .. } => rig.skeleton.joint(joint).and_then(get),
             Access::Target { joint, get, .. } => get(&rig.targets[rig.target(joint)?]),
+            Access::Morph(morph) => Some(number(rig.morph_weight(morph.into())?)),
             Access::Overlay(overlay) => Some(switch(display.shows(overlay))),
         }
     }
@@ -304,6 +312,7 @@ impl Channel {
                     set(&mut rig.targets[index], value);
                 }
             }
+            Access::Morph(morph) => rig.set_morph_weight(morph.into(), value.x),
             Access::Overlay(overlay) => *display = display.with(overlay, is_on(value)),
         }
     }

@@ -47,11 +47,12 @@ pub use exported::{Exported, MotionError, Progress};
 pub use formats::bvh::to_bvh;
 pub use formats::csv::to_csv;
 pub use formats::document::{save, to_json};
+#[cfg(feature = "app")]
+pub(crate) use formats::dotted;
+pub(crate) use formats::enumerated;
 pub use formats::gltf::{GlbError, glb};
 pub use formats::obj::{ObjError, to_obj};
 pub use formats::{ContentError, ContentJob, FileFormat, WriteContent, Writer};
-#[cfg(feature = "app")]
-pub(crate) use formats::{dotted, enumerated};
 pub use link::{Link, LinkError, LinkScene};
 pub use open::{open, parse, read, relocated_skin};
 pub use opened::{FileAnimation, OpenOptions, Opened, Upwards};

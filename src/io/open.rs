@@ -126,7 +126,9 @@ fn load_skin(document: &mut Document, folder: Option<&Path>) -> FieldWarnings {
             let error = other.err().unwrap_or(SkinFileError::Changed(located.path.clone()));
             let at = JsonPath::root().key("skin").key("mesh").key("file");
             warnings.push(at, error.to_string());
+            let weights = skin.morph_weights().to_vec();
             MeshSkin::without_mesh(located, skin.joints().to_vec(), error)
+                .with_morph_weights(weights)
         }
     };
     warnings
@@ -177,7 +179,9 @@ pub fn relocated_skin(
     if expected != got {
         return invalid(format!("must have a skeleton of {expected} joints, got {got}"));
     }
-    Ok(MeshSkin::new(mesh, Some(file), skin.joints().to_vec(), skeleton))
+    let weights = skin.morph_weights().to_vec();
+    let skin = MeshSkin::new(mesh, Some(file), skin.joints().to_vec(), skeleton);
+    Ok(skin.with_morph_weights(weights))
 }
 
 /// The mesh on a skeleton of a file; `None` if it has none.

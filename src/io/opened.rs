@@ -79,12 +79,14 @@ pub struct FileAnimation {
     pub end: f64,
     /// Number of joints of the skeleton that the animation moves against their parents.
     pub moving_joints: usize,
+    /// True if the animation changes weights of morph targets of the file's meshes.
+    pub has_morphs: bool,
 }
 
 impl FileAnimation {
-    /// Returns whether the animation moves the skeleton.
+    /// Returns whether the animation moves the skeleton or changes its mesh.
     pub fn moves(&self) -> bool {
-        self.moving_joints > 0 && self.start < self.end
+        (self.moving_joints > 0 || self.has_morphs) && self.start < self.end
     }
 }
 

@@ -113,9 +113,17 @@ impl Skins {
                 Some(known) => &mut self.meshes[known],
                 None => {
                     sent += skin.mesh.mesh.bytes() as u64;
-                    self.meshes.push(SkinMesh::new(gpu, &pipelines.materials, skin.mesh.clone()));
-                    let last = self.meshes.len() - 1;
-                    &mut self.meshes[last]
+                    let morphs = |it: &SkinMesh| !it.is_used && it.mesh.has_surface_of(&skin.mesh);
+                    if let Some(known) = self.meshes.iter().position(morphs) {
+                        let mesh = &mut self.meshes[known];
+                        mesh.morph(gpu, skin.mesh.clone());
+                        mesh
+                    } else {
+                        let new = SkinMesh::new(gpu, &pipelines.materials, skin.mesh.clone());
+                        self.meshes.push(new);
+                        let last = self.meshes.len() - 1;
+                        &mut self.meshes[last]
+                    }
                 }
             };
             mesh.is_used = true;
@@ -310,6 +318,12 @@ impl SkinMesh {
         let vertices = SkinVertices::new(gpu, &mesh.mesh);
         let (edges, is_used) = (None, true);
         Self { vertices, fixed, triangles, indices, materials, mesh, edges, is_used }
+    }
+
+    /// Replaces the mesh by one that has the same triangles and materials.
+    fn morph(&mut self, gpu: &Gpu, mesh: Shared<AttachedMesh>) {
+        self.vertices = SkinVertices::new(gpu, &mesh.mesh);
+        self.mesh = mesh;
     }
 
     fn make_edges(&mut self, gpu: &Gpu) {

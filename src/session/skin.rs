@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use crate::document::{Document, Overlay, Skin};
+use crate::document::{Channel, Document, Overlay, Skin};
 use crate::kinematics::skin::SkinShapeError;
 use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
 use crate::session::evaluated::SkinAreas;
@@ -22,6 +22,13 @@ pub enum SkinEdit {
     },
     /// Makes the mesh of a file, which the skin has, a part of the document.
     PackSkin,
+    /// Sets the weight of a morph target of the skin.
+    SetMorph {
+        /// Index of the morph target.
+        morph: u16,
+        /// The weight.
+        weight: f32,
+    },
     /// Replaces the skin of the skeleton; `None` removes it.
     SetSkin(Option<Skin>),
 }
@@ -35,6 +42,7 @@ impl SkinEdit {
             Self::ShowSkin { skin: true, bones: false } => "Show skin",
             Self::ShowSkin { skin: false, .. } => "Show bones",
             Self::PackSkin => "Pack skin into file",
+            Self::SetMorph { .. } => "Set morph target",
             Self::SetSkin(None) => "Remove skin",
             Self::SetSkin(Some(_)) => "Change skin",
         }
@@ -45,6 +53,9 @@ impl SkinEdit {
             Self::AddSkin => add(session),
             Self::ShowSkin { skin, bones } => show(session.shown(), skin, bones),
             Self::PackSkin => pack(session),
+            Self::SetMorph { morph, weight } => Outcome::change(session.shown(), |document| {
+                document.rig.set_morph_weight(morph.into(), weight);
+            }),
             Self::SetSkin(skin) => set(session, skin),
         }
     }
@@ -92,6 +103,8 @@ fn set(session: &Session, skin: Option<Skin>) -> Outcome {
         if !is_dragging {
             rig.refresh_skin();
         }
+        forget_lost_morphs(document);
+        let rig = &mut document.rig;
         if let Some(Skin { source: SkinSource::Bones(bones), .. }) = &rig.skin {
             bones.shape().check(&rig.skeleton)?;
             if !is_dragging {
@@ -100,6 +113,16 @@ fn set(session: &Session, skin: Option<Skin>) -> Outcome {
         }
         Ok::<(), SkinShapeError>(())
     })
+}
+
+/// Removes the keys of morph targets that the skin does not have.
+fn forget_lost_morphs(document: &mut Document) {
+    let channels = document.keys.tracks().map(|(channel, _)| channel);
+    let is_lost = |channel: &Channel| {
+        matches!(channel, Channel::Morph(_)) && channel.value(document).is_none()
+    };
+    let lost: Vec<Channel> = channels.filter(is_lost).collect();
+    lost.into_iter().for_each(|channel| document.keys.clear(channel));
 }
 
 /// The edit that replaces the mesh of the skin by that of a file, unless the skin is no longer that
@@ -122,7 +145,10 @@ pub(super) fn located(
     let skin = session.rig().skin.clone();
     match skin.filter(|skin| skin.can_become(&mesh, before)) {
         Some(skin) => {
-            let source = SkinSource::Mesh(mesh.attached_to(session.skeleton()));
+            let weights = skin.mesh_skin().map(|mesh| mesh.morph_weights().to_vec());
+            let mesh = mesh.attached_to(session.skeleton());
+            let mesh = mesh.with_morph_weights(weights.unwrap_or_default());
+            let source = SkinSource::Mesh(mesh);
             Ok(SkinEdit::SetSkin(Some(Skin { source, ..skin })))
         }
         None => Err(Outcome::fail("the skin has changed since its file was chosen")),

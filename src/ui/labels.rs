@@ -45,6 +45,9 @@ pub(in crate::ui) fn limit_end(end: LimitEnd) -> String {
 /// Name of a channel, such as "Hand" or "left_1 · rotation". Channels of a target have the name of
 /// the joint that the target is named after.
 pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
+    if let Some(name) = morph_name(session, channel) {
+        return name.to_owned();
+    }
     let name = channel_of_joint(channel);
     match joint_of_channel(session, channel) {
         Some(joint) => {
@@ -53,6 +56,13 @@ pub(in crate::ui) fn channel(session: &Session, channel: Channel) -> String {
         }
         None => name,
     }
+}
+
+/// Name of the morph target that a channel is the weight of; `None` for another channel.
+fn morph_name(session: &Session, channel: Channel) -> Option<&str> {
+    let Channel::Morph(morph) = channel else { return None };
+    let mesh = session.rig().skin.as_ref()?.mesh_skin()?.in_file()?;
+    Some(&mesh.mesh.morphs().get(usize::from(morph))?.name)
 }
 
 /// The joint that the name of a channel begins with; `None` if it belongs to no joint.
@@ -68,6 +78,7 @@ pub(in crate::ui) fn channel_of_joint(channel: Channel) -> String {
     let label = channel.label();
     match channel {
         Channel::Overlay(shown) => format!("{} {label}", overlay(shown).0),
+        Channel::Morph(morph) => format!("{label} {morph}"),
         _ => label.to_owned(),
     }
 }

@@ -242,7 +242,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
             let value = match channel.quantity() {
                 Quantity::Point | Quantity::Rotation => random.finite_vector(),
                 Quantity::Fraction => Vec3::new(random.within(0.0..1.0), 0.0, 0.0),
-                Quantity::Angle => Vec3::new(random.finite(), 0.0, 0.0),
+                Quantity::Angle | Quantity::Number => Vec3::new(random.finite(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.positive(), 0.0, 0.0),
                 Quantity::Switch => Vec3::new(f32::from(u8::from(random.coin())), 0.0, 0.0),
             };

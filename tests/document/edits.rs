@@ -10,6 +10,7 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::Remedy;
 use ik_arm::kinematics::skeleton::{JointId, JointLimits, Limit};
+use ik_arm::kinematics::skin::Morph;
 use ik_arm::kinematics::spline::{Interpolation, Slopes};
 use ik_arm::rig::{
     FileMesh, LimbSettings, MeshSkin, Posture, PosturedJoint, Skin, SkinFile, SkinSource,
@@ -89,6 +90,7 @@ examples! {
         AddSkin: [SkinEdit::AddSkin];
         ShowSkin: [SkinEdit::ShowSkin { skin: false, bones: true }];
         PackSkin: [SkinEdit::PackSkin];
+        SetMorph: [SkinEdit::SetMorph { morph: 0, weight: 0.5 }];
         SetSkin: [SkinEdit::SetSkin(Some(Skin::from_bones(&Shared::default())))];
     }
     Path(PathEdit) {
@@ -182,6 +184,13 @@ fn skin_of_a_file(session: &Session) -> Skin {
     let skeleton = "x".to_owned();
     let file = SkinFile { path: "x.glb".into(), checksum: 5, skeleton, animation: None };
     let joints = rig.skeleton.ids().map(Some).collect();
+    let morph = Morph {
+        name: "smile".into(),
+        vertices: vec![0],
+        offsets: vec![Vec3::X],
+        normals: vec![Vec3::ZERO],
+    };
+    let mesh = mesh.with_morphs(vec![morph]).expect("a morph target");
     let mesh = FileMesh { mesh, parents, parts: Vec::new() };
     Skin::new(SkinSource::Mesh(MeshSkin::new(mesh.into(), Some(file), joints, &rig.skeleton)))
 }
@@ -219,7 +228,7 @@ fn session_for(edit: &Edit) -> Session {
     session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
     session.apply(SelectAction::CopyKeys);
     session.apply(PlaybackAction::SetTime(1.0));
-    if *edit == Edit::Skin(SkinEdit::PackSkin) {
+    if matches!(edit, Edit::Skin(SkinEdit::PackSkin | SkinEdit::SetMorph { .. })) {
         session.apply(SkinEdit::SetSkin(Some(skin_of_a_file(&session))));
     }
     if *edit == Edit::Solver(SolverEdit::ResetPosture) {

@@ -837,8 +837,13 @@ fn unsaved_changes_are_asked_about_only_once_the_other_file_was_read() {
 
 /// The contents of a file of another program with one skeleton and some animations.
 fn contents(path: &str, animations: usize) -> Box<FileContents> {
-    let moves =
-        |nth| FileAnimation { name: format!("{nth}"), start: 0.0, end: 1.0, moving_joints: 3 };
+    let moves = |nth| FileAnimation {
+        name: format!("{nth}"),
+        start: 0.0,
+        end: 1.0,
+        moving_joints: 3,
+        has_morphs: false,
+    };
     Box::new(FileContents {
         path: path.into(),
         options: OpenOptions::default(),

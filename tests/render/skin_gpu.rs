@@ -6,9 +6,9 @@ use ik_arm::io::Example;
 use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::skeleton::{JointId, Skeleton};
 use ik_arm::kinematics::skin::{
-    BindSet, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+    BindSet, Morph, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
-use ik_arm::render::SkinDeformer;
+use ik_arm::render::{PictureRenderer, SkinDeformer};
 use ik_arm::rig::{FileMesh, MeshSkin, PartLook, SkeletonRig, SkinPart, SkinSource, SkinTexture};
 use ik_arm::scene::Scene;
 use ik_arm::session::Overlays;
@@ -16,7 +16,7 @@ use pollster::block_on;
 
 use crate::common::Random;
 use crate::common::skeletons::{shake, transform, tree};
-use crate::pictures::{GPU, draw};
+use crate::pictures::{GPU, SIZE, draw};
 
 fn assert_agrees(skeleton: &Skeleton, mesh: &SkinnedMesh, case: &str) {
     let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -140,6 +140,41 @@ fn a_double_sided_part_is_seen_from_behind_and_lit_as_from_outside() {
     // The light comes from the front right: the back is darker than the front, but lit by its own
     // normal and not black.
     assert!(back > 40 && back != front, "{back}, {front}");
+}
+
+#[test]
+fn a_mesh_that_morphs_from_frame_to_frame_is_drawn_as_if_it_were_new() {
+    let red = SkinPart { colour: [1.0, 0.1, 0.1], ..SkinPart::white(2) };
+    let document = square(vec![red]);
+    let skin = document.rig.skin.as_ref().and_then(|skin| skin.mesh_skin()).expect("a mesh");
+    let FileMesh { mesh, parents, parts } = FileMesh::clone(skin.in_file().expect("a mesh"));
+    let morph = Morph {
+        name: "wide".into(),
+        vertices: vec![1, 2],
+        offsets: vec![Vec3::X; 2],
+        normals: vec![Vec3::ZERO; 2],
+    };
+    let mesh = mesh.with_morphs(vec![morph]).expect("a morph target");
+    let in_file = FileMesh { mesh, parents, parts };
+    let joints = vec![Some(JointId::new(0))];
+    let skin = MeshSkin::new(in_file.into(), None, joints, document.skeleton());
+    let scene = |weight: f32| {
+        let mut document = document.clone();
+        let morphed = skin.clone().with_morph_weights(vec![weight]);
+        document.rig.skin = Some(Skin::new(SkinSource::Mesh(morphed)));
+        Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark)
+    };
+    let gpu = GPU.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let fresh = |weight: f32| {
+        let mut renderer = PictureRenderer::new(&gpu, SIZE.0, SIZE.1, 1.0);
+        block_on(renderer.draw(&scene(weight))).expect("drawn")
+    };
+    let mut renderer = PictureRenderer::new(&gpu, SIZE.0, SIZE.1, 1.0);
+    for weight in [0.0, 0.5, 1.0, -0.5, 0.0] {
+        let drawn = block_on(renderer.draw(&scene(weight))).expect("drawn");
+        assert!(drawn == fresh(weight), "weight {weight}");
+    }
+    assert!(fresh(0.0) != fresh(1.0));
 }
 
 #[test]

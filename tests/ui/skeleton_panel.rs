@@ -618,6 +618,7 @@ fn contents(skeletons: &[&str], animations: &[&str]) -> Box<FileContents> {
         start: 0.0,
         end: 2.0,
         moving_joints: 3,
+        has_morphs: false,
     };
     Box::new(FileContents {
         path: "two.glb".into(),

@@ -1,5 +1,5 @@
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use core::fmt;
 
@@ -17,6 +17,8 @@ pub struct MeshSkin {
     file: Option<SkinFile>,
     /// For each joint of the file the joint of the skeleton; `None` if that joint was removed.
     joints: Vec<Option<JointId>>,
+    /// Weights of the mesh's morph targets; 0 for those beyond the list.
+    morph_weights: Vec<f32>,
     mesh: Result<LoadedMesh, SkinFileError>,
 }
 
@@ -53,7 +55,10 @@ pub enum SkinFileError {
 #[derive(Clone, Debug)]
 struct LoadedMesh {
     in_file: Shared<FileMesh>,
+    /// Without morph targets.
     attached: Shared<AttachedMesh>,
+    /// In the shape that the weights of the morph targets give it, made when it is needed.
+    morphed: Arc<OnceLock<Shared<AttachedMesh>>>,
 }
 
 impl MeshSkin {
@@ -67,7 +72,7 @@ impl MeshSkin {
         skeleton: &Skeleton,
     ) -> Self {
         let mesh = LoadedMesh::new(mesh, &joints, skeleton);
-        Self { file, joints, mesh: Ok(mesh) }
+        Self { file, joints, morph_weights: Vec::new(), mesh: Ok(mesh) }
     }
 
     /// A skin whose file cannot be read.
@@ -76,7 +81,7 @@ impl MeshSkin {
         joints: Vec<Option<JointId>>,
         error: SkinFileError,
     ) -> Self {
-        Self { file: Some(file), joints, mesh: Err(error) }
+        Self { file: Some(file), joints, morph_weights: Vec::new(), mesh: Err(error) }
     }
 
     /// The file that documents refer to; `None` if they contain the mesh.
@@ -94,13 +99,62 @@ impl MeshSkin {
         self.mesh.as_ref().ok().map(|mesh| &mesh.in_file)
     }
 
-    /// The mesh on the joints of the skeleton.
+    /// The mesh on the joints of the skeleton, in the shape that its morph targets give it.
     ///
     /// # Errors
     ///
     /// [`SkinFileError`] if the file could not be read.
     pub fn mesh(&self) -> Result<&Shared<AttachedMesh>, SkinFileError> {
+        let LoadedMesh { attached, morphed, .. } = self.mesh.as_ref().map_err(Clone::clone)?;
+        let weights = &self.morph_weights;
+        if weights.iter().all(|weight| *weight == 0.0) {
+            return Ok(attached);
+        }
+        Ok(morphed.get_or_init(|| attached.morphed(weights).into()))
+    }
+
+    /// [`MeshSkin::mesh`] with all weights of morph targets 0.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinFileError`] if the file could not be read.
+    pub fn unmorphed(&self) -> Result<&Shared<AttachedMesh>, SkinFileError> {
         self.mesh.as_ref().map(|mesh| &mesh.attached).map_err(Clone::clone)
+    }
+
+    /// The weights of the morph targets, of which 0 does not change the mesh and 1 gives it the
+    /// target's shape; 0 for those beyond the list.
+    pub fn morph_weights(&self) -> &[f32] {
+        &self.morph_weights
+    }
+
+    /// The skin with other weights of its morph targets; those that are not finite become 0.
+    #[must_use]
+    pub fn with_morph_weights(self, weights: Vec<f32>) -> Self {
+        let finite = |weight: f32| if weight.is_finite() { weight } else { 0.0 };
+        let morph_weights = weights.into_iter().map(finite).collect();
+        let mesh = self.mesh.map(|mesh| LoadedMesh { morphed: Arc::default(), ..mesh });
+        Self { morph_weights, mesh, ..self }
+    }
+
+    /// The weight of a morph target; `None` if the mesh has no such target.
+    pub fn morph_weight(&self, morph: usize) -> Option<f32> {
+        self.in_file()?.mesh.morphs().get(morph)?;
+        Some(self.morph_weights.get(morph).copied().unwrap_or_default())
+    }
+
+    /// Sets the weight of a morph target; ignored for a target that the mesh does not have.
+    pub fn set_morph_weight(&mut self, morph: usize, weight: f32) {
+        let is_new = |now: f32| now.to_bits() != weight.to_bits() && weight.is_finite();
+        if !self.morph_weight(morph).is_some_and(is_new) {
+            return;
+        }
+        let count = self.morph_weights.len().max(morph + 1);
+        self.morph_weights.resize(count, 0.0);
+        self.morph_weights[morph] = weight;
+        if let Ok(mesh) = &mut self.mesh {
+            mesh.morphed = Arc::default();
+        }
     }
 
     /// A copy whose mesh is saved in the document, not in a file of its own; `None` without a mesh.
@@ -141,7 +195,7 @@ impl LoadedMesh {
     fn new(in_file: Shared<FileMesh>, joints: &[Option<JointId>], skeleton: &Skeleton) -> Self {
         let FileMesh { mesh, parents, parts } = &*in_file;
         let attached = AttachedMesh::new(mesh.renumbered(joints, parents), parts.clone(), skeleton);
-        Self { attached: attached.into(), in_file }
+        Self { attached: attached.into(), in_file, morphed: Arc::default() }
     }
 }
 
@@ -169,6 +223,8 @@ pub struct AttachedMesh {
     pub boxes: Vec<Option<[Vec3; 2]>>,
     /// The bones on which the thickness was measured: the axis of each joint.
     axes: Vec<Vec3>,
+    /// The mesh that morph targets have changed to this one; `None` for one that none have.
+    unmorphed: Option<Shared<Self>>,
 }
 
 impl AttachedMesh {
@@ -202,12 +258,20 @@ impl AttachedMesh {
         }
         let mean = |(sum, count): (f64, u32)| (sum / f64::from(count.max(1))) as f32;
         let axes = skeleton.joints().iter().map(|joint| joint.axis).collect();
-        Self { mesh, parts, radii: sums.into_iter().map(mean).collect(), boxes, axes }
+        let radii = sums.into_iter().map(mean).collect();
+        Self { mesh, parts, radii, boxes, axes, unmorphed: None }
     }
 
     /// True if the mesh was measured on joints with the bones of this skeleton.
     pub(super) fn is_measured_on(&self, skeleton: &Skeleton) -> bool {
         skeleton.joints().iter().map(|joint| joint.axis).eq(self.axes.iter().copied())
+    }
+
+    /// True if two meshes have the same triangles and materials, and differ by their morph targets
+    /// alone.
+    pub fn has_surface_of(&self, other: &Self) -> bool {
+        let both = self.unmorphed.as_ref().zip(other.unmorphed.as_ref());
+        both.is_some_and(|(one, other)| one.is_same(other))
     }
 
     /// The corners of boxes in the world that contain nearly all of the mesh in a pose.
@@ -220,6 +284,21 @@ impl AttachedMesh {
             Some((0..8).map(move |at| to_world.transform_point3(corner(at))))
         };
         self.boxes.iter().enumerate().filter_map(corners).flatten()
+    }
+}
+
+impl Shared<AttachedMesh> {
+    /// The mesh in the shape that its morph targets give it with these weights. Its thickness and
+    /// boxes stay.
+    fn morphed(&self, weights: &[f32]) -> AttachedMesh {
+        AttachedMesh {
+            mesh: self.mesh.morphed(weights),
+            parts: self.parts.clone(),
+            radii: self.radii.clone(),
+            boxes: self.boxes.clone(),
+            axes: self.axes.clone(),
+            unmorphed: Some(self.clone()),
+        }
     }
 }
 

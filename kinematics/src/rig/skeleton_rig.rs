@@ -5,7 +5,7 @@ use glam::{Vec3, Vec3A};
 use super::balance_target::BalanceTarget;
 use super::carried::Posture;
 use super::follow_path::{FollowPath, PathKind};
-use super::skin::Skin;
+use super::skin::{Skin, SkinSource};
 use super::target::{LimbSettings, MovedJoints, Target, TargetKind};
 use crate::Shared;
 use crate::chain_ik::{ChainTarget, SolverOptions};
@@ -238,6 +238,18 @@ impl SkeletonRig {
                 Some(FollowPath { root: remap.get(path.root).filter(is_root)?, ..*path })
             })
             .collect();
+    }
+
+    /// The weight of a morph target of the skin; `None` if there is no such target.
+    pub fn morph_weight(&self, morph: usize) -> Option<f32> {
+        self.skin.as_ref()?.mesh_skin()?.morph_weight(morph)
+    }
+
+    /// Sets the weight of a morph target of the skin; ignored if there is no such target.
+    pub fn set_morph_weight(&mut self, morph: usize, weight: f32) {
+        if let Some(Skin { source: SkinSource::Mesh(mesh), .. }) = &mut self.skin {
+            mesh.set_morph_weight(morph, weight);
+        }
     }
 
     /// Makes a skin from bones again if the bind pose or its shape have changed since it was made,

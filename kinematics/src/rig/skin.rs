@@ -88,6 +88,14 @@ impl Skin {
         }
     }
 
+    /// The skin's mesh, if it is imported; `None` for a skin from bones.
+    pub fn mesh_skin(&self) -> Option<&MeshSkin> {
+        match &self.source {
+            SkinSource::Bones(_) => None,
+            SkinSource::Mesh(mesh) => Some(mesh),
+        }
+    }
+
     /// True if the mesh of the skin is from the file `before`, and follows the same joints as
     /// `mesh`.
     pub fn can_become(&self, mesh: &MeshSkin, before: Option<&SkinFile>) -> bool {

@@ -15,6 +15,8 @@
 //!   bone, at the fraction t of its length, gets the roll t·τ instead of τ, as from the twist
 //!   joints of a rig. The joints are then blended linearly.
 //!
+//! [Morph targets](Morph) change the shape of the mesh before its joints move it.
+//!
 //! [`SkinnedMesh::from_bones`] makes a skin for any skeleton from the radii of its joints.
 //!
 //! # Spaces
@@ -28,12 +30,14 @@
 //! quaternion blending*, ACM TOG 27(4), 2008.
 
 mod from_bones;
+mod morph;
 mod skin_pose;
 mod skinned_mesh;
 mod triangle_mesh;
 mod vertex_weights;
 
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
+pub use morph::Morph;
 pub use skin_pose::{JointDeform, SkinPose, Skinning, UnknownSkinning};
 pub use skinned_mesh::{BindSet, SkinError, SkinnedMesh};
 pub use triangle_mesh::{MeshHit, MeshSection, TriangleMesh};

@@ -1,5 +1,8 @@
+use std::sync::Arc;
+
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
+use super::morph::Morph;
 use super::skin_pose::{SkinPose, Skinning};
 use super::triangle_mesh::{MeshHit, TriangleMesh};
 use super::vertex_weights::VertexWeights;
@@ -12,6 +15,7 @@ pub struct SkinnedMesh {
     weights: Vec<VertexWeights>,
     /// All have the same number of joints.
     bind_sets: Vec<BindSet>,
+    morphs: Arc<[Morph]>,
 }
 
 /// The inverse bind transforms of some vertices. A mesh that is put together from several files or
@@ -110,7 +114,63 @@ impl SkinnedMesh {
                 return Err(SkinError::Bind { joint: JointId::new(joint) });
             }
         }
-        Ok(Self { mesh, weights, bind_sets })
+        Ok(Self { mesh, weights, bind_sets, morphs: [].into() })
+    }
+
+    /// The mesh with these morph targets instead of its own.
+    ///
+    /// # Errors
+    ///
+    /// [`SkinError`] if a morph target has lists of different lengths, vertices that do not exist
+    /// or are not in ascending order, or a number that is not finite, or if there are too many.
+    pub fn with_morphs(self, morphs: Vec<Morph>) -> Result<Self, SkinError> {
+        let vertices = self.mesh.positions.len();
+        let offsets = morphs.iter().map(|morph| morph.vertices.len()).sum();
+        for (list, most, got) in [
+            ("morph targets", Morph::MOST, morphs.len()),
+            ("vertices moved by morph targets", Morph::MOST_OFFSETS, offsets),
+        ] {
+            if got > most {
+                return Err(SkinError::TooMany { list, most, got });
+            }
+        }
+        for (index, morph) in morphs.iter().enumerate() {
+            let count = morph.vertices.len();
+            let is_valid = [morph.offsets.len(), morph.normals.len()] == [count; 2]
+                && morph.vertices.is_sorted_by(|one, next| one < next)
+                && morph.vertices.last().is_none_or(|last| (*last as usize) < vertices)
+                && morph.offsets.iter().chain(&morph.normals).all(|change| change.is_finite());
+            if !is_valid {
+                return Err(SkinError::Morph { index, vertices });
+            }
+        }
+        Ok(Self { morphs: morphs.into(), ..self })
+    }
+
+    /// The morph targets.
+    pub fn morphs(&self) -> &[Morph] {
+        &self.morphs
+    }
+
+    /// The mesh in the shape that its morph targets give it with these weights; those without a
+    /// weight have 0. Vertices that overflow stay.
+    #[must_use]
+    pub fn morphed(&self, weights: &[f32]) -> Self {
+        let mut morphed = self.clone();
+        let TriangleMesh { positions, normals, .. } = &mut morphed.mesh;
+        let mut is_moved = vec![false; positions.len()];
+        for (morph, weight) in self.morphs.iter().zip(weights).filter(|(_, weight)| **weight != 0.0)
+        {
+            morph.add(*weight, positions, normals);
+            morph.vertices.iter().for_each(|vertex| is_moved[*vertex as usize] = true);
+        }
+        for vertex in (0..is_moved.len()).filter(|vertex| is_moved[*vertex]) {
+            if !positions[vertex].is_finite() {
+                positions[vertex] = self.mesh.positions[vertex];
+            }
+            normals[vertex] = normals[vertex].normalize_or(self.mesh.normals[vertex]);
+        }
+        morphed
     }
 
     /// The mesh as it was attached, in mesh space.
@@ -201,10 +261,10 @@ impl SkinnedMesh {
         };
         let weights = self.weights.iter().map(of_heirs).collect();
         let bind_sets = self.bind_sets.iter().map(renumbered).collect();
-        Self { mesh: self.mesh.clone(), weights, bind_sets }
+        Self { mesh: self.mesh.clone(), weights, bind_sets, morphs: self.morphs.clone() }
     }
 
-    /// Memory in bytes.
+    /// Memory in bytes, without that of the morph targets.
     pub fn bytes(&self) -> usize {
         let TriangleMesh { positions, normals, texture_coordinates, colours, triangles } =
             &self.mesh;
@@ -294,6 +354,18 @@ pub enum SkinError {
         most: usize,
         /// The number.
         got: usize,
+    },
+    /// A morph target has lists that do not fit each other or the mesh, or a number that is not
+    /// finite.
+    #[error(
+        "morph target {index} must have a finite offset and normal for each of its vertices, which \
+         must be ascending and below {vertices}"
+    )]
+    Morph {
+        /// Index of the morph target.
+        index: usize,
+        /// Number of vertices of the mesh.
+        vertices: usize,
     },
     /// A triangle has a vertex that does not exist.
     #[error("triangle {triangle} must have vertices below {vertices}, got {got}")]

@@ -315,6 +315,9 @@ struct ListedAnimation {
     start: f64,
     end: f64,
     moving_joints: usize,
+    /// True if it changes morph targets.
+    #[serde(skip_serializing_if = "core::ops::Not::not")]
+    morphs: bool,
     /// True if it is the open one.
     open: bool,
 }
@@ -340,8 +343,9 @@ impl FileList {
         };
         let is_open = |index| opened.animation.is_none_or(|animation| animation == index);
         let listed = |(index, animation): (usize, FileAnimation)| {
-            let FileAnimation { name, start, end, moving_joints } = animation;
-            ListedAnimation { name, start, end, moving_joints, open: is_open(index) }
+            let FileAnimation { name, start, end, moving_joints, has_morphs } = animation;
+            let open = is_open(index);
+            ListedAnimation { name, start, end, moving_joints, morphs: has_morphs, open }
         };
         let target = |target| {
             let joint = rig.skeleton.joint(rig.end_of(target));
@@ -364,5 +368,6 @@ fn own_motion(document: &Document) -> FileAnimation {
         start: document.timeline.start,
         end: document.timeline.end,
         moving_joints: document.skeleton().ids().filter(|joint| moves(*joint)).count(),
+        has_morphs: keys.tracks().any(|(channel, _)| matches!(channel, Channel::Morph(_))),
     }
 }

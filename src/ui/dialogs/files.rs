@@ -167,8 +167,9 @@ fn list(
 }
 
 fn describe(animation: &FileAnimation) -> String {
-    let FileAnimation { name, start, end, moving_joints } = animation;
+    let FileAnimation { name, start, end, moving_joints, has_morphs } = animation;
     match moving_joints {
+        0 if *has_morphs => format!("{name} · {:.2} s · morph targets", end - start),
         0 => format!("{name} · moves no joint"),
         1 => format!("{name} · {:.2} s · 1 joint", end - start),
         joints => format!("{name} · {:.2} s · {joints} joints", end - start),

@@ -183,7 +183,7 @@ fn keys(document: &Document) -> Result<(), Broken> {
             Quantity::Length => value.x > 0.0,
             Quantity::Fraction => (0.0..=1.0).contains(&value.x),
             Quantity::Switch => value.x == 0.0 || value.x == 1.0,
-            Quantity::Point | Quantity::Angle | Quantity::Rotation => true,
+            Quantity::Point | Quantity::Angle | Quantity::Number | Quantity::Rotation => true,
         };
         let values = knots.iter().map(|knot| knot.value);
         hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");

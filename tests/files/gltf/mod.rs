@@ -6,6 +6,7 @@ mod export;
 mod glb;
 mod import;
 mod interpolation;
+mod morphs;
 #[cfg(feature = "app")]
 mod posed;
 mod round_trip;

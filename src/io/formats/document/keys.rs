@@ -16,6 +16,7 @@ use crate::io::json::{
     AtField, FieldError, JsonNumber, JsonObject, JsonSeconds, KeyRow, Whole, value_or,
 };
 use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skin::Morph;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
 /// One channel and its keys.
@@ -26,6 +27,9 @@ pub struct ChannelFields {
     joint: Option<Whole>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlay: Option<Overlay>,
+    /// Index of a morph target of the skin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    morph: Option<Whole>,
     keys: Vec<KeyFields>,
 }
 
@@ -67,21 +71,29 @@ impl ChannelFields {
             channel: channel.name().to_owned(),
             joint: channel.joint().map(Whole::from),
             overlay,
+            morph: match channel {
+                Channel::Morph(morph) => Some(Whole(morph.into())),
+                _ => None,
+            },
             keys: track.knots().iter().map(|key| KeyFields::new(key, width)).collect(),
         }
     }
 
     fn channel(&self, document: &Document) -> Result<Channel, FieldError> {
-        let named = |joint, overlay| {
+        let named = |joint, overlay, morph| {
             let unknown = || format!("must be the name of a channel, got {:?}", self.channel);
-            Channel::named(&self.channel, joint, overlay).ok_or_else(unknown).at("channel")
+            let named = Channel::named(&self.channel, joint, overlay, morph);
+            named.ok_or_else(unknown).at("channel")
         };
-        let any = named(Some(JointId::default()), Some(Overlay::Cursor))?;
+        let any = named(Some(JointId::default()), Some(Overlay::Cursor), Some(0))?;
         let joint = any.joint().map(|_| self.joint(document)).transpose()?;
         if matches!(any, Channel::Overlay(_)) && self.overlay.is_none() {
             return Err("must have `overlay`: each overlay has such a channel".into());
         }
-        let channel = named(joint, self.overlay)?;
+        if matches!(any, Channel::Morph(_)) && self.morph.is_none() {
+            return Err("must have `morph`: each morph target has such a channel".into());
+        }
+        let channel = named(joint, self.overlay, self.morph.map(morph).transpose()?)?;
         match channel.target() {
             Some(joint) if document.rig.target(joint).is_none() => {
                 Err(format!("must be a joint with a target, got {joint}")).at("joint")
@@ -100,6 +112,13 @@ impl ChannelFields {
         let number = self.joint.ok_or("must have `joint`: each joint has such a channel")?;
         joint(number, document.skeleton().joints().len()).at("joint")
     }
+}
+
+/// The index of a morph target. The skin that has it may be in a file that is read later.
+fn morph(Whole(index): Whole) -> Result<u16, FieldError> {
+    let most = Morph::MOST - 1;
+    let index = u16::try_from(index).ok().filter(|index| usize::from(*index) <= most);
+    index.ok_or_else(|| format!("must be at most {most}")).at("morph")
 }
 
 /// Converts the channels of a file to keys. `document` must have all other fields already.

@@ -18,7 +18,8 @@ use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{
-    BindSet, Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+    BindSet, Blob, Morph, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh,
+    VertexWeights,
 };
 use crate::rig::{
     BoneSkin, FileMesh, MeshSkin, PartLook, Skin, SkinFile, SkinFileError, SkinPart, SkinSource,
@@ -163,6 +164,9 @@ struct MeshSkinFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     animation: Option<String>,
     joints: Vec<Option<Whole>>,
+    /// Weights of the morph targets, 0 for those beyond the list.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    morph_weights: Vec<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
     packed: Option<JsonObject<FileMeshFields>>,
 }
@@ -187,6 +191,17 @@ struct FileMeshFields {
     /// PNG or JPEG files.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     textures: Vec<Bytes>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    morphs: Vec<JsonObject<MorphFields>>,
+}
+
+/// A morph target.
+#[derive(Serialize, Deserialize)]
+struct MorphFields {
+    name: String,
+    vertices: Bytes,
+    offsets: Bytes,
+    normals: Bytes,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -257,6 +272,7 @@ impl MeshSkinFields {
             skeleton: file.map(|file| file.skeleton.clone()),
             animation: file.and_then(|file| file.animation.clone()),
             joints: wholes(skin.joints()),
+            morph_weights: skin.morph_weights().iter().copied().map(JsonNumber).collect(),
             packed: packed.map(|mesh| JsonObject(FileMeshFields::new(mesh))),
         }
     }
@@ -266,7 +282,8 @@ impl MeshSkinFields {
         let count = skeleton.joints().len();
         let joint = |number: Option<Whole>| number.map(|number| joint(number, count)).transpose();
         let joints = converted(self.joints, joint).at("joints")?;
-        match (self.file, self.packed) {
+        let weights = self.morph_weights.into_iter().map(f32::from).collect();
+        let skin = match (self.file, self.packed) {
             (Some(path), None) => {
                 let file = SkinFile {
                     path: PathBuf::from(path),
@@ -275,7 +292,7 @@ impl MeshSkinFields {
                     animation: self.animation,
                 };
                 let missing = SkinFileError::Missing(file.path.clone());
-                Ok(MeshSkin::without_mesh(file, joints, missing))
+                MeshSkin::without_mesh(file, joints, missing)
             }
             (None, Some(JsonObject(packed))) => {
                 let mesh = packed.mesh().at("packed")?;
@@ -284,10 +301,11 @@ impl MeshSkinFields {
                     let reason = format!("must have {expected} entries, as `parents`, got {got}");
                     return Err(reason).at("joints");
                 }
-                Ok(MeshSkin::new(mesh.into(), None, joints, skeleton))
+                MeshSkin::new(mesh.into(), None, joints, skeleton)
             }
-            _ => Err("must have either `file` or `packed`".into()),
-        }
+            _ => return Err("must have either `file` or `packed`".into()),
+        };
+        Ok(skin.with_morph_weights(weights))
     }
 }
 
@@ -328,6 +346,7 @@ impl FileMeshFields {
             vertex_weights: Bytes::of_floats(weights().flat_map(VertexWeights::weights)),
             parts: parts.collect(),
             textures: textures.iter().map(|texture| Bytes::of(&texture.file)).collect(),
+            morphs: mesh.morphs().iter().map(MorphFields::new).map(JsonObject).collect(),
         }
     }
 
@@ -386,11 +405,34 @@ impl FileMeshFields {
         let mesh = SkinnedMesh::with_bind_sets(triangles, weights.collect(), bind_sets)
             .map_err(|error| error.to_string())
             .at("positions")?;
+        let morphs = converted(self.morphs, |JsonObject(morph)| morph.morph()).at("morphs")?;
+        let mesh = mesh.with_morphs(morphs).map_err(|error| error.to_string()).at("morphs")?;
         let mut reader = TextureReader::default();
         let texture = |bytes: Bytes| reader.read(bytes.decoded()?).map(Shared::from);
         let textures = converted(self.textures, texture).at("textures")?;
         let parts = converted(self.parts, |JsonObject(part)| part.part(&textures)).at("parts")?;
         Ok(FileMesh { mesh, parents, parts })
+    }
+}
+
+impl MorphFields {
+    fn new(morph: &Morph) -> Self {
+        let vectors = |all: &[Vec3]| Bytes::of_floats(all.iter().flat_map(Vec3::to_array));
+        Self {
+            name: morph.name.clone(),
+            vertices: Bytes::new(morph.vertices.iter().flat_map(|vertex| vertex.to_le_bytes())),
+            offsets: vectors(&morph.offsets),
+            normals: vectors(&morph.normals),
+        }
+    }
+
+    fn morph(self) -> Result<Morph, FieldError> {
+        Ok(Morph {
+            name: self.name,
+            vertices: packed::wholes(&self.vertices.decoded().at("vertices")?),
+            offsets: self.offsets.vectors().at("offsets")?,
+            normals: self.normals.vectors().at("normals")?,
+        })
     }
 }
 

@@ -24,6 +24,13 @@ pub struct NodeExtras {
     frame: [f32; 4],
 }
 
+/// Extras of a mesh: the names of its morph targets, as many programs write them.
+#[derive(Serialize, Deserialize)]
+pub struct MeshExtras {
+    #[serde(rename = "targetNames")]
+    pub target_names: Vec<String>,
+}
+
 /// Extras of an animation: the frames in a second of its timeline.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct AnimationExtras {

@@ -6,14 +6,16 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
-use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::extras::{
-    AnimationExtras, Extras, NodeExtras, SamplerExtras, is_this_program, this_program,
+    AnimationExtras, Extras, MeshExtras, NodeExtras, SamplerExtras, is_this_program, this_program,
 };
 use super::material::{GltfImage, GltfMaterial, GltfTexture, TEXTURE_TRANSFORM, Uri};
-use crate::io::json::{FieldError, JsonNumbers, JsonObject, JsonPath, JsonPoint, Whole};
+use crate::io::json::{
+    FieldError, JsonNumber, JsonNumbers, JsonObject, JsonPath, JsonPoint, Whole,
+};
 
 #[derive(Default, Deserialize, Serialize)]
 pub struct GltfFile<'a> {
@@ -176,6 +178,9 @@ pub struct GltfNode {
     pub translation: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub skin: Option<Whole>,
+    /// Weights of the mesh's morph targets, instead of those of the mesh.
+    #[serde(skip_serializing)]
+    pub weights: Option<Vec<JsonNumber>>,
 }
 
 /// A scene, which only tells other programs what to show.
@@ -197,9 +202,14 @@ pub struct GltfSkin {
 
 #[derive(Deserialize, Serialize)]
 pub struct GltfMesh {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extras: Option<Extras<MeshExtras>>,
     #[serde(skip_deserializing)]
     pub name: String,
     pub primitives: List<GltfPrimitive>,
+    /// Weights of the morph targets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<JsonNumber>>,
 }
 
 #[derive(Default, Deserialize, Serialize)]
@@ -213,8 +223,9 @@ pub struct GltfPrimitive {
     pub material: Option<Whole>,
     #[serde(skip_serializing)]
     pub mode: Option<Whole>,
-    #[serde(skip_serializing)]
-    pub targets: Option<IgnoredAny>,
+    /// The morph targets: accessors of changes by attribute.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<BTreeMap<String, Whole>>,
 }
 
 /// Attributes that are written, in their order.
@@ -343,9 +354,9 @@ impl Component {
 
 #[derive(Deserialize, Serialize)]
 pub struct GltfAccessor {
-    #[serde(rename = "bufferView")]
+    #[serde(rename = "bufferView", skip_serializing_if = "Option::is_none")]
     pub view: Option<Whole>,
-    #[serde(rename = "byteOffset")]
+    #[serde(rename = "byteOffset", skip_serializing_if = "Option::is_none")]
     pub offset: Option<Whole>,
     pub count: Whole,
     #[serde(rename = "componentType")]
@@ -358,33 +369,33 @@ pub struct GltfAccessor {
     pub max: Vec<f64>,
     #[serde(skip_serializing)]
     pub normalized: Option<bool>,
-    #[serde(skip_serializing)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub sparse: Option<JsonObject<GltfSparse>>,
 }
 
 /// Rows of an accessor that replace those of its buffer view.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 pub struct GltfSparse {
     pub count: Whole,
     pub indices: JsonObject<GltfSparseIndices>,
     pub values: JsonObject<GltfSparseValues>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 pub struct GltfSparseIndices {
     #[serde(rename = "bufferView")]
     pub view: Whole,
-    #[serde(rename = "byteOffset")]
+    #[serde(rename = "byteOffset", skip_serializing_if = "Option::is_none")]
     pub offset: Option<Whole>,
     #[serde(rename = "componentType")]
     pub component: Whole,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 pub struct GltfSparseValues {
     #[serde(rename = "bufferView")]
     pub view: Whole,
-    #[serde(rename = "byteOffset")]
+    #[serde(rename = "byteOffset", skip_serializing_if = "Option::is_none")]
     pub offset: Option<Whole>,
 }
 

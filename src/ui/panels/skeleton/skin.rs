@@ -6,7 +6,7 @@ use std::time::Duration;
 use egui::{Stroke, Ui};
 use egui_plot::{AxisHints, Line, PlotBounds, PlotPoints, VLine};
 
-use crate::document::{Overlay, Skin};
+use crate::document::{Channel, Overlay, Skin};
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, MeshSkin, SkinMeshError, SkinSource};
 use crate::session::{
@@ -29,7 +29,10 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     skinning(ui, skin, actions);
     match &skin.source {
         SkinSource::Bones(bones) => shape(ui, session, skin, bones, actions),
-        SkinSource::Mesh(mesh) => file(ui, mesh, actions),
+        SkinSource::Mesh(mesh) => {
+            morphs(ui, session, mesh, actions);
+            file(ui, mesh, actions);
+        }
     }
     colour(ui, session, skin, actions);
     summary(ui, session, skin);
@@ -122,6 +125,32 @@ fn shape(ui: &mut Ui, session: &Session, skin: &Skin, bones: &BoneSkin, actions:
     };
     thickness.show(ui, session, actions, |thickness| {
         with(SkinShape { thickness: thickness.max(1e-3), ..shape.clone() })
+    });
+}
+
+/// Shows the weights of the morph targets.
+fn morphs(ui: &mut Ui, session: &Session, mesh: &MeshSkin, actions: &mut Actions) {
+    let Some(in_file) = mesh.in_file() else { return };
+    let morphs = in_file.mesh.morphs();
+    if morphs.is_empty() {
+        return;
+    }
+    let title = format!("Morph targets ({})", morphs.len());
+    widgets::named_folded_section(ui, "morph targets", &title, |ui| {
+        for (morph, target) in (0..).zip(morphs) {
+            let weight = Slider {
+                name: &target.name,
+                label: &target.name,
+                tooltip: "Blend the mesh into the shape of this morph target",
+                value: mesh.morph_weight(morph.into()).unwrap_or_default(),
+                range: (0.0, 1.0),
+                default: 0.0,
+                step: 0.05,
+                channel: Some(Channel::Morph(morph)),
+                ..Slider::default()
+            };
+            weight.show(ui, session, actions, |weight| SkinEdit::SetMorph { morph, weight });
+        }
     });
 }
 

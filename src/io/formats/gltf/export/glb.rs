@@ -4,20 +4,23 @@ use std::collections::{BTreeMap, HashMap};
 use glam::{DAffine3, DMat4, DQuat};
 
 use super::GlbError;
-use super::mesh::{LimbMesh, MeshPart, RigMesh};
+use super::mesh::{LimbMesh, MeshPart, PartMorph, RigMesh};
+use super::morphs::MorphAnimation;
 use super::motion::JointAnimation;
 use super::nodes::{ClipTimes, JointNodes, JointTrack};
 use super::rig::GltfRig;
 use crate::document::{Document, Timeline};
 use crate::io::exported::Progress;
-use crate::io::formats::gltf::extras::{AnimationExtras, Extras, NodeExtras, SamplerExtras};
+use crate::io::formats::gltf::extras::{
+    AnimationExtras, Extras, MeshExtras, NodeExtras, SamplerExtras,
+};
 use crate::io::formats::gltf::file::{
     Component, GltfAccessor, GltfAnimation, GltfAsset, GltfBuffer, GltfBufferView, GltfChannel,
-    GltfFile, GltfMesh, GltfNode, GltfPrimitive, GltfSampler, GltfScene, GltfSkin, GltfTarget,
-    List, whole,
+    GltfFile, GltfMesh, GltfNode, GltfPrimitive, GltfSampler, GltfScene, GltfSkin, GltfSparse,
+    GltfSparseIndices, GltfSparseValues, GltfTarget, List, whole,
 };
 use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTexture};
-use crate::io::json::{JsonNumbers, JsonObject, JsonPoint, Whole};
+use crate::io::json::{JsonNumber, JsonNumbers, JsonObject, JsonPoint, Whole};
 use crate::kinematics::Shared;
 use crate::rig::SkinTexture;
 
@@ -56,11 +59,12 @@ pub async fn glb(
         let parts: Vec<&MeshPart> = mesh.parts.iter().filter(|part| part.set == set).collect();
         if set == 0 || !parts.is_empty() {
             let skin = writer.add_skin(&bones, attached);
-            skinned.push((writer.add_mesh(&parts), skin));
+            skinned.push((writer.add_mesh(&parts, &mesh.morphs), skin));
         }
     }
-    writer.add_nodes(&bones, &motion.frames, &skinned);
-    writer.add_animation(&motion, document.animation_name.as_deref());
+    let nodes = writer.add_nodes(&bones, &motion.frames, &skinned);
+    let weights = MorphAnimation::new(document, timeline, mesh.morphs.len())?;
+    writer.add_animation(&motion, &weights, &nodes, document.animation_name.as_deref());
     writer.file()
 }
 
@@ -103,14 +107,14 @@ impl GltfWriter {
     }
 
     /// Adds the nodes of the joints, with the same indices as in `bones`, then a node above them
-    /// and a node for each mesh with its skin. `frames` has nodes with the frames of their joints'
-    /// angles.
+    /// and a node for each mesh with its skin, which are returned. `frames` has nodes with the
+    /// frames of their joints' angles.
     fn add_nodes(
         &mut self,
         bones: &JointNodes,
         frames: &[(usize, DQuat)],
         skinned: &[(Whole, Whole)],
-    ) {
+    ) -> Vec<Whole> {
         let armature = bones.nodes.len();
         let mut children = vec![Vec::new(); armature + 1];
         for (index, node) in bones.nodes.iter().enumerate() {
@@ -140,7 +144,9 @@ impl GltfWriter {
                 ..GltfNode::default()
             }));
         }
+        let meshes = scene[1..].to_vec();
         self.json.scenes = [GltfScene { nodes: scene }];
+        meshes
     }
 
     fn add_skin(&mut self, bones: &JointNodes, attached: &[DAffine3]) -> Whole {
@@ -164,10 +170,18 @@ impl GltfWriter {
         })
     }
 
-    fn add_mesh(&mut self, parts: &[&MeshPart]) -> Whole {
+    fn add_mesh(&mut self, parts: &[&MeshPart], morphs: &[(String, f32)]) -> Whole {
         let parts = parts.iter().filter(|part| !part.indices.is_empty());
         let primitives = List(parts.map(|part| self.add_primitive(part)).collect());
-        self.json.meshes.push(GltfMesh { name: JointNodes::MESH.to_owned(), primitives })
+        let has_morphs = !morphs.is_empty();
+        let weights = || morphs.iter().map(|(_, weight)| JsonNumber(*weight)).collect();
+        let names = || morphs.iter().map(|(name, _)| name.clone()).collect();
+        self.json.meshes.push(GltfMesh {
+            extras: has_morphs.then(|| Extras::Own(MeshExtras { target_names: names() })),
+            name: JointNodes::MESH.to_owned(),
+            primitives,
+            weights: has_morphs.then(weights),
+        })
     }
 
     fn add_primitive(&mut self, part: &MeshPart) -> GltfPrimitive {
@@ -196,8 +210,55 @@ impl GltfWriter {
             attributes,
             indices: Some(indices),
             material: Some(material),
+            targets: part.morphs.iter().map(|morph| self.add_morph(morph, vertices)).collect(),
             ..GltfPrimitive::default()
         }
+    }
+
+    /// The attributes of a morph target of a primitive with so many vertices.
+    fn add_morph(&mut self, morph: &PartMorph, vertices: usize) -> BTreeMap<String, Whole> {
+        let indices = (!morph.vertices.is_empty()).then(|| {
+            let start = self.bytes.len();
+            self.bytes.extend(morph.vertices.iter().flat_map(|vertex| vertex.to_le_bytes()));
+            self.add_view(start, None)
+        });
+        let mut add = |name: &str, rows: &[[f32; 3]]| {
+            (name.to_owned(), self.add_sparse(rows, indices, vertices))
+        };
+        BTreeMap::from([add("POSITION", &morph.offsets), add("NORMAL", &morph.normals)])
+    }
+
+    /// Adds an accessor of zeros in which `rows` replace those with the indices of a view.
+    fn add_sparse(&mut self, rows: &[[f32; 3]], indices: Option<Whole>, count: usize) -> Whole {
+        let bound = |of: fn(f32, f32) -> f32| {
+            // Beside the rows there are zeros, unless all are replaced.
+            let first = rows.first().filter(|_| rows.len() == count).copied().unwrap_or_default();
+            let bounds = rows.iter().fold(first, |bounds, row| {
+                std::array::from_fn(|number| of(bounds[number], row[number]))
+            });
+            bounds.map(f64::from).to_vec()
+        };
+        let (min, max) = (bound(f32::min), bound(f32::max));
+        let sparse = indices.map(|indices| {
+            let start = self.bytes.len();
+            self.bytes.extend(bytes(rows));
+            let values = GltfSparseValues { view: self.add_view(start, None), offset: None };
+            let component = Whole(Component::U32 as u32);
+            let indices = GltfSparseIndices { view: indices, offset: None, component };
+            let (indices, values) = (JsonObject(indices), JsonObject(values));
+            JsonObject(GltfSparse { count: whole(rows.len()), indices, values })
+        });
+        self.json.accessors.push(GltfAccessor {
+            view: None,
+            offset: None,
+            count: whole(count),
+            component: Whole(Component::F32 as u32),
+            shape: shape::<3>().into(),
+            min,
+            max,
+            normalized: None,
+            sparse,
+        })
     }
 
     /// Index of a texture, which is written if it is new.
@@ -218,8 +279,15 @@ impl GltfWriter {
     }
 
     /// Adds the animation, unless it is empty.
-    fn add_animation(&mut self, motion: &JointAnimation, name: Option<&str>) {
-        if motion.rotations.is_empty() && motion.translations.is_empty() {
+    fn add_animation(
+        &mut self,
+        motion: &JointAnimation,
+        weights: &MorphAnimation,
+        meshes: &[Whole],
+        name: Option<&str>,
+    ) {
+        let has_weights = !weights.times.is_empty();
+        if motion.rotations.is_empty() && motion.translations.is_empty() && !has_weights {
             return;
         }
         // Tracks with the same times share an accessor.
@@ -234,6 +302,7 @@ impl GltfWriter {
             motion.rotations.iter().map(|track| add_times(&track.times)).collect();
         let of_translations: Vec<Whole> =
             motion.translations.iter().map(|track| add_times(&track.times)).collect();
+        let of_weights = has_weights.then(|| add_times(&weights.times));
         let mut animation = GltfAnimation {
             extras: Some(Extras::Own(AnimationExtras::new(motion.timeline))),
             channels: List::default(),
@@ -247,7 +316,23 @@ impl GltfWriter {
         for (track, times) in motion.translations.iter().zip(of_translations) {
             self.add_track(&mut animation, track, "translation", times, start);
         }
-        self.add_view(start, None);
+        if self.bytes.len() > start {
+            self.add_view(start, None);
+        }
+        if let Some(input) = of_weights {
+            let values: Vec<[f32; 1]> = weights.values.iter().map(|weight| [*weight]).collect();
+            let output = self.add_floats(&values, None);
+            let sampler = animation.samplers.push(GltfSampler {
+                extras: None,
+                input,
+                interpolation: Some(weights.curve.name().to_owned()),
+                output,
+            });
+            for mesh in meshes {
+                let target = GltfTarget { node: Some(*mesh), path: "weights".to_owned() };
+                animation.channels.push(GltfChannel { sampler, target: JsonObject(target) });
+            }
+        }
         self.json.animations.push(animation);
     }
 

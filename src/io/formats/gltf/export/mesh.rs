@@ -10,7 +10,7 @@ use crate::document::{Document, Skin};
 use crate::io::formats::gltf::material::linear;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
-use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::kinematics::skin::{BindSet, Morph, SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{AttachedMesh, PartLook, SkinTexture};
 
 /// The mesh of an exported rig.
@@ -20,6 +20,8 @@ pub struct RigMesh {
     /// For each set, for each joint the transform from the mesh to the world in the bind pose, in
     /// metres; identity for joints beyond the list. At least one set.
     pub attached: Vec<Vec<DAffine3>>,
+    /// Names of the morph targets, each with its weight in the document.
+    pub morphs: Vec<(String, f32)>,
 }
 
 /// Triangles of one material.
@@ -44,6 +46,17 @@ pub struct MeshPart {
     pub weights: Vec<[f32; 4]>,
     /// Indices of three vertices for each triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
+    /// The changes by each of the morph targets.
+    pub morphs: Vec<PartMorph>,
+}
+
+/// The changes that a morph target makes to the vertices of a part.
+#[derive(Default)]
+pub struct PartMorph {
+    /// The vertices that it changes, ascending.
+    pub vertices: Vec<u32>,
+    pub offsets: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
 }
 
 impl RigMesh {
@@ -53,11 +66,18 @@ impl RigMesh {
     /// gets the vertices that linear blending gives in the program.
     pub fn of_skin(document: &Document) -> Option<Self> {
         let skin = document.rig.skin.as_ref()?;
-        let mesh = skin.mesh().ok().filter(|mesh| !mesh.mesh.mesh().triangles.is_empty())?;
+        let mesh = match skin.mesh_skin() {
+            Some(mesh) => mesh.unmorphed().ok(),
+            None => skin.mesh().ok(),
+        };
+        let mesh = mesh.filter(|mesh| !mesh.mesh.mesh().triangles.is_empty())?;
+        let weight = |morph| document.rig.morph_weight(morph).unwrap_or_default();
+        let morphs = mesh.mesh.morphs().iter().enumerate();
         let metres = f64::from(document.metres_per_unit());
         Some(Self {
             parts: parts(skin, mesh, document.skeleton()),
             attached: attached(&mesh.mesh, document.skeleton(), metres),
+            morphs: morphs.map(|(morph, it)| (it.name.clone(), weight(morph))).collect(),
         })
     }
 }
@@ -107,6 +127,18 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
         [linear(red), linear(green), linear(blue), opacity]
     };
     let colours: Vec<[f32; 4]> = colours.map(in_light).collect();
+    let of_part = |morph: &Morph| {
+        let mut part = PartMorph::default();
+        let changes = morph.offsets.iter().zip(&morph.normals);
+        for (vertex, (offset, normal)) in morph.vertices.iter().zip(changes) {
+            if let Some(place) = places[*vertex as usize] {
+                part.vertices.push(place);
+                part.offsets.push(offset.to_array());
+                part.normals.push(normal.to_array());
+            }
+        }
+        part
+    };
     let is_coloured = colours.iter().any(|colour| *colour != [1.0; 4]);
     MeshPart {
         colours: if is_coloured { colours } else { Vec::new() },
@@ -116,6 +148,7 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
         weights: weights().map(VertexWeights::weights).collect(),
         coordinates: coordinates.filter(|_| has_texture).map(Vec2::to_array).collect(),
         indices: corners.iter().filter_map(|corner| places[*corner as usize]).collect(),
+        morphs: mesh.morphs().iter().map(of_part).collect(),
         ..MeshPart::default()
     }
 }
@@ -153,7 +186,7 @@ impl From<LimbMesh> for RigMesh {
             MeshPart { colour, ..part }
         });
         let parts = parts.collect();
-        Self { parts, attached: vec![Vec::new()] }
+        Self { parts, attached: vec![Vec::new()], morphs: Vec::new() }
     }
 }
 

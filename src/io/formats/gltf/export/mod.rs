@@ -2,6 +2,7 @@
 
 mod glb;
 mod mesh;
+mod morphs;
 mod motion;
 mod nodes;
 mod quaternion_spline;

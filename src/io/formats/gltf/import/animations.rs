@@ -3,9 +3,10 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::buffers::GltfBuffers;
+use super::morphs::WeightTracks;
 use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
 use super::rows::{at_accessor, buffers_of};
-use super::sampler::{AnimatedPart, KeySampler, UsedChannel, tolerance};
+use super::sampler::{AnimatedPart, KeySampler, UsedChannel, on_frame, tolerance};
 use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::UniqueNames;
@@ -17,10 +18,13 @@ use crate::io::opened::FileAnimation;
 use crate::io::source::Source;
 
 /// The nodes that an animation moves, and its range.
+#[derive(Default)]
 pub struct AnimationScan {
     pub name: String,
     /// Nodes whose translation, rotation or scale changes.
     pub moving: BTreeSet<usize>,
+    /// True if weights of morph targets change.
+    pub has_morphs: bool,
     /// Times of the first and the last key in seconds.
     pub range: (f64, f64),
 }
@@ -30,7 +34,13 @@ impl AnimationScan {
     pub fn described(&self, joints: &SkinJoints) -> FileAnimation {
         let moving = joints.nodes.iter().filter(|node| self.moving.contains(node)).count();
         let (start, end) = self.range;
-        FileAnimation { name: self.name.clone(), start, end, moving_joints: moving }
+        FileAnimation {
+            name: self.name.clone(),
+            start,
+            end,
+            moving_joints: moving,
+            has_morphs: self.has_morphs,
+        }
     }
 }
 
@@ -45,8 +55,8 @@ pub fn scan(source: &Source, file: &GltfFile<'_>, nodes: &NodeTree) -> Vec<Anima
     let scans = animations.map(|(index, animation)| {
         let given = animation.name.as_deref().filter(|name| !name.trim().is_empty());
         let name = names.free(given.unwrap_or(&format!("animation_{index}")));
-        let (moving, range) = scan_one(source, file, nodes, index).unwrap_or_default();
-        AnimationScan { name, moving, range }
+        let scan = scan_one(source, file, nodes, index).unwrap_or_default();
+        AnimationScan { name, ..scan }
     });
     scans.collect()
 }
@@ -56,14 +66,19 @@ fn scan_one(
     file: &GltfFile<'_>,
     nodes: &NodeTree,
     index: usize,
-) -> Result<(BTreeSet<usize>, (f64, f64)), FieldError> {
+) -> Result<AnimationScan, FieldError> {
     let (animation, at) = (&file.animations.0[index], at_animation(index));
     let all = vec![true; nodes.parents.len()];
     let channels = used_channels(animation, &at, nodes, &all)?;
     let buffers = buffers(source, file, &channels)?;
     let tracks = NodeTracks::new(file, &buffers, &channels, &at, &mut FieldWarnings::default())?;
-    let range = time_range(&tracks).unwrap_or_default();
-    Ok((tracks.moving().collect(), range))
+    let weights = WeightTracks::new(source, file, animation, &at)?;
+    Ok(AnimationScan {
+        name: String::new(),
+        moving: tracks.moving().collect(),
+        has_morphs: weights.vary(),
+        range: time_range(tracks.times().chain(weights.times())).unwrap_or_default(),
+    })
 }
 
 /// The index of the animation to read: the one that is called `name` or has this number, or with
@@ -89,20 +104,22 @@ pub fn choose(
 /// Frame rate of a motion whose keys fit no frame rate.
 const FALLBACK_RATE: f64 = 60.0;
 
-/// Returns the timeline from the first key to the last. Its frame rate is the one that
+/// Returns the timeline from the first to the last of the times of keys. Its frame rate is the one that
 /// [`frame_rate::of_times`] finds with as little tolerance as possible, or else [`FALLBACK_RATE`];
 /// `own_rate`, if the file tells it. Returns `None` if all keys are at the same time. `at` is the
 /// path of the animation.
 pub fn timeline(
-    tracks: &NodeTracks<'_>,
+    mut times: Vec<f64>,
     own_rate: Option<f64>,
     at: &JsonPath,
 ) -> Result<Option<Timeline>, FieldError> {
-    let Some((start, end)) = time_range(tracks) else { return Ok(None) };
+    let Some((start, end)) = time_range(times.iter().copied()) else { return Ok(None) };
     if start == end {
         return Ok(None);
     }
-    let times: Vec<f64> = tracks.distinct_times().into_iter().map(|time| time - start).collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    times.iter_mut().for_each(|time| *time -= start);
     let rounded = |time: f64| ((time + start) * f64::from(f32::EPSILON)).max(1e-7);
     let found = own_rate.or_else(|| frame_rate::of_times(&times, rounded));
     let found = found.or_else(|| frame_rate::of_times(&times, |_| 2e-6));
@@ -122,16 +139,9 @@ pub fn timeline(
     Ok(Some(timeline))
 }
 
-/// The time of the frame at a time that single precision cannot tell from it; else the time itself.
-pub fn on_frame(time: f64, timeline: Timeline) -> f64 {
-    let frame = timeline.snapped(time);
-    let rounding = (time.abs() * f64::from(f32::EPSILON)).max(1e-7);
-    if (frame - time).abs() <= rounding { frame } else { time }
-}
-
-/// Times of the first and the last key in seconds; `None` without keys.
-pub fn time_range(tracks: &NodeTracks<'_>) -> Option<(f64, f64)> {
-    tracks.times().map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+/// The first and the last of the times of keys in seconds; `None` without keys.
+fn time_range(times: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    times.map(|time| (time, time)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
 /// The animated values of all nodes.

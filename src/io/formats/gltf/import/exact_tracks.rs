@@ -24,11 +24,10 @@ use core::cell::Cell;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
-use super::animations;
 use super::animations::NodeTracks;
 use super::joint_tracks::{ExactJoint, JointPlacement};
 use super::nodes::{NodeTransform, NodeTree, SkinJoints};
-use super::sampler::{AnimatedPart, KeySampler};
+use super::sampler::{AnimatedPart, KeySampler, on_frame};
 use crate::document::{Channel, Keys, Timeline};
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
 use crate::io::formats::gltf::frame;
@@ -165,7 +164,7 @@ impl<'a> ExactTracks<'a> {
     /// precision.
     fn on_frames(&self, track: &Spline<Vec3>) -> Spline<Vec3> {
         let moved = |knot: &Knot<Vec3>| {
-            let time = self.timeline.map_or(knot.time, |it| animations::on_frame(knot.time, it));
+            let time = self.timeline.map_or(knot.time, |it| on_frame(knot.time, it));
             Knot { time, ..*knot }
         };
         track.knots().iter().map(moved).collect()

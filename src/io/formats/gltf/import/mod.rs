@@ -6,6 +6,7 @@ mod buffers;
 mod exact_tracks;
 mod figures;
 mod joint_tracks;
+mod morphs;
 mod nodes;
 mod primitive;
 mod rig;
@@ -32,10 +33,11 @@ use animations::at_animation;
 use exact_tracks::ExactTracks;
 use figures::Figure;
 use joint_tracks::{ExactJoint, NodePoser};
+use morphs::WeightTracks;
 use nodes::{NodeTree, SkinJoints, at_node, at_skin};
 use rig::{BoneEnds, ImportedRig};
 use sampler::UsedChannel;
-use skin_mesh::MeshImport;
+use skin_mesh::{FigureMesh, MeshImport};
 
 /// Maximum number of node transforms in all frames.
 const MOST_SAMPLES: usize = 4_000_000;
@@ -171,7 +173,10 @@ impl GltfImport<'_> {
         let is_own = file.asset.0.is_of_this_program();
         let extras = animation.and_then(|it| it.extras.as_ref()).and_then(Extras::own);
         let own_rate = extras.filter(|_| is_own).and_then(|extras| extras.frame_rate());
-        let timeline = animations::timeline(&tracks, own_rate, &at)?;
+        let weights = animation.map(|it| WeightTracks::new(source, file, it, &at));
+        let weights = weights.transpose()?.unwrap_or_default();
+        let times = tracks.times().chain(weights.times()).collect();
+        let timeline = animations::timeline(times, own_rate, &at)?;
         let own = is_own.then_some(file);
         let exact = ExactTracks::new(nodes, skin_joints, &tracks, &bind_pose, timeline, own);
         let exact: Vec<_> = (0..joints.len()).map(|joint| exact.of(joint)).collect();
@@ -188,7 +193,7 @@ impl GltfImport<'_> {
         let mesh =
             MeshImport { source, file, nodes, figure, joints: skin_joints, bind_pose: &bind_pose };
         match mesh.read(warnings) {
-            Ok(Some((mesh, checksum))) => {
+            Ok(Some(FigureMesh { mesh, checksum, owners, morph_weights })) => {
                 let joints = built.kept.iter().map(|joint| joint.map(JointId::new)).collect();
                 let file = source.path().map(|path| SkinFile {
                     path: path.into(),
@@ -200,6 +205,10 @@ impl GltfImport<'_> {
                         .map(|(_, animation)| animation.name.clone()),
                 });
                 attach_skin(&mut built.document, mesh, file, joints);
+                for (morph, weight) in morph_weights.into_iter().enumerate() {
+                    built.document.rig.set_morph_weight(morph, weight);
+                }
+                weights.add_to(&mut built.document, &owners, timeline);
             }
             Ok(None) => {}
             Err(error) => {
@@ -252,7 +261,7 @@ fn sampled_times(
         return Err(FieldError::new(at, reason));
     }
     if let Some(timeline) = timeline {
-        times.iter_mut().for_each(|time| *time = animations::on_frame(*time, timeline));
+        times.iter_mut().for_each(|time| *time = sampler::on_frame(*time, timeline));
         times.extend((0..frames).map(|frame| timeline.time(frame)));
     }
     times.sort_unstable_by(f64::total_cmp);

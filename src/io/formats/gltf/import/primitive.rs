@@ -7,7 +7,7 @@ use super::rows::{AccessorRows, at_accessor, view_bytes};
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTextureUse, Uri, srgb};
-use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
+use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath, Whole};
 use crate::io::source::Source;
 use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
@@ -156,10 +156,23 @@ pub struct PrimitiveMesh {
     /// primitive without weights.
     pub weights: Vec<Vec<(usize, f32)>>,
     pub triangles: Vec<[u32; 3]>,
+    pub morphs: Vec<PrimitiveMorph>,
+}
+
+/// The changes that a morph target makes to the vertices of a primitive.
+pub struct PrimitiveMorph {
+    /// The vertices that it changes, ascending.
+    pub vertices: Vec<u32>,
+    pub offsets: Vec<Vec3>,
+    /// Changes of normals; `None` if the file has none.
+    pub normals: Option<Vec<Vec3>>,
 }
 
 /// The attribute of the colours of vertices.
 const COLOURS: &str = "COLOR_0";
+
+/// The attributes of morph targets that are read.
+const MORPHED: [&str; 2] = ["POSITION", "NORMAL"];
 
 /// Maximum number of sets of four joints for each vertex.
 const MOST_SETS: usize = 16;
@@ -226,7 +239,11 @@ impl GltfPrimitive {
         let attributes = names.into_iter().filter_map(|name| self.attribute(name));
         let weights = self.weights().flat_map(|(joints, weights)| [joints, weights]);
         let indices = self.indices.iter().map(|indices| indices.0 as usize);
-        attributes.chain(weights).chain(indices).collect()
+        let of_morph = |morph: &BTreeMap<String, Whole>| {
+            MORPHED.map(|name| morph.get(name).map(|accessor| accessor.0 as usize))
+        };
+        let morphs = self.targets.iter().flat_map(of_morph).flatten();
+        attributes.chain(weights).chain(indices).chain(morphs).collect()
     }
 }
 
@@ -276,7 +293,23 @@ impl PrimitiveMesh {
             weights.resize_with(count, Vec::new);
             add_weights(&mut weights, [&numbers, &shares], joints, &at_accessor(of_joints))?;
         }
+        let mut morphs = Vec::with_capacity(primitive.targets.len());
+        for (index, target) in primitive.targets.iter().enumerate() {
+            let changes = |name: &str| {
+                let Some(accessor) = target.get(name) else { return Ok(None) };
+                let rows = rows(accessor.0 as usize, "VEC3")?;
+                if rows.len() != count {
+                    let reason =
+                        format!("must have {count} rows like POSITION, got {}", rows.len());
+                    let at = at.clone().key("targets").index(index).key(name);
+                    return Err(FieldError::new(at, reason));
+                }
+                Ok(Some(vectors(&rows)))
+            };
+            morphs.push(PrimitiveMorph::new(changes("POSITION")?, changes("NORMAL")?));
+        }
         Ok(Self {
+            morphs,
             triangles: triangles(file, buffers, primitive, count)?,
             positions,
             normals,
@@ -284,6 +317,26 @@ impl PrimitiveMesh {
             colours,
             weights,
         })
+    }
+}
+
+impl PrimitiveMorph {
+    /// Keeps those vertices that are changed.
+    pub fn new(offsets: Option<Vec<Vec3>>, normals: Option<Vec<Vec3>>) -> Self {
+        let at = |all: &Option<Vec<Vec3>>, vertex: u32| {
+            all.as_ref().map_or(Vec3::ZERO, |all| all[vertex as usize])
+        };
+        let count = offsets.as_ref().or(normals.as_ref()).map_or(0, Vec::len);
+        let is_changed =
+            |vertex: &u32| [&offsets, &normals].iter().any(|all| at(all, *vertex) != Vec3::ZERO);
+        let vertices: Vec<u32> = (0..count as u32).filter(is_changed).collect();
+        let kept =
+            |all: &Option<Vec<Vec3>>| vertices.iter().map(|vertex| at(all, *vertex)).collect();
+        Self {
+            offsets: kept(&offsets),
+            normals: normals.is_some().then(|| kept(&normals)),
+            vertices,
+        }
     }
 }
 

@@ -3,6 +3,7 @@ use glam::{DQuat, DVec3, DVec4, Vec3};
 use super::buffers::GltfBuffers;
 use super::nodes::{NodeTransform, unit};
 use super::rows::{AccessorRows, at_accessor};
+use crate::document::Timeline;
 use crate::io::formats::gltf::extras::SamplerExtras;
 use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
 use crate::io::json::FieldError;
@@ -46,6 +47,13 @@ pub fn tolerance(time: f64) -> f64 {
     const LEAST: f64 = 1e-4;
     const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
     (time.abs() * ROUNDING).max(LEAST)
+}
+
+/// The time of the frame at a time that single precision cannot tell from it; else the time itself.
+pub fn on_frame(time: f64, timeline: Timeline) -> f64 {
+    let frame = timeline.snapped(time);
+    let rounding = (time.abs() * f64::from(f32::EPSILON)).max(1e-7);
+    if (frame - time).abs() <= rounding { frame } else { time }
 }
 
 /// Relative change of a value below which it counts as constant.

@@ -10,21 +10,26 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use glam::{Affine2, DAffine3, DVec3, Vec3};
+use glam::{Affine2, DAffine3, DMat3, DVec3, Vec3};
 
 use super::bind_tables::{BindTable, BindTables};
 use super::buffers::{GltfBuffers, is_file};
 use super::figures::Figure;
 use super::joint_tracks::JointPlacement;
+use super::morphs::MorphOwner;
 use super::nodes::{NodeTree, SkinJoints, at_node, at_skin};
-use super::primitive::{ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, image_view};
+use super::primitive::{
+    ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, PrimitiveMorph, image_view,
+};
 use super::rows::{buffer_of_view, buffers_of};
+use crate::io::formats::gltf::UniqueNames;
+use crate::io::formats::gltf::extras::Extras;
 use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{GltfMaterial, Uri};
-use crate::io::json::{FieldError, FieldWarnings, JsonPath, Whole};
+use crate::io::json::{FieldError, FieldWarnings, JsonNumber, JsonPath, Whole};
 use crate::io::source::Source;
 use crate::kinematics::skeleton::JointId;
-use crate::kinematics::skin::{BindSet, SkinnedMesh, TriangleMesh, VertexWeights};
+use crate::kinematics::skin::{BindSet, Morph, SkinnedMesh, TriangleMesh, VertexWeights};
 use crate::rig::{FileMesh, PartLook, SkinPart};
 
 /// Maximum number of primitives of all meshes of a skin.
@@ -72,12 +77,8 @@ fn at_mesh(mesh: usize) -> JsonPath {
 }
 
 impl MeshImport<'_> {
-    /// Reads the mesh, with the CRC-32 of all files that it is read from; `None` if the skin has
-    /// none. Warns of what is not read.
-    pub fn read(
-        &self,
-        warnings: &mut FieldWarnings,
-    ) -> Result<Option<(FileMesh, u32)>, FieldError> {
+    /// Reads the mesh; `None` if the skin has none. Warns of what is not read.
+    pub fn read(&self, warnings: &mut FieldWarnings) -> Result<Option<FigureMesh>, FieldError> {
         let Self { source, file, nodes, joints, .. } = *self;
         if let Some(reason) = file.compression() {
             return Err(FieldError::new(JsonPath::root().key("extensionsRequired"), reason));
@@ -109,7 +110,9 @@ impl MeshImport<'_> {
         let mut vertices = vec![0; tables.len()];
         let mut materials = BTreeMap::new();
         let mut images = ImageCache::default();
+        let mut names = UniqueNames::default();
         for mesh in &meshes {
+            builder.begin(self.file, mesh, &mut names);
             let (rigid, of_skin) = match mesh.follows {
                 Follows::Joint(joint) => {
                     (Some((joint, attached[joint].inverse() * worlds[mesh.node])), &[][..])
@@ -149,7 +152,7 @@ impl MeshImport<'_> {
             }
         }
         self.warn_of_unread(&meshes, &builder, warnings);
-        let MeshBuilder { mesh, weights, parts, .. } = builder;
+        let MeshBuilder { mesh, weights, parts, morphs, owners, morph_weights, .. } = builder;
         let bind = |(attached, joint): (&DAffine3, &JointPlacement)| {
             (DAffine3::from_translation(-joint.base) * *attached).as_affine3a()
         };
@@ -159,9 +162,11 @@ impl MeshImport<'_> {
         };
         let sets = tables.iter().zip(vertices).map(set).collect();
         let mesh = SkinnedMesh::with_bind_sets(mesh, weights, sets)
+            .and_then(|mesh| mesh.with_morphs(morphs))
             .map_err(|error| FieldError::new(at_skin(self.figure.first()), error.to_string()))?;
         let parents = joints.parents.iter().map(|parent| parent.map(JointId::new)).collect();
-        Ok(Some((FileMesh { mesh, parents, parts }, checksum.finalize())))
+        let mesh = FileMesh { mesh, parents, parts };
+        Ok(Some(FigureMesh { mesh, checksum: checksum.finalize(), owners, morph_weights }))
     }
 
     /// Checks the numbers of vertices, corners and primitives before anything of them is read.
@@ -171,15 +176,20 @@ impl MeshImport<'_> {
             let accessor = accessor.and_then(|it| self.file.accessors.0.get(it.0 as usize));
             accessor.map_or(0, |accessor| accessor.count.0 as usize)
         };
-        let (mut parts, mut vertices, mut corners) = (0, 0_usize, 0_usize);
+        /// Maximum number of changes of morph targets, those of 0 included.
+        const MOST_CHANGES: usize = 30_000_000;
+        let (mut parts, mut vertices, mut corners, mut changes) = (0, 0_usize, 0_usize, 0_usize);
         for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
             parts += 1;
             vertices = vertices.saturating_add(count(primitive.attributes.get("POSITION")));
             corners = corners.saturating_add(count(primitive.indices.as_ref()));
+            let moved = primitive.targets.iter().flat_map(BTreeMap::values);
+            changes = moved.fold(changes, |sum, it| sum.saturating_add(count(Some(it))));
             for (what, most, got) in [
                 ("primitives", MOST_PARTS, parts),
                 ("vertices", SkinnedMesh::MOST_VERTICES, vertices),
                 ("corners of triangles", MOST_CORNERS, corners),
+                ("changes of morph targets", MOST_CHANGES, changes),
             ] {
                 if got > most {
                     let reason =
@@ -289,7 +299,6 @@ impl MeshImport<'_> {
         let primitives = meshes.iter().flat_map(|mesh| &mesh.mesh.primitives.0);
         for primitive in primitives {
             unread.extend((!primitive.is_surface()).then(|| name("points and lines")));
-            unread.extend(primitive.targets.is_some().then(|| name("morph targets")));
             let material =
                 primitive.material.and_then(|it| self.file.materials.0.get(it.0 as usize));
             unread.extend(material.into_iter().flat_map(GltfMaterial::unread));
@@ -317,12 +326,27 @@ impl MeshImport<'_> {
     }
 }
 
+/// The mesh of a figure as its file has it.
+pub struct FigureMesh {
+    pub mesh: FileMesh,
+    /// CRC-32 of all files that it is read from.
+    pub checksum: u32,
+    /// The nodes whose meshes have the morph targets.
+    pub owners: Vec<MorphOwner>,
+    /// For each morph target its weight in the file.
+    pub morph_weights: Vec<f32>,
+}
+
 /// A mesh in progress.
 #[derive(Default)]
 struct MeshBuilder {
     mesh: TriangleMesh,
     weights: Vec<VertexWeights>,
     parts: Vec<SkinPart>,
+    morphs: Vec<Morph>,
+    /// For each morph target its weight in the file.
+    morph_weights: Vec<f32>,
+    owners: Vec<MorphOwner>,
     /// Number of vertices that lost weight.
     cut: usize,
     /// The greatest part of its weight that a vertex lost.
@@ -330,6 +354,24 @@ struct MeshBuilder {
 }
 
 impl MeshBuilder {
+    /// Adds the morph targets of a mesh, which change nothing yet.
+    fn begin(&mut self, file: &GltfFile<'_>, used: &UsedMesh<'_>, names: &mut UniqueNames) {
+        let (mesh, node) = (used.mesh, &file.nodes.0[used.node]);
+        let count = mesh.primitives.0.iter().map(|it| it.targets.len()).max().unwrap_or_default();
+        let extras = mesh.extras.as_ref().and_then(Extras::own);
+        let weights = node.weights.as_ref().or(mesh.weights.as_ref());
+        for morph in 0..count {
+            let name = extras.and_then(|extras| extras.target_names.get(morph));
+            let name = name.filter(|name| !name.trim().is_empty());
+            let name = names.free(name.map_or(&format!("morph_{morph}"), |name| name));
+            let weight = weights.and_then(|weights| weights.get(morph));
+            self.morph_weights.push(weight.map_or(0.0, |JsonNumber(weight)| *weight));
+            self.morphs.push(Morph { name, ..Morph::default() });
+        }
+        let first = self.morphs.len() - count;
+        self.owners.push(MorphOwner { node: used.node, first, count });
+    }
+
     fn add(
         &mut self,
         primitive: PrimitiveMesh,
@@ -345,10 +387,15 @@ impl MeshBuilder {
             colours,
             weights,
             mut triangles,
+            mut morphs,
         } = primitive;
         if normals.is_empty() {
             normals = smooth_normals(&positions, &triangles);
+            for morph in morphs.iter_mut().filter(|morph| morph.normals.is_none()) {
+                *morph = with_smooth_normals(morph, &positions, &normals, &triangles);
+            }
         }
+        self.add_morphs(&morphs, &normals, rigid);
         if let Some((_, to_mesh)) = rigid {
             let of_normals = to_mesh.matrix3.inverse().transpose();
             for (position, normal) in positions.iter_mut().zip(&mut normals) {
@@ -389,6 +436,51 @@ impl MeshBuilder {
             self.most_cut = self.most_cut.max(cut);
         }
     }
+}
+
+impl MeshBuilder {
+    /// Adds the changes of the next primitive's vertices, which has these normals, to the morph
+    /// targets of its mesh.
+    fn add_morphs(
+        &mut self,
+        morphs: &[PrimitiveMorph],
+        normals: &[Vec3],
+        rigid: Option<(usize, DAffine3)>,
+    ) {
+        let shift = self.mesh.positions.len() as u32;
+        let first = self.owners.last().map_or(0, |owner| owner.first);
+        let linear = rigid.map_or(DMat3::IDENTITY, |(_, to_mesh)| to_mesh.matrix3);
+        let of_normals = linear.inverse().transpose();
+        for (morph, changes) in self.morphs[first..].iter_mut().zip(morphs) {
+            for (place, vertex) in changes.vertices.iter().enumerate() {
+                let normal = normals[*vertex as usize].as_dvec3();
+                let change = changes.normals.as_ref().map_or(Vec3::ZERO, |all| all[place]);
+                let [before, after] = [normal, normal + change.as_dvec3()]
+                    .map(|normal| (of_normals * normal).normalize_or_zero());
+                morph.vertices.push(vertex + shift);
+                morph.offsets.push((linear * changes.offsets[place].as_dvec3()).as_vec3());
+                morph.normals.push((after - before).as_vec3());
+            }
+        }
+    }
+}
+
+/// A morph target with the change that it makes to the smooth normals of a primitive.
+fn with_smooth_normals(
+    morph: &PrimitiveMorph,
+    positions: &[Vec3],
+    normals: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> PrimitiveMorph {
+    let mut moved = positions.to_vec();
+    let mut offsets = vec![Vec3::ZERO; positions.len()];
+    for (vertex, offset) in morph.vertices.iter().zip(&morph.offsets) {
+        moved[*vertex as usize] += *offset;
+        offsets[*vertex as usize] = *offset;
+    }
+    let after = smooth_normals(&moved, triangles);
+    let changes = after.iter().zip(normals).map(|(after, before)| *after - *before).collect();
+    PrimitiveMorph::new(Some(offsets), Some(changes))
 }
 
 /// Normals of vertices from the triangles around them, by their areas.

@@ -1,0 +1,182 @@
+//! The weights of morph targets over time.
+
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use super::buffers::GltfBuffers;
+use super::rows::{AccessorRows, at_accessor, buffers_of};
+use super::sampler::on_frame;
+use crate::document::{Channel, Document, Timeline};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, KeyCurve, index_rule};
+use crate::io::json::{FieldError, JsonObject, JsonPath};
+use crate::io::source::Source;
+use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
+
+/// The weights of the morph targets of nodes in an animation.
+#[derive(Default)]
+pub struct WeightTracks(Vec<WeightTrack>);
+
+/// A node whose mesh has morph targets.
+pub struct MorphOwner {
+    pub node: usize,
+    /// Index of the first of its morph targets among those of the figure.
+    pub first: usize,
+    /// Number of its morph targets.
+    pub count: usize,
+}
+
+/// The weights of all morph targets of a node's mesh.
+struct WeightTrack {
+    node: usize,
+    curve: KeyCurve,
+    /// Times of the keys in seconds, ascending.
+    times: Vec<f64>,
+    /// For each key its weights; with cubic splines their slopes on arrival, the weights, and their
+    /// slopes on leaving.
+    rows: Vec<Vec<f32>>,
+}
+
+impl WeightTracks {
+    /// Reads the weights of an animation. `at` is its path.
+    pub fn new(
+        source: &Source,
+        file: &GltfFile<'_>,
+        animation: &GltfAnimation,
+        at: &JsonPath,
+    ) -> Result<Self, FieldError> {
+        let mut channels = Vec::new();
+        for channel in &animation.channels.0 {
+            let JsonObject(target) = &channel.target;
+            let Some(node) = target.node.filter(|_| target.path == "weights") else { continue };
+            let index = channel.sampler.0 as usize;
+            let Some(sampler) = animation.samplers.0.get(index) else {
+                let reason = index_rule("samplers", animation.samplers.0.len(), index);
+                return Err(FieldError::new(at.clone().key("samplers"), reason));
+            };
+            let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
+            let curve = KeyCurve::new(name).ok_or_else(|| {
+                let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
+                FieldError::new(at.clone().key("samplers").index(index), reason)
+            })?;
+            let accessors = [sampler.input, sampler.output].map(|it| it.0 as usize);
+            channels.push((node.0 as usize, curve, accessors));
+        }
+        let mut needed = BTreeSet::new();
+        for accessor in channels.iter().flat_map(|(.., accessors)| accessors) {
+            needed.extend(buffers_of(file, *accessor)?);
+        }
+        let buffers = GltfBuffers::read(source, file, &needed)?;
+        let read =
+            |(node, curve, accessors)| WeightTrack::new(file, &buffers, node, curve, accessors);
+        channels.into_iter().map(read).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Times of all keys in seconds.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.0.iter().flat_map(|track| track.times.iter().copied())
+    }
+
+    /// Returns whether any weight changes.
+    pub fn vary(&self) -> bool {
+        self.0.iter().any(|track| track.rows.windows(2).any(|rows| rows[0] != rows[1]))
+    }
+
+    /// Adds the keys of the weights to a document whose skin has the morph targets of `owners`.
+    /// Weights that do not change are set instead.
+    pub fn add_to(
+        &self,
+        document: &mut Document,
+        owners: &[MorphOwner],
+        timeline: Option<Timeline>,
+    ) {
+        for owner in owners {
+            let Some(track) = self.0.iter().find(|track| track.node == owner.node) else {
+                continue;
+            };
+            for morph in 0..owner.count.min(track.width()) {
+                let Some(channel) = u16::try_from(owner.first + morph).ok().map(Channel::Morph)
+                else {
+                    continue;
+                };
+                let spline = track.spline(morph, timeline);
+                if let Some(first) = spline.knots().first() {
+                    document.rig.set_morph_weight(owner.first + morph, first.value.x);
+                }
+                let is_still = |knot: &Knot<Vec3>| {
+                    knot.value == spline.knots()[0].value
+                        && knot.slopes.is_none_or(|it| [it.arriving, it.leaving] == [Vec3::ZERO; 2])
+                };
+                if !spline.knots().iter().all(is_still) {
+                    document.keys.set_track(channel, spline);
+                }
+            }
+        }
+    }
+}
+
+impl WeightTrack {
+    fn new(
+        file: &GltfFile<'_>,
+        buffers: &GltfBuffers<'_>,
+        node: usize,
+        curve: KeyCurve,
+        [input, output]: [usize; 2],
+    ) -> Result<Self, FieldError> {
+        /// Maximum number of weights of a track.
+        const MOST: usize = 20_000_000;
+        let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
+        let values = AccessorRows::new(file, buffers, output, "SCALAR")?;
+        if !(times.is_float() && (values.is_float() || values.is_normalized())) {
+            let reason = "must be 5126 (float); weights may also be normalized integers";
+            return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
+        }
+        let rows = curve.values_per_key() * times.len();
+        let fault = match (rows, values.len()) {
+            (0, _) => Some("must have at least one time".to_owned()),
+            (_, got) if got % rows != 0 => {
+                Some(format!("must be a multiple of {rows}, the number of times, got {got}"))
+            }
+            (_, got) if got > MOST => Some(format!("must be at most {MOST}, got {got}")),
+            _ => None,
+        };
+        if let Some(reason) = fault {
+            return Err(FieldError::new(at_accessor(output).key("count"), reason));
+        }
+        let width = values.len() / rows;
+        let number = |index: usize| values.row::<1>(index)[0] as f32;
+        let row = |row: usize| (row * width..(row + 1) * width).map(number).collect();
+        let rows: Vec<Vec<f32>> = (0..rows).map(row).collect();
+        let times: Vec<f64> = (0..times.len()).map(|key| times.row::<1>(key)[0]).collect();
+        let are_finite = times.iter().all(|time| time.is_finite())
+            && rows.iter().flatten().all(|it| it.is_finite());
+        if !are_finite {
+            return Err(FieldError::new(at_accessor(output), "times and weights must be finite"));
+        }
+        Ok(Self { node, curve, times, rows })
+    }
+
+    /// Number of weights of a key.
+    fn width(&self) -> usize {
+        self.rows.first().map_or(0, Vec::len)
+    }
+
+    /// The keys of a morph target. Of several keys at the same time, the last one counts.
+    fn spline(&self, morph: usize, timeline: Option<Timeline>) -> Spline<Vec3> {
+        let each = self.curve.values_per_key();
+        let number = |row: usize| Vec3::X * self.rows[row][morph];
+        let knot = |(key, time): (usize, &f64)| {
+            let (interpolation, slopes) = match self.curve {
+                KeyCurve::Linear => (Interpolation::Linear, None),
+                KeyCurve::Step => (Interpolation::Step, None),
+                KeyCurve::CubicSpline => {
+                    let (arriving, leaving) = (number(each * key), number(each * key + 2));
+                    (Interpolation::Smooth, Some(Slopes { arriving, leaving }))
+                }
+            };
+            let time = timeline.map_or(*time, |timeline| on_frame(*time, timeline));
+            Knot { time, value: number(each * key + each / 2), interpolation, slopes }
+        };
+        self.times.iter().enumerate().map(knot).collect()
+    }
+}
