@@ -165,6 +165,21 @@ impl Document {
         &self,
         limb: impl Fn(&Posed) -> Option<(Vec3, f32)>,
     ) -> (Vec3, f32) {
+        around(&self.spheres_by(limb))
+    }
+
+    /// True if the rig goes farther away from where it is at the start of the timeline than three
+    /// times its size.
+    pub fn goes_away(&self) -> bool {
+        const FAR: f32 = 3.0;
+        let spheres = self.spheres_by(Posed::limb_bounds);
+        let Some((start, radius)) = spheres.first().copied() else { return false };
+        let size = 2.0 * radius;
+        spheres.iter().any(|(centre, _)| centre.distance(start) > FAR * size)
+    }
+
+    /// Bounding spheres of the rig in world space at times of the timeline, the start first.
+    fn spheres_by(&self, limb: impl Fn(&Posed) -> Option<(Vec3, f32)>) -> Vec<(Vec3, f32)> {
         let track = Track::new(self);
         let mut pose = SkeletonPose::default();
         let reach = self.rig.reach();
@@ -175,7 +190,14 @@ impl Document {
                 posed.document().rig.bounds_with_reach(reach, &pose, time)
             })
         };
-        around(&self.bounds_times().map(sphere_at).collect::<Vec<_>>())
+        self.bounds_times().map(sphere_at).collect()
+    }
+
+    /// A camera with the default direction that frames the rig at the start of the timeline.
+    #[must_use]
+    pub fn camera_at_start(&self) -> Camera {
+        let (centre, radius) = self.at(self.timeline.start).bounds();
+        Camera::default().framing(centre, radius, 1.0)
     }
 
     /// The times at which [`Document::motion_bounds`] looks at the rig: frames of the timeline at

@@ -1,8 +1,10 @@
 //! The choice of what to read of a file, and the result.
 
+use glam::Vec3;
+
 use super::error::Remark;
 use crate::document::{Document, Overlay, Skin};
-use crate::kinematics::skeleton::JointId;
+use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinPart, SkinSource};
 
 /// The choice of one of several skeletons and animations, and of the axis that points up.
@@ -90,7 +92,8 @@ impl FileAnimation {
     }
 }
 
-/// Gives the skeleton of a document the mesh of a file, and shows all of it instead of the bones.
+/// Gives the skeleton of a document the mesh of a file, and shows it instead of the bones, or, if it
+/// is next to nothing, with them.
 /// `joints` has for each joint of the mesh the joint of the skeleton. Without `file`, the document
 /// contains the mesh when it is saved. A mesh without colours gets the colour of skins from bones.
 pub fn attach_skin(
@@ -106,6 +109,20 @@ pub fn attach_skin(
     let has_colours = !skin.in_file().is_some_and(|mesh| is_colourless(mesh));
     let skin = Skin::new(SkinSource::Mesh(skin));
     let colour = if has_colours { skin.colour } else { Skin::DEFAULT_COLOUR };
+    let covers = covers_the_bones(document.skeleton(), &skin);
     document.rig.skin = Some(Skin { colour, ..skin });
-    document.display = document.display.with(Overlay::Skin, true).with(Overlay::Bones, false);
+    document.display = document.display.with(Overlay::Skin, true).with(Overlay::Bones, !covers);
+}
+
+/// True if a skin is large enough to show the pose without the bones: its box is at least a fifth as
+/// large as that of the joints.
+fn covers_the_bones(skeleton: &Skeleton, skin: &Skin) -> bool {
+    const LEAST: f32 = 0.2;
+    let size = |points: &mut dyn Iterator<Item = Vec3>| {
+        let ends = points.map(|at| (at, at)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        ends.map_or(0.0, |(low, high)| low.distance(high))
+    };
+    let pose = skeleton.bind_pose();
+    let Ok(mesh) = skin.mesh() else { return true };
+    size(&mut mesh.corners(&pose)) >= LEAST * size(&mut pose.points())
 }

@@ -116,7 +116,7 @@ impl View {
             }
             ViewAction::Cancel => return self.drop().map(Consequence::SetCamera).into(),
             ViewAction::FollowSelection(follows) => {
-                self.follows_selection = follows;
+                self.follow(follows);
                 return follows.then_some(Consequence::CentreFollowed).into();
             }
             ViewAction::ShowInside(layer, shown) => {
@@ -218,6 +218,11 @@ impl View {
     /// while the time changes.
     pub fn follows_selection(&self) -> bool {
         self.follows_selection
+    }
+
+    /// Lets the camera follow the selected joints, or without a selection the whole rig.
+    pub(in crate::session) fn follow(&mut self, follows: bool) {
+        self.follows_selection = follows;
     }
 
     /// Moves the cameras that the drag started from and that the glide connects, in the world.

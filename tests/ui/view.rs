@@ -6,9 +6,10 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Vec2, vec2};
 use glam::Vec3;
-use ik_arm::document::{AxisView, Camera, Document};
+use ik_arm::document::{AxisView, Camera, Channel, Document};
+use ik_arm::io::OpenOptions;
 use ik_arm::session::{
-    CameraMotion, FileAction, Navigation, PlaybackAction, ShellAction, ViewAction,
+    CameraMotion, FileAction, FileContents, Navigation, PlaybackAction, ShellAction, ViewAction,
 };
 
 use crate::bench::Bench;
@@ -235,4 +236,43 @@ fn the_camera_follows_the_selection_while_it_is_ticked_in_the_menu() {
     assert!(bench.session().camera().target.distance(before) > 1e-3);
     bench.choose(&["View", "Follow selection"]);
     assert!(!bench.session().view().follows_selection());
+}
+
+#[test]
+fn the_camera_follows_a_figure_that_walks_far_away() {
+    let mut far = example("human");
+    for (time, place) in [(0.0, Vec3::ZERO), (4.0, Vec3::Z * 30.0)] {
+        far.keys.insert(Channel::Translation, time, place);
+    }
+    far.timeline.end = 4.0;
+    far.rig.targets.clear();
+    let contents = FileContents {
+        path: "far.glb".into(),
+        options: OpenOptions::default(),
+        skeletons: vec!["rig".into()],
+        animations: Vec::new(),
+        animation: None,
+    };
+    let mut bench = Bench::new();
+    let opened = |document: Document, contents: Option<FileContents>| FileAction::Opened {
+        document: Box::new(document),
+        file: None,
+        contents: contents.map(Box::new),
+    };
+    bench.apply([opened(far.clone(), Some(contents))]);
+    assert!(bench.session().view().follows_selection());
+    let height = |bench: &Bench| {
+        let [head, foot] = ["head", "left_foot"].map(|name| bench.on_screen(bench.tip(name)));
+        assert!(bench.viewport().contains(head) && bench.viewport().contains(foot));
+        head.distance(foot)
+    };
+    let before = height(&bench);
+    assert!(before > 0.3 * bench.viewport().height(), "{before}: it is large");
+    bench.apply([PlaybackAction::SetTime(4.0)]);
+    bench.settle();
+    assert!((height(&bench) - before).abs() < 0.05 * before, "it stays large");
+
+    let near = example("walk");
+    bench.apply([opened(near, None)]);
+    assert!(!bench.session().view().follows_selection(), "a walk of some steps is in view");
 }

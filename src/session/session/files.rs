@@ -54,7 +54,13 @@ impl Session {
 
     /// Replaces the open document; the history starts anew.
     pub(super) fn open(&mut self, opening: Opening) {
-        let Opening { document, file, contents, seems_z_up } = opening;
+        let Opening { mut document, file, contents, seems_z_up } = opening;
+        let goes_away = document.goes_away();
+        // Files of other programs have no camera: one that frames all of a long way makes the
+        // figure tiny.
+        if goes_away && contents.is_some() {
+            document.camera = document.camera_at_start();
+        }
         let playback = self.playback.restarted(&document.timeline);
         *self = Self {
             files: self.files.replaced(file.clone()),
@@ -62,6 +68,7 @@ impl Session {
             playback,
             ..Self::with_document(self.preferences, document)
         };
+        self.view.follow(goes_away);
         self.refresh();
         self.evaluated.reset_pops(self.editing.posed().time());
         self.evaluated.forget_trail();

@@ -941,6 +941,20 @@ fn a_skin_of_a_file_is_shown_instead_of_the_bones_and_blended_linearly() {
 }
 
 #[test]
+fn the_bones_are_shown_with_a_skin_that_is_next_to_nothing() {
+    for (scale, shows_bones) in [(1.0, false), (0.02, true)] {
+        let mut strip = Strip::new();
+        strip.positions.iter_mut().for_each(|position| *position *= scale);
+        // All of it on the first joint, so that the others do not pull it apart.
+        strip.joints.fill([0; 4]);
+        strip.weights.fill([255, 0, 0, 0]);
+        let document = opened(&strip.text()).document;
+        assert!(document.display.shows(Overlay::Skin));
+        assert_eq!(document.display.shows(Overlay::Bones), shows_bones, "{scale}");
+    }
+}
+
+#[test]
 fn triangles_of_a_mirrored_node_are_turned_around() {
     let strip = Strip::new();
     let mut text = strip.text();
