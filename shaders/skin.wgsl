@@ -12,6 +12,8 @@ struct Look {
 
 // A constant, because a software adapter samples the texture even if a uniform selects the other branch.
 override IS_TEXTURED = false;
+// Whether a texture multiplies the emission.
+override HAS_EMISSION_TEXTURE = false;
 // Side of triangles that is outside, of parts that are seen from both: 1 for the front, -1 for the back of
 // mirrored skins; 0 for parts that are seen from outside alone.
 override OUTER_SIDE = 0.0;
@@ -30,6 +32,7 @@ struct Part {
 @group(2) @binding(0) var<uniform> part: Part;
 @group(2) @binding(1) var part_texture: texture_2d<f32>;
 @group(2) @binding(2) var part_sampler: sampler;
+@group(2) @binding(3) var part_emission: texture_2d<f32>;
 
 struct Vertex {
     @location(0) position_weight: vec4f,
@@ -56,6 +59,10 @@ fn vertex(v: Vertex) -> Surface {
 
 @fragment
 fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
+    var emission = part.emission * (1.0 - look.has_weights);
+    if HAS_EMISSION_TEXTURE {
+        emission *= textureSample(part_emission, part_sampler, s.coordinates).rgb;
+    }
     var own = look.colour.rgb * part.colour * s.colour.rgb;
     var opacity = look.colour.a;
     if IS_BLENDED {
@@ -76,7 +83,7 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
         normal = -normal;
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
-    let emitted = decoded(part.emission * (1.0 - look.has_weights));
+    let emitted = decoded(emission);
     let light = reflected(mix(own, of_weight, look.has_weights), normal) + emitted;
     // As bright as `encoded` is exact.
     let colour = encoded(min(light, vec3f(1.4)));

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use super::Gpu;
 use super::pipeline::{PipelineDescriptor, PipelineOutput};
 use super::skin_deform::{Deformation, DeformedSkin, DeformedVertex, SkinDeformer, SkinVertices};
-use super::skin_material::{SkinMaterial, SkinMaterials};
+use super::skin_material::{PartTextures, SkinMaterial, SkinMaterials};
 use super::view::Uniforms;
 use crate::kinematics::Shared;
 use crate::kinematics::skin::TriangleMesh;
@@ -61,9 +61,9 @@ struct SkinPipelines {
     wire: wgpu::RenderPipeline,
 }
 
-/// Pipelines for parts of skins without a texture and with one.
+/// Pipelines for parts of skins by their [`PartTextures`].
 #[derive(Debug)]
-struct SurfacePipelines([SidedPipelines; 2]);
+struct SurfacePipelines([SidedPipelines; 3]);
 
 /// Pipelines for parts that are seen from outside and for those that are seen from both sides, each
 /// for skins that are not mirrored and for mirrored ones.
@@ -259,7 +259,7 @@ impl SkinPipelines {
         Self {
             deformer: SkinDeformer::new(gpu),
             opaque: SurfacePipelines::new(gpu, &plain, 0.0),
-            depth: SidedPipelines::new(gpu, &depth, [0.0, 0.0]),
+            depth: SidedPipelines::new(gpu, &depth, [0.0; 3]),
             see_through: SurfacePipelines::new(gpu, &see_through, 0.0),
             blended: SurfacePipelines::new(gpu, &blended, 1.0),
             wire: wire.build(gpu),
@@ -270,12 +270,19 @@ impl SkinPipelines {
 
 impl SurfacePipelines {
     fn new(gpu: &Gpu, descriptor: &PipelineDescriptor<'_>, is_blended: f64) -> Self {
-        let of = |is_textured| SidedPipelines::new(gpu, descriptor, [is_textured, is_blended]);
-        Self([0.0, 1.0].map(of))
+        let of = |[is_textured, has_emission]: [f64; 2]| {
+            SidedPipelines::new(gpu, descriptor, [is_textured, has_emission, is_blended])
+        };
+        Self([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]].map(of))
     }
 
     fn of(&self, material: &SkinMaterial, skin: &DrawnSkin) -> &wgpu::RenderPipeline {
-        self.0[usize::from(material.is_textured)].of(material, skin)
+        let kind = match material.textures {
+            PartTextures::None => 0,
+            PartTextures::Colour => 1,
+            PartTextures::Emission => 2,
+        };
+        self.0[kind].of(material, skin)
     }
 }
 
@@ -283,16 +290,21 @@ impl SidedPipelines {
     fn new(
         gpu: &Gpu,
         descriptor: &PipelineDescriptor<'_>,
-        [is_textured, is_blended]: [f64; 2],
+        [is_textured, has_emission, is_blended]: [f64; 3],
     ) -> Self {
         let hidden = [wgpu::Face::Back, wgpu::Face::Front];
+        let constants = [
+            ("IS_TEXTURED", is_textured),
+            ("HAS_EMISSION_TEXTURE", has_emission),
+            ("IS_BLENDED", is_blended),
+        ];
         let outside = hidden.map(|face| {
-            let constants = &[("IS_TEXTURED", is_textured), ("IS_BLENDED", is_blended)];
+            let constants = &constants;
             PipelineDescriptor { cull: Some(face), constants, ..*descriptor }.build(gpu)
         });
         let both = [1.0, -1.0].map(|outer| {
-            let constants =
-                &[("IS_TEXTURED", is_textured), ("IS_BLENDED", is_blended), ("OUTER_SIDE", outer)];
+            let [textured, emission, blended] = constants;
+            let constants = &[textured, emission, blended, ("OUTER_SIDE", outer)];
             PipelineDescriptor { cull: None, constants, ..*descriptor }.build(gpu)
         });
         Self([outside, both])

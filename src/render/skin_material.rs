@@ -17,20 +17,35 @@ pub(super) struct SkinMaterials {
     white: wgpu::TextureView,
 }
 
+/// The textures of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PartTextures {
+    None,
+    /// Of the colour alone.
+    Colour,
+    /// Of the emission, and of the colour if it has one.
+    Emission,
+}
+
 /// The triangles of a part of a skin, with its material on the device.
 #[derive(Debug)]
 pub(super) struct SkinMaterial {
     /// Indices of the corners.
     pub corners: Range<u32>,
     pub group: wgpu::BindGroup,
-    pub is_textured: bool,
+    pub textures: PartTextures,
     pub is_double_sided: bool,
     pub is_blended: bool,
 }
 
 impl SkinMaterials {
     pub fn new(gpu: &Gpu) -> Self {
-        let kinds = [BindingKind::Uniform, BindingKind::Texture, BindingKind::Sampler];
+        let kinds = [
+            BindingKind::Uniform,
+            BindingKind::Texture,
+            BindingKind::Sampler,
+            BindingKind::Texture,
+        ];
         let stages = wgpu::ShaderStages::FRAGMENT;
         let layout = pipeline::layout(gpu, "skin material", stages, &kinds);
         Self {
@@ -56,7 +71,8 @@ impl SkinMaterials {
         for part in parts {
             let start = end;
             end = (start + part.triangles).min(triangles);
-            let view = part.texture.as_ref().and_then(|texture| {
+            let [colour, emission] = [&part.texture, &part.emission_texture].map(|texture| {
+                let texture = texture.as_ref()?;
                 let known = views.iter().position(|(other, _)| other.is_same(texture));
                 known.or_else(|| {
                     // Where a file is opened to be drawn, broken images were told.
@@ -65,14 +81,21 @@ impl SkinMaterials {
                     Some(views.len() - 1)
                 })
             });
-            let is_textured = view.is_some();
-            let view = view.map_or(&self.white, |view| &views[view].1);
+            let textures = match (colour, emission) {
+                (_, Some(_)) => PartTextures::Emission,
+                (Some(_), None) => PartTextures::Colour,
+                (None, None) => PartTextures::None,
+            };
+            let drawn =
+                [colour, emission].map(|view| view.map_or(&self.white, |view| &views[view].1));
             let corners = 3 * start as u32..3 * end as u32;
-            let group = self.group(gpu, part, view);
+            // A part that shines where its texture tells does not shine all over without it.
+            let is_dark = part.emission_texture.is_some() && emission.is_none();
+            let group = self.group(gpu, part, drawn, is_dark);
             materials.push(SkinMaterial {
                 corners,
                 group,
-                is_textured,
+                textures,
                 is_double_sided: part.look.is_double_sided,
                 is_blended: part.look.opacity.is_some(),
             });
@@ -80,16 +103,24 @@ impl SkinMaterials {
         materials
     }
 
-    fn group(&self, gpu: &Gpu, part: &SkinPart, view: &wgpu::TextureView) -> wgpu::BindGroup {
+    fn group(
+        &self,
+        gpu: &Gpu,
+        part: &SkinPart,
+        [colour, emission]: [&wgpu::TextureView; 2],
+        is_dark: bool,
+    ) -> wgpu::BindGroup {
+        let shine = if is_dark { Vec3::ZERO } else { Vec3::from(part.look.emission) };
         let look = [
             Vec3::from(part.colour).extend(part.look.alpha_cutoff),
-            Vec3::from(part.look.emission).extend(part.look.opacity.unwrap_or(1.0)),
+            shine.extend(part.look.opacity.unwrap_or(1.0)),
         ];
         let look = gpu.filled_buffer("skin part", &look, wgpu::BufferUsages::UNIFORM);
         let resources = [
             look.as_entire_binding(),
-            wgpu::BindingResource::TextureView(view),
+            wgpu::BindingResource::TextureView(colour),
             wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::TextureView(emission),
         ];
         pipeline::group(gpu, "skin material", &self.layout, resources)
     }

@@ -232,6 +232,26 @@ fn texels_below_the_cutoff_are_not_drawn() {
 }
 
 #[test]
+fn parts_shine_where_the_texture_of_their_emission_tells() {
+    let pixels: Vec<[u8; 4]> = (0..64).map(|at| [if at % 8 < 4 { 255 } else { 0 }; 4]).collect();
+    let texture = SkinTexture::new(Vec::new(), [8, 8]);
+    texture.pixels(|_| Ok(pixels)).expect("pixels");
+    let broken = SkinTexture::new(b"no image".to_vec(), [8, 8]);
+    let green = |texture: SkinTexture, x: f32| {
+        let look = PartLook { emission: [0.0, 1.0, 0.0], ..PartLook::default() };
+        let emission_texture = Some(Shared::from(texture));
+        let black = SkinPart { colour: [0.0; 3], emission_texture, look, ..SkinPart::white(2) };
+        let picture =
+            draw(&Scene::new(&square(vec![black]).at(0.0), &Overlays::default(), Theme::Dark));
+        let (width, height) = (picture.width() as f32, picture.height() as f32);
+        let at = ((0.5 * width + 0.2 * height * x) as u32, (0.5 * height - 9.0) as u32);
+        picture.get_pixel(at.0, at.1).0[1]
+    };
+    assert!(green(texture.clone(), -0.6) > 200 && green(texture, 0.6) < 60);
+    assert!(green(broken, -0.6) < 60, "without its image it does not shine");
+}
+
+#[test]
 fn each_part_has_its_colour_and_its_texture_the_right_way_up() {
     let part = |colour, texture| SkinPart { colour, texture, ..SkinPart::white(1) };
     // Red at the upper left, green at the upper right, blue below.

@@ -311,6 +311,8 @@ pub struct SkinPart {
     pub colour: [f32; 3],
     /// Image that colours the triangles by the mesh's texture coordinates, repeated beyond 0 to 1.
     pub texture: Option<Shared<SkinTexture>>,
+    /// Image that multiplies the light that the part gives off, by the same coordinates.
+    pub emission_texture: Option<Shared<SkinTexture>>,
     /// How the triangles are drawn, beside their colour.
     pub look: PartLook,
 }
@@ -332,13 +334,14 @@ pub struct PartLook {
 impl SkinPart {
     /// A white part with so many triangles.
     pub fn white(triangles: usize) -> Self {
-        Self { triangles, colour: [1.0; 3], texture: None, look: PartLook::default() }
+        let (texture, emission_texture) = (None, None);
+        Self { triangles, colour: [1.0; 3], texture, emission_texture, look: PartLook::default() }
     }
 
     /// The textures of parts, each once, in the order of the parts that have them first.
     pub fn textures(parts: &[Self]) -> Vec<&Shared<SkinTexture>> {
         let mut textures: Vec<&Shared<SkinTexture>> = Vec::new();
-        for texture in parts.iter().filter_map(|part| part.texture.as_ref()) {
+        for texture in parts.iter().flat_map(|it| [&it.texture, &it.emission_texture]).flatten() {
             if !textures.iter().any(|known| known.is_same(texture)) {
                 textures.push(texture);
             }

@@ -475,7 +475,7 @@ fn what_is_not_read_is_told_in_one_remark() {
     let mut text = Strip::new().text();
     primitive(&mut text)["material"] = json!(0);
     text.json["materials"] = json!([{
-        "normalTexture": { "index": 0 }, "emissiveTexture": { "index": 0 },
+        "normalTexture": { "index": 0 },
         "extensions": { "KHR_materials_clearcoat": {} },
     }]);
     push(&mut text.json["meshes"], json!({ "primitives": [] }));
@@ -484,8 +484,7 @@ fn what_is_not_read_is_told_in_one_remark() {
     assert_eq!(
         warnings(&opened),
         [
-            "meshes: not read: 1 mesh that follows no joint of the figure, KHR_materials_clearcoat, emission \
-          textures, normal textures"
+            "meshes: not read: 1 mesh that follows no joint of the figure, KHR_materials_clearcoat, normal textures"
         ]
     );
 }
@@ -545,6 +544,50 @@ fn both_sides_alpha_emission_and_moved_textures_are_read_and_written() {
             let expected = turned + Vec2::new(0.25, -1.0);
             assert!(found.distance(expected) < 1e-5, "{found}, not {expected}");
         }
+    }
+}
+
+#[test]
+fn textures_of_emission_are_read_saved_and_written() {
+    let mut text = Strip::new().text();
+    repeat_with_materials(&mut text, 4);
+    let image = |colour| format!("data:image/png;base64,{}", base64(&png(colour)));
+    text.json["images"] = json!([{ "uri": image([10, 20, 30]) }, { "uri": image([200, 0, 0]) }]);
+    text.json["textures"] = json!([{ "source": 0 }, { "source": 1 }]);
+    let base = json!({ "baseColorTexture": { "index": 0 } });
+    let shine = json!([1, 1, 1]);
+    text.json["materials"] = json!([
+        { "emissiveTexture": { "index": 1 }, "emissiveFactor": shine, "pbrMetallicRoughness": base },
+        { "emissiveTexture": { "index": 1 }, "emissiveFactor": shine },
+        // With coordinates of its own, and one that is not there: neither shines all over.
+        { "emissiveTexture": { "index": 1, "texCoord": 1 }, "emissiveFactor": shine,
+          "pbrMetallicRoughness": base },
+        { "emissiveTexture": { "index": 9 }, "emissiveFactor": shine },
+    ]);
+    let opened = opened(&text);
+    let told = warnings(&opened).join("\n");
+    assert!(told.contains("emission textures with coordinates of their own"), "{told}");
+    assert!(told.contains("must be below 2, the number of textures, got 9"), "{told}");
+    let exported = glb(&opened.document);
+    let again = io::read("x.glb", &exported[..], &io::OpenOptions::default()).expect("reads");
+    let mut packed = opened.document.clone();
+    let skin = packed.rig.skin.as_ref().expect("a skin").mesh_skin().expect("a mesh");
+    let skin = Skin::new(SkinSource::Mesh(skin.packed().expect("a mesh")));
+    packed.rig.skin = Some(skin);
+    for document in [&opened.document, &again.document, &documents_again(&packed)] {
+        let mesh = document.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+        let look: Vec<_> = mesh
+            .parts
+            .iter()
+            .map(|part| {
+                (part.texture.is_some(), part.emission_texture.is_some(), part.look.emission[0])
+            })
+            .collect();
+        let dark = [(true, false, 0.0), (false, false, 0.0)];
+        assert_eq!(look, [&[(true, true, 1.0), (false, true, 1.0)][..], &dark].concat());
+        let file =
+            |part: usize| &mesh.parts[part].emission_texture.as_ref().expect("a texture").file;
+        assert_eq!((file(0), file(1)), (&png([200, 0, 0]), &png([200, 0, 0])));
     }
 }
 

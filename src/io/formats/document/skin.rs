@@ -211,6 +211,9 @@ struct SkinPartFields {
     /// Index in the list of textures.
     #[serde(skip_serializing_if = "Option::is_none")]
     texture: Option<Whole>,
+    /// Index in the list of textures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    emission_texture: Option<Whole>,
     #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     double_sided: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -445,6 +448,7 @@ impl SkinPartFields {
             triangles: whole(part.triangles),
             colour: JsonNumbers(part.colour),
             texture: part.texture.as_ref().and_then(index).map(whole),
+            emission_texture: part.emission_texture.as_ref().and_then(index).map(whole),
             double_sided: is_double_sided,
             alpha_cutoff: (alpha_cutoff > 0.0).then(|| alpha_cutoff.into()),
             opacity: opacity.map(Fraction::from),
@@ -470,6 +474,11 @@ impl SkinPartFields {
             triangles: self.triangles.0 as usize,
             colour: colour(self.colour)?,
             texture: self.texture.map(texture).transpose().at("texture")?,
+            emission_texture: self
+                .emission_texture
+                .map(texture)
+                .transpose()
+                .at("emission_texture")?,
         })
     }
 }

@@ -24,8 +24,8 @@ pub struct GltfMaterial {
     pub normal: Option<IgnoredAny>,
     #[serde(rename = "occlusionTexture", skip_serializing)]
     pub occlusion: Option<IgnoredAny>,
-    #[serde(rename = "emissiveTexture", skip_serializing)]
-    pub emissive_texture: Option<IgnoredAny>,
+    #[serde(rename = "emissiveTexture", skip_serializing_if = "Option::is_none")]
+    pub emissive_texture: Option<JsonObject<GltfTextureUse>>,
     #[serde(rename = "emissiveFactor")]
     pub emissive: Option<JsonPoint>,
     #[serde(default, skip_serializing)]
@@ -33,9 +33,13 @@ pub struct GltfMaterial {
 }
 
 impl GltfMaterial {
-    /// A surface without gloss, with the look of a part of a skin and the index of its texture.
-    /// `colour` has sRGB channels from 0 to 1.
-    pub fn matte(colour: [f32; 3], texture: Option<Whole>, look: &PartLook) -> Self {
+    /// A surface without gloss, with the look of a part of a skin and the indices of the textures of
+    /// its colour and of its emission. `colour` has sRGB channels from 0 to 1.
+    pub fn matte(
+        colour: [f32; 3],
+        [texture, emission_texture]: [Option<Whole>; 2],
+        look: &PartLook,
+    ) -> Self {
         let PartLook { is_double_sided, alpha_cutoff, opacity, emission } = *look;
         let is_masked = alpha_cutoff > 0.0;
         let alpha_mode = match opacity {
@@ -44,25 +48,37 @@ impl GltfMaterial {
             None => "OPAQUE",
         };
         let [red, green, blue] = colour.map(linear);
-        let texture = texture.map(|index| GltfTextureUse {
-            index,
-            coordinates: Some(Whole(0)),
-            extensions: BTreeMap::new(),
-        });
+        let used = |index| {
+            let (coordinates, extensions) = (Some(Whole(0)), BTreeMap::new());
+            JsonObject(GltfTextureUse { index, coordinates, extensions })
+        };
         Self {
             alpha_mode: Some(alpha_mode.to_owned()),
             alpha_cutoff: (alpha_mode == "MASK").then_some(JsonNumber(alpha_cutoff)),
             double_sided: Some(is_double_sided),
             roughness: Some(JsonObject(GltfRoughness {
                 factor: Some(JsonNumbers([red, green, blue, opacity.unwrap_or(1.0)])),
-                texture: texture.map(JsonObject),
+                texture: texture.map(used),
                 metallic: 0.0,
                 roughness: 1.0,
                 roughness_texture: None,
             })),
+            emissive_texture: emission_texture.map(used),
             emissive: Some(JsonPoint(Vec3::from(emission.map(linear)))),
             ..Self::default()
         }
+    }
+
+    /// The texture that gives the texture coordinates: that of the base colour, else of the emission.
+    pub fn coordinates_of(&self) -> Option<&GltfTextureUse> {
+        self.texture_use().or(self.emissive_texture.as_ref().map(|JsonObject(used)| used))
+    }
+
+    /// The image of the emission, if it has the texture coordinates of the base colour.
+    pub fn emission_use(&self) -> Option<&GltfTextureUse> {
+        let used = self.emissive_texture.as_ref().map(|JsonObject(used)| used)?;
+        let own = self.coordinates_of()?;
+        (used.set() == own.set() && used.moved() == own.moved()).then_some(used)
     }
 
     /// The image of the base colour.
@@ -90,17 +106,13 @@ impl GltfMaterial {
             is_double_sided: self.double_sided.unwrap_or(false),
             alpha_cutoff,
             opacity: is_blended.then_some(factor),
-            // Without its texture, the whole surface would shine.
-            emission: if self.emissive_texture.is_some() { [0.0; 3] } else { emission },
+            emission,
         }
     }
 
-    /// Number of the set of texture coordinates that the base colour takes.
+    /// Number of the set of texture coordinates that the textures take.
     pub fn coordinates(&self) -> u32 {
-        let Some(used) = self.texture_use() else { return 0 };
-        let of_transform = used.transform().and_then(|it| it.get("texCoord")?.as_u64());
-        let of_transform = of_transform.and_then(|set| u32::try_from(set).ok());
-        of_transform.or(used.coordinates.map(|set| set.0)).unwrap_or_default()
+        self.coordinates_of().map_or(0, GltfTextureUse::set)
     }
 
     /// Names of the channels that are not read.
@@ -110,7 +122,10 @@ impl GltfMaterial {
         let channels = [
             ("normal textures", self.normal.is_some()),
             ("occlusion textures", self.occlusion.is_some()),
-            ("emission textures", self.emissive_texture.is_some()),
+            (
+                "emission textures with coordinates of their own",
+                self.emissive_texture.is_some() && self.emission_use().is_none(),
+            ),
             ("metallic and roughness textures", of_roughness.is_some()),
         ];
         let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());
@@ -176,6 +191,13 @@ pub struct GltfTextureUse {
 }
 
 impl GltfTextureUse {
+    /// Number of the set of texture coordinates.
+    fn set(&self) -> u32 {
+        let of_transform = self.transform().and_then(|it| it.get("texCoord")?.as_u64());
+        let of_transform = of_transform.and_then(|set| u32::try_from(set).ok());
+        of_transform.or(self.coordinates.map(|set| set.0)).unwrap_or_default()
+    }
+
     fn transform(&self) -> Option<&serde_json::Value> {
         self.extensions.get(TEXTURE_TRANSFORM)
     }

@@ -200,12 +200,13 @@ impl GltfWriter {
         if !part.colours.is_empty() {
             attributes.insert("COLOR_0".to_owned(), self.add_floats(&part.colours, ARRAY));
         }
-        let texture = part.texture.as_ref().map(|texture| self.add_texture(texture));
+        let textures = [&part.texture, &part.emission_texture]
+            .map(|texture| texture.as_ref().map(|texture| self.add_texture(texture)));
         let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
         let count = part.indices.len();
         let indices = self.add(indices, ELEMENT_ARRAY, count, Component::U32, "SCALAR");
         let material =
-            self.json.materials.push(GltfMaterial::matte(part.colour, texture, &part.look));
+            self.json.materials.push(GltfMaterial::matte(part.colour, textures, &part.look));
         GltfPrimitive {
             attributes,
             indices: Some(indices),

@@ -34,6 +34,8 @@ pub struct MeshPart {
     pub look: PartLook,
     /// Image that multiplies the colour.
     pub texture: Option<Shared<SkinTexture>>,
+    /// Image that multiplies the emission, by the same coordinates.
+    pub emission_texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
     pub coordinates: Vec<[f32; 2]>,
     /// Colours of the vertices as linear light with opacity; empty for white ones.
@@ -93,6 +95,7 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
         rest = others;
         let colour = std::array::from_fn(|channel| skin.colour[channel] * part.colour[channel]);
         let set_of = |corners: &[u32; 3]| sets[corners[0] as usize];
+        let has_texture = part.texture.is_some() || part.emission_texture.is_some();
         for of_set in triangles.chunk_by(|one, other| set_of(one) == set_of(other)) {
             let corners = of_set
                 .iter()
@@ -102,7 +105,8 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
                 set: set_of(&of_set[0]),
                 look: part.look,
                 texture: part.texture.clone(),
-                ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), part.texture.is_some())
+                emission_texture: part.emission_texture.clone(),
+                ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), has_texture)
             });
         }
     }

@@ -19,6 +19,7 @@ pub struct PartMaterial {
     /// Colour as sRGB channels from 0 to 1.
     pub colour: [f32; 3],
     pub texture: Option<Shared<SkinTexture>>,
+    pub emission_texture: Option<Shared<SkinTexture>>,
     /// What moves the texture coordinates.
     pub moved: Option<Affine2>,
     pub look: PartLook,
@@ -27,7 +28,7 @@ pub struct PartMaterial {
 impl PartMaterial {
     /// White with a look.
     pub fn white(look: PartLook) -> Self {
-        Self { colour: [1.0; 3], texture: None, moved: None, look }
+        Self { colour: [1.0; 3], texture: None, emission_texture: None, moved: None, look }
     }
 
     /// Returns whether the alpha of the material hides all of it.
@@ -51,8 +52,8 @@ pub struct ImageCache {
 }
 
 impl ImageCache {
-    /// Reads the base colour of a material. A texture that cannot be read is left out, with a
-    /// warning.
+    /// Reads base colour and emission of a material. A texture that cannot be read is left out, with
+    /// a warning.
     pub fn material(
         &mut self,
         from: &MaterialSource<'_>,
@@ -60,20 +61,23 @@ impl ImageCache {
         checksum: &mut crc32fast::Hasher,
         warnings: &mut FieldWarnings,
     ) -> PartMaterial {
-        let Some(JsonObject(roughness)) = &material.roughness else {
-            return PartMaterial::white(material.look());
-        };
-        let moved = material.texture_use().and_then(GltfTextureUse::moved);
-        let look = material.look();
-        let colour = roughness.colour();
-        let texture = roughness.texture.as_ref().and_then(|JsonObject(used)| {
+        let moved = material.coordinates_of().and_then(GltfTextureUse::moved);
+        let mut look = material.look();
+        let colour = material.roughness.as_ref().map_or([1.0; 3], |JsonObject(it)| it.colour());
+        let mut read = |used: &GltfTextureUse| {
             let texture = self.texture(from, used, checksum);
             texture
                 .map_err(|error| warnings.push(error.field, format!("not read: {}", error.reason)))
                 .ok()
                 .flatten()
-        });
-        PartMaterial { colour, texture, moved, look }
+        };
+        let texture = material.texture_use().and_then(&mut read);
+        let emission_texture = material.emission_use().and_then(&mut read);
+        // Without its texture, the whole surface would shine.
+        if material.emissive_texture.is_some() && emission_texture.is_none() {
+            look.emission = [0.0; 3];
+        }
+        PartMaterial { colour, texture, emission_texture, moved, look }
     }
 
     /// The image of a texture; `None` if it has failed before.
@@ -103,10 +107,10 @@ fn at_image(index: usize) -> JsonPath {
     JsonPath::root().key("images").index(index)
 }
 
-/// Buffer view of the image of a material's base colour, if it is in one.
-pub fn image_view(file: &GltfFile<'_>, material: &GltfMaterial) -> Option<usize> {
-    let (_, image) = image(file, material.texture_use()?).ok()?;
-    Some(image.view?.0 as usize)
+/// Buffer views of the images of a material's base colour and emission, if they are in some.
+pub fn image_views(file: &GltfFile<'_>, material: &GltfMaterial) -> impl Iterator<Item = usize> {
+    let used = [material.texture_use(), material.emission_use()].into_iter().flatten();
+    used.filter_map(|used| Some(image(file, used).ok()?.1.view?.0 as usize))
 }
 
 /// The image of a texture, with its index.

@@ -19,7 +19,7 @@ use super::joint_tracks::JointPlacement;
 use super::morphs::MorphOwner;
 use super::nodes::{NodeTree, SkinJoints, at_node, at_skin};
 use super::primitive::{
-    ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, PrimitiveMorph, image_view,
+    ImageCache, MaterialSource, PartMaterial, PrimitiveMesh, PrimitiveMorph, image_views,
 };
 use super::rows::{buffer_of_view, buffers_of};
 use crate::io::formats::gltf::UniqueNames;
@@ -252,7 +252,8 @@ impl MeshImport<'_> {
             let material = self.material(primitive, &at)?;
             let set = material.map_or(0, |(_, material)| material.coordinates());
             accessors.extend(primitive.accessors(set));
-            if let Some(view) = material.and_then(|(_, material)| image_view(file, material)) {
+            let views = material.map(|(_, material)| image_views(file, material));
+            for view in views.into_iter().flatten() {
                 buffers.extend(buffer_of_view(file, view, JsonPath::root().key("images")));
             }
         }
@@ -377,7 +378,7 @@ impl MeshBuilder {
         primitive: PrimitiveMesh,
         rigid: Option<(usize, DAffine3)>,
         is_mirrored: bool,
-        PartMaterial { colour, texture, moved, look }: PartMaterial,
+        PartMaterial { colour, texture, emission_texture, moved, look }: PartMaterial,
         of_skin: &[usize],
     ) {
         let PrimitiveMesh {
@@ -409,7 +410,13 @@ impl MeshBuilder {
         let first = self.mesh.positions.len();
         let alpha_cutoff = if texture.is_some() { look.alpha_cutoff } else { 0.0 };
         let look = PartLook { alpha_cutoff, ..look };
-        self.parts.push(SkinPart { triangles: triangles.len(), colour, texture, look });
+        self.parts.push(SkinPart {
+            triangles: triangles.len(),
+            colour,
+            texture,
+            emission_texture,
+            look,
+        });
         let shifted = triangles.into_iter().map(|it| it.map(|corner| corner + first as u32));
         self.mesh.triangles.extend(shifted);
         let count = positions.len();
