@@ -149,3 +149,43 @@ fn a_skeleton_without_a_skin_has_no_obj() {
     let wrong = run(&["export", "--skinning", "linear", "-o", "a.glb"], &[&desk.example("arm")]);
     assert!(stderr(&wrong).contains("--skinning does not apply"), "{}", stderr(&wrong));
 }
+
+#[test]
+fn a_motion_whose_bind_pose_is_tangled_gets_its_skin_in_its_first_frame() {
+    let desk = Desk::new();
+    // Arms along the neck, which the first frame stretches to the sides.
+    let arm = |side: &str, x: f32| {
+        format!(
+            "JOINT {side}Arm {{ OFFSET {x} 26 0 CHANNELS 3 Zrotation Xrotation Yrotation \
+             JOINT {side}Hand {{ OFFSET 0 50 0 CHANNELS 3 Zrotation Xrotation Yrotation \
+             End Site {{ OFFSET 0 15 0 }} }} }} "
+        )
+    };
+    let text = format!(
+        "HIERARCHY ROOT Hips {{ OFFSET 0 0 0 CHANNELS 3 Zrotation Xrotation Yrotation \
+         JOINT Chest {{ OFFSET 0 20 0 CHANNELS 3 Zrotation Xrotation Yrotation \
+         JOINT Neck {{ OFFSET 0 30 0 CHANNELS 3 Zrotation Xrotation Yrotation \
+         End Site {{ OFFSET 0 30 0 }} }} {}{} }} }} MOTION Frames: 1 Frame Time: 0.04 \
+         0 0 0 0 0 0 0 0 0 -90 0 0 0 0 0 90 0 0 0 0 0",
+        arm("Left", 2.0),
+        arm("Right", -2.0)
+    );
+    let (file, out) = (desk.path("tangled.bvh"), desk.path("out.json"));
+    fs::write(&file, text).expect("written");
+    let output = skin(&file, &out, &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document = io::open(&out, &io::OpenOptions::default()).expect("opens").document;
+    let skin = document.rig.skin.as_ref().expect("a skin");
+    let SkinSource::Bones(bones) = &skin.source else { panic!("a skin from bones") };
+    assert_eq!(bones.shape().pose.len(), 2, "of the two arms");
+    let mesh = &skin.mesh().expect("a mesh").mesh;
+    let is_arm = |vertex: u32, side: &str| {
+        let joint = mesh.weights()[vertex as usize].first();
+        document.skeleton()[joint].name.starts_with(side)
+    };
+    let ties = |corners: &[u32; 3]| {
+        let has = |side| corners.iter().any(|corner| is_arm(*corner, side));
+        has("LeftHand") && has("Right") || has("RightHand") && has("Left")
+    };
+    assert!(!mesh.mesh().triangles.iter().any(ties), "no triangle ties a hand to the other arm");
+}

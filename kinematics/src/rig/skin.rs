@@ -43,9 +43,11 @@ impl Skin {
     /// Colour of a new skin: a warm grey.
     pub const DEFAULT_COLOUR: [f32; 3] = [0.83, 0.76, 0.69];
 
-    /// A skin from the bones of a skeleton in the default shape, with dual quaternions.
+    /// A skin from the bones of a skeleton in the default shape, with dual quaternions. It is made in
+    /// the bind pose or, if bones lie in each other there, in the pose that the skeleton has.
     pub fn from_bones(skeleton: &Shared<Skeleton>) -> Self {
-        Self::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), Default::default())))
+        let shape = SkinShape::default().with_bones_apart(skeleton);
+        Self::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), shape)))
     }
 
     /// A skin from bones in the default colour with dual quaternions, or a mesh in the colours of
@@ -186,7 +188,10 @@ impl BoneSkin {
     pub(super) fn remapped(&self, remap: &JointRemap) -> Self {
         let moved = |blob: &Blob| remap.get(blob.joint).map(|joint| Blob { joint, ..*blob });
         let blobs = self.shape.blobs.iter().filter_map(moved).collect();
-        self.with_shape(SkinShape { blobs, ..self.shape.clone() })
+        let pose = self.shape.pose.iter();
+        let pose = pose.filter_map(|(joint, angles)| Some((remap.get(*joint)?, *angles)));
+        let pose = pose.collect();
+        self.with_shape(SkinShape { blobs, pose, ..self.shape.clone() })
     }
 }
 

@@ -4,7 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use glam::{DVec3, Vec3};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
-use ik_arm_kinematics::skin::{Blob, SkinShape, SkinShapeError, SkinnedMesh, VertexWeights};
+use ik_arm_kinematics::skin::{
+    Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, VertexWeights,
+};
 
 use crate::common::{Random, cases};
 
@@ -342,4 +344,105 @@ fn what_cannot_become_a_skin_is_refused_with_the_reason() {
     let huge = self::tube(2, 1.6e38, 1e38);
     let error = SkinnedMesh::from_bones(&huge, &SkinShape::default()).expect_err("refused");
     assert!(matches!(error, SkinShapeError::NotFinite(_)), "{error}");
+}
+
+// The pose in which a surface is made
+
+/// The skeleton whose bind pose is the pose of another one.
+fn baked(skeleton: &Skeleton) -> Skeleton {
+    let pose = skeleton.pose_in_skeleton();
+    let joint = |(id, own): (JointId, &Joint)| {
+        let above = own.parent.map_or(Vec3::ZERO, |parent| pose.base(parent));
+        let mut joint = Joint::new(&own.name, own.parent, pose.tip(id) - pose.base(id));
+        joint.offset = pose.base(id) - above;
+        joint.radius = own.radius;
+        joint
+    };
+    Skeleton::from_joints(skeleton.iter().map(joint).collect()).expect("skeleton")
+}
+
+#[test]
+fn a_skin_made_in_a_pose_is_around_the_bones_of_that_pose() {
+    for seed in 0..cases(20) as u64 {
+        let mut random = Random(seed);
+        let mut skeleton = any_skeleton(&mut random);
+        for joint in skeleton.ids() {
+            skeleton.set_rotation(joint, random.vector(2.0)).expect("finite");
+        }
+        let pose: Vec<(JointId, Vec3)> =
+            skeleton.iter().map(|(id, joint)| (id, joint.rotation)).collect();
+        let mesh = SkinnedMesh::from_bones(&skeleton, &SkinShape { pose, ..coarse() });
+        let mesh = mesh.expect("a skin");
+        assert_is_closed(&mesh, &format!("seed {seed}"));
+        let posed = mesh.posed(&mesh.pose(&skeleton), Skinning::Linear);
+        let expected = SkinnedMesh::from_bones(&baked(&skeleton), &coarse()).expect("a skin");
+        let size = expected.mesh().size();
+        assert_eq!(posed.positions.len(), expected.mesh().positions.len(), "seed {seed}");
+        for (found, expected) in posed.positions.iter().zip(&expected.mesh().positions) {
+            assert!(found.distance(*expected) < 1e-4 * size, "seed {seed}: {found}, {expected}");
+        }
+    }
+}
+
+/// A figure whose arms lie along the neck in the bind pose, as in some motion capture, and stretch
+/// to the sides in the pose that it has.
+fn tangled_figure() -> Skeleton {
+    let bone = |name: &str, parent: Option<usize>, offset: Vec3, length: f32| {
+        let mut joint = Joint::new(name, parent.map(JointId::new), Vec3::Y * length);
+        (joint.offset, joint.radius) = (offset, 4.0);
+        joint
+    };
+    let mut joints = vec![
+        bone("hips", None, Vec3::ZERO, 20.0),
+        bone("chest", Some(0), Vec3::Y * 20.0, 30.0),
+        bone("neck", Some(1), Vec3::Y * 30.0, 12.0),
+        bone("head", Some(2), Vec3::Y * 12.0, 20.0),
+    ];
+    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+        let shoulder = joints.len();
+        let offset = Vec3::new(2.0 * sign, 26.0, 0.0);
+        let mut upper = bone(&format!("{side} arm"), Some(1), offset, 28.0);
+        upper.rotation = Vec3::new(0.0, 0.0, -sign * core::f32::consts::FRAC_PI_2);
+        joints.push(upper);
+        joints.push(bone(&format!("{side} forearm"), Some(shoulder), Vec3::Y * 28.0, 25.0));
+        joints.push(bone(&format!("{side} hand"), Some(shoulder + 1), Vec3::Y * 25.0, 15.0));
+    }
+    Skeleton::from_joints(joints).expect("a figure")
+}
+
+/// The greatest number of steps in the tree between the joints that two ends of an edge follow most.
+fn longest_bridge(skeleton: &Skeleton, mesh: &SkinnedMesh) -> usize {
+    let steps = |one: JointId, other: JointId| {
+        let above: Vec<JointId> = skeleton.ancestors(one).collect();
+        let mut from_other = skeleton.ancestors(other).enumerate();
+        let met = from_other
+            .find_map(|(up, joint)| above.iter().position(|it| *it == joint).map(|down| up + down));
+        met.unwrap_or(usize::MAX)
+    };
+    let heaviest = |vertex: u32| mesh.weights()[vertex as usize].first();
+    let edges = mesh.mesh().triangles.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c)]);
+    edges.map(|(a, b)| steps(heaviest(a), heaviest(b))).max().unwrap_or_default()
+}
+
+#[test]
+fn a_tangled_figure_gets_its_skin_where_its_bones_are_apart() {
+    let figure = tangled_figure();
+    let tied = SkinnedMesh::from_bones(&figure, &SkinShape::default()).expect("a skin");
+    assert!(longest_bridge(&figure, &tied) > 3, "the bind pose ties hands and head together");
+    let shape = SkinShape::default().with_bones_apart(&figure);
+    assert!(!shape.pose.is_empty());
+    let mesh = SkinnedMesh::from_bones(&figure, &shape).expect("a skin");
+    assert_is_closed(&mesh, "tangled");
+    let longest = longest_bridge(&figure, &mesh);
+    assert!(longest <= 2, "an edge goes over {longest} joints");
+}
+
+#[test]
+fn figures_whose_bones_are_apart_get_their_skin_in_the_bind_pose() {
+    let mut figure = baked(&tangled_figure());
+    assert!(SkinShape::default().with_bones_apart(&figure).pose.is_empty());
+    for joint in figure.ids() {
+        figure.set_rotation(joint, Vec3::splat(0.4)).expect("finite");
+    }
+    assert!(SkinShape::default().with_bones_apart(&figure).pose.is_empty());
 }

@@ -18,6 +18,9 @@ pub struct SkinShape {
     pub thickness: f32,
     /// Bodies beside the bones.
     pub blobs: Vec<Blob>,
+    /// Euler angles in radians of the joints in the pose in which the surface is made; 0 for joints
+    /// that are not in the list, as in the bind pose.
+    pub pose: Vec<(JointId, Vec3)>,
 }
 
 /// A body beside a joint's bone, the convex hull of two spheres, for example a rib cage or a heel.
@@ -43,13 +46,13 @@ impl SkinShape {
     /// The most blobs.
     pub const MOST_BLOBS: usize = 4096;
 
-    /// Checks the numbers, and that the joints of the blobs exist.
+    /// Checks the numbers, and that the joints of blobs and pose exist.
     ///
     /// # Errors
     ///
     /// [`SkinShapeError`] names the number and the rule.
     pub fn check(&self, skeleton: &Skeleton) -> Result<(), SkinShapeError> {
-        let Self { detail, thickness, blobs } = self;
+        let Self { detail, thickness, blobs, pose } = self;
         if !(Self::LEAST_DETAIL..=Self::MOST_DETAIL).contains(detail) {
             return Err(SkinShapeError::Detail(*detail));
         }
@@ -60,6 +63,11 @@ impl SkinShape {
             return Err(SkinShapeError::TooManyBlobs(blobs.len()));
         }
         let joints = skeleton.joints().len();
+        let is_sound =
+            |(joint, angles): &(JointId, Vec3)| joint.index() < joints && angles.is_finite();
+        if let Some(index) = pose.iter().position(|joint| !is_sound(joint)) {
+            return Err(SkinShapeError::Pose { index, joints });
+        }
         for (index, blob) in blobs.iter().enumerate() {
             if blob.joint.index() >= joints {
                 return Err(SkinShapeError::BlobJoint { blob: index, joints, got: blob.joint });
@@ -79,7 +87,7 @@ impl SkinShape {
 
 impl Default for SkinShape {
     fn default() -> Self {
-        Self { detail: 2.0, thickness: 1.0, blobs: Vec::new() }
+        Self { detail: 2.0, thickness: 1.0, blobs: Vec::new(), pose: Vec::new() }
     }
 }
 
@@ -110,6 +118,14 @@ pub enum SkinShapeError {
     Blob {
         /// Index of the blob.
         blob: usize,
+    },
+    /// A joint of the pose does not exist, or its angles are not finite.
+    #[error("entry {index} of the pose must have a joint below {joints} and finite angles")]
+    Pose {
+        /// Index in the list.
+        index: usize,
+        /// Number of joints.
+        joints: usize,
     },
     /// No joint has a radius above 0, and there are no blobs.
     #[error("a skin from bones needs a joint with a radius above 0, and there is none")]

@@ -9,6 +9,7 @@
 mod body;
 mod field;
 mod grid;
+mod pose;
 mod round_cone;
 mod surface_nets;
 mod weights;
@@ -22,12 +23,14 @@ use crate::skeleton::Skeleton;
 use body::Body;
 use field::Field;
 use grid::Grid;
+use pose::PosedBones;
 use round_cone::RoundCone;
 use surface_nets::SurfaceNet;
 use weights::Weights;
 
 impl SkinnedMesh {
-    /// A skin around the bones of a skeleton in its bind pose, in skeleton space. Each tree of
+    /// A skin around the bones of a skeleton in its bind pose, or in the pose of the shape, in
+    /// skeleton space. Each tree of
     /// joints with radii above 0 gets one closed surface. Parts thinner than a cell of the grid,
     /// which only a skeleton of very different sizes has, become as thick as a cell.
     ///
@@ -36,6 +39,12 @@ impl SkinnedMesh {
     /// [`SkinShapeError`] if no joint has a radius, if the shape is invalid, or if the bones are so
     /// long that the surface has numbers that are not finite.
     pub fn from_bones(skeleton: &Skeleton, shape: &SkinShape) -> Result<Self, SkinShapeError> {
+        if !shape.pose.is_empty() {
+            shape.check(skeleton)?;
+            let posed = PosedBones::new(skeleton, shape);
+            let mesh = Self::from_bones(&posed.skeleton, &posed.shape)?;
+            return Ok(posed.attached(mesh)?);
+        }
         let mut bodies = Body::all(skeleton, shape)?;
         let cell = cell_size(&bodies, shape.detail)?;
         let mut mesh = TriangleMesh::default();

@@ -43,6 +43,15 @@ struct SkinShapeFields {
     thickness: Option<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
     blobs: Option<Vec<JsonObject<BlobFields>>>,
+    /// The pose in which the mesh is made; without it, the bind pose.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pose: Vec<JsonObject<JointAnglesFields>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct JointAnglesFields {
+    joint: Whole,
+    rotation: JsonPoint,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -104,6 +113,7 @@ impl SkinShapeFields {
             detail: Some(shape.detail.into()),
             thickness: Some(shape.thickness.into()),
             blobs: (!shape.blobs.is_empty()).then_some(blobs),
+            pose: shape.pose.iter().map(JointAnglesFields::new).map(JsonObject).collect(),
         }
     }
 
@@ -114,6 +124,7 @@ impl SkinShapeFields {
             detail: value_or(self.detail, default.detail),
             thickness: value_or(self.thickness, default.thickness),
             blobs: converted(blobs, |JsonObject(blob)| blob.blob(joints)).at("blobs")?,
+            pose: converted(self.pose, |JsonObject(angles)| angles.angles(joints)).at("pose")?,
         };
         if let Err(error) = shape.check(skeleton) {
             let reason = Err(error.to_string());
@@ -125,6 +136,16 @@ impl SkinShapeFields {
             };
         }
         Ok(BoneSkin::new(skeleton.clone(), shape))
+    }
+}
+
+impl JointAnglesFields {
+    fn new((joint, rotation): &(JointId, Vec3)) -> Self {
+        Self { joint: (*joint).into(), rotation: (*rotation).into() }
+    }
+
+    fn angles(self, joints: usize) -> Result<(JointId, Vec3), FieldError> {
+        Ok((joint(self.joint, joints).at("joint")?, self.rotation.into()))
     }
 }
 

@@ -69,7 +69,9 @@ impl Values<'_> {
         let (base, tip) = (self.small_point(), self.small_point());
         let blob = Blob { joint, base, tip, base_radius: 1.0, tip_radius: 2.0 };
         let blobs = if self.chance(0.2) { vec![blob] } else { Vec::new() };
-        skin.source = SkinSource::Bones(bones.with_shape(SkinShape { detail, thickness, blobs }));
+        let pose = if self.chance(0.2) { vec![(joint, base)] } else { Vec::new() };
+        let shape = SkinShape { detail, thickness, blobs, pose };
+        skin.source = SkinSource::Bones(bones.with_shape(shape));
         Some(skin)
     }
 
