@@ -189,13 +189,18 @@ pub fn without_position(error: &serde_json::Error) -> String {
 
 /// Replaces the middle of a long message by `…`.
 pub fn shortened(message: String) -> String {
-    const START: usize = 400;
-    const END: usize = 160;
-    let count = message.chars().count();
-    if count <= START + END {
-        return message;
+    const MOST: usize = 560;
+    shortened_to(message, MOST)
+}
+
+/// Replaces the middle of a text by `…` if it has more than `most` letters.
+pub fn shortened_to(text: String, most: usize) -> String {
+    let end = 2 * most / 7;
+    let start = most - end;
+    let count = text.chars().count();
+    if count <= most {
+        return text;
     }
-    let start = message.chars().take(START);
-    let end = message.chars().skip(count - END);
+    let (start, end) = (text.chars().take(start), text.chars().skip(count - end));
     start.chain("…".chars()).chain(end).collect()
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::disk;
-use super::error::{OpenError, Remark, shortened, without_position};
+use super::error::{OpenError, Remark, shortened, shortened_to, without_position};
 use super::foreign::ForeignFormat;
 use super::json::{FieldError, FieldWarnings, JsonPath, byte_at, line_and_column};
 use super::packed::GlbChunks;
@@ -189,7 +189,10 @@ impl Source {
             Some(_) => (0, 0),
             None => line_and_column(&self.text, byte),
         };
-        let (field, reason) = (shortened(field.to_string()), shortened(reason.to_owned()));
+        /// Most letters of the field, which fits a window together with the reason.
+        const MOST: usize = 300;
+        let field = shortened_to(field.to_string(), MOST);
+        let reason = shortened(reason.to_owned());
         Remark { line, column, field, reason }
     }
 }

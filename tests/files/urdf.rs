@@ -320,9 +320,12 @@ fn what_is_wrong_is_told_with_its_line_and_name() {
         ),
         (
             hinge("one", "b", "c", "") + &hinge("two", "c", "b", ""),
-            "its child must not be above it",
+            "its child link must not be an ancestor of its parent link",
         ),
-        (hinge("one", "a", "a", ""), "one: its child must not be above it"),
+        (
+            hinge("one", "a", "a", ""),
+            "one: its child link must not be an ancestor of its parent link",
+        ),
         (hinge("one", "a", "b", "<axis xyz='0 0 0'/>"), "one: its axis must not be zero"),
         (hinge("one", "a", "b", "<axis xyz='0 1'/>"), "xyz of axis must be 3 numbers within ±1e12"),
         (both.replace("'-1'", "'x'"), "lower of limit must be a number within ±1e12, got \"x\""),
@@ -365,7 +368,7 @@ fn what_is_left_out_is_told() {
     assert_eq!(
         told,
         [
-            "joints that do not turn on their own are fixed: two (revolute, mimic), slide (prismatic)",
+            "prismatic, planar, floating and mimic joints are locked: two (revolute, mimic), slide (prismatic)",
             "meshes and textures are not read, only boxes, cylinders and spheres are shown: \
              \"package://r/d.dae\"",
         ]

@@ -32,7 +32,8 @@ pub struct Humanoid {
 pub struct HumanoidDirections {
     /// From the hips to the shoulders.
     pub up: Vec3,
-    /// To where the toes point; without toes, to the front between left and right.
+    /// To the front: perpendicular to up and to the axis from right to left. Reversed if the toes point
+    /// the other way, as in figures whose left is called right.
     pub forward: Vec3,
 }
 
@@ -92,14 +93,14 @@ pub enum NotHumanoid {
         between: [String; 2],
     },
     /// Limbs of the two sides share joints.
-    #[error("found {0} and another limb with the same joints")]
+    #[error("the {0} shares a joint with another limb")]
     Shared(BodyPart),
     /// Left and right differ in length.
-    #[error("found two {limbs}, but their lengths differ: {} and {}", lengths[0], lengths[1])]
+    #[error("left and right bones of the {limbs} differ in length: {} and {}", lengths[0], lengths[1])]
     Uneven {
         /// "arms" or "legs".
         limbs: &'static str,
-        /// Lengths of the left and the right bones, in units of the skeleton.
+        /// Lengths of the two bones that differ, in units of the skeleton.
         lengths: [f32; 2],
     },
     /// A limb has a bone without length, or one that is much shorter than the other.
@@ -111,7 +112,7 @@ pub enum NotHumanoid {
     /// Neither names nor a shape with two arms, two legs and a head.
     #[error("found no joints with known names, and no two arms, two legs and a head")]
     Unknown,
-    /// Names are unknown, and no toes tell where the front is.
+    /// Names do not tell the limbs, and no toes tell where the front is.
     #[error("found arms, legs and a head, but no toes that tell where the front is")]
     NoFront,
 }
@@ -153,9 +154,12 @@ impl Humanoid {
         skeleton: &Skeleton,
         pose: &SkeletonPose,
     ) -> Option<HumanoidDirections> {
-        /// Cosine of the greatest angle between the trunk and a leg, or from the trunk to left,
-        /// against a right angle.
-        const CLEAR: f32 = 0.5;
+        /// Cosine of the greatest angle between a leg and straight down: 60°.
+        const LEAST_DOWN: f32 = 0.5;
+        /// Sine of the greatest tilt of the axis from right to left: 30°.
+        const MOST_TILT: f32 = 0.5;
+        /// Cosine of the angle from which toes point backwards: 120°.
+        const BACKWARDS: f32 = -0.5;
         /// Least length of the trunk, relative to that of a leg.
         const LEAST_TRUNK: f32 = 0.2;
         let base = |joint| pose.base(joint);
@@ -165,16 +169,17 @@ impl Humanoid {
         let up = trunk.try_normalize()?;
         let goes_down = |leg: &HumanoidLimb| {
             let leg = base(leg.end) - base(leg.upper);
-            trunk.length() > LEAST_TRUNK * leg.length() && leg.normalize_or_zero().dot(up) < -CLEAR
+            trunk.length() > LEAST_TRUNK * leg.length()
+                && leg.normalize_or_zero().dot(up) < -LEAST_DOWN
         };
         let across = |[left, right]: [HumanoidLimb; 2]| base(left.upper) - base(right.upper);
         let left = (across(self.arms) + across(self.legs)).try_normalize()?;
-        if !self.legs.iter().all(goes_down) || left.dot(up).abs() > CLEAR {
+        if !self.legs.iter().all(goes_down) || left.dot(up).abs() > MOST_TILT {
             return None;
         }
         let front = left.cross(up).try_normalize()?;
         let toes = self.toes(skeleton, pose, up);
-        let is_backwards = toes.is_some_and(|toes| toes.dot(front) < -CLEAR);
+        let is_backwards = toes.is_some_and(|toes| toes.dot(front) < BACKWARDS);
         Some(HumanoidDirections { up, forward: if is_backwards { -front } else { front } })
     }
 

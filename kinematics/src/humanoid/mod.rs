@@ -1,5 +1,6 @@
 //! Recognition of human-like figures: which joints are hips, knees, feet, shoulders, elbows and
-//! hands, by their [names](names) or, without known names, by the [shape](shape) of the figure.
+//! hands, by their [names](names) or, where these do not tell all four limbs, by the
+//! [shape](shape) of the bind pose.
 //!
 //! Names alone are not believed: the two sides must have the same lengths, and the legs must go
 //! down from the trunk, in the bind pose or in the pose that the skeleton has. So horses and birds
@@ -18,11 +19,11 @@ impl Humanoid {
     ///
     /// # Errors
     ///
-    /// [`NotHumanoid`] where the figure is none, or where that is not sure.
+    /// [`NotHumanoid`] if the figure is not human-like, or the match is ambiguous.
     pub fn of(skeleton: &Skeleton) -> Result<Self, NotHumanoid> {
         let with_head = |humanoid: Self| {
-            let (directions, _) = humanoid.directions(skeleton)?;
-            shape::head(skeleton, &humanoid, directions)
+            let (directions, pose) = humanoid.directions(skeleton)?;
+            shape::head(skeleton, pose, &humanoid, directions)
         };
         let named = names::humanoid(skeleton)
             .and_then(|humanoid| humanoid.checked(skeleton))

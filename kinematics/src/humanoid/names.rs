@@ -1,9 +1,9 @@
 //! Names of the joints of human-like figures, in the schemes of widely used programs.
 //!
-//! A name is split into words at punctuation, digits and changes of case. A namespace, words that
-//! all joints have in front, and words like *DEF* and *jnt* are dropped; *left*, *right*, *l* and
-//! *r* tell the side. What is left must be one of the words below as a whole: so
-//! `LeftHandIndex1`, `upperarm_twist_01_l` and `ik_hand_l` are no hands and arms.
+//! A name is split into words at punctuation, digits and changes of case. Dropped are the namespace, a
+//! first word that more than half of the names share (a character's name), and fillers such as *DEF*
+//! and *jnt*; *left*, *right*, *l* and *r* tell the side. What is left must be one of the words below as a whole: so
+//! `LeftHandIndex1`, `upperarm_twist_01_l` and `ik_hand_l` are not taken for hands and arms.
 //!
 //! # Sources
 //!
@@ -65,7 +65,7 @@ struct PlainName {
     word: String,
 }
 
-/// The joints that names tell.
+/// Recognises a figure by the names of its joints.
 pub fn humanoid(skeleton: &Skeleton) -> Result<Humanoid, NotHumanoid> {
     let found = Found::new(skeleton, &[])?;
     let complete = found.humanoid();

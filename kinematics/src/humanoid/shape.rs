@@ -11,10 +11,13 @@ const MIRRORED: f32 = 0.05;
 /// Least length of a limb, relative to the longest.
 const LEAST_LIMB: f32 = 0.3;
 
-/// The joints that the shape tells.
+/// Recognises a figure by the shape of its bind pose.
 pub fn humanoid(skeleton: &Skeleton) -> Result<Humanoid, NotHumanoid> {
-    let shape = Shape::new(skeleton);
+    let shape = Shape::new(skeleton, skeleton.bind_pose_in_skeleton());
     let [one, other] = shape.pairs()[..] else { return Err(NotHumanoid::Unknown) };
+    // Both pairs in the same order of the sides, whichever that is.
+    let across = |[a, b]: Pair| shape.pose.base(a.upper) - shape.pose.base(b.upper);
+    let other = if across(one).dot(across(other)) < 0.0 { [other[1], other[0]] } else { other };
     let mut found = [(one, other), (other, one)].into_iter().filter_map(|(arms, legs)| {
         let body = Humanoid { head: None, arms, legs };
         let directions = body.directions_in(skeleton, &shape.pose)?;
@@ -35,13 +38,14 @@ pub fn humanoid(skeleton: &Skeleton) -> Result<Humanoid, NotHumanoid> {
     Ok(Humanoid { head: body.head, arms: sorted(body.arms), legs: sorted(body.legs) })
 }
 
-/// The head of a figure of which names tell none.
+/// Finds the head by the shape of a pose in skeleton space, for figures whose names include none.
 pub fn head(
     skeleton: &Skeleton,
+    pose: SkeletonPose,
     body: &Humanoid,
     directions: HumanoidDirections,
 ) -> Option<JointId> {
-    Shape::new(skeleton).head(body, directions)
+    Shape::new(skeleton, pose).head(body, directions)
 }
 
 /// Two mirrored limbs.
@@ -56,8 +60,7 @@ struct Shape<'a> {
 }
 
 impl<'a> Shape<'a> {
-    fn new(skeleton: &'a Skeleton) -> Self {
-        let pose = skeleton.bind_pose_in_skeleton();
+    fn new(skeleton: &'a Skeleton, pose: SkeletonPose) -> Self {
         let count = skeleton.joints().len();
         let (mut children, mut reach) = (vec![Vec::new(); count], vec![0.0_f32; count]);
         for (id, joint) in skeleton.iter().rev() {

@@ -15,12 +15,12 @@ const FEET: f32 = 100.0;
 const NECK: usize = 3;
 
 impl SkeletonRig {
-    /// Adds targets for the hands and feet of a human-like figure, and one for its head, where
-    /// `pose` has them. The pose stays; only elbows and knees that are bent the wrong way bend
-    /// back. Returns the joints of the new targets; parts that have a target keep it.
+    /// Adds targets for the hands, feet and head of a human-like figure at their places in `pose`.
+    /// The pose does not change, except that elbows and knees that are bent the wrong way bend the
+    /// right way. Returns the joints of the new targets; parts that have a target keep it.
     ///
-    /// Hands and feet are ends of [limbs](TargetKind::Limb), whose elbows bend to the front and
-    /// whose knees bend to the back. Feet keep the rotation that they have in the world, and the
+    /// Hands and feet are ends of [limbs](TargetKind::Limb): forearms swing to the front, and shins
+    /// to the back. Feet keep the rotation that they have in the world, and the
     /// head looks at a point in front of it. If these are the first targets, the body
     /// follows, with a free root, by damped least squares.
     ///
@@ -32,13 +32,13 @@ impl SkeletonRig {
     /// [`NotHumanoid`] where `pose` is not [recognised](Humanoid::of); then nothing changes.
     pub fn add_humanoid_targets(&mut self, pose: &Skeleton) -> Result<Vec<JointId>, NotHumanoid> {
         let humanoid = &Humanoid::of(pose)?;
-        let (directions, bind) = humanoid.directions(pose).ok_or(NotHumanoid::NotUpright)?;
+        let (directions, reference) = humanoid.directions(pose).ok_or(NotHumanoid::NotUpright)?;
         let is_first = self.targets.is_empty();
         let mut added = Vec::new();
         for (part, limb) in humanoid.limbs() {
             let present = self.target(limb.lower).or_else(|| self.target_of_end(limb.end));
             if present.is_none() {
-                let bends_about = self.bends_about(&bind, limb, part.is_leg(), directions);
+                let bends_about = self.bends_about(&reference, limb, part.is_leg(), directions);
                 let lower = pose.full_transform(limb.lower);
                 let end = lower.inverse().transform_point3(pose.base(limb.end));
                 self.make_limb(limb, end);
@@ -48,7 +48,7 @@ impl SkeletonRig {
             }
         }
         if let Some(head) = humanoid.head.filter(|head| self.target(*head).is_none()) {
-            let facing = bind.full(head).matrix3.inverse() * directions.forward;
+            let facing = reference.full(head).matrix3.inverse() * directions.forward;
             self.targets.push(self.looking_ahead(head, facing, humanoid, pose));
             added.push(head);
         }
@@ -81,21 +81,22 @@ impl SkeletonRig {
         }
     }
 
-    /// The axis about which a limb bends, in the space of the lower joint's base: that of the bind
-    /// pose if it is bent the right way there; otherwise the one that turns the lower bone to the
-    /// front, or back for a leg.
+    /// The axis about which a limb bends, in the space of the lower joint's base. If the limb is bent
+    /// the right way in the reference pose, it is the axis of that bend; otherwise the axis that
+    /// swings the forearm to the front or the shin to the back.
     fn bends_about(
         &self,
-        bind: &SkeletonPose,
+        reference: &SkeletonPose,
         limb: HumanoidLimb,
         is_leg: bool,
         HumanoidDirections { up, forward }: HumanoidDirections,
     ) -> Vec3 {
-        /// Bend in radians from which a limb of the bind pose has a direction of its own: 5°.
+        /// Bend in radians from which a limb of the reference pose has a direction of its own: 5°.
         const BENT: f32 = 0.087;
-        /// Cosine of the angle between bone and front below which the bone points to the front.
+        /// Cosine of the angle to the front or back within which the upper bone is parallel to it.
         const AHEAD: f32 = 0.95;
-        let [from, elbow, to] = [limb.upper, limb.lower, limb.end].map(|joint| bind.base(joint));
+        let [from, elbow, to] =
+            [limb.upper, limb.lower, limb.end].map(|joint| reference.base(joint));
         let (upper, lower) = ((elbow - from).normalize_or_zero(), (to - elbow).normalize_or_zero());
         let (front, up) = if is_leg { (-forward, -up) } else { (forward, up) };
         let ahead = if upper.dot(front).abs() > AHEAD { up } else { front };
@@ -103,7 +104,7 @@ impl SkeletonRig {
         let own = upper.cross(lower);
         let is_own = upper.angle_between(lower) > BENT && own.dot(expected) > 0.5 * own.length();
         let axis = if is_own { own.normalize_or_zero() } else { expected };
-        let above = self.skeleton[limb.lower].parent.map(|parent| bind.full(parent).matrix3);
+        let above = self.skeleton[limb.lower].parent.map(|parent| reference.full(parent).matrix3);
         above.map_or(axis, |above| above.inverse() * axis)
     }
 

@@ -173,7 +173,7 @@ impl Snapshot {
     /// needed.
     fn unshared_mesh_bytes(&self, other: Option<&Document>) -> usize {
         let mesh = |document: &Document| match &document.rig.skin.as_ref()?.source {
-            SkinSource::Mesh(mesh) => mesh.mesh().ok().cloned(),
+            SkinSource::Mesh(mesh) => mesh.unmorphed().ok().cloned(),
             SkinSource::Bones(_) => None,
         };
         let Some(own) = mesh(&self.document) else { return 0 };

@@ -1,5 +1,5 @@
-//! The pose in which a surface is made. In the bind poses of some files, bones lie in each other: the
-//! arms along the neck, for example. A surface around these would tie them together.
+//! The pose in which a surface is made. In the bind poses of some files, bones overlap: the arms lie
+//! along the neck, for example. A surface around these would merge them.
 
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
@@ -12,7 +12,7 @@ pub struct PosedBones {
     pub skeleton: Skeleton,
     pub shape: SkinShape,
     /// For each joint its rotation in that pose, in skeleton space.
-    turns: Vec<Mat3A>,
+    rotations: Vec<Mat3A>,
 }
 
 impl PosedBones {
@@ -24,10 +24,10 @@ impl PosedBones {
             posed.write_local(*joint, |joint| joint.rotation = *rotation);
         }
         let pose = posed.pose_in_skeleton();
-        let turns: Vec<Mat3A> = posed.ids().map(|joint| pose.full(joint).matrix3).collect();
+        let rotations: Vec<Mat3A> = posed.ids().map(|joint| pose.full(joint).matrix3).collect();
         for (joint, own) in skeleton.iter() {
-            let above = own.parent.map_or(Mat3A::IDENTITY, |parent| turns[parent.index()]);
-            let turn = turns[joint.index()];
+            let above = own.parent.map_or(Mat3A::IDENTITY, |parent| rotations[parent.index()]);
+            let turn = rotations[joint.index()];
             posed.write_local(joint, |joint| {
                 *joint = Joint {
                     offset: above * own.offset,
@@ -40,17 +40,17 @@ impl PosedBones {
             });
         }
         let turned = |blob: &Blob| {
-            let turn = turns.get(blob.joint.index()).copied().unwrap_or(Mat3A::IDENTITY);
+            let turn = rotations.get(blob.joint.index()).copied().unwrap_or(Mat3A::IDENTITY);
             Blob { base: turn * blob.base, tip: turn * blob.tip, ..*blob }
         };
         let blobs = shape.blobs.iter().map(turned).collect();
         let shape = SkinShape { blobs, pose: Vec::new(), ..shape.clone() };
-        Self { skeleton: posed, shape, turns }
+        Self { skeleton: posed, shape, rotations }
     }
 
     /// A mesh around the posed bones, attached to the joints in that pose.
     pub fn attached(&self, mesh: SkinnedMesh) -> Result<SkinnedMesh, SkinError> {
-        let binds = mesh.inverse_binds().iter().zip(&self.turns);
+        let binds = mesh.inverse_binds().iter().zip(&self.rotations);
         let binds = binds.map(|(bind, turn)| Affine3A::from_mat3(turn.transpose().into()) * *bind);
         let binds = binds.collect();
         SkinnedMesh::new(mesh.mesh().clone(), mesh.weights().to_vec(), binds)
@@ -58,34 +58,34 @@ impl PosedBones {
 }
 
 impl SkinShape {
-    /// The shape whose surface is made in the pose that a skeleton has, if fewer of its bones lie in
-    /// each other in it than in the bind pose.
+    /// The shape whose surface is made in the pose that a skeleton has, if fewer of its bones
+    /// overlap in it than in the bind pose.
     #[must_use]
     pub fn with_bones_apart(self, skeleton: &Skeleton) -> Self {
         Self { pose: pose_apart(skeleton), ..self }
     }
 }
 
-/// The rotations of the joints in the pose that a skeleton has, if fewer bones lie in each other in
-/// it than in the bind pose; otherwise none.
+/// The rotations of the joints in the pose that a skeleton has, if fewer bones overlap in it than
+/// in the bind pose; otherwise none.
 fn pose_apart(skeleton: &Skeleton) -> Vec<(JointId, Vec3)> {
-    /// Most bones of which all pairs are compared.
-    const MOST_BONES: usize = 2_000;
+    /// Maximum number of joints of which all pairs are compared; larger skeletons keep the bind pose.
+    const MOST_JOINTS: usize = 2_000;
     let turned = skeleton.iter().filter(|(_, joint)| joint.rotation != Vec3::ZERO);
     let pose: Vec<(JointId, Vec3)> = turned.map(|(id, joint)| (id, joint.rotation)).collect();
-    if pose.is_empty() || skeleton.joints().len() > MOST_BONES {
+    if pose.is_empty() || skeleton.joints().len() > MOST_JOINTS {
         return Vec::new();
     }
-    let in_bind_pose = tangled(skeleton, &skeleton.bind_pose_in_skeleton());
-    let is_better =
-        in_bind_pose > 0 && tangled(skeleton, &skeleton.pose_in_skeleton()) < in_bind_pose;
+    let in_bind_pose = overlapping_pairs(skeleton, &skeleton.bind_pose_in_skeleton());
+    let is_better = in_bind_pose > 0
+        && overlapping_pairs(skeleton, &skeleton.pose_in_skeleton()) < in_bind_pose;
     if is_better { pose } else { Vec::new() }
 }
 
-/// Number of pairs of bones that lie in each other, except for neighbours. Siblings count if their
+/// Number of pairs of bones that overlap, except for neighbours. Siblings count if their
 /// outer halves do, since many begin at the same point.
-fn tangled(skeleton: &Skeleton, pose: &SkeletonPose) -> usize {
-    /// Distance of two bones in each other, relative to the sum of their radii.
+fn overlapping_pairs(skeleton: &Skeleton, pose: &SkeletonPose) -> usize {
+    /// Distance of two bones that overlap, relative to the sum of their radii.
     const INSIDE: f32 = 0.5;
     let has_bone = |(_, joint): &(JointId, &Joint)| joint.axis != Vec3::ZERO && joint.radius > 0.0;
     let bones: Vec<(JointId, &Joint)> = skeleton.iter().filter(has_bone).collect();

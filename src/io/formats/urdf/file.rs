@@ -9,7 +9,7 @@ pub struct Robot {
     pub name: String,
     pub links: Vec<Link>,
     pub joints: Vec<RobotJoint>,
-    /// Files of meshes and textures, which are not read.
+    /// What is not read: files of meshes and textures, and names of unknown bodies.
     pub unread: Vec<String>,
 }
 
@@ -60,7 +60,8 @@ pub enum JointKind {
     Turning { axis: DVec3, limits: Option<[f64; 2]> },
     /// Does not turn.
     Fixed,
-    /// Moves in a way that a skeleton's joint cannot, and is fixed: "prismatic", for example.
+    /// Locked, because a skeleton's joint cannot move so, or because another joint moves it by
+    /// `mimic`: its type.
     Unsupported(String),
 }
 
@@ -84,7 +85,7 @@ pub fn is_urdf(text: &str) -> bool {
 /// Parses a file.
 pub fn parse(text: &str) -> Result<Robot, UrdfError> {
     let tree = XmlTree::parse(text)?;
-    // xacro is the macro language of which URDF is made.
+    // xacro is a macro language from which URDF is often generated.
     if let Some(macro_) = tree.all().find(|element| element.name().starts_with("xacro:")) {
         let reason = "must be URDF, got xacro: `xacro x.xacro > x.urdf` expands it";
         return Err(UrdfError::new(macro_.at(), "", reason));
@@ -149,7 +150,7 @@ fn name_of(node: XmlElement<'_>) -> Result<&str, UrdfError> {
     name.ok_or_else(|| UrdfError::new(node.at(), "", format!("a {kind} must have a name")))
 }
 
-/// A body of a link; `None` for a mesh, whose file goes to `unread`.
+/// A body of a link; `None` for a mesh or an unknown body, which goes to `unread`.
 fn visual(
     node: XmlElement<'_>,
     link: &str,
@@ -170,7 +171,10 @@ fn visual(
             unread.push(geometry.attribute("filename").unwrap_or_default().to_owned());
             return Ok(None);
         }
-        _ => return Ok(None),
+        other => {
+            unread.push(other.to_owned());
+            return Ok(None);
+        }
     };
     let material = node.child("material");
     let named = material.and_then(|it| palette.get(it.attribute("name")?)).copied();
@@ -181,16 +185,24 @@ fn visual(
 }
 
 fn sizes(geometry: XmlElement<'_>, link: &str) -> Result<[f64; 3], UrdfError> {
-    let size = numbers(geometry, "size", link, [-1.0; 3])?;
+    let at = geometry.at();
+    if geometry.attribute("size").is_none() {
+        return Err(UrdfError::new(at, link, "a box must have a size"));
+    }
+    let size = numbers(geometry, "size", link, [0.0; 3])?;
     let is_valid = size.iter().all(|side| *side >= 0.0);
     let [x, y, z] = size;
     let reason = format!("the size of a box must be 0 or more, got {x} {y} {z}");
-    if is_valid { Ok(size) } else { Err(UrdfError::new(geometry.at(), link, reason)) }
+    if is_valid { Ok(size) } else { Err(UrdfError::new(at, link, reason)) }
 }
 
 fn length(geometry: XmlElement<'_>, name: &str, link: &str) -> Result<f64, UrdfError> {
-    let [value] = numbers(geometry, name, link, [-1.0])?;
     let kind = geometry.name();
+    if geometry.attribute(name).is_none() {
+        let reason = format!("a {kind} must have a {name}");
+        return Err(UrdfError::new(geometry.at(), link, reason));
+    }
+    let [value] = numbers(geometry, name, link, [0.0])?;
     let reason = format!("the {name} of a {kind} must be 0 or more, got {value}");
     if value >= 0.0 { Ok(value) } else { Err(UrdfError::new(geometry.at(), link, reason)) }
 }

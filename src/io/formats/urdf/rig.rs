@@ -58,7 +58,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     })
 }
 
-/// What of a robot is left out.
+/// Warnings about joints and bodies that are not supported.
 fn remarks(robot: &Robot) -> impl Iterator<Item = String> {
     let fixed = robot.joints.iter().filter_map(|joint| match &joint.kind {
         JointKind::Unsupported(kind) => Some(format!("{} ({kind})", joint.name)),
@@ -76,7 +76,7 @@ fn remarks(robot: &Robot) -> impl Iterator<Item = String> {
         let listed = names[..count.min(MOST_NAMES)].join(", ");
         (count > 0).then(|| format!("{what}: {listed}{more}"))
     };
-    let fixed = of(fixed.collect(), "joints that do not turn on their own are fixed");
+    let fixed = of(fixed.collect(), "prismatic, planar, floating and mimic joints are locked");
     let swapped = "joints whose lower limit is above the upper one turn without limits";
     let swapped = of(all_swapped.collect(), swapped);
     let meshes = "meshes and textures are not read, only boxes, cylinders and spheres are shown";
@@ -133,12 +133,22 @@ impl<'a> LinkTree<'a> {
             next.extend(children.map(|joint| (robot.joints[*joint].child, Some((index, *joint)))));
         }
         if tree.links.len() < robot.links.len() {
-            let reached: HashSet<usize> = tree.links.iter().copied().collect();
-            let joint = robot.joints.iter().find(|joint| !reached.contains(&joint.child));
-            let (at, name) = joint.map_or((0, ""), |joint| (joint.at, joint.name.as_str()));
-            return Err(UrdfError::new(at, name, "its child must not be above it"));
+            return Err(tree.cycle_error(&above));
         }
         Ok(tree)
+    }
+
+    /// The error for links that no root leads to: upwards from these, joints go round in a circle.
+    fn cycle_error(&self, above: &[Option<usize>]) -> UrdfError {
+        let joints = &self.robot.joints;
+        let reached: HashSet<usize> = self.links.iter().copied().collect();
+        let mut link = (0..above.len()).find(|link| !reached.contains(link)).unwrap_or_default();
+        for _ in 0..above.len() {
+            link = above[link].map_or(link, |joint| joints[joint].parent);
+        }
+        let joint = above[link].map(|joint| &joints[joint]);
+        let (at, name) = joint.map_or((0, ""), |joint| (joint.at, joint.name.as_str()));
+        UrdfError::new(at, name, "its child link must not be an ancestor of its parent link")
     }
 
     /// The parents of the skeleton's joints.
@@ -167,7 +177,7 @@ impl<'a> LinkTree<'a> {
         let skeleton = Skeleton::from_joints(joints)
             .map_err(|error| UrdfError::new(0, &self.robot.name, error.to_string()))?;
         let mut rig = SkeletonRig::new(skeleton);
-        // Robots stand firmly, and turn by hinges, of which FABRIK knows nothing.
+        // Robots have a fixed base, and hinges, for which FABRIK is not made.
         rig.solver.root = Root::Locked;
         rig.solver.method = Method::DampedLeastSquares;
         Ok(Document { metres_per_unit: Some(1.0), ..Document::new(rig) })
@@ -198,8 +208,8 @@ impl<'a> LinkTree<'a> {
         }
     }
 
-    /// Gives each joint a bone: to the child that goes on to most of the joints that turn, or, for
-    /// the last link, to the far end of its bodies.
+    /// Gives each joint a bone: to the child below which most joints turn, or, for a last link, to the
+    /// far end of its bodies.
     fn give_bones(&self, joints: &mut [Joint]) {
         let mut turning = vec![0_usize; joints.len()];
         for joint in (0..joints.len()).rev() {

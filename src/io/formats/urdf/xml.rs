@@ -1,4 +1,4 @@
-//! The elements of an XML file, without its text: URDF has attributes alone.
+//! The elements of an XML file without its text, since URDF keeps all data in attributes.
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
@@ -25,7 +25,7 @@ impl UrdfError {
     }
 }
 
-/// The elements of a file, each after the one that it is in.
+/// The elements of a file, parents before children.
 pub struct XmlTree {
     elements: Vec<Element>,
 }
@@ -49,7 +49,7 @@ impl XmlTree {
     /// Maximum number of elements.
     const MOST: usize = 1_000_000;
 
-    /// Reads a file, whose elements may be in each other to any depth.
+    /// Reads a file, with elements nested to any depth.
     pub fn parse(text: &str) -> Result<Self, UrdfError> {
         let mut reader = Reader::from_str(text);
         let mut tree = Self { elements: Vec::new() };
@@ -72,7 +72,10 @@ impl XmlTree {
                 Event::Eof if open.is_empty() && !tree.elements.is_empty() => return Ok(tree),
                 Event::Eof => {
                     let open = open.last().map(|open| tree.elements[*open].name.as_str());
-                    let reason = format!("the file ends within {}", open.unwrap_or("no element"));
+                    let reason = match open {
+                        Some(open) => format!("the file ends within {open}"),
+                        None => "there is no element".to_owned(),
+                    };
                     return Err(not_xml(at, reason));
                 }
                 _ => {}

@@ -6,7 +6,7 @@ use super::buffers::GltfBuffers;
 use super::morphs::WeightTracks;
 use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
 use super::rows::{at_accessor, buffers_of};
-use super::sampler::{AnimatedPart, KeySampler, UsedChannel, on_frame, tolerance};
+use super::sampler::{AnimatedPart, KeySampler, UNSORTED, UsedChannel, on_frame, tolerance};
 use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::UniqueNames;
@@ -72,7 +72,7 @@ fn scan_one(
     let channels = used_channels(animation, &at, nodes, &all)?;
     let buffers = buffers(source, file, &channels)?;
     let tracks = NodeTracks::new(file, &buffers, &channels, &at, &mut FieldWarnings::default())?;
-    let weights = WeightTracks::new(source, file, animation, &at)?;
+    let weights = WeightTracks::new(source, file, animation, &at, &mut FieldWarnings::default())?;
     Ok(AnimationScan {
         name: String::new(),
         moving: tracks.moving().collect(),
@@ -254,9 +254,7 @@ impl<'a> NodeTracks<'a> {
             track.check()?;
         }
         if let Some(input) = unsorted {
-            let reason = "times must increase; the keys are sorted, and of several keys at the same \
-                          time the last one counts";
-            warnings.push(at_accessor(input), reason);
+            warnings.push(at_accessor(input), UNSORTED);
         }
         let places = tracks.iter().enumerate();
         let places =

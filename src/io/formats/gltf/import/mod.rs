@@ -173,7 +173,7 @@ impl GltfImport<'_> {
         let is_own = file.asset.0.is_of_this_program();
         let extras = animation.and_then(|it| it.extras.as_ref()).and_then(Extras::own);
         let own_rate = extras.filter(|_| is_own).and_then(|extras| extras.frame_rate());
-        let weights = animation.map(|it| WeightTracks::new(source, file, it, &at));
+        let weights = animation.map(|it| WeightTracks::new(source, file, it, &at, warnings));
         let weights = weights.transpose()?.unwrap_or_default();
         let times = tracks.times().chain(weights.times()).collect();
         let timeline = animations::timeline(times, own_rate, &at)?;

@@ -6,10 +6,10 @@ use glam::Vec3;
 
 use super::buffers::GltfBuffers;
 use super::rows::{AccessorRows, at_accessor, buffers_of};
-use super::sampler::on_frame;
+use super::sampler::{UNSORTED, on_frame};
 use crate::document::{Channel, Document, Timeline};
 use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, KeyCurve, index_rule};
-use crate::io::json::{FieldError, JsonObject, JsonPath};
+use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::source::Source;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
@@ -30,20 +30,21 @@ pub struct MorphOwner {
 struct WeightTrack {
     node: usize,
     curve: KeyCurve,
-    /// Times of the keys in seconds, ascending.
+    /// Times of the keys in seconds, in the order of the file.
     times: Vec<f64>,
-    /// For each key its weights; with cubic splines their slopes on arrival, the weights, and their
-    /// slopes on leaving.
+    /// For each key a row of weights; with cubic splines three: slopes on arrival, weights, slopes on
+    /// leaving.
     rows: Vec<Vec<f32>>,
 }
 
 impl WeightTracks {
-    /// Reads the weights of an animation. `at` is its path.
+    /// Reads the weights of an animation. `at` is its path. Warns of times that do not increase.
     pub fn new(
         source: &Source,
         file: &GltfFile<'_>,
         animation: &GltfAnimation,
         at: &JsonPath,
+        warnings: &mut FieldWarnings,
     ) -> Result<Self, FieldError> {
         let mut channels = Vec::new();
         for channel in &animation.channels.0 {
@@ -69,7 +70,14 @@ impl WeightTracks {
         let buffers = GltfBuffers::read(source, file, &needed)?;
         let read =
             |(node, curve, accessors)| WeightTrack::new(file, &buffers, node, curve, accessors);
-        channels.into_iter().map(read).collect::<Result<_, _>>().map(Self)
+        let inputs: Vec<usize> = channels.iter().map(|(.., [input, _])| *input).collect();
+        let tracks: Vec<WeightTrack> = channels.into_iter().map(read).collect::<Result<_, _>>()?;
+        for (track, input) in tracks.iter().zip(inputs) {
+            if !track.times.is_sorted_by(|before, after| before < after) {
+                warnings.push(at_accessor(input), UNSORTED);
+            }
+        }
+        Ok(Self(tracks))
     }
 
     /// Times of all keys in seconds.
@@ -79,7 +87,7 @@ impl WeightTracks {
 
     /// Returns whether any weight changes.
     pub fn vary(&self) -> bool {
-        self.0.iter().any(|track| track.rows.windows(2).any(|rows| rows[0] != rows[1]))
+        self.0.iter().any(WeightTrack::varies)
     }
 
     /// Adds the keys of the weights to a document whose skin has the morph targets of `owners`.
@@ -128,14 +136,18 @@ impl WeightTrack {
         let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
         let values = AccessorRows::new(file, buffers, output, "SCALAR")?;
         if !(times.is_float() && (values.is_float() || values.is_normalized())) {
-            let reason = "must be 5126 (float); weights may also be normalized integers";
-            return Err(FieldError::new(at_accessor(output).key("componentType"), reason));
+            let (at, reason) = match times.is_float() {
+                false => (input, "must be 5126 (float) for times"),
+                true => (output, "must be 5126 (float) or normalized integers for weights"),
+            };
+            return Err(FieldError::new(at_accessor(at).key("componentType"), reason));
         }
         let rows = curve.values_per_key() * times.len();
         let fault = match (rows, values.len()) {
-            (0, _) => Some("must have at least one time".to_owned()),
+            (0, _) => Some("must have weights for at least one time, got none".to_owned()),
             (_, got) if got % rows != 0 => {
-                Some(format!("must be a multiple of {rows}, the number of times, got {got}"))
+                let (times, each) = (times.len(), curve.values_per_key());
+                Some(format!("must be a multiple of {times} times with {each} values, got {got}"))
             }
             (_, got) if got > MOST => Some(format!("must be at most {MOST}, got {got}")),
             _ => None,
@@ -154,6 +166,16 @@ impl WeightTrack {
             return Err(FieldError::new(at_accessor(output), "times and weights must be finite"));
         }
         Ok(Self { node, curve, times, rows })
+    }
+
+    /// Returns whether a weight changes from key to key, or leaves its keys on a cubic spline.
+    fn varies(&self) -> bool {
+        let each = self.curve.values_per_key();
+        let is_slope = |row: usize| row % each != each / 2;
+        let first = &self.rows[each / 2];
+        self.rows.iter().enumerate().any(|(row, weights)| {
+            if is_slope(row) { weights.iter().any(|it| *it != 0.0) } else { weights != first }
+        })
     }
 
     /// Number of weights of a key.

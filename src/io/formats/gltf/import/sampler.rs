@@ -17,6 +17,10 @@ pub enum AnimatedPart {
     Scale,
 }
 
+/// The warning about keys whose times do not increase.
+pub const UNSORTED: &str = "times must increase; the keys are sorted, and of several keys at the same \
+    time the last one counts";
+
 /// A channel of an animation that moves a node.
 #[derive(Clone, Copy)]
 pub struct UsedChannel<'a> {
