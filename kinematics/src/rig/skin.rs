@@ -44,7 +44,7 @@ impl Skin {
     pub const DEFAULT_COLOUR: [f32; 3] = [0.83, 0.76, 0.69];
 
     /// A skin from the bones of a skeleton in the default shape, with dual quaternions. It is made in
-    /// the bind pose or, if bones lie in each other there, in the pose that the skeleton has.
+    /// the bind pose or, if bones overlap there, in the pose that the skeleton has.
     pub fn from_bones(skeleton: &Shared<Skeleton>) -> Self {
         let shape = SkinShape::default().with_bones_apart(skeleton);
         Self::new(SkinSource::Bones(BoneSkin::new(skeleton.clone(), shape)))
