@@ -294,6 +294,16 @@ fn targets_pose_every_robot_within_its_limits() {
     }
 }
 
+#[test]
+fn the_target_of_a_last_link_without_bodies_is_at_its_frame() {
+    for (robot, link) in [("ur5", "tool0"), ("puma560", "tip"), ("allegro_hand", "index_tip")] {
+        let document = open(&text_of(robot)).document;
+        let skeleton = document.skeleton();
+        let joint = skeleton.find(link).expect(link);
+        assert_eq!(skeleton.tip(joint), skeleton.base(joint), "{robot}");
+    }
+}
+
 fn small(joints: &str) -> String {
     format!("<robot name='r'><link name='a'/><link name='b'/><link name='c'/>{joints}</robot>")
 }

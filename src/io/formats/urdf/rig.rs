@@ -209,7 +209,7 @@ impl<'a> LinkTree<'a> {
     }
 
     /// Gives each joint a bone: to the child below which most joints turn, or, for a last link, to the
-    /// far end of its bodies.
+    /// far end of its bodies; without bodies it has none, so that its target is at its frame.
     fn give_bones(&self, joints: &mut [Joint]) {
         let mut turning = vec![0_usize; joints.len()];
         for joint in (0..joints.len()).rev() {
@@ -231,8 +231,7 @@ impl<'a> LinkTree<'a> {
             let mut best = children().filter(|child| turning[*child] == most);
             best.next().filter(|_| best.next().is_none())
         };
-        let mut bones = tree.bones(end, next);
-        tree.guess_leaves(&mut bones, |joint| end(joint).is_some());
+        let bones = tree.bones(end, next);
         bones::give_bones(joints, &bones);
     }
 }
