@@ -1,6 +1,6 @@
 //! Recognition of human-like figures: which joints are hips, knees, feet, shoulders, elbows and
-//! hands, by their [names](names) or, where these do not tell all four limbs, by the
-//! [shape](shape) of the bind pose.
+//! hands, by their names or, where these do not tell all four limbs, by the shape of the
+//! bind pose.
 //!
 //! Names alone are not believed: the two sides must have the same lengths, and the legs must go
 //! down from the trunk, in the bind pose or in the pose that the skeleton has. So horses and birds
