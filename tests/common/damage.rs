@@ -16,6 +16,19 @@ pub fn mutations(text: &str, random: &mut Random, count: usize) -> Vec<Vec<u8>> 
     (0..count).map(|_| mutated(text, random)).collect()
 }
 
+/// Copies of a text with one of its lines replaced by one of these words.
+pub fn wrong_lines(text: &str, words: &[&str], random: &mut Random, count: usize) -> Vec<Vec<u8>> {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let mut wrong = || {
+        let at = random.below(lines.len());
+        let right = std::mem::replace(&mut lines[at], random.one_of(words));
+        let wrong = lines.join("\n").into_bytes();
+        lines[at] = right;
+        wrong
+    };
+    (0..count).map(|_| wrong()).collect()
+}
+
 fn mutated(text: &str, random: &mut Random) -> Vec<u8> {
     const VALUES: [&str; 16] = [
         "null",

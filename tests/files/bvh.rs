@@ -11,7 +11,7 @@ use ik_arm::io::{self, BvhUnit, Example, Exported, MotionError, Opened, Progress
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use pollster::block_on;
 
-use crate::common::damage::{message, mutations};
+use crate::common::damage::{message, mutations, wrong_lines};
 use crate::common::documents::example;
 use crate::common::{Random, skeletons};
 
@@ -810,13 +810,7 @@ fn damaged_files_open_or_are_refused() {
     let whole = text(&exported);
     let words =
         ["JOINT x {", "}", "{", "End Site", "MOTION", "1e400", "-", "CHANNELS 6", "NaN", "é"];
-    let wrong_words = (0..300).map(|_| {
-        let mut lines: Vec<&str> = whole.lines().collect();
-        let at = random.below(lines.len());
-        lines[at] = random.one_of(&words);
-        lines.join("\n").into_bytes()
-    });
-    let wrong_words: Vec<_> = wrong_words.collect();
+    let wrong_words = wrong_lines(whole, &words, &mut random, 300);
     let mut opened = 0;
     for bytes in mutations(whole, &mut random, 900).into_iter().chain(wrong_words) {
         match io::read("damaged.bvh", &bytes[..], &io::OpenOptions::default()) {

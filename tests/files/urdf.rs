@@ -14,7 +14,7 @@ use pollster::block_on;
 use tempfile::TempDir;
 
 use crate::common::Random;
-use crate::common::damage::{message, mutations};
+use crate::common::damage::{message, mutations, wrong_lines};
 
 const ROBOTS: [&str; 6] = ["ur5", "puma560", "panda", "allegro_hand", "a1", "gripper"];
 
@@ -453,13 +453,7 @@ fn damaged_files_open_or_are_refused() {
     let mut random = Random(5);
     let whole = text_of("panda");
     let words = ["<link name='x'/>", "</joint>", "/>", "1e400", "-", "NaN", "&amp;", "<!--", "é"];
-    let wrong_words = (0..300).map(|_| {
-        let mut lines: Vec<&str> = whole.lines().collect();
-        let at = random.below(lines.len());
-        lines[at] = random.one_of(&words);
-        lines.join("\n").into_bytes()
-    });
-    let wrong_words: Vec<_> = wrong_words.collect();
+    let wrong_words = wrong_lines(&whole, &words, &mut random, 300);
     let mut opened = 0;
     for bytes in mutations(&whole, &mut random, 600).into_iter().chain(wrong_words) {
         match io::read("damaged.urdf", &bytes[..], &OpenOptions::default()) {

@@ -2,8 +2,9 @@
 //!
 //! A name is split into words at punctuation, digits and changes of case. Dropped are the namespace, a
 //! first word that more than half of the names share (a character's name), and fillers such as *DEF*
-//! and *jnt*; *left*, *right*, *l* and *r* tell the side. What is left must be one of the words below as a whole: so
-//! `LeftHandIndex1`, `upperarm_twist_01_l` and `ik_hand_l` are not taken for hands and arms.
+//! and *jnt*; *left*, *right*, *l* and *r* tell the side. The rest must be one of the words below as
+//! a whole: so `LeftHandIndex1`, `upperarm_twist_01_l` and `ik_hand_l` are not taken for hands and
+//! arms.
 //!
 //! # Sources
 //!
@@ -134,8 +135,8 @@ fn limb(
     // The first of several joints in a row with the same name but for a number: segments of a bone.
     let first_segment = |joint: JointId| {
         let word = &names[joint.index()];
-        let mut row = skeleton.ancestors(joint).take_while(|above| names[above.index()] == *word);
-        row.by_ref().last().unwrap_or(joint)
+        let row = skeleton.ancestors(joint).take_while(|above| names[above.index()] == *word);
+        row.last().unwrap_or(joint)
     };
     let above = |joint: JointId, words: &[&str]| {
         let found = skeleton.ancestors(joint).skip(1).find(|above| is(*above, words))?;

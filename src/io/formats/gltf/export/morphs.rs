@@ -29,9 +29,9 @@ impl MorphAnimation {
         let track = |morph| document.keys.track(Channel::Morph(morph));
         let tracks: Vec<Option<&Spline<Vec3>>> = channels.map(track).collect();
         let keyed: Vec<&Spline<Vec3>> = tracks.iter().copied().flatten().collect();
-        let Some(first) = keyed.first() else {
+        if keyed.is_empty() {
             return Ok(Self { times: Vec::new(), curve: KeyCurve::Linear, values: Vec::new() });
-        };
+        }
         let is_all = |of: Interpolation| {
             keyed.iter().flat_map(|track| track.knots()).all(|knot| knot.interpolation == of)
         };
@@ -40,15 +40,18 @@ impl MorphAnimation {
         times.sort_unstable_by(f64::total_cmp);
         times.dedup();
         let are_same = keyed.iter().all(|track| track.knots().len() == times.len());
-        let is_within = timeline.start <= first.knots()[0].time.min(times[0])
-            && times.iter().all(|time| *time <= timeline.end);
+        let are_within = times.iter().all(|time| (timeline.start..=timeline.end).contains(time));
         let are_apart = times.windows(2).all(|pair| (pair[0] as f32) < pair[1] as f32);
-        let curve = match () {
-            () if !(is_within && are_apart) => None,
-            () if is_all(Interpolation::Linear) => Some(KeyCurve::Linear),
-            () if is_all(Interpolation::Step) => Some(KeyCurve::Step),
-            () if is_all(Interpolation::Smooth) && are_same => Some(KeyCurve::CubicSpline),
-            () => None,
+        let curve = if !(are_within && are_apart) {
+            None
+        } else if is_all(Interpolation::Linear) {
+            Some(KeyCurve::Linear)
+        } else if is_all(Interpolation::Step) {
+            Some(KeyCurve::Step)
+        } else if is_all(Interpolation::Smooth) && are_same {
+            Some(KeyCurve::CubicSpline)
+        } else {
+            None
         };
         let frames = if curve.is_none() { timeline.frames() } else { times.len() };
         if frames.saturating_mul(count) > GlbError::MAX_SAMPLES {
@@ -61,16 +64,16 @@ impl MorphAnimation {
             let keyed = document.keys.value(Channel::Morph(morph as u16), time);
             keyed.map_or(document.rig.morph_weight(morph).unwrap_or_default(), |value| value.x)
         };
-        let slopes = |morph: usize, time: f64| tracks[morph].and_then(|track| track.slopes(time));
         let mut values = Vec::new();
         for time in &times {
-            let all = || 0..tracks.len();
+            let weights = (0..tracks.len()).map(|morph| weight(morph, *time));
             if curve == Some(KeyCurve::CubicSpline) {
-                values.extend(all().map(|it| slopes(it, *time).map_or(0.0, |it| it.arriving.x)));
-            }
-            values.extend(all().map(|morph| weight(morph, *time)));
-            if curve == Some(KeyCurve::CubicSpline) {
-                values.extend(all().map(|it| slopes(it, *time).map_or(0.0, |it| it.leaving.x)));
+                let slopes = tracks.iter().map(|track| track.and_then(|it| it.slopes(*time)));
+                values.extend(slopes.clone().map(|it| it.map_or(0.0, |it| it.arriving.x)));
+                values.extend(weights);
+                values.extend(slopes.map(|it| it.map_or(0.0, |it| it.leaving.x)));
+            } else {
+                values.extend(weights);
             }
         }
         Ok(Self { times, curve: curve.unwrap_or(KeyCurve::Linear), values })

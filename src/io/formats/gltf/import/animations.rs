@@ -3,15 +3,16 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::buffers::GltfBuffers;
-use super::morphs::WeightTracks;
+use super::morphs::{self, WeightChannel, WeightTracks};
 use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
 use super::rows::{at_accessor, buffers_of};
-use super::sampler::{AnimatedPart, KeySampler, UNSORTED, UsedChannel, on_frame, tolerance};
+use super::sampler::{
+    AnimatedPart, KeySampler, KeySource, UNSORTED, UsedChannel, on_frame, tolerance,
+};
 use crate::document::Timeline;
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::UniqueNames;
-use crate::io::formats::gltf::extras::Extras;
-use crate::io::formats::gltf::file::{GltfAnimation, GltfChannel, GltfFile, KeyCurve, index_rule};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfChannel, GltfFile, index_rule};
 use crate::io::frame_rate;
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
 use crate::io::opened::FileAnimation;
@@ -70,9 +71,10 @@ fn scan_one(
     let (animation, at) = (&file.animations.0[index], at_animation(index));
     let all = vec![true; nodes.parents.len()];
     let channels = used_channels(animation, &at, nodes, &all)?;
-    let buffers = buffers(source, file, &channels)?;
+    let weights = morphs::weight_channels(animation, &at)?;
+    let buffers = buffers(source, file, &channels, &weights)?;
     let tracks = NodeTracks::new(file, &buffers, &channels, &at, &mut FieldWarnings::default())?;
-    let weights = WeightTracks::new(source, file, animation, &at, &mut FieldWarnings::default())?;
+    let weights = WeightTracks::new(file, &buffers, &weights, &mut FieldWarnings::default())?;
     Ok(AnimationScan {
         name: String::new(),
         moving: tracks.moving().collect(),
@@ -178,20 +180,8 @@ pub fn used_channels<'a>(
             let reason = format!("target must be unique, got the same part of node {node} twice");
             return Err(FieldError::new(at_channel(), reason));
         }
-        let sampler_index = channel.sampler.0 as usize;
-        let Some(sampler) = animation.samplers.0.get(sampler_index) else {
-            let reason = index_rule("samplers", animation.samplers.0.len(), sampler_index);
-            return Err(FieldError::new(at_channel().key("sampler"), reason));
-        };
-        let at_sampler = || at.clone().key("samplers").index(sampler_index);
-        let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
-        let curve = KeyCurve::new(name).ok_or_else(|| {
-            let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
-            FieldError::new(at_sampler().key("interpolation"), reason)
-        })?;
-        let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
-        let own = sampler.extras.as_ref().and_then(Extras::own);
-        all.push(UsedChannel { node, part, curve, input, output, own });
+        let source = KeySource::of(animation, index, at)?;
+        all.push(UsedChannel { node, part, source });
     }
     Ok(all)
 }
@@ -209,14 +199,16 @@ fn animated_part(channel: &GltfChannel) -> Option<(usize, AnimatedPart)> {
     Some((target.node?.0 as usize, part))
 }
 
-/// Reads the buffers that contain the times and values of the channels.
+/// Reads the buffers that contain the times and values of the channels and of the weights.
 pub fn buffers<'a>(
     source: &'a Source,
     file: &GltfFile<'_>,
     channels: &[UsedChannel<'_>],
+    weights: &[WeightChannel<'_>],
 ) -> Result<GltfBuffers<'a>, FieldError> {
-    let accessors: BTreeSet<usize> =
-        channels.iter().flat_map(|channel| [channel.input, channel.output]).collect();
+    let sources = channels.iter().map(|channel| channel.source);
+    let sources = sources.chain(weights.iter().map(|channel| channel.source));
+    let accessors: BTreeSet<usize> = sources.flat_map(|it| [it.input, it.output]).collect();
     let mut needed = BTreeSet::new();
     for accessor in accessors {
         needed.extend(buffers_of(file, accessor)?);
@@ -249,7 +241,7 @@ impl<'a> NodeTracks<'a> {
         let mut unsorted = None;
         for track in &mut tracks {
             if track.sort()? {
-                unsorted.get_or_insert(track.channel.input);
+                unsorted.get_or_insert(track.channel.source.input);
             }
             track.check()?;
         }

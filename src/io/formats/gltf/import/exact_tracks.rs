@@ -202,7 +202,7 @@ impl<'a> ExactTracks<'a> {
                 arriving: slope(arriving),
                 leaving: slope(leaving),
             });
-            let interpolation = match sampler.channel.curve {
+            let interpolation = match sampler.channel.source.curve {
                 KeyCurve::Linear => Interpolation::Linear,
                 KeyCurve::Step => Interpolation::Step,
                 KeyCurve::CubicSpline => Interpolation::Smooth,
@@ -238,7 +238,7 @@ struct RotationTrack<'a> {
 
 impl RotationTrack<'_> {
     fn knots(&self) -> Spline<Vec3> {
-        match self.sampler.channel.curve {
+        match self.sampler.channel.source.curve {
             KeyCurve::Linear => self.plain(Interpolation::Slerp),
             KeyCurve::Step => self.plain(Interpolation::Step),
             KeyCurve::CubicSpline => self.refined(),

@@ -164,7 +164,9 @@ impl GltfImport<'_> {
         let at = at_animation(self.animation.map_or(0, |(chosen, _)| chosen));
         let animation = self.animation.and_then(|(chosen, _)| file.animations.0.get(chosen));
         let channels = self.channels(animation, &at)?;
-        let buffers = animations::buffers(source, file, &channels)?;
+        let weights = animation.map(|animation| morphs::weight_channels(animation, &at));
+        let weights = weights.transpose()?.unwrap_or_default();
+        let buffers = animations::buffers(source, file, &channels, &weights)?;
         let tracks = NodeTracks::new(file, &buffers, &channels, &at, warnings)?;
         let nodes = &tracks.at_rest(self.nodes, skin_joints);
         let mut poser = NodePoser::new(nodes, skin_joints);
@@ -173,8 +175,7 @@ impl GltfImport<'_> {
         let is_own = file.asset.0.is_of_this_program();
         let extras = animation.and_then(|it| it.extras.as_ref()).and_then(Extras::own);
         let own_rate = extras.filter(|_| is_own).and_then(|extras| extras.frame_rate());
-        let weights = animation.map(|it| WeightTracks::new(source, file, it, &at, warnings));
-        let weights = weights.transpose()?.unwrap_or_default();
+        let weights = WeightTracks::new(file, &buffers, &weights, warnings)?;
         let times = tracks.times().chain(weights.times()).collect();
         let timeline = animations::timeline(times, own_rate, &at)?;
         let own = is_own.then_some(file);

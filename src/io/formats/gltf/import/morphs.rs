@@ -1,16 +1,13 @@
 //! The weights of morph targets over time.
 
-use std::collections::BTreeSet;
-
 use glam::Vec3;
 
 use super::buffers::GltfBuffers;
-use super::rows::{AccessorRows, at_accessor, buffers_of};
-use super::sampler::{UNSORTED, on_frame};
+use super::rows::{AccessorRows, at_accessor};
+use super::sampler::{KeySource, UNSORTED, on_frame};
 use crate::document::{Channel, Document, Timeline};
-use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, KeyCurve, index_rule};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, KeyCurve};
 use crate::io::json::{FieldError, FieldWarnings, JsonObject, JsonPath};
-use crate::io::source::Source;
 use crate::kinematics::spline::{Interpolation, Knot, Slopes, Spline};
 
 /// The weights of the morph targets of nodes in an animation.
@@ -37,44 +34,41 @@ struct WeightTrack {
     rows: Vec<Vec<f32>>,
 }
 
+/// A channel of an animation that changes the weights of a node.
+#[derive(Clone, Copy)]
+pub struct WeightChannel<'a> {
+    node: usize,
+    pub source: KeySource<'a>,
+}
+
+/// Returns the channels of an animation that change weights. `at` is the path of the animation.
+pub fn weight_channels<'a>(
+    animation: &'a GltfAnimation,
+    at: &JsonPath,
+) -> Result<Vec<WeightChannel<'a>>, FieldError> {
+    let mut channels = Vec::new();
+    for (index, channel) in animation.channels.0.iter().enumerate() {
+        let JsonObject(target) = &channel.target;
+        let Some(node) = target.node.filter(|_| target.path == "weights") else { continue };
+        let source = KeySource::of(animation, index, at)?;
+        channels.push(WeightChannel { node: node.0 as usize, source });
+    }
+    Ok(channels)
+}
+
 impl WeightTracks {
-    /// Reads the weights of an animation. `at` is its path. Warns of times that do not increase.
+    /// Reads the weights of an animation. Warns of times that do not increase.
     pub fn new(
-        source: &Source,
         file: &GltfFile<'_>,
-        animation: &GltfAnimation,
-        at: &JsonPath,
+        buffers: &GltfBuffers<'_>,
+        channels: &[WeightChannel<'_>],
         warnings: &mut FieldWarnings,
     ) -> Result<Self, FieldError> {
-        let mut channels = Vec::new();
-        for channel in &animation.channels.0 {
-            let JsonObject(target) = &channel.target;
-            let Some(node) = target.node.filter(|_| target.path == "weights") else { continue };
-            let index = channel.sampler.0 as usize;
-            let Some(sampler) = animation.samplers.0.get(index) else {
-                let reason = index_rule("samplers", animation.samplers.0.len(), index);
-                return Err(FieldError::new(at.clone().key("samplers"), reason));
-            };
-            let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
-            let curve = KeyCurve::new(name).ok_or_else(|| {
-                let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
-                FieldError::new(at.clone().key("samplers").index(index), reason)
-            })?;
-            let accessors = [sampler.input, sampler.output].map(|it| it.0 as usize);
-            channels.push((node.0 as usize, curve, accessors));
-        }
-        let mut needed = BTreeSet::new();
-        for accessor in channels.iter().flat_map(|(.., accessors)| accessors) {
-            needed.extend(buffers_of(file, *accessor)?);
-        }
-        let buffers = GltfBuffers::read(source, file, &needed)?;
-        let read =
-            |(node, curve, accessors)| WeightTrack::new(file, &buffers, node, curve, accessors);
-        let inputs: Vec<usize> = channels.iter().map(|(.., [input, _])| *input).collect();
-        let tracks: Vec<WeightTrack> = channels.into_iter().map(read).collect::<Result<_, _>>()?;
-        for (track, input) in tracks.iter().zip(inputs) {
+        let read = |channel: &WeightChannel<'_>| WeightTrack::new(file, buffers, *channel);
+        let tracks: Vec<WeightTrack> = channels.iter().map(read).collect::<Result<_, _>>()?;
+        for (track, channel) in tracks.iter().zip(channels) {
             if !track.times.is_sorted_by(|before, after| before < after) {
-                warnings.push(at_accessor(input), UNSORTED);
+                warnings.push(at_accessor(channel.source.input), UNSORTED);
             }
         }
         Ok(Self(tracks))
@@ -127,9 +121,7 @@ impl WeightTrack {
     fn new(
         file: &GltfFile<'_>,
         buffers: &GltfBuffers<'_>,
-        node: usize,
-        curve: KeyCurve,
-        [input, output]: [usize; 2],
+        WeightChannel { node, source: KeySource { curve, input, output, .. } }: WeightChannel<'_>,
     ) -> Result<Self, FieldError> {
         /// Maximum number of weights of a track.
         const MOST: usize = 20_000_000;

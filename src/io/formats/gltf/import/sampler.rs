@@ -4,9 +4,9 @@ use super::buffers::GltfBuffers;
 use super::nodes::{NodeTransform, unit};
 use super::rows::{AccessorRows, at_accessor};
 use crate::document::Timeline;
-use crate::io::formats::gltf::extras::SamplerExtras;
-use crate::io::formats::gltf::file::{GltfFile, KeyCurve};
-use crate::io::json::FieldError;
+use crate::io::formats::gltf::extras::{Extras, SamplerExtras};
+use crate::io::formats::gltf::file::{GltfAnimation, GltfFile, KeyCurve, index_rule};
+use crate::io::json::{FieldError, JsonPath};
 use crate::kinematics::spline::{Spline, hermite};
 
 /// The part of a node's transform that an animation channel changes.
@@ -26,6 +26,12 @@ pub const UNSORTED: &str = "times must increase; the keys are sorted, and of sev
 pub struct UsedChannel<'a> {
     pub node: usize,
     pub part: AnimatedPart,
+    pub source: KeySource<'a>,
+}
+
+/// Where the file has the keys of a channel.
+#[derive(Clone, Copy)]
+pub struct KeySource<'a> {
     pub curve: KeyCurve,
     /// Accessor of the times.
     pub input: usize,
@@ -33,6 +39,31 @@ pub struct UsedChannel<'a> {
     pub output: usize,
     /// The keys that this program has written beside the sampler.
     pub own: Option<&'a SamplerExtras>,
+}
+
+impl<'a> KeySource<'a> {
+    /// The sampler of the channel with this index in an animation. `at` is the animation's path.
+    pub fn of(
+        animation: &'a GltfAnimation,
+        channel: usize,
+        at: &JsonPath,
+    ) -> Result<Self, FieldError> {
+        let index = animation.channels.0[channel].sampler.0 as usize;
+        let Some(sampler) = animation.samplers.0.get(index) else {
+            let reason = index_rule("samplers", animation.samplers.0.len(), index);
+            let at_channel = at.clone().key("channels").index(channel);
+            return Err(FieldError::new(at_channel.key("sampler"), reason));
+        };
+        let name = sampler.interpolation.as_deref().unwrap_or("LINEAR");
+        let curve = KeyCurve::new(name).ok_or_else(|| {
+            let reason = format!("must be LINEAR, STEP or CUBICSPLINE, got {name:?}");
+            let at_sampler = at.clone().key("samplers").index(index);
+            FieldError::new(at_sampler.key("interpolation"), reason)
+        })?;
+        let (input, output) = (sampler.input.0 as usize, sampler.output.0 as usize);
+        let own = sampler.extras.as_ref().and_then(Extras::own);
+        Ok(Self { curve, input, output, own })
+    }
 }
 
 /// The keys of one animated part of a node, with their interpolation.
@@ -76,7 +107,7 @@ impl<'a> KeySampler<'a> {
         buffers: &'a GltfBuffers<'_>,
         channel: UsedChannel<'a>,
     ) -> Result<Self, FieldError> {
-        let UsedChannel { part, input, output, .. } = channel;
+        let UsedChannel { part, source: KeySource { curve, input, output, .. }, .. } = channel;
         let times = AccessorRows::new(file, buffers, input, "SCALAR")?;
         let shape = if part == AnimatedPart::Rotation { "VEC4" } else { "VEC3" };
         let values = AccessorRows::new(file, buffers, output, shape)?;
@@ -95,7 +126,7 @@ impl<'a> KeySampler<'a> {
                 "must be 1 or more, got 0",
             ));
         }
-        let values_per_key = channel.curve.values_per_key();
+        let values_per_key = curve.values_per_key();
         if values.len() != values_per_key * times.len() {
             let (count, times) = (values.len(), times.len());
             let reason =
@@ -111,7 +142,7 @@ impl<'a> KeySampler<'a> {
         let times = || (0..self.times.len()).map(|row| self.row_time(row));
         if let Some((key, time)) = times().enumerate().find(|(_, time)| !time.is_finite()) {
             let reason = format!("times must be finite, got {time} as time {key}");
-            return Err(FieldError::new(at_accessor(self.channel.input), reason));
+            return Err(FieldError::new(at_accessor(self.channel.source.input), reason));
         }
         if times().is_sorted_by(|before, after| before < after) {
             return Ok(false);
@@ -129,7 +160,7 @@ impl<'a> KeySampler<'a> {
 
     /// Checks all keys. Fails if values are not finite or a rotation is zero.
     pub fn check(&self) -> Result<(), FieldError> {
-        let error = |reason| Err(FieldError::new(at_accessor(self.channel.output), reason));
+        let error = |reason| Err(FieldError::new(at_accessor(self.channel.source.output), reason));
         for row in 0..self.values.len() {
             let value: [f64; 4] = self.values.row(row);
             if !value.into_iter().take(self.width()).all(f64::is_finite) {
@@ -202,12 +233,12 @@ impl<'a> KeySampler<'a> {
     }
 
     pub fn is_cubic(&self) -> bool {
-        self.channel.curve == KeyCurve::CubicSpline
+        self.channel.source.curve == KeyCurve::CubicSpline
     }
 
     /// The keys that this program has written beside the track; `None` if there are none.
     pub fn own_keys(&self) -> Option<Spline<Vec3>> {
-        self.channel.own?.spline()
+        self.channel.source.own?.spline()
     }
 
     /// Translation or scale of a key.
@@ -276,7 +307,7 @@ impl<'a> KeySampler<'a> {
     /// with step interpolation. Before the first key, returns the first key with `None`.
     fn locate(&self, time: f64) -> (usize, Option<f64>) {
         // Only a step would be missed just before a key.
-        let near = if self.channel.curve == KeyCurve::Step { tolerance(time) } else { 0.0 };
+        let near = if self.channel.source.curve == KeyCurve::Step { tolerance(time) } else { 0.0 };
         let (mut until, mut after) = (0, self.len());
         while until < after {
             let middle = until + (after - until) / 2;
@@ -289,7 +320,7 @@ impl<'a> KeySampler<'a> {
         let Some(key) = until.checked_sub(1) else { return (0, None) };
         let start = self.time(key);
         let is_between = key + 1 < self.len() && time - start > near;
-        if !is_between || self.channel.curve == KeyCurve::Step {
+        if !is_between || self.channel.source.curve == KeyCurve::Step {
             return (key, None);
         }
         (key, Some((time - start) / (self.time(key + 1) - start)))
