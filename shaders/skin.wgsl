@@ -90,6 +90,15 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
     return vec4f(in_scene(colour, s.world, s.position.xy), opacity);
 }
 
+// The depth alone, but where the texture cuts out.
+@fragment
+fn fragment_depth(s: Surface) -> @location(0) vec4f {
+    if IS_TEXTURED && textureSample(part_texture, part_sampler, s.coordinates).a < part.alpha_cutoff {
+        discard;
+    }
+    return vec4f();
+}
+
 @fragment
 fn fragment_wire(s: Surface) -> @location(0) vec4f {
     return vec4f(in_scene(look.wire.rgb, s.world, s.position.xy), look.wire.a);

@@ -26,6 +26,7 @@ mod shell;
 mod skin;
 mod skin_deform;
 mod skin_material;
+mod skin_order;
 mod solid;
 mod spheres;
 #[cfg_attr(target_arch = "wasm32", path = "page_fonts.rs")]

@@ -46,6 +46,8 @@ pub(super) struct Skins {
     pipelines: Option<SkinPipelines>,
     meshes: Vec<SkinMesh>,
     skins: Vec<DrawnSkin>,
+    /// See-through parts of opaque skins, the farthest first: indices of the skin and of its material.
+    blended: Vec<[usize; 2]>,
 }
 
 #[derive(Debug)]
@@ -53,8 +55,8 @@ struct SkinPipelines {
     deformer: SkinDeformer,
     materials: SkinMaterials,
     opaque: SurfacePipelines,
-    /// Depth of the nearest surface of see-through skins.
-    depth: SidedPipelines,
+    /// Depth of the nearest surface of see-through skins, without and with a texture that can cut out.
+    depth: [SidedPipelines; 2],
     see_through: SurfacePipelines,
     /// For see-through parts of opaque skins.
     blended: SurfacePipelines,
@@ -138,7 +140,25 @@ impl Skins {
             sent += self.skins[index].upload(gpu, pipelines, mesh, skin, &scene.palette);
         }
         self.meshes.retain(|mesh| mesh.is_used);
+        self.order(scene);
         sent
+    }
+
+    /// Orders the see-through parts of opaque skins.
+    fn order(&mut self, scene: &Scene) {
+        let (back, ..) = scene.camera.basis();
+        let mut parts: Vec<(f32, [usize; 2])> = Vec::new();
+        for (index, (drawn, skin)) in self.skins.iter().zip(&scene.skins).enumerate() {
+            let mesh = self.mesh(drawn).filter(|_| drawn.is_opaque);
+            let materials = mesh.into_iter().flat_map(|mesh| mesh.materials.iter().enumerate());
+            parts.extend(materials.filter_map(|(material, SkinMaterial { centre, .. })| {
+                let centre = centre.as_ref()?.posed(&skin.pose) + skin.offset;
+                Some((back.dot(centre), [index, material]))
+            }));
+        }
+        parts.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        self.blended.clear();
+        self.blended.extend(parts.into_iter().map(|(_, part)| part));
     }
 
     pub fn triangles(&self) -> u32 {
@@ -150,7 +170,7 @@ impl Skins {
     pub fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
-            let opaque = |material: &SkinMaterial| !material.is_blended;
+            let opaque = |material: &SkinMaterial| material.centre.is_none();
             self.draw(pass, skin, opaque, |material| pipelines.opaque.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
@@ -160,13 +180,20 @@ impl Skins {
     /// over what is drawn already.
     pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
-        for skin in self.skins.iter().filter(|skin| skin.is_opaque) {
-            let blended = |material: &SkinMaterial| material.is_blended;
-            self.draw(pass, skin, blended, |material| pipelines.blended.of(material, skin));
+        for [skin, part] in &self.blended {
+            let skin = &self.skins[*skin];
+            if let Some(mesh) = self.mesh(skin) {
+                skin.bind(pass, mesh);
+                let material = &mesh.materials[*part];
+                material.draw(pass, pipelines.blended.of(material, skin));
+            }
         }
         for skin in self.skins.iter().filter(|skin| !skin.is_opaque) {
             let all = |_: &SkinMaterial| true;
-            self.draw(pass, skin, all, |material| pipelines.depth.of(material, skin));
+            self.draw(pass, skin, all, |material| {
+                let is_textured = material.textures != PartTextures::None;
+                pipelines.depth[usize::from(is_textured)].of(material, skin)
+            });
             self.draw(pass, skin, all, |material| pipelines.see_through.of(material, skin));
             self.draw_wireframe(pass, pipelines, skin);
         }
@@ -181,11 +208,8 @@ impl Skins {
     ) {
         let Some(mesh) = self.mesh(skin) else { return };
         skin.bind(pass, mesh);
-        pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
         for material in mesh.materials.iter().filter(|material| is_drawn(material)) {
-            pass.set_pipeline(pipeline(material));
-            pass.set_bind_group(2, &material.group, &[]);
-            pass.draw_indexed(material.corners.clone(), 0, 0..1);
+            material.draw(pass, pipeline(material));
         }
     }
 
@@ -234,8 +258,12 @@ impl SkinPipelines {
             cull: Some(wgpu::Face::Back),
             ..PipelineDescriptor::new("skin", SHADER, &layouts, PipelineOutput::Opaque)
         };
-        let depth =
-            PipelineDescriptor { label: "skin depth", output: PipelineOutput::Depth, ..plain };
+        let depth = PipelineDescriptor {
+            label: "skin depth",
+            fragment: "fragment_depth",
+            output: PipelineOutput::Depth,
+            ..plain
+        };
         let see_through = PipelineDescriptor {
             label: "skin, see-through",
             depth: wgpu::CompareFunction::Equal,
@@ -259,7 +287,8 @@ impl SkinPipelines {
         Self {
             deformer: SkinDeformer::new(gpu),
             opaque: SurfacePipelines::new(gpu, &plain, 0.0),
-            depth: SidedPipelines::new(gpu, &depth, [0.0; 3]),
+            depth: [0.0, 1.0]
+                .map(|textured| SidedPipelines::new(gpu, &depth, [textured, 0.0, 0.0])),
             see_through: SurfacePipelines::new(gpu, &see_through, 0.0),
             blended: SurfacePipelines::new(gpu, &blended, 1.0),
             wire: wire.build(gpu),
@@ -325,7 +354,7 @@ impl SkinMesh {
         };
         let fixed: Vec<FixedVertex> = (0..positions.len()).map(fixed).collect();
         let fixed = gpu.filled_buffer("skin look", &fixed, wgpu::BufferUsages::VERTEX);
-        let materials = materials.of_parts(gpu, &mesh.parts, triangles.len());
+        let materials = materials.of_parts(gpu, &mesh);
         let (triangles, indices) = index_buffer(gpu, "skin triangles", triangles.as_flattened());
         let vertices = SkinVertices::new(gpu, &mesh.mesh);
         let (edges, is_used) = (None, true);
@@ -369,9 +398,10 @@ impl DrawnSkin {
         }
     }
 
-    /// Sets the look and the vertices.
+    /// Sets the look, the vertices and the triangles.
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>, mesh: &SkinMesh) {
         pass.set_bind_group(1, &self.look.group, &[]);
+        pass.set_index_buffer(mesh.triangles.slice(..), wgpu::IndexFormat::Uint32);
         pass.set_vertex_buffer(0, self.deformed.vertices.slice(..));
         pass.set_vertex_buffer(1, mesh.fixed.slice(..));
     }

@@ -4,9 +4,10 @@ use glam::Vec3;
 
 use super::Gpu;
 use super::pipeline::{self, BindingKind};
+use super::skin_order::PartCentre;
 use crate::io::texture_pixels;
 use crate::kinematics::Shared;
-use crate::rig::{SkinPart, SkinTexture};
+use crate::rig::{AttachedMesh, SkinPart, SkinTexture};
 
 /// Resources that the materials of skins share on the device.
 #[derive(Debug)]
@@ -35,7 +36,8 @@ pub(super) struct SkinMaterial {
     pub group: wgpu::BindGroup,
     pub textures: PartTextures,
     pub is_double_sided: bool,
-    pub is_blended: bool,
+    /// The centre, for a part that is see-through.
+    pub centre: Option<PartCentre>,
 }
 
 impl SkinMaterials {
@@ -63,8 +65,13 @@ impl SkinMaterials {
         }
     }
 
-    /// The materials of consecutive parts of a mesh with `triangles` triangles.
-    pub fn of_parts(&self, gpu: &Gpu, parts: &[SkinPart], triangles: usize) -> Vec<SkinMaterial> {
+    /// The materials of the parts of a mesh.
+    pub fn of_parts(
+        &self,
+        gpu: &Gpu,
+        AttachedMesh { mesh, parts, .. }: &AttachedMesh,
+    ) -> Vec<SkinMaterial> {
+        let triangles = mesh.mesh().triangles.len();
         let mut end = 0;
         let mut views: Vec<(&Shared<SkinTexture>, wgpu::TextureView)> = Vec::new();
         let mut materials = Vec::with_capacity(parts.len());
@@ -92,12 +99,13 @@ impl SkinMaterials {
             // A part that shines where its texture tells does not shine all over without it.
             let is_dark = part.emission_texture.is_some() && emission.is_none();
             let group = self.group(gpu, part, drawn, is_dark);
+            let is_blended = part.look.opacity.is_some();
             materials.push(SkinMaterial {
+                centre: is_blended.then(|| PartCentre::new(mesh, corners.clone())),
                 corners,
                 group,
                 textures,
                 is_double_sided: part.look.is_double_sided,
-                is_blended: part.look.opacity.is_some(),
             });
         }
         materials
@@ -123,6 +131,15 @@ impl SkinMaterials {
             wgpu::BindingResource::TextureView(emission),
         ];
         pipeline::group(gpu, "skin material", &self.layout, resources)
+    }
+}
+
+impl SkinMaterial {
+    /// Draws the part with a pipeline, after its skin's vertices and triangles are set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(2, &self.group, &[]);
+        pass.draw_indexed(self.corners.clone(), 0, 0..1);
     }
 }
 

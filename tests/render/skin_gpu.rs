@@ -4,13 +4,13 @@ use glam::{Affine3A, Vec2, Vec3};
 use ik_arm::document::{Camera, Document, Overlay, Skin, Theme};
 use ik_arm::io::Example;
 use ik_arm::kinematics::Shared;
-use ik_arm::kinematics::skeleton::{JointId, Skeleton};
+use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton};
 use ik_arm::kinematics::skin::{
     BindSet, Morph, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use ik_arm::render::{PictureRenderer, SkinDeformer};
 use ik_arm::rig::{FileMesh, MeshSkin, PartLook, SkeletonRig, SkinPart, SkinSource, SkinTexture};
-use ik_arm::scene::Scene;
+use ik_arm::scene::{Scene, SkinInstance};
 use ik_arm::session::Overlays;
 use pollster::block_on;
 
@@ -198,6 +198,80 @@ fn see_through_parts_let_what_is_behind_through_and_shining_ones_are_as_bright_a
     let look = PartLook { emission: [0.1, 0.9, 0.1], ..PartLook::default() };
     let shining = middle(SkinPart { colour: [0.0; 3], look, ..SkinPart::white(2) });
     assert!(shining[1] > 200 && shining[0] < 90, "{shining:?}");
+}
+
+#[test]
+fn see_through_parts_are_drawn_farthest_first_from_all_sides_and_in_every_pose() {
+    // Two squares, one behind the other: the one in front colours what is seen more.
+    let of = |order: [f32; 2], yaw: f32, moves: bool| {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let squares = order.iter().flat_map(|z| corners.map(|(x, y)| Vec3::new(x, y, *z)));
+        let mesh = TriangleMesh {
+            positions: squares.collect(),
+            normals: vec![Vec3::Z; 8],
+            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+            ..TriangleMesh::default()
+        };
+        // Each square follows a joint of its own.
+        let weights = (0..8).map(|it| VertexWeights::rigid(JointId::new(it / 4))).collect();
+        let mut skeleton = Skeleton::with_root("one");
+        skeleton.add(Joint::new("other", None, Vec3::ZERO)).expect("a joint");
+        let mesh = SkinnedMesh::new(mesh, weights, vec![Affine3A::IDENTITY; 2]).expect("a mesh");
+        let look = PartLook { opacity: Some(0.7), is_double_sided: true, ..PartLook::default() };
+        let part = |z: f32| {
+            let colour = if z > 0.0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+            SkinPart { colour, look, ..SkinPart::white(2) }
+        };
+        let in_file = FileMesh { mesh, parents: vec![None; 2], parts: order.map(part).to_vec() };
+        let joints = (0..2).map(|it| Some(JointId::new(it))).collect();
+        let skin = MeshSkin::new(in_file.into(), None, joints, &skeleton);
+        if moves {
+            // The squares change places.
+            for (joint, z) in order.into_iter().enumerate() {
+                let offset = Vec3::Z * (-2.0 * z);
+                let moved = skeleton.change(JointId::new(joint), |it| it.offset = offset);
+                moved.expect("finite");
+            }
+        }
+        let mut document = Document::new(SkeletonRig::new(skeleton));
+        document.rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
+        document.display = [Overlay::Skin].into_iter().collect();
+        document.camera =
+            Camera { yaw, pitch: 0.0, distance: 8.0, target: Vec3::ZERO, ..Camera::default() };
+        let picture = draw(&Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark));
+        let [red, green, ..] =
+            picture.get_pixel(picture.width() / 2 + 9, picture.height() / 2 + 9).0;
+        red > green
+    };
+    for order in [[0.5, -0.5], [-0.5, 0.5]] {
+        assert!(of(order, 0.0, false) && !of(order, std::f32::consts::PI, false), "{order:?}");
+        assert!(!of(order, 0.0, true) && of(order, std::f32::consts::PI, true), "{order:?}, moved");
+    }
+}
+
+#[test]
+fn what_a_texture_cuts_out_of_a_see_through_skin_lets_all_behind_through() {
+    let texture = SkinTexture::new(Vec::new(), [8, 8]);
+    texture.pixels(|_| Ok(vec![[255, 255, 255, 0]; 64])).expect("pixels");
+    let look = PartLook { alpha_cutoff: 0.5, is_double_sided: true, ..PartLook::default() };
+    let cut_out = SkinPart { texture: Some(Shared::from(texture)), look, ..SkinPart::white(1) };
+    let skin = |part: &SkinPart, z: f32| {
+        let square = square(vec![part.clone(); 2]);
+        let mut scene = Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark);
+        let mut skin = scene.skins.pop().expect("a skin");
+        (skin.colour, skin.offset) = (skin.colour.with_opacity(0.5), Vec3::Z * z);
+        skin
+    };
+    let red = SkinPart { colour: [1.0, 0.0, 0.0], ..SkinPart::white(1) };
+    let picture = |skins: Vec<SkinInstance>| {
+        let square = square(vec![red.clone()]);
+        let mut scene = Scene::new(&square.at(0.0), &Overlays::default(), Theme::Dark);
+        scene.skins = skins;
+        draw(&scene)
+    };
+    let behind = picture(vec![skin(&red, -0.5)]);
+    assert!(picture(vec![skin(&cut_out, 0.5), skin(&red, -0.5)]) == behind);
+    assert!(picture(vec![skin(&red, 0.5), skin(&red, -0.5)]) != behind);
 }
 
 #[test]
