@@ -27,6 +27,11 @@ pub enum Channel {
     Offset(JointId),
     /// Length of a joint's bone, in units of the skeleton; children at its tip move with it.
     Length(JointId),
+    /// Factors by which a joint scales the skin along the axes of its frame.
+    SkinScale(JointId),
+    /// How far a joint shears the skin, see
+    /// [`SkinStretch::shear`](crate::kinematics::skeleton::SkinStretch::shear).
+    SkinShear(JointId),
     /// Position of a joint's target at time 0, in the target's space, while it is not pinned.
     Target(JointId),
     /// Position of a joint's target at time 0, in the world, while it is pinned.
@@ -63,6 +68,8 @@ pub enum Quantity {
     Fraction,
     /// Any number without a unit.
     Number,
+    /// Any three numbers without a unit.
+    Numbers,
     /// An angle in radians.
     Angle,
     /// Euler angles in radians of a rotation, R_z · R_y · R_x. Keys can turn it the shortest way:
@@ -76,7 +83,7 @@ impl Quantity {
     /// Number of components in use: 1 or 3.
     pub fn width(self) -> usize {
         match self {
-            Self::Point | Self::Rotation => 3,
+            Self::Point | Self::Numbers | Self::Rotation => 3,
             Self::Length | Self::Fraction | Self::Number | Self::Angle | Self::Switch => 1,
         }
     }
@@ -92,7 +99,8 @@ impl Channel {
     /// The channels of a joint and of its target.
     pub fn of_joint(joint: JointId) -> impl Iterator<Item = Self> {
         let own = [Self::Rotation(joint), Self::Offset(joint), Self::Length(joint)];
-        own.into_iter().chain(Self::of_target(joint))
+        let of_skin = [Self::SkinScale(joint), Self::SkinShear(joint)];
+        own.into_iter().chain(of_skin).chain(Self::of_target(joint))
     }
 
     /// The channels of the target of a joint.

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Document;
 use super::channel::{Channel, Quantity, is_on};
 use super::display::Overlay;
-use crate::kinematics::skeleton::{Joint, JointId};
+use crate::kinematics::skeleton::{Joint, JointId, SkinStretch};
 use crate::kinematics::twist::TwistReferenceKind;
 use crate::rig::{LimbSettings, SkeletonRig, Target};
 
@@ -94,7 +94,7 @@ impl Heading {
 /// The table.
 impl Channel {
     fn row(self) -> ChannelRow {
-        use Quantity::{Angle, Fraction, Length, Number, Point, Rotation, Switch};
+        use Quantity::{Angle, Fraction, Length, Number, Numbers, Point, Rotation, Switch};
         match self {
             Self::Translation => named("translation", "Skeleton translation", Point)
                 .of_rig(|rig| Some(rig.skeleton.transform().translation.into()), translate),
@@ -112,6 +112,16 @@ impl Channel {
             Self::Length(joint) => {
                 named("length", "length", Length).of_joint(joint, length, set_length)
             }
+            Self::SkinScale(joint) => named("skin_scale", "skin scale", Numbers).of_joint(
+                joint,
+                |it| Some(it.skin.scale),
+                |rig, joint, scale| stretch_skin(rig, joint, |skin| skin.scale = scale),
+            ),
+            Self::SkinShear(joint) => named("skin_shear", "skin shear", Numbers).of_joint(
+                joint,
+                |it| Some(it.skin.shear),
+                |rig, joint, shear| stretch_skin(rig, joint, |skin| skin.shear = shear),
+            ),
             Self::Target(joint) => named("target", "target", Point).of_target(
                 joint,
                 |it| Some(it.home),
@@ -417,6 +427,16 @@ fn set_length(rig: &mut SkeletonRig, joint: JointId, to: Vec3) {
     if axis.is_finite() && !is_identical(before, axis) {
         // Only an axis that is not finite is refused.
         let _ = rig.skeleton_mut().set_axis(joint, axis);
+    }
+}
+
+/// Changes how a joint stretches the skin.
+fn stretch_skin(rig: &mut SkeletonRig, joint: JointId, change: impl FnOnce(&mut SkinStretch)) {
+    let Some(before) = rig.skeleton.joint(joint).map(|joint| joint.skin) else { return };
+    let mut skin = before;
+    change(&mut skin);
+    if !(is_identical(skin.scale, before.scale) && is_identical(skin.shear, before.shear)) {
+        rig.skeleton_mut().write_local(joint, |joint| joint.skin = skin);
     }
 }
 

@@ -154,7 +154,9 @@ impl Keys {
             (_, Quantity::Length) => Some(track.at(time)?.max(Vec3::X * min_length(track))),
             (_, Quantity::Fraction) => Some(track.at(time)?.clamp(Vec3::ZERO, Vec3::X)),
             (_, Quantity::Rotation) => rotation(track, time),
-            (_, Quantity::Point | Quantity::Angle | Quantity::Number) => track.at(time),
+            (_, Quantity::Point | Quantity::Angle | Quantity::Number | Quantity::Numbers) => {
+                track.at(time)
+            }
         }
     }
 

@@ -210,7 +210,11 @@ fn raised(channel: Channel, value: Vec3, by: Vec3) -> Vec3 {
         Quantity::Switch => value,
         Quantity::Fraction => sum.clamp(Vec3::ZERO, Vec3::X),
         Quantity::Length => sum.max(value * LEAST),
-        Quantity::Point | Quantity::Angle | Quantity::Number | Quantity::Rotation => sum,
+        Quantity::Point
+        | Quantity::Angle
+        | Quantity::Number
+        | Quantity::Numbers
+        | Quantity::Rotation => sum,
     }
 }
 

@@ -12,7 +12,9 @@ use ik_arm::kinematics::Shared;
 use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::fk::Fk;
 use ik_arm::kinematics::limb_ik::LimbPosture;
-use ik_arm::kinematics::skeleton::{Cone, Joint, JointId, JointLimits, Limit, Skeleton};
+use ik_arm::kinematics::skeleton::{
+    Cone, Joint, JointId, JointLimits, Limit, Skeleton, SkinStretch,
+};
 use ik_arm::kinematics::soft_reach::SoftReach;
 use ik_arm::kinematics::twist::Stereographic;
 use ik_arm::kinematics::two_bone::TwoBone;
@@ -227,7 +229,13 @@ fn put_on_joints(random: &mut Random, rig: &mut SkeletonRig) {
 fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
     let overlays = Overlay::all().map(Channel::Overlay);
     let joints = (0..rig.skeleton.joints().len()).flat_map(|joint| {
-        [Channel::Rotation(JointId::new(joint)), Channel::Offset(JointId::new(joint))]
+        let joint = JointId::new(joint);
+        [
+            Channel::Rotation(joint),
+            Channel::Offset(joint),
+            Channel::SkinScale(joint),
+            Channel::SkinShear(joint),
+        ]
     });
     let targets = rig.targets.iter();
     let targets = targets.flat_map(|it| Channel::of_target(it.joint));
@@ -240,7 +248,7 @@ fn keys(random: &mut Random, rig: &SkeletonRig) -> Keys {
         }
         for _ in 0..1 + random.below(5) {
             let value = match channel.quantity() {
-                Quantity::Point | Quantity::Rotation => random.finite_vector(),
+                Quantity::Point | Quantity::Numbers | Quantity::Rotation => random.finite_vector(),
                 Quantity::Fraction => Vec3::new(random.within(0.0..1.0), 0.0, 0.0),
                 Quantity::Angle | Quantity::Number => Vec3::new(random.finite(), 0.0, 0.0),
                 Quantity::Length => Vec3::new(random.positive(), 0.0, 0.0),
@@ -273,6 +281,12 @@ fn skeleton(random: &mut Random) -> Skeleton {
             locked: random.coin(),
             connected: random.coin(),
             radius: random.finite().abs(),
+            skin: match random.coin() {
+                true => SkinStretch::NONE,
+                false => {
+                    SkinStretch { scale: random.finite_vector(), shear: random.finite_vector() }
+                }
+            },
         }
     });
     let mut skeleton = Skeleton::from_joints(joints.collect()).expect("a skeleton");

@@ -81,6 +81,10 @@ examples! {
             joint: JointId::new(INNER),
             stiffness: Vec3::splat(0.6),
         }];
+        SetSkinScale: [JointEdit::SetSkinScale {
+            joint: JointId::new(INNER),
+            scale: Vec3::new(0.5, 2.0, 1.0),
+        }];
         SetLocked: [
             JointEdit::SetLocked { joint: JointId::new(INNER), locked: true },
             JointEdit::SetLocked { joint: JointId::new(AIMED), locked: true },

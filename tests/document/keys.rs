@@ -29,6 +29,8 @@ fn setting_a_channel_changes_its_value_alone() {
         (Channel::Translation, point),
         (Channel::Rotation(JointId::new(2)), Vec3::new(0.1, 0.05, -0.1)),
         (Channel::Offset(JointId::new(2)), point),
+        (Channel::SkinScale(JointId::new(2)), point),
+        (Channel::SkinShear(JointId::new(2)), point),
         (Channel::Target(JointId::new(14)), point),
         (Channel::Enabled(JointId::new(14)), on),
         (Channel::Overlay(Overlay::Cursor), on),

@@ -4,8 +4,8 @@ use glam::{Affine3A, DMat3, DQuat, DVec3, EulerRot, Mat3, Mat3A, Vec3};
 use thiserror::Error;
 
 use super::{
-    Cone, JointAngles, JointLimits, Limit, RotationAxis, angle_triples, equivalent_triples,
-    nearest_angles,
+    Cone, JointAngles, JointLimits, Limit, RotationAxis, SkinStretch, angle_triples,
+    equivalent_triples, nearest_angles,
 };
 
 /// Maximum number of joints of a skeleton.
@@ -97,6 +97,8 @@ pub struct Joint {
     pub connected: bool,
     /// Radius with which the bone is drawn, in skeleton units.
     pub radius: f32,
+    /// How the joint stretches the skin that follows it.
+    pub skin: SkinStretch,
 }
 
 impl Joint {
@@ -122,6 +124,7 @@ impl Joint {
             locked: false,
             connected: false,
             radius: (axis.as_dvec3().length() * 0.1) as f32,
+            skin: SkinStretch::NONE,
         }
     }
 
@@ -160,6 +163,19 @@ impl Joint {
     /// Transform T(offset) · R from the joint's own space to its parent's.
     pub fn local(&self) -> Affine3A {
         Affine3A { matrix3: self.local_rotation(), translation: self.offset.into() }
+    }
+
+    /// A transform to the joint's own space, followed by the stretch of the skin.
+    pub(crate) fn stretched(&self, transform: Affine3A) -> Affine3A {
+        if self.skin == SkinStretch::NONE {
+            return transform;
+        }
+        let frame = Mat3A::from(self.frame);
+        let stretch = frame * self.skin.matrix() * frame.transpose();
+        Affine3A {
+            matrix3: stretch * transform.matrix3,
+            translation: stretch * transform.translation,
+        }
     }
 
     /// T(offset): [`Joint::local`] without the rotation.
@@ -205,6 +221,8 @@ impl Joint {
             (JointField::Offset, self.offset),
             (JointField::Axis, self.axis),
             (JointField::Rotation, self.rotation),
+            (JointField::SkinScale, self.skin.scale),
+            (JointField::SkinShear, self.skin.shear),
         ];
         for (field, value) in vectors {
             if !value.is_finite() {
@@ -443,15 +461,21 @@ pub enum JointField {
     Axis,
     /// [`Joint::rotation`]
     Rotation,
+    /// [`SkinStretch::scale`]
+    SkinScale,
+    /// [`SkinStretch::shear`]
+    SkinShear,
 }
 
-/// The field's name: "offset", "axis" or "rotation".
+/// The field's name, such as "offset" or "skin_scale".
 impl fmt::Display for JointField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Offset => "offset",
             Self::Axis => "axis",
             Self::Rotation => "rotation",
+            Self::SkinScale => "skin_scale",
+            Self::SkinShear => "skin_shear",
         })
     }
 }

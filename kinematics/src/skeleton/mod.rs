@@ -50,6 +50,7 @@ mod limit;
 mod limit_border;
 mod limits;
 mod pose;
+mod skin_stretch;
 mod tree;
 
 pub use balance::Balance;
@@ -59,6 +60,7 @@ pub use joint_angles::nearest_angles;
 pub use limit::{Extreme, Limit, LimitEnd, RotationAxis, SwingAxis};
 pub use limits::JointLimits;
 pub use pose::{SkeletonPose, is_within_numbers};
+pub use skin_stretch::SkinStretch;
 pub use tree::Skeleton;
 
 pub(crate) use balance::{bone_masses, centre_of_mass_below};

@@ -2,13 +2,14 @@
 //!
 //! Each vertex has weights w_i for up to four joints. X_i is the transform of joint i from its own
 //! space to skeleton space. The bind pose is the pose in which the mesh was attached; there, the
-//! inverse bind transform B_i⁻¹ maps mesh space to the joint's own space. So each joint moves the
-//! mesh by J_i = X_i·B_i⁻¹. [`Skinning`] says how the J_i of a vertex are blended:
+//! inverse bind transform B_i⁻¹ maps mesh space to the joint's own space, where the joint stretches
+//! it by S_i, see [`SkinStretch`](crate::skeleton::SkinStretch). So each joint moves the mesh by
+//! J_i = X_i·S_i·B_i⁻¹. [`Skinning`] says how the J_i of a vertex are blended:
 //!
 //! - **Linear**: v' = Σ w_i J_i v, normals by the cofactors of Σ w_i J_i. Between two joints that
 //!   are twisted by 180° against each other the mesh collapses to a point (the candy wrapper).
-//! - **Dual quaternions**: J_i = q̂_i·S_i with a rigid motion q̂_i and a scale S_i. The scales are
-//!   blended linearly first: v_s = Σ w_i S_i v. The rigid motions are then blended as unit dual
+//! - **Dual quaternions**: J_i = q̂_i·D_i with a rigid motion q̂_i and a symmetric scale D_i. The scales
+//!   are blended linearly first: v_s = Σ w_i D_i v. The rigid motions are then blended as unit dual
 //!   quaternions. Of the two dual quaternions of a motion, ±q̂_i, the one on the side of the
 //!   heaviest joint's is taken. Keeps the volume under twist and bulges a little at bends.
 //! - **Spread twist**: a joint's roll τ is its rotation about its own bone. A vertex beside the

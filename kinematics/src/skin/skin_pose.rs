@@ -70,7 +70,7 @@ pub struct SkinPose {
 /// The motion that one joint gives to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointDeform {
-    /// J = X·B⁻¹ from mesh space to skeleton space.
+    /// J = X·S·B⁻¹ from mesh space to skeleton space.
     pub matrix: Affine3A,
     /// Rotation of J without its scale, a unit quaternion as (x, y, z, w).
     pub real: Vec4,
@@ -82,9 +82,9 @@ pub struct JointDeform {
     pub roll: f32,
     /// Fraction t of the bone at a point v of mesh space, before clamping to [0, 1]: this · (v, 1).
     pub along: Vec4,
-    /// X·K·B⁻¹, where K·p = â × p with the unit vector â along the bone.
+    /// X·K·S·B⁻¹, where K·p = â × p with the unit vector â along the bone.
     pub turn: Affine3A,
-    /// X·K²·B⁻¹.
+    /// X·K²·S·B⁻¹.
     pub turn_twice: Affine3A,
 }
 
@@ -176,6 +176,8 @@ impl SetJoints<'_> {
 
 impl JointDeform {
     fn new(joint: &Joint, space: Affine3A, inverse_bind: Affine3A) -> Self {
+        let fraction = |axis| along(inverse_bind, axis);
+        let inverse_bind = joint.stretched(inverse_bind);
         let matrix = space * inverse_bind;
         let (DualQuaternion { real, dual }, scale) = motion_and_scale(matrix);
         let length = joint.axis.as_dvec3().length();
@@ -198,14 +200,14 @@ impl JointDeform {
             dual,
             scale,
             roll: roll(rotation.normalize(), axis) as f32,
-            along: along(inverse_bind, axis / length),
+            along: fraction(axis / length),
             turn: turn(cross),
             turn_twice: turn(cross * cross),
         }
     }
 
     /// J with the roll t·τ instead of τ, where t is the fraction of the bone at a point of mesh
-    /// space: X·Rot(â, φ)·B⁻¹ with φ = −(1 − t)·τ, by Rodrigues' formula Rot = 1 + sin φ·K + (1 −
+    /// space: X·Rot(â, φ)·S·B⁻¹ with φ = −(1 − t)·τ, by Rodrigues' formula Rot = 1 + sin φ·K + (1 −
     /// cos φ)·K².
     fn with_spread_roll(&self, vertex: Vec3) -> Affine3A {
         let fraction = self.along.dot(vertex.extend(1.0)).clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
 //! Skinned meshes against independent formulations in f64.
 
 use glam::{Affine3A, DMat3, DMat4, DQuat, DVec3, Mat3, Mat3A, Vec3};
-use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Skeleton};
+use ik_arm_kinematics::skeleton::{Joint, JointId, JointLimits, Skeleton, SkinStretch};
 use ik_arm_kinematics::skin::{
     SkinError, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
@@ -28,6 +28,14 @@ impl Case {
         let mut skeleton = forest(random, joints);
         shake(random, &mut skeleton);
         skeleton.set_transform(transform(random)).expect("transform");
+        for joint in skeleton.ids().collect::<Vec<_>>() {
+            if random.chance(0.4) {
+                let (scale, shear) = (Vec3::ONE + random.vector(0.7), random.vector(0.4));
+                skeleton
+                    .change(joint, |it| it.skin = SkinStretch { scale, shear })
+                    .expect("finite");
+            }
+        }
         let pose = skeleton.bind_pose_in_skeleton();
         let attached = bind(random);
         let inverse_binds: Vec<Affine3A> =
@@ -64,9 +72,20 @@ impl Case {
         DMat4::from(self.mesh.inverse_binds()[joint.index()].as_daffine3())
     }
 
+    /// S_i in f64, by the images of the frame's axes.
+    fn stretch(&self, joint: JointId) -> DMat4 {
+        let Joint { skin: SkinStretch { scale, shear }, frame, .. } = &self.skeleton[joint];
+        let (scale, shear, frame) = (scale.as_dvec3(), shear.as_dvec3(), frame.as_dmat3());
+        let x = DVec3::new(scale.x, shear.x, 0.0);
+        let y = DVec3::new(0.0, scale.y, 0.0);
+        let z = DVec3::new(shear.y, shear.z, scale.z);
+        let images = DMat3::from_cols(frame * x, frame * y, frame * z);
+        DMat4::from_mat3(images * frame.inverse())
+    }
+
     /// J_i in f64, in skeleton space.
     fn joint(&self, joint: JointId) -> DMat4 {
-        self.space(joint) * self.inverse_bind(joint)
+        self.space(joint) * self.stretch(joint) * self.inverse_bind(joint)
     }
 
     fn to_world(&self) -> DMat4 {
@@ -255,7 +274,7 @@ fn spread(case: &Case, joint: JointId, position: DVec3) -> DMat4 {
     let roll = from.cross(to).dot(rotation * axis).atan2(from.dot(to));
     let fraction = (bind.transform_point3(position).dot(axis) / length).clamp(0.0, 1.0);
     let part = swing * DMat3::from_axis_angle(axis, fraction * roll);
-    above * DMat4::from_mat3(part) * bind
+    above * DMat4::from_mat3(part) * case.stretch(joint) * bind
 }
 
 #[test]
@@ -268,6 +287,7 @@ fn in_the_pose_in_which_it_was_attached_a_mesh_stays() {
             let unposed = case.skeleton.joints().iter().map(|joint| Joint {
                 rotation: Vec3::ZERO,
                 limits: JointLimits::NONE,
+                skin: SkinStretch::NONE,
                 ..Joint::clone(joint)
             });
             case.skeleton = Skeleton::from_joints(unposed.collect()).expect("skeleton");

@@ -85,6 +85,13 @@ pub enum JointEdit {
         /// The stiffness of each angle, from 0 to below 1.
         stiffness: Vec3,
     },
+    /// Sets the factors by which a joint scales the skin along the axes of its frame.
+    SetSkinScale {
+        /// The joint.
+        joint: JointId,
+        /// The factors along x, y and z.
+        scale: Vec3,
+    },
     /// Locks or unlocks a joint: solvers do not turn locked joints.
     SetLocked {
         /// The joint.
@@ -116,6 +123,7 @@ impl JointEdit {
             Self::SetOffset { .. } => "Move joint",
             Self::SetLimits { .. } => "Change limit",
             Self::SetStiffness { .. } => "Change stiffness",
+            Self::SetSkinScale { .. } => "Scale skin",
             Self::SetLocked { locked: true, .. } => "Lock joint",
             Self::SetLocked { locked: false, .. } => "Unlock joint",
             Self::SetTranslation(_) => "Move skeleton",
@@ -159,6 +167,9 @@ impl JointEdit {
             }
             Self::SetStiffness { joint, stiffness } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.stiffness = stiffness)
+            }
+            Self::SetSkinScale { joint, scale } => {
+                Outcome::edit_joint(session.shown(), joint, |joint| joint.skin.scale = scale)
             }
             Self::SetLocked { joint, locked } => {
                 Outcome::edit_joint(session.shown(), joint, |joint| joint.locked = locked)

@@ -33,7 +33,9 @@ impl ValueKind {
             (Channel::Stretch(_), _) => Self::Ratio,
             (_, Quantity::Angle | Quantity::Rotation) => Self::Angle,
             (_, Quantity::Point | Quantity::Length) => Self::Length,
-            (_, Quantity::Fraction | Quantity::Number | Quantity::Switch) => Self::Ratio,
+            (_, Quantity::Fraction | Quantity::Number | Quantity::Numbers | Quantity::Switch) => {
+                Self::Ratio
+            }
         }
     }
 

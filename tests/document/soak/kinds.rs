@@ -121,6 +121,10 @@ kinds! {
             joint: v.joint(),
             stiffness: v.stiffness(),
         };
+        SetSkinScale: Build 2, |v| JointEdit::SetSkinScale {
+            joint: v.joint(),
+            scale: v.small_point(),
+        };
         SetLocked: Build 2, |v| JointEdit::SetLocked { joint: v.joint(), locked: v.chance(0.3) };
     }
     Edit (Skin) (SkinEdit) {

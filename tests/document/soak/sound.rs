@@ -131,6 +131,7 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
         locked: _,
         connected: _,
         radius,
+        skin,
     } = joint;
     hold!(!name.trim().is_empty(), "joint {index} has a name");
     hold!(
@@ -139,6 +140,8 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
     );
     let are_finite = offset.is_finite() && axis.is_finite() && rotation.is_finite();
     hold!(are_finite && frame.is_finite(), "{name:?} is finite: {joint:?}");
+    let is_stretched = skin.scale.is_finite() && skin.shear.is_finite();
+    hold!(is_stretched, "{name:?} stretches the skin: {skin:?}");
     hold!(radius.is_finite() && *radius >= 0.0, "{name:?} is as thick as a bone: {radius}");
     let is_stiffness = |it: f32| (0.0..1.0).contains(&it);
     hold!(stiffness.to_array().into_iter().all(is_stiffness), "{name:?} is stiff: {stiffness}");
@@ -183,7 +186,11 @@ fn keys(document: &Document) -> Result<(), Broken> {
             Quantity::Length => value.x > 0.0,
             Quantity::Fraction => (0.0..=1.0).contains(&value.x),
             Quantity::Switch => value.x == 0.0 || value.x == 1.0,
-            Quantity::Point | Quantity::Angle | Quantity::Number | Quantity::Rotation => true,
+            Quantity::Point
+            | Quantity::Angle
+            | Quantity::Number
+            | Quantity::Numbers
+            | Quantity::Rotation => true,
         };
         let values = knots.iter().map(|knot| knot.value);
         hold!(values.clone().all(is_right), "keys of {channel:?} are in range: {knots:?}");

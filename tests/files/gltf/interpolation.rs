@@ -14,17 +14,22 @@ use crate::gltf::glb::{Glb, index};
 use crate::gltf::text::Text;
 
 /// A sampler of the file, as the specification has it: rows of times and values.
-struct Curve {
-    node: usize,
-    path: &'static str,
-    kind: &'static str,
-    times: Vec<f32>,
+pub struct Curve {
+    pub node: usize,
+    pub path: &'static str,
+    pub kind: &'static str,
+    pub times: Vec<f32>,
     /// For cubic splines three rows a key: in-tangent, value, out-tangent.
-    rows: Vec<[f32; 4]>,
+    pub rows: Vec<[f32; 4]>,
 }
 
 impl Curve {
-    fn random(random: &mut Random, node: usize, path: &'static str, kind: &'static str) -> Self {
+    pub fn random(
+        random: &mut Random,
+        node: usize,
+        path: &'static str,
+        kind: &'static str,
+    ) -> Self {
         let mut time = random.within(0.0..0.3);
         let mut times = Vec::new();
         for _ in 0..2 + random.below(6) {
@@ -49,7 +54,7 @@ impl Curve {
         Self { node, path, kind, times, rows }
     }
 
-    fn write(&self, text: &mut Text) {
+    pub fn write(&self, text: &mut Text) {
         let width = if self.path == "rotation" { 4 } else { 3 };
         let numbers: Vec<f32> =
             self.rows.iter().flat_map(|row| row.iter().take(width).copied()).collect();
@@ -57,7 +62,7 @@ impl Curve {
         text.animate(self.node, self.path, self.kind, times, values);
     }
 
-    fn at(&self, time: f64) -> DVec4 {
+    pub fn at(&self, time: f64) -> DVec4 {
         let times: Vec<f64> = self.times.iter().map(|time| f64::from(*time)).collect();
         let row = |index: usize| DVec4::from_array(self.rows[index].map(f64::from));
         let each = if self.kind == "CUBICSPLINE" { 3 } else { 1 };
@@ -96,13 +101,13 @@ impl Curve {
 }
 
 /// Four nodes in a row, turned, moved and scaled evenly, all of them joints but the first.
-struct File {
-    nodes: Vec<(DVec3, DQuat, f64)>,
-    curves: Vec<Curve>,
+pub struct File {
+    pub nodes: Vec<(DVec3, DQuat, f64)>,
+    pub curves: Vec<Curve>,
 }
 
 impl File {
-    fn random(random: &mut Random, kinds: [&'static str; 2]) -> Self {
+    pub fn random(random: &mut Random, kinds: [&'static str; 2]) -> Self {
         let node = |random: &mut Random| {
             let turn = Quat::from_scaled_axis(random.vector(2.0)).as_dquat().normalize();
             (random.vector(1.0).as_dvec3(), turn, f64::from(random.within(0.3..3.0)))
@@ -119,7 +124,7 @@ impl File {
         Self { nodes, curves }
     }
 
-    fn text(&self) -> Text {
+    pub fn text(&self) -> Text {
         let node = |(index, (at, turn, scale)): (usize, &(DVec3, DQuat, f64))| {
             let children: Vec<usize> = (index + 1..4).take(1).collect();
             let mut node = json!({
@@ -140,7 +145,7 @@ impl File {
     }
 
     /// Transforms of the nodes to the world.
-    fn worlds(&self, time: f64) -> Vec<DAffine3> {
+    pub fn worlds(&self, time: f64) -> Vec<DAffine3> {
         let mut world = DAffine3::IDENTITY;
         let node = |(index, (at, turn, scale)): (usize, &(DVec3, DQuat, f64))| {
             let of = |path| self.curves.iter().find(|it| it.node == index && it.path == path);
@@ -155,7 +160,7 @@ impl File {
         self.nodes.iter().enumerate().map(node).collect()
     }
 
-    fn times(&self, random: &mut Random) -> Vec<f64> {
+    pub fn times(&self, random: &mut Random) -> Vec<f64> {
         let keys =
             self.curves.iter().flat_map(|curve| curve.times.iter().map(|time| f64::from(*time)));
         // A step jumps at a key, so its side must be certain.
@@ -196,7 +201,7 @@ impl File {
         }
     }
 
-    fn key_times(&self) -> Vec<f64> {
+    pub fn key_times(&self) -> Vec<f64> {
         self.curves.iter().flat_map(|it| &it.times).map(|time| f64::from(*time)).collect()
     }
 }

@@ -11,4 +11,5 @@ mod morphs;
 mod posed;
 mod round_trip;
 mod skin;
+mod stretch;
 mod text;

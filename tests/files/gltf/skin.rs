@@ -73,6 +73,12 @@ impl Strip {
     /// A chain with the strip as its mesh, in the plainest form.
     pub fn text(&self) -> Text {
         let mut text = Text::chain();
+        self.add_to(&mut text);
+        text
+    }
+
+    /// Adds the strip as the mesh of the first skin.
+    pub fn add_to(&self, text: &mut Text) {
         let weights: Vec<f32> =
             self.weights.as_flattened().iter().map(|weight| f32::from(*weight) / 255.0).collect();
         let coordinates: Vec<f32> = self.coordinates.iter().flat_map(Vec2::to_array).collect();
@@ -90,10 +96,9 @@ impl Strip {
         text.json["meshes"] = json!([{
             "primitives": [{ "attributes": attributes, "indices": indices }]
         }]);
-        attributes_of(&mut text)["JOINTS_0"] = json!(joints);
+        attributes_of(text)["JOINTS_0"] = json!(joints);
         let body = push(&mut text.json["nodes"], json!({ "mesh": 0, "skin": 0 }));
         text.json["scenes"][0]["nodes"] = json!([0, body]);
-        text
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::rig::{BvhPose, BvhRig, SkeletonTransform};
 use crate::document::{Document, Track};
 use crate::io::exported::{BvhUnit, ExportFrames, Exported, MotionError, Progress};
-use crate::kinematics::skeleton::exact_angles;
+use crate::kinematics::skeleton::{SkinStretch, exact_angles};
 
 /// Numbers of a node in a frame: its offset, and its angles about x, y and z.
 const WIDTH: usize = 6;
@@ -34,6 +34,8 @@ pub async fn to_bvh(
         let posed = track.at(frames.time(frame));
         let transform = SkeletonTransform::new(posed.document().skeleton().transform());
         motion.is_uneven |= !transform.is_even();
+        let mut joints = posed.skeleton().joints().iter();
+        motion.stretches_skin |= joints.any(|joint| joint.skin != SkinStretch::NONE);
         motion.add(rig.pose(&posed, &transform))?;
     }
     let text = motion.text(&frames)?;
@@ -55,6 +57,7 @@ struct BvhMotion<'a> {
     /// For each node, whether the tip of its bone moves.
     ends: Vec<bool>,
     is_uneven: bool,
+    stretches_skin: bool,
     /// The joints' angles in the last frame, in radians. The angles of the next frame are unwrapped
     /// to be nearest to them.
     angles: Vec<DVec3>,
@@ -73,6 +76,7 @@ impl<'a> BvhMotion<'a> {
             offsets: vec![false; nodes],
             ends: vec![false; nodes],
             is_uneven: false,
+            stretches_skin: false,
             angles: vec![DVec3::ZERO; nodes],
             rows: Vec::new(),
         }
@@ -194,6 +198,9 @@ impl<'a> BvhMotion<'a> {
         if self.is_uneven {
             notes.push(BvhNote::Uneven.to_string());
         }
+        if self.stretches_skin {
+            notes.push(BvhNote::StretchedSkin.to_string());
+        }
         if !moving.is_empty() {
             notes.push(BvhNote::Ends(&moving).to_string());
         }
@@ -234,6 +241,8 @@ fn line(text: &mut String, depth: usize, line: &str) {
 pub enum BvhNote<'a> {
     /// The skeleton's transform has uneven scale, shear or zero scale.
     Uneven,
+    /// Joints scale or shear the skin.
+    StretchedSkin,
     /// The bones without children with these names change their length or direction.
     Ends(&'a [&'a str]),
 }
@@ -244,6 +253,10 @@ impl fmt::Display for BvhNote<'_> {
             Self::Uneven => f.write_str(
                 "the skeleton is scaled unevenly, sheared or flattened, and BVH has rotations \
                  only: the nearest rotations are written; the joints' positions are exact",
+            ),
+            Self::StretchedSkin => f.write_str(
+                "joints scale the skin, and BVH has neither skins nor scales: only the motion of the \
+                 joints is written",
             ),
             Self::Ends(names) => {
                 /// Maximum number of names that are listed. Further bones are only counted.

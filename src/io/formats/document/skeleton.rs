@@ -9,7 +9,7 @@ use crate::io::json::{
     Whole, value_or,
 };
 use crate::kinematics::skeleton::{
-    Cone, Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError,
+    Cone, Joint, JointId, JointLimits, Limit, RotationAxis, Skeleton, SkeletonError, SkinStretch,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -38,6 +38,10 @@ struct JointFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     connected: Option<bool>,
     radius: Option<JsonNumber>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skin_scale: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skin_shear: Option<JsonPoint>,
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
@@ -169,6 +173,10 @@ impl JointFields {
             locked: joint.locked.then_some(true),
             connected: joint.connected.then_some(true),
             radius: Some(joint.radius.into()),
+            skin_scale: (joint.skin.scale != SkinStretch::NONE.scale)
+                .then(|| joint.skin.scale.into()),
+            skin_shear: (joint.skin.shear != SkinStretch::NONE.shear)
+                .then(|| joint.skin.shear.into()),
         }
     }
 
@@ -193,6 +201,10 @@ impl JointFields {
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),
             radius: value_or(self.radius, default.radius.min(f32::MAX)),
+            skin: SkinStretch {
+                scale: value_or(self.skin_scale, default.skin.scale),
+                shear: value_or(self.skin_shear, default.skin.shear),
+            },
             ..default
         }
     }

@@ -17,11 +17,15 @@ pub struct SamplerExtras {
     keys: Vec<KeyFields>,
 }
 
-/// Extras of a joint's node: the frame of the joint's angles relative to the node, as a quaternion.
-#[derive(Clone, Copy, Serialize, Deserialize)]
+/// Extras of a node.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub struct NodeExtras {
-    #[serde(rename = "ik_arm_frame")]
-    frame: [f32; 4],
+    /// Of a joint's node, the frame of the joint's angles relative to the node, as a quaternion.
+    #[serde(rename = "ik_arm_frame", skip_serializing_if = "Option::is_none")]
+    frame: Option<[f32; 4]>,
+    /// True if the node is no joint, but stretches the skin of the joint above.
+    #[serde(rename = "ik_arm_stretches_skin", skip_serializing_if = "Option::is_none")]
+    stretches_skin: Option<bool>,
 }
 
 /// Extras of a mesh: the names of its morph targets, as many programs write them.
@@ -70,13 +74,20 @@ impl SamplerExtras {
 }
 
 impl NodeExtras {
-    pub fn new(frame: DQuat) -> Self {
-        Self { frame: frame.as_quat().to_array() }
+    /// Extras of the node that stretches the skin of the joint above.
+    pub const STRETCHES_SKIN: Self = Self { frame: None, stretches_skin: Some(true) };
+
+    pub fn of_joint(frame: DQuat) -> Self {
+        Self { frame: Some(frame.as_quat().to_array()), stretches_skin: None }
     }
 
-    /// The rotation; `None` if the numbers are none.
+    pub fn stretches_skin(self) -> bool {
+        self.stretches_skin == Some(true)
+    }
+
+    /// The frame of a joint; `None` without one, or if the numbers are no rotation.
     pub fn frame(self) -> Option<DQuat> {
-        let frame = Quat::from_array(self.frame).as_dquat();
+        let frame = Quat::from_array(self.frame?).as_dquat();
         let is_rotation = (frame.length() - 1.0).abs() < 1e-3;
         is_rotation.then(|| frame.normalize())
     }

@@ -24,6 +24,9 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, index: JointId, actions:
     limits(ui, session, index, joint, actions);
     stiffness(ui, session, index, joint, actions);
     bone(ui, session, index, joint, actions);
+    if session.rig().skin.is_some() {
+        skin_scale(ui, session, index, joint, actions);
+    }
     parent(ui, session, index, joint, actions);
     let tooltip = "Keep solvers from rotating this joint";
     let changed = widgets::check_box(ui, "Locked", tooltip, joint.locked, None);
@@ -294,6 +297,36 @@ fn bone(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actions: 
     length.row(ui, session, "Length", actions, |length| {
         let direction = joint.axis.try_normalize().unwrap_or(Vec3::Y);
         JointEdit::SetAxis { joint: index, axis: direction * length.max(0.0) }
+    });
+}
+
+/// Shows, in a section of its own, the factors by which the joint scales the skin.
+fn skin_scale(
+    ui: &mut Ui,
+    session: &Session,
+    index: JointId,
+    joint: &Joint,
+    actions: &mut Actions,
+) {
+    widgets::named_folded_section(ui, "skin scale", "Skin scale", |ui| {
+        for axis in RotationAxis::ALL {
+            let slider = Slider {
+                name: &format!("Skin scale {axis}"),
+                label: &format!("Along {axis}"),
+                colour: Some(style::colour(style::palette(ui).axes[axis.index()])),
+                tooltip: "Squash or stretch the skin that follows this joint; other joints stay",
+                value: joint.skin.scale[axis.index()],
+                range: (0.0, 2.0),
+                default: 1.0,
+                step: 0.05,
+                channel: Some(Channel::SkinScale(index)),
+                ..Slider::default()
+            };
+            slider.show(ui, session, actions, |scale| {
+                let scale = with_axis(joint.skin.scale, axis.index(), scale);
+                JointEdit::SetSkinScale { joint: index, scale }
+            });
+        }
     });
 }
 

@@ -7,7 +7,7 @@ use super::GlbError;
 use super::mesh::{LimbMesh, MeshPart, PartMorph, RigMesh};
 use super::morphs::MorphAnimation;
 use super::motion::JointAnimation;
-use super::nodes::{ClipTimes, JointNodes, JointTrack};
+use super::nodes::{ClipTimes, JointNodes, JointTrack, NodeRole};
 use super::rig::GltfRig;
 use crate::document::{Document, Timeline};
 use crate::io::exported::Progress;
@@ -28,7 +28,7 @@ use crate::rig::SkinTexture;
 /// the skin of the skeleton; without one, cones around the bones. The motion has a key at every
 /// frame. The frame rate is `frames_per_second`, or with `None` that of the timeline, clamped to
 /// the range 0.01 to 1000. With `None`, tracks whose keys glTF can have are written as they are.
-/// Lengths are in metres, and no node has a scale.
+/// Lengths are in metres. Only nodes that stretch the skin have scales.
 ///
 /// # Errors
 ///
@@ -43,13 +43,14 @@ pub async fn glb(
     let frame_rate = rate.clamp(Timeline::MIN_FRAME_RATE, Timeline::MAX_FRAME_RATE);
     let timeline = Timeline { frame_rate, ..document.timeline };
     let rig = GltfRig::new(document)?;
-    let bones = JointNodes::new(&rig)?;
+    let skin = RigMesh::of_skin(document);
+    let bones = JointNodes::new(&rig, skin.is_some())?;
     let mut motion = JointAnimation { timeline, ..JointAnimation::default() };
     if frames_per_second.is_none() && timeline.is_valid() {
-        motion.keep_tracks(document, &rig);
+        motion.keep_tracks(document, &rig, &bones);
     }
     motion.record(&rig, &bones, progress).await?;
-    let mesh = match RigMesh::of_skin(document) {
+    let mesh = match skin {
         Some(skin) => skin,
         None => LimbMesh::new(&rig, &bones)?.into(),
     };
@@ -62,7 +63,8 @@ pub async fn glb(
             skinned.push((writer.add_mesh(&parts, &mesh.morphs), skin));
         }
     }
-    let nodes = writer.add_nodes(&bones, &motion.frames, &skinned);
+    let frames = motion.frames.iter().copied().chain(bones.stretched_frames());
+    let nodes = writer.add_nodes(&bones, frames, &skinned);
     let weights = MorphAnimation::new(document, timeline, mesh.morphs.len())?;
     writer.add_animation(&motion, &weights, &nodes, document.animation_name.as_deref());
     writer.file()
@@ -112,7 +114,7 @@ impl GltfWriter {
     fn add_nodes(
         &mut self,
         bones: &JointNodes,
-        frames: &[(usize, DQuat)],
+        frames: impl Iterator<Item = (usize, DQuat)>,
         skinned: &[(Whole, Whole)],
     ) -> Vec<Whole> {
         let armature = bones.nodes.len();
@@ -133,7 +135,12 @@ impl GltfWriter {
             node.rotation = Some(JsonNumbers(bind_pose.rotation.as_quat().to_array()));
         }
         for (node, frame) in frames {
-            self.json.nodes.0[*node].extras = Some(Extras::Own(NodeExtras::new(*frame)));
+            self.json.nodes.0[node].extras = Some(Extras::Own(NodeExtras::of_joint(frame)));
+        }
+        for (node, fields) in bones.nodes.iter().zip(&mut self.json.nodes.0) {
+            if matches!(node.role, NodeRole::Stretch(_) | NodeRole::StretchAxes) {
+                fields.extras = Some(Extras::Own(NodeExtras::STRETCHES_SKIN));
+            }
         }
         let mut scene = vec![whole(armature)];
         for (mesh, skin) in skinned {
@@ -160,11 +167,13 @@ impl GltfWriter {
         let bind = |(world, attached): (&DAffine3, DAffine3)| {
             DMat4::from(world.inverse() * attached).as_mat4().to_cols_array()
         };
-        let matrices: Vec<[f32; 16]> = worlds.iter().zip(attached).map(bind).collect();
+        let joints = bones.of_skin();
+        let worlds = joints.iter().map(|node| &worlds[*node]);
+        let matrices: Vec<[f32; 16]> = worlds.zip(attached).map(bind).collect();
         let inverse_binds = Some(self.add_floats(&matrices, None));
         self.json.skins.push(GltfSkin {
             inverse_binds,
-            joints: (0..bones.nodes.len()).map(whole).collect(),
+            joints: joints.into_iter().map(whole).collect(),
             name: Some(JointNodes::ARMATURE.to_owned()),
             skeleton: Some(whole(bones.nodes.len())),
         })
@@ -288,7 +297,10 @@ impl GltfWriter {
         name: Option<&str>,
     ) {
         let has_weights = !weights.times.is_empty();
-        if motion.rotations.is_empty() && motion.translations.is_empty() && !has_weights {
+        let points = [("translation", &motion.translations), ("scale", &motion.scales)];
+        let is_still =
+            motion.rotations.is_empty() && points.iter().all(|(_, tracks)| tracks.is_empty());
+        if is_still && !has_weights {
             return;
         }
         // Tracks with the same times share an accessor.
@@ -301,8 +313,10 @@ impl GltfWriter {
         };
         let of_rotations: Vec<Whole> =
             motion.rotations.iter().map(|track| add_times(&track.times)).collect();
-        let of_translations: Vec<Whole> =
-            motion.translations.iter().map(|track| add_times(&track.times)).collect();
+        let of_points = points.map(|(path, tracks)| {
+            let times: Vec<Whole> = tracks.iter().map(|track| add_times(&track.times)).collect();
+            (path, tracks, times)
+        });
         let of_weights = has_weights.then(|| add_times(&weights.times));
         let mut animation = GltfAnimation {
             extras: Some(Extras::Own(AnimationExtras::new(motion.timeline))),
@@ -314,8 +328,10 @@ impl GltfWriter {
         for (track, times) in motion.rotations.iter().zip(of_rotations) {
             self.add_track(&mut animation, track, "rotation", times, start);
         }
-        for (track, times) in motion.translations.iter().zip(of_translations) {
-            self.add_track(&mut animation, track, "translation", times, start);
+        for (path, tracks, times) in of_points {
+            for (track, times) in tracks.iter().zip(times) {
+                self.add_track(&mut animation, track, path, times, start);
+            }
         }
         if self.bytes.len() > start {
             self.add_view(start, None);

@@ -7,6 +7,7 @@ mod motion;
 mod nodes;
 mod quaternion_spline;
 mod rig;
+mod stretch;
 
 use thiserror::Error;
 

@@ -12,9 +12,10 @@ use std::rc::Rc;
 use glam::{DMat3, DQuat, DVec3, Vec3};
 
 use super::GlbError;
-use super::nodes::{ClipTimes, JointNodes, JointTrack, same_side};
-use super::quaternion_spline::{self, NodeRotation, QuaternionKey};
+use super::nodes::{ClipTimes, JointNode, JointNodes, JointTrack, NodeRole};
+use super::quaternion_spline::{self, NodeRotation, QuaternionKey, same_side};
 use super::rig::GltfRig;
+use super::stretch::StretchKind;
 use crate::document::{Channel, Document, Target, Timeline};
 use crate::io::exported::Progress;
 use crate::io::formats::gltf::file::KeyCurve;
@@ -29,16 +30,29 @@ pub struct JointAnimation {
     pub rotations: Vec<JointTrack<4>>,
     /// Translations relative to the parents, in metres.
     pub translations: Vec<JointTrack<3>>,
+    /// Scales of the nodes that stretch the skin.
+    pub scales: Vec<JointTrack<3>>,
     /// Nodes with the frames of their joints' angles, relative to the nodes.
     pub frames: Vec<(usize, DQuat)>,
     pub timeline: Timeline,
 }
 
 impl JointAnimation {
-    /// Adds the tracks that can be kept of a skeleton that is posed by its keys alone, and not
-    /// scaled unevenly or mirrored.
-    pub fn keep_tracks(&mut self, document: &Document, rig: &GltfRig) {
+    /// Adds the tracks that can be kept: scales of the skin, and all others of a skeleton that is
+    /// posed by its keys alone, and not scaled unevenly or mirrored.
+    pub fn keep_tracks(&mut self, document: &Document, rig: &GltfRig, bones: &JointNodes) {
         let skeleton = document.skeleton();
+        for (node, JointNode { bone, role, .. }) in bones.nodes.iter().enumerate() {
+            let scales = document.keys.track(Channel::SkinScale(JointId::new(*bone)));
+            if let Some(scales) = scales.filter(|_| *role == NodeRole::Stretch(StretchKind::Scale))
+            {
+                let mut track = points(node, scales, self.timeline, DMat3::IDENTITY);
+                if let Some(JointTrack { keys, curve: KeyCurve::CubicSpline, .. }) = &mut track {
+                    *keys = in_metres(scales, DMat3::IDENTITY, DVec3::ZERO, 1.0, self.timeline);
+                }
+                self.scales.extend(track);
+            }
+        }
         let is_posed_by_keys = !document.follows_path()
             && !document.rig.targets.iter().any(Target::is_posing)
             && !document.keys.tracks().any(|(channel, _)| channel.target().is_some());
@@ -51,12 +65,12 @@ impl JointAnimation {
             if let Some(turns) =
                 track(Channel::Rotation(joint)).filter(|_| !own.limits.is_limited())
             {
-                self.keep_rotation(joint, turns, node_rotation(rig, joint, own, transform));
+                self.keep_rotation(joint, turns, rig.node_rotation(joint, own));
             }
             let is_moved = own.parent.is_none() && document.keys.has(Channel::Translation);
             if let Some(moves) = track(Channel::Offset(joint)).filter(|_| !is_moved) {
                 let to_node = offset_to_node(rig, own, transform) * rig.metres_per_unit;
-                let mut track = translation(joint, moves, self.timeline, to_node);
+                let mut track = points(joint.index(), moves, self.timeline, to_node);
                 if let Some(JointTrack { keys, curve: KeyCurve::CubicSpline, .. }) = &mut track {
                     let origin = match own.parent {
                         None => skeleton.transform().translation.as_dvec3(),
@@ -113,7 +127,8 @@ impl JointAnimation {
         let at_frames: Rc<[f64]> = (0..frames).map(|frame| self.timeline.time(frame)).collect();
         let empty = self.rotations.iter().filter(|track| track.values.is_empty());
         let keys = empty.flat_map(|track| track.times.iter());
-        let keys = keys.chain(self.translations.iter().flat_map(|track| track.times.iter()));
+        let points = self.translations.iter().chain(&self.scales);
+        let keys = keys.chain(points.flat_map(|track| track.times.iter()));
         let mut times: Vec<f64> = at_frames.iter().chain(keys).copied().collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
@@ -122,17 +137,23 @@ impl JointAnimation {
         }
         complete(&mut self.rotations, joints, &at_frames);
         complete(&mut self.translations, joints, &at_frames);
+        complete(&mut self.scales, joints, &at_frames);
+        let mut axes = bones.level_axes();
         let mut turned: Vec<DQuat> = bones.bind_pose.iter().map(|bind| bind.rotation).collect();
         for (done, &time) in times.iter().enumerate() {
             progress.step(done, times.len()).await?;
-            for (node, local) in bones.locals(&rig.at(time), Some(time))?.iter().enumerate() {
+            let locals = bones.locals(&rig.at(time), &mut axes, Some(time))?;
+            for (node, local) in locals.iter().enumerate() {
                 turned[node] = same_side(turned[node], local.rotation);
                 self.rotations[node].record(time, turned[node].as_quat().to_array());
                 self.translations[node].record(time, local.translation.as_vec3().to_array());
+                self.scales[node].record(time, local.scale.as_vec3().to_array());
             }
         }
         self.rotations.retain(|track| track.turns(&bones.bind_pose[track.node]));
-        self.translations.retain(|track| track.moves(&bones.bind_pose[track.node]));
+        let bind_pose = |node: usize| bones.bind_pose[node];
+        self.translations.retain(|track| track.differs(bind_pose(track.node).translation));
+        self.scales.retain(|track| track.differs(bind_pose(track.node).scale));
         Ok(())
     }
 }
@@ -146,18 +167,6 @@ fn complete<const N: usize>(kept: &mut Vec<JointTrack<N>>, nodes: usize, frames:
         all[node] = track;
     }
     *kept = all;
-}
-
-/// The rotation of a node by its joint's angles.
-fn node_rotation(rig: &GltfRig, joint: JointId, own: &Joint, transform: DMat3) -> NodeRotation {
-    let world = |index: usize| DQuat::from_mat3(&rig.bind_pose[index].frame()).normalize();
-    let turned = transform * transform.determinant().cbrt().recip();
-    let frame = DQuat::from_mat3(&(turned * own.frame.as_dmat3())).normalize();
-    let parent = own.parent.map_or(DQuat::IDENTITY, |parent| world(parent.index()));
-    NodeRotation {
-        before: parent.conjugate() * frame,
-        after: frame.conjugate() * world(joint.index()),
-    }
 }
 
 /// The keys of an offset as the file's scene has it: in metres, turned and scaled by the skeleton's
@@ -214,8 +223,9 @@ fn curve(track: &Spline<Vec3>, straight: &[Interpolation]) -> Option<KeyCurve> {
     }
 }
 
-fn translation(
-    joint: JointId,
+/// The track of a translation or scale of a node, with the keys of `track`.
+fn points(
+    node: usize,
     track: &Spline<Vec3>,
     timeline: Timeline,
     to_node: DMat3,
@@ -228,10 +238,10 @@ fn translation(
         }
         KeyCurve::Linear | KeyCurve::Step => Vec::new(),
     };
-    Some(JointTrack { slopes, ..JointTrack::new(joint.index(), times.into(), curve) })
+    Some(JointTrack { slopes, ..JointTrack::new(node, times.into(), curve) })
 }
 
-/// The slopes of a node's translation at a time, arriving and leaving; level where the curve is
+/// The slopes of a node's translation or scale at a time, arriving and leaving; level where the curve is
 /// constant, before the track's first key and after its last.
 fn slopes_at(track: &Spline<Vec3>, time: f64, to_node: DMat3) -> [[f32; 3]; 2] {
     let Some(own) = track.slopes(time) else { return [[0.0; 3]; 2] };

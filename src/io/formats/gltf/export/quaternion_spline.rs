@@ -8,7 +8,6 @@ use core::ops::{Add, Mul};
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::nodes::same_side;
 use crate::kinematics::skeleton::exact_angles;
 use crate::kinematics::spline::{Interpolation, Spline, hermite};
 
@@ -174,4 +173,10 @@ fn cubic<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(
 ) -> T {
     let [of_from, of_leaving, of_to, of_arriving] = hermite(s);
     from * of_from + leaving * of_leaving + to * of_to + arriving * of_arriving
+}
+
+/// Returns `rotation` or its negative, which is the same rotation, whichever is nearer to
+/// `previous`.
+pub fn same_side(previous: DQuat, rotation: DQuat) -> DQuat {
+    if previous.dot(rotation) < 0.0 { -rotation } else { rotation }
 }

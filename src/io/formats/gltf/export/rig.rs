@@ -1,10 +1,12 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::GlbError;
+use super::quaternion_spline::NodeRotation;
+use super::stretch::StretchKind;
 use crate::document::{Channel, Document, Overlay, Track};
 use crate::io::formats::gltf::frame;
 use crate::kinematics::Shared;
-use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton, SkinStretch};
 use crate::rig::{LimbSettings, TaperedCylinder};
 
 /// The rig as bones in the world, in metres.
@@ -39,6 +41,10 @@ pub struct RigBone {
     pub radii: [f64; 2],
     /// Index of the bone's colour, 0 or 1.
     pub shade: usize,
+    /// How the bone's joint ever stretches the skin; `None` if it does not, or there is no skin.
+    pub stretches: Option<StretchKind>,
+    /// The frame of the joint's angles relative to the bone's node.
+    pub frame: DQuat,
 }
 
 /// The placement of a bone in the world, in metres.
@@ -52,6 +58,8 @@ pub struct BonePlacement {
     pub across: DVec3,
     /// The joint's y axis, of any length.
     pub y: DVec3,
+    /// How the bone's joint stretches the skin.
+    pub stretch: SkinStretch,
 }
 
 impl BonePlacement {
@@ -76,6 +84,7 @@ impl GltfRig {
             bind_pose: Vec::new(),
         };
         rig.bind_pose = rig.metric(rig.placements(document.skeleton(), |_| DMat3::IDENTITY));
+        rig.bind_pose.iter_mut().for_each(|bone| bone.stretch = SkinStretch::NONE);
         rig.bones = rig.joints(document.skeleton().joints());
         if rig.bones.is_empty() { Err(GlbError::NoJoints) } else { Ok(rig) }
     }
@@ -118,9 +127,23 @@ impl GltfRig {
                 along: full.matrix3 * axis,
                 across: full.matrix3 * across(axis),
                 y: full.matrix3.y_axis,
+                stretch: joint.skin,
             }
         };
         bones.map(placement).collect()
+    }
+
+    /// The rotation of a node by its joint's angles.
+    pub fn node_rotation(&self, joint: JointId, own: &Joint) -> NodeRotation {
+        let transform = self.track.document().skeleton().transform().matrix3.as_dmat3();
+        let world = |index: usize| DQuat::from_mat3(&self.bind_pose[index].frame()).normalize();
+        let turned = transform * transform.determinant().cbrt().recip();
+        let frame = DQuat::from_mat3(&(turned * own.frame.as_dmat3())).normalize();
+        let parent = own.parent.map_or(DQuat::IDENTITY, |parent| world(parent.index()));
+        NodeRotation {
+            before: parent.conjugate() * frame,
+            after: frame.conjugate() * world(joint.index()),
+        }
     }
 
     /// By joint, the radii of the bones that are drawn as cylinders, in metres.
@@ -173,6 +196,8 @@ impl GltfRig {
                 radii(f64::from(joint.radius) * metres, length, reach)
             }),
             shade: depths[index] % 2,
+            stretches: StretchKind::of(self.track.document(), JointId::new(index)),
+            frame: self.node_rotation(JointId::new(index), joint).after.conjugate(),
         };
         joints.iter().enumerate().map(bone).collect()
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::buffers::GltfBuffers;
 use super::morphs::{self, WeightChannel, WeightTracks};
-use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
+use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node, stretched_joint};
 use super::rows::{at_accessor, buffers_of};
 use super::sampler::{
     AnimatedPart, KeySampler, KeySource, UNSORTED, UsedChannel, on_frame, tolerance,
@@ -77,7 +77,7 @@ fn scan_one(
     let weights = WeightTracks::new(file, &buffers, &weights, &mut FieldWarnings::default())?;
     Ok(AnimationScan {
         name: String::new(),
-        moving: tracks.moving().collect(),
+        moving: tracks.moving().map(|node| stretched_joint(file, nodes, node)).collect(),
         has_morphs: weights.vary(),
         range: time_range(tracks.times().chain(weights.times())).unwrap_or_default(),
     })
@@ -270,14 +270,21 @@ impl<'a> NodeTracks<'a> {
         self.track(node, AnimatedPart::Scale).is_some_and(|track| track.is_uneven(least))
     }
 
-    /// Nodes with the scales with which the animation begins, and with the places and rotations that
-    /// it gives to nodes that are no joints and does not change.
+    /// Nodes with the scales with which the animation begins, or if these are 0 with the greatest,
+    /// and with the places and rotations that it gives to nodes that are no joints and does not
+    /// change. Nodes that only stretch the skin stay as they are.
     pub fn at_rest(&self, nodes: &NodeTree, joints: &SkinJoints) -> NodeTree {
         let is_joint: HashSet<usize> = joints.nodes.iter().copied().collect();
+        let of_skin: HashSet<usize> = joints.stretching(nodes).collect();
         let mut nodes = nodes.clone();
         for track in &self.tracks {
             let UsedChannel { node, part, .. } = track.channel;
-            if part == AnimatedPart::Scale || !is_joint.contains(&node) && !track.varies() {
+            if of_skin.contains(&node) {
+                continue;
+            }
+            if part == AnimatedPart::Scale {
+                track.pose(track.time(track.key_with_volume()), &mut nodes.locals);
+            } else if !is_joint.contains(&node) && !track.varies() {
                 track.pose(track.time(0), &mut nodes.locals);
             }
         }

@@ -35,7 +35,7 @@ impl BindTables {
         joints: &SkinJoints,
         worlds: &[DAffine3],
     ) -> Result<Self, FieldError> {
-        let nodes: Vec<DAffine3> = joints.nodes.iter().map(|node| worlds[*node]).collect();
+        let nodes: Vec<DAffine3> = joints.skin_nodes.iter().map(|node| worlds[*node]).collect();
         let count = nodes.len();
         let new = || BindTable { attached: nodes.clone(), is_listed: vec![false; count] };
         let (mut tables, mut of_skins): (Vec<BindTable>, Vec<usize>) = (Vec::new(), Vec::new());

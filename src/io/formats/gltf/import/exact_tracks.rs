@@ -25,7 +25,7 @@ use core::cell::Cell;
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use super::animations::NodeTracks;
-use super::joint_tracks::{ExactJoint, JointPlacement};
+use super::joint_tracks::{ExactJoint, JointPlacement, StretchTracks};
 use super::nodes::{NodeTransform, NodeTree, SkinJoints};
 use super::sampler::{AnimatedPart, KeySampler, on_frame};
 use crate::document::{Channel, Keys, Timeline};
@@ -96,31 +96,40 @@ impl<'a> ExactTracks<'a> {
     pub fn of(&self, joint: usize) -> ExactJoint {
         let node = self.joints.nodes[joint];
         let above = self.nodes.parents[node];
-        let is_turned_evenly = !self.tracks.scales_unevenly(node, EVEN)
-            && above.is_none_or(|above| self.is_even[above]);
-        let rotation = is_turned_evenly.then(|| match self.own_rotation(node) {
-            Some((keys, frame)) => (keys, Some(frame.as_mat3())),
-            None => (self.rotation(node), None),
+        let is_turned_evenly = above.is_none_or(|above| self.is_even[above]);
+        let frame = self.own_frame(node).filter(|_| is_turned_evenly);
+        let rotation = is_turned_evenly.then(|| {
+            let own = frame.and_then(|frame| self.own_rotation(node, frame));
+            own.unwrap_or_else(|| self.rotation(node, frame))
         });
         let is_placed_evenly = above.is_none_or(|above| self.is_still[above]);
         let offset = is_placed_evenly.then(|| {
             let offset = self.offset(joint, node);
-            self.own_offset(node, &offset).unwrap_or(offset)
+            self.own_points(node, AnimatedPart::Translation, &offset).unwrap_or(offset)
         });
-        let (rotation, frame) = rotation.unzip();
+        let frame = frame.map(DMat3::from_quat);
+        let skin = self.scale(joint, frame.unwrap_or(DMat3::IDENTITY));
         ExactJoint {
             rotation: rotation.map(|rotation| self.on_frames(&rotation)),
             offset: offset.map(|offset| self.on_frames(&offset)),
-            frame: frame.flatten(),
+            skin: skin.map(|scale| StretchTracks {
+                scale: self.on_frames(&scale),
+                shear: Spline::default(),
+            }),
+            frame: frame.map(|frame| frame.as_mat3()),
         }
     }
 
-    /// The keys of angles that this program has written beside a rotation, and the frame of the
-    /// angles relative to the node; `None` without them, or if the file's curve is another one.
-    fn own_rotation(&self, node: usize) -> Option<(Spline<Vec3>, DMat3)> {
+    /// The frame of a joint's angles relative to its node, if this program has written it.
+    fn own_frame(&self, node: usize) -> Option<DQuat> {
+        self.own?.nodes.0.get(node)?.extras.as_ref()?.own()?.frame()
+    }
+
+    /// The keys of angles in a frame that this program has written beside a rotation; `None` without
+    /// them, or if the file's curve is another one.
+    fn own_rotation(&self, node: usize, frame: DQuat) -> Option<Spline<Vec3>> {
         /// Largest difference in radians, twice that of the export.
         const NEAR: f64 = 1e-4;
-        let frame = self.own?.nodes.0.get(node)?.extras.as_ref()?.own()?.frame()?;
         let sampler = self.tracks.track(node, AnimatedPart::Rotation)?;
         let keys = sampler.own_keys().filter(|_| sampler.is_cubic())?;
         let NodeTransform::TransformParts(parts) = self.nodes.locals[node] else { return None };
@@ -140,16 +149,21 @@ impl<'a> ExactTracks<'a> {
             (middle, sampler.spline_rotation(key - 1, 0.5))
         });
         let is_same = times.chain(between).all(|(time, rotation)| is_near(time, rotation));
-        is_same.then(|| (keys, DMat3::from_quat(frame)))
+        is_same.then_some(keys)
     }
 
-    /// The keys of an offset that this program has written beside a translation; `None` without
-    /// them, or if the curve of the file, `read`, is another one.
-    fn own_offset(&self, node: usize, read: &Spline<Vec3>) -> Option<Spline<Vec3>> {
+    /// The keys of offsets or scales that this program has written beside a part of a node's
+    /// transform; `None` without them, or if the curve of the file, `read`, is another one.
+    fn own_points(
+        &self,
+        node: usize,
+        part: AnimatedPart,
+        read: &Spline<Vec3>,
+    ) -> Option<Spline<Vec3>> {
         /// Largest difference of single-precision numbers from each other, relative to the largest.
         const NEAR: f32 = 1e-5;
         self.own?;
-        let keys = self.tracks.track(node, AnimatedPart::Translation)?.own_keys()?;
+        let keys = self.tracks.track(node, part)?.own_keys()?;
         let largest = |track: &Spline<Vec3>| {
             track.knots().iter().map(|knot| knot.value.abs().max_element()).fold(0.0, f32::max)
         };
@@ -170,7 +184,9 @@ impl<'a> ExactTracks<'a> {
         track.knots().iter().map(moved).collect()
     }
 
-    fn rotation(&self, node: usize) -> Spline<Vec3> {
+    /// The keys of the rotation of a joint's node as angles in a frame relative to it, or without one
+    /// in the node's own axes.
+    fn rotation(&self, node: usize, frame: Option<DQuat>) -> Spline<Vec3> {
         let NodeTransform::TransformParts(parts) = self.nodes.locals[node] else {
             return Spline::default();
         };
@@ -179,7 +195,8 @@ impl<'a> ExactTracks<'a> {
             return Spline::default();
         };
         let scale = DMat3::from_diagonal(parts.scale);
-        let own = frame(scale.y_axis, scale.x_axis);
+        let axes = self::frame(scale.y_axis, scale.x_axis);
+        let own = axes * frame.map_or(DMat3::IDENTITY, DMat3::from_quat);
         let inverse = parts.rotation.inverse();
         let angles = |rotation: DQuat, near: DVec3| {
             let turn = DMat3::from_quat(inverse * rotation);
@@ -195,22 +212,59 @@ impl<'a> ExactTracks<'a> {
         let above = self.nodes.parents[node].map_or(DAffine3::IDENTITY, |above| self.worlds[above]);
         let parent = self.joints.parents[joint];
         let base = parent.map_or(DVec3::ZERO, |parent| self.bind_pose[parent].base);
-        let knot = |key| {
-            let value = above.transform_point3(sampler.key_point(key)) - base;
-            let slope = |tangent: DVec3| above.transform_vector3(tangent).as_vec3();
-            let slopes = sampler.tangents(key).map(|[arriving, leaving]| Slopes {
-                arriving: slope(arriving),
-                leaving: slope(leaving),
-            });
-            let interpolation = match sampler.channel.source.curve {
-                KeyCurve::Linear => Interpolation::Linear,
-                KeyCurve::Step => Interpolation::Step,
-                KeyCurve::CubicSpline => Interpolation::Smooth,
-            };
-            Knot { time: sampler.time(key), value: value.as_vec3(), interpolation, slopes }
-        };
-        (0..sampler.len()).map(knot).collect()
+        points(sampler, DAffine3 { translation: above.translation - base, ..above })
     }
+
+    /// The keys of a node's scale as those by which its joint scales the skin in a frame relative to
+    /// the joint's axes. `None` if the scale is not along the frame's axes, or 0 in the bind pose, or
+    /// if more than this scale and the joint's motion changes the skin.
+    fn scale(&self, joint: usize, frame: DMat3) -> Option<Spline<Vec3>> {
+        /// Sine of the greatest angle between axes that are alike.
+        const ALIKE: f64 = 1e-5;
+        let (node, skin_node) = (self.joints.nodes[joint], self.joints.skin_nodes[joint]);
+        let is_moved = |part| self.tracks.track(skin_node, part).is_some();
+        let is_apart = skin_node != node
+            && (is_moved(AnimatedPart::Rotation) || is_moved(AnimatedPart::Translation));
+        if is_apart || !self.nodes.parents[skin_node].is_none_or(|above| self.is_still[above]) {
+            return None;
+        }
+        let Some(sampler) = self.tracks.track(skin_node, AnimatedPart::Scale) else {
+            return Some(Spline::default());
+        };
+        let NodeTransform::TransformParts(parts) = self.nodes.locals[skin_node] else {
+            return None;
+        };
+        let axes = (self.bind_pose[joint].frame * frame).transpose() * self.bind_pose[joint].skin;
+        let is_along = |axis: usize| {
+            let axis_in_frame = axes.col(axis).normalize_or_zero();
+            1.0 - axis_in_frame[axis].abs() < 0.5 * ALIKE * ALIKE
+        };
+        let by = parts.scale.recip();
+        if !(by.is_finite() && (0..3).all(is_along)) {
+            return None;
+        }
+        let scale = points(sampler, DAffine3::from_scale(by));
+        Some(self.own_points(skin_node, AnimatedPart::Scale, &scale).unwrap_or(scale))
+    }
+}
+
+/// The keys of a translation or scale, transformed.
+fn points(sampler: &KeySampler<'_>, by: DAffine3) -> Spline<Vec3> {
+    let knot = |key| {
+        let slope = |tangent: DVec3| by.transform_vector3(tangent).as_vec3();
+        let slopes = sampler.tangents(key).map(|[arriving, leaving]| Slopes {
+            arriving: slope(arriving),
+            leaving: slope(leaving),
+        });
+        let interpolation = match sampler.channel.source.curve {
+            KeyCurve::Linear => Interpolation::Linear,
+            KeyCurve::Step => Interpolation::Step,
+            KeyCurve::CubicSpline => Interpolation::Smooth,
+        };
+        let value = by.transform_point3(sampler.key_point(key)).as_vec3();
+        Knot { time: sampler.time(key), value, interpolation, slopes }
+    };
+    (0..sampler.len()).map(knot).collect()
 }
 
 /// Part of a scale by which it may be uneven, or change evenly, and still turns joints as if it were

@@ -7,7 +7,7 @@ use super::nodes::{NodeTransform, NodeTree, SkinJoints, at_node};
 use crate::document::{Channel, Keys};
 use crate::io::formats::gltf::frame;
 use crate::io::json::FieldError;
-use crate::kinematics::skeleton::{Joint, JointId, exact_angles};
+use crate::kinematics::skeleton::{Joint, JointId, SkinStretch, exact_angles};
 use crate::kinematics::spline::{Interpolation, Knot, Spline};
 
 /// The placement of a joint in the world, in metres.
@@ -16,6 +16,8 @@ pub struct JointPlacement {
     pub base: DVec3,
     /// The joint's axes, orthonormalized.
     pub frame: DMat3,
+    /// The axes by which it moves the skin, of any length and angle.
+    pub skin: DMat3,
 }
 
 /// Computes the placements of the joints from the transforms of their nodes and of all ancestors.
@@ -30,7 +32,7 @@ pub struct NodePoser<'a> {
 
 impl<'a> NodePoser<'a> {
     pub fn new(nodes: &'a NodeTree, joints: &'a SkinJoints) -> Self {
-        let is_needed = nodes.with_ancestors(joints.nodes.iter().copied());
+        let is_needed = nodes.with_ancestors(joints.skin_nodes.iter().copied());
         Self {
             nodes,
             joints,
@@ -71,15 +73,16 @@ impl<'a> NodePoser<'a> {
             let parent_world = parent.map_or(DAffine3::IDENTITY, |parent| self.worlds[parent]);
             self.worlds[node] = parent_world * self.locals[node].affine();
         }
-        let placement = |node: &usize| {
+        let placement = |(node, skin_node): (&usize, &usize)| {
             let DAffine3 { matrix3, translation: base } = self.worlds[*node];
             if !base.as_vec3().is_finite() {
                 let reason = "must be within ±3.4028235e38 m in the world";
                 return Err(FieldError::new(at_node(*node), reason));
             }
-            Ok(JointPlacement { base, frame: frame(matrix3.y_axis, matrix3.x_axis) })
+            let skin = self.worlds[*skin_node].matrix3;
+            Ok(JointPlacement { base, frame: frame(matrix3.y_axis, matrix3.x_axis), skin })
         };
-        self.joints.nodes.iter().map(placement).collect()
+        self.joints.nodes.iter().zip(&self.joints.skin_nodes).map(placement).collect()
     }
 }
 
@@ -89,8 +92,16 @@ pub struct JointTracks {
     /// Angles about x, y and z in radians.
     pub rotation: Spline<Vec3>,
     pub offset: Spline<Vec3>,
+    pub skin: StretchTracks,
     /// The frame of the angles relative to the node; `None` for the node's axes.
     pub frame: Option<Mat3>,
+}
+
+/// The keys of the stretch of a joint's skin.
+#[derive(Clone, Debug, Default)]
+pub struct StretchTracks {
+    pub scale: Spline<Vec3>,
+    pub shear: Spline<Vec3>,
 }
 
 /// Changes below this count as rounding errors: in radians for an angle, relative to its length for
@@ -101,6 +112,11 @@ impl JointTracks {
     /// Returns whether the joint turns.
     pub fn turns(&self) -> bool {
         changes(&self.rotation, |_| 2.0 * LEAST)
+    }
+
+    /// Returns whether the joint changes how it stretches the skin: its scale, and its shear.
+    pub fn stretches(&self) -> [bool; 2] {
+        [&self.skin.scale, &self.skin.shear].map(|track| changes(track, |_| LEAST))
     }
 
     /// Returns whether the joint's offset changes. `size` is the length of the skeleton's longest
@@ -127,19 +143,20 @@ fn changes(track: &Spline<Vec3>, least: impl Fn(Vec3) -> f32) -> bool {
 pub struct ExactJoint {
     pub rotation: Option<Spline<Vec3>>,
     pub offset: Option<Spline<Vec3>>,
+    pub skin: Option<StretchTracks>,
     /// See [`JointTracks::frame`].
     pub frame: Option<Mat3>,
 }
 
 impl ExactJoint {
     pub fn is_complete(&self) -> bool {
-        self.rotation.is_some() && self.offset.is_some()
+        self.rotation.is_some() && self.offset.is_some() && self.skin.is_some()
     }
 }
 
 /// Completes the tracks of all joints by keys at the `times`, in seconds and ascending: offsets that
-/// bring joints to their places under the rotations that their parents have, and angles unwrapped
-/// from one time to the next.
+/// bring joints to their places under the rotations that their parents have, angles unwrapped from
+/// one time to the next, and stretches of the skin for what rotations and offsets leave.
 pub fn sample(
     poser: &mut NodePoser<'_>,
     tracks: &NodeTracks<'_>,
@@ -181,8 +198,8 @@ pub fn sample(
             rotations.push(rotation);
             let of_joint = &mut sampled[index];
             let knot = |interpolation, value| Knot { interpolation, ..Knot::new(time, value) };
+            let frame = bind_pose[index].frame;
             if exact[index].rotation.is_none() {
-                let frame = bind_pose[index].frame;
                 let local = frame.transpose() * (above.transpose() * rotation) * frame;
                 of_joint.last = exact_angles::nearest(local, of_joint.last);
                 of_joint.rotation.push(knot(Interpolation::Slerp, of_joint.last.as_vec3()));
@@ -190,14 +207,38 @@ pub fn sample(
             if exact[index].offset.is_none() {
                 of_joint.offset.push(knot(Interpolation::Linear, offset));
             }
+            if exact[index].skin.is_none() {
+                let frame = frame * exact[index].frame.unwrap_or(Mat3::IDENTITY).as_dmat3();
+                let stretch = stretch(&bind_pose[index], now, rotation, frame);
+                of_joint.scale.push(knot(Interpolation::Linear, stretch.scale));
+                of_joint.shear.push(knot(Interpolation::Linear, stretch.shear));
+            }
         }
     }
     let complete = |(exact, sampled): (ExactJoint, SampledJoint)| JointTracks {
         rotation: exact.rotation.unwrap_or_else(|| sampled.rotation.into_iter().collect()),
         offset: exact.offset.unwrap_or_else(|| sampled.offset.into_iter().collect()),
+        skin: exact.skin.unwrap_or_else(|| StretchTracks {
+            scale: sampled.scale.into_iter().collect(),
+            shear: sampled.shear.into_iter().collect(),
+        }),
         frame: exact.frame,
     };
     Ok(exact.into_iter().zip(sampled).map(complete).collect())
+}
+
+/// How a joint stretches the skin in its `frame`, if it has turned by `rotation` since the bind pose: all
+/// that its node does to the skin beyond that. None, if the skin is flat in the bind pose.
+fn stretch(
+    bind: &JointPlacement,
+    now: &JointPlacement,
+    rotation: DMat3,
+    frame: DMat3,
+) -> SkinStretch {
+    let local = (rotation * frame).transpose() * now.skin * bind.skin.inverse() * frame;
+    let stretch = SkinStretch::of_matrix(local);
+    let is_finite = stretch.scale.is_finite() && stretch.shear.is_finite();
+    if is_finite { stretch } else { SkinStretch::NONE }
 }
 
 /// The keys of a joint at times that were sampled so far.
@@ -205,6 +246,8 @@ pub fn sample(
 struct SampledJoint {
     rotation: Vec<Knot<Vec3>>,
     offset: Vec<Knot<Vec3>>,
+    scale: Vec<Knot<Vec3>>,
+    shear: Vec<Knot<Vec3>>,
     /// The angles at the last time, in radians.
     last: DVec3,
 }

@@ -238,7 +238,7 @@ impl GltfImport<'_> {
         let Some(animation) = animation else { return Ok(Vec::new()) };
         let nodes = self.file.nodes.0.iter().enumerate();
         let with_meshes = nodes.filter(|(_, node)| node.mesh.is_some()).map(|(index, _)| index);
-        let joints = self.joints.nodes.iter().copied();
+        let joints = self.joints.skin_nodes.iter().copied();
         let is_needed = self.nodes.with_ancestors(joints.chain(with_meshes));
         animations::used_channels(animation, at, self.nodes, &is_needed)
     }

@@ -1,9 +1,11 @@
+use core::iter;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
+use crate::io::formats::gltf::extras::Extras;
 use crate::io::formats::gltf::file::{GltfFile, GltfNode, index_rule};
-use crate::io::json::{FieldError, JsonNumbers, JsonPath};
+use crate::io::json::{FieldError, JsonNumbers, JsonPath, Whole};
 use crate::kinematics::skeleton::{Skeleton, SkeletonError};
 
 /// The nodes of a file as a tree.
@@ -183,6 +185,9 @@ pub fn unit(rotation: [f64; 4]) -> Option<DQuat> {
 pub struct SkinJoints {
     /// The node of each joint.
     pub nodes: Vec<usize>,
+    /// For each joint the node that moves the skin: that of the joint, or in files of this program
+    /// one below it that stretches the skin.
+    pub skin_nodes: Vec<usize>,
     /// The parent of each joint: the joint of its nearest ancestor node that is a joint. Nodes
     /// between the two joints are skipped. `None` for a root.
     pub parents: Vec<Option<usize>>,
@@ -208,11 +213,14 @@ impl SkinJoints {
     ) -> Result<Self, FieldError> {
         let mut listed = Vec::new();
         let mut all = HashSet::new();
+        let mut stretching = HashMap::new();
         for &skin in skins {
-            for joint in listed_joints(file, skin)? {
+            for node in listed_joints(file, skin)? {
+                let joint = stretched_joint(file, nodes, node);
                 if all.insert(joint) {
                     listed.push(joint);
                 }
+                stretching.insert(joint, node);
             }
             // The maximum is doubled, because tips of bones are joints in the file, but not in the
             // skeleton.
@@ -240,7 +248,11 @@ impl SkinJoints {
         let places: HashMap<usize, usize> = places.map(|(joint, node)| (*node, joint)).collect();
         for &skin in skins {
             let of_skin = file.skins.0[skin].joints.iter();
-            joints.of_skins.push(of_skin.map(|joint| places[&(joint.0 as usize)]).collect());
+            let joint = |node: &Whole| stretched_joint(file, nodes, node.0 as usize);
+            joints.of_skins.push(of_skin.map(|node| places[&joint(node)]).collect());
+        }
+        for (node, skin_node) in joints.nodes.iter().zip(&mut joints.skin_nodes) {
+            *skin_node = stretching.get(node).copied().unwrap_or(*node);
         }
         Ok(joints)
     }
@@ -250,6 +262,14 @@ impl SkinJoints {
         let mut seen = HashSet::new();
         let listed = self.of_skins.iter().flatten().chain(&self.added).copied();
         listed.filter(move |joint| seen.insert(*joint))
+    }
+
+    /// The nodes below joints that only stretch the skin.
+    pub fn stretching<'a>(&'a self, nodes: &'a NodeTree) -> impl Iterator<Item = usize> + 'a {
+        self.nodes.iter().zip(&self.skin_nodes).flat_map(|(joint, skin_node)| {
+            let upwards = iter::successors(Some(*skin_node), |node| nodes.parents[*node]);
+            upwards.take_while(move |node| node != joint)
+        })
     }
 
     /// For a file without a skin, these `parts` with their ancestors, up to the nearest one that all
@@ -282,23 +302,38 @@ impl SkinJoints {
         let mut joint_of = vec![None; nodes.parents.len()];
         let mut joints = Self {
             nodes: Vec::new(),
+            skin_nodes: Vec::new(),
             parents: Vec::new(),
             of_skins: Vec::new(),
             added: Vec::new(),
         };
         for &node in &listed {
             let unplaced = |node: &usize| joint_of[*node].is_none();
-            let path =
-                std::iter::successors(Some(node), |node| parent_of[*node]).take_while(unplaced);
+            let path = iter::successors(Some(node), |node| parent_of[*node]).take_while(unplaced);
             for node in path.collect::<Vec<_>>().into_iter().rev() {
                 joint_of[node] = Some(joints.nodes.len());
                 joints.parents.push(parent_of[node].and_then(|parent| joint_of[parent]));
                 joints.nodes.push(node);
             }
         }
+        joints.skin_nodes.clone_from(&joints.nodes);
         joints.added = added.iter().filter_map(|node| joint_of[*node]).collect();
         joints
     }
+}
+
+/// The joint whose skin a node stretches, in a file of this program: the nearest node above it that
+/// does not; else the node itself.
+pub fn stretched_joint(file: &GltfFile<'_>, nodes: &NodeTree, node: usize) -> usize {
+    let stretches = |node: usize| {
+        let extras = file.nodes.0[node].extras.as_ref().and_then(Extras::own);
+        extras.is_some_and(|extras| extras.stretches_skin())
+    };
+    let mut joint = node;
+    while let Some(above) = nodes.parents[joint].filter(|_| stretches(joint)) {
+        joint = above;
+    }
+    if file.asset.0.is_of_this_program() { joint } else { node }
 }
 
 /// The nodes that are joints of a skin.

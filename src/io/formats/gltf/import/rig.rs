@@ -105,13 +105,17 @@ pub fn build(
     for (joint, motion) in joints.iter_mut().zip(motions) {
         joint.offset = first(&motion.offset).unwrap_or(joint.offset);
         joint.rotation = first(&motion.rotation).unwrap_or(joint.rotation);
+        joint.skin.scale = first(&motion.skin.scale).unwrap_or(joint.skin.scale);
+        joint.skin.shear = first(&motion.skin.shear).unwrap_or(joint.skin.shear);
     }
     let moves: Vec<bool> = joints
         .iter()
         .enumerate()
         .map(|(index, _)| motions.get(index).is_some_and(|motion| motion.moves(size)))
         .collect();
-    let are_tips = tips(&joints, &moves);
+    let stretches =
+        |joint: usize| motions.get(joint).is_some_and(|it| it.stretches() != [false; 2]);
+    let are_tips = tips(&joints, |joint| moves[joint] || stretches(joint));
     let bones = bones(&joints, &are_tips, &moves, ends);
     bones::give_bones(&mut joints, &bones);
     bones::connect(&mut joints, &bones, |joint| moves[joint]);
@@ -139,8 +143,8 @@ pub fn build(
 }
 
 /// For each joint, whether it is only the tip of its parent's bone. A tip has the name of its
-/// parent with `_tip` at the end, no children and a constant offset.
-fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
+/// parent with `_tip` at the end and no children, and does not change.
+fn tips(joints: &[Joint], changes: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut are_leaves = vec![true; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
         are_leaves[parent.index()] = false;
@@ -148,7 +152,7 @@ fn tips(joints: &[Joint], moves: &[bool]) -> Vec<bool> {
     let is_tip = |(index, joint): (usize, &Joint)| {
         let parent = joint.parent.map(|parent| joints[parent.index()].name.as_str());
         let is_named = parent.is_some() && joint.name.strip_suffix("_tip") == parent;
-        is_named && are_leaves[index] && !moves[index]
+        is_named && are_leaves[index] && !changes(index)
     };
     joints.iter().enumerate().map(is_tip).collect()
 }
@@ -189,6 +193,13 @@ fn add_keys(
         }
         if *moves {
             document.keys.set_track(Channel::Offset(joint), motion.offset.clone());
+        }
+        let [scales, shears] = motion.stretches();
+        if scales {
+            document.keys.set_track(Channel::SkinScale(joint), motion.skin.scale.clone());
+        }
+        if shears {
+            document.keys.set_track(Channel::SkinShear(joint), motion.skin.shear.clone());
         }
     }
 }

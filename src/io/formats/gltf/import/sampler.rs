@@ -221,6 +221,20 @@ impl<'a> KeySampler<'a> {
         })
     }
 
+    /// The first key of a scale, or if that is next to 0 along an axis, the key with the greatest
+    /// volume.
+    pub fn key_with_volume(&self) -> usize {
+        /// Part of the greatest factor along an axis at which a factor is next to 0.
+        const FLAT: f64 = 1e-3;
+        let scales = (0..self.len()).map(|key| self.key_point(key).abs());
+        let greatest = scales.clone().fold(DVec3::ZERO, DVec3::max);
+        if self.key_point(0).abs().cmpge(FLAT * greatest).all() {
+            return 0;
+        }
+        let volumes = scales.map(DVec3::element_product).enumerate();
+        volumes.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(key, _)| key)
+    }
+
     /// Sets the animated part of the node's transform in `locals` to its value at a time.
     pub fn pose(&self, time: f64, locals: &mut [NodeTransform]) {
         if let Some(NodeTransform::TransformParts(parts)) = locals.get_mut(self.channel.node) {
