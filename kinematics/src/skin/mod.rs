@@ -18,7 +18,8 @@
 //!
 //! [Morph targets](Morph) change the shape of the mesh before its joints move it.
 //!
-//! [`SkinnedMesh::from_bones`] makes a skin for any skeleton from the radii of its joints.
+//! [`SkinnedMesh::from_bones`] makes a skin for any skeleton from the radii of its joints,
+//! [`SkinnedMesh::bound`] weights for any mesh from the joints that were placed in it.
 //!
 //! # Spaces
 //!
@@ -30,6 +31,7 @@
 //! L. Kavan, S. Collins, J. Žára, C. O'Sullivan, *Geometric skinning with approximate dual
 //! quaternion blending*, ACM TOG 27(4), 2008.
 
+mod binding;
 mod from_bones;
 mod morph;
 mod skin_pose;
@@ -37,6 +39,7 @@ mod skinned_mesh;
 mod triangle_mesh;
 mod vertex_weights;
 
+pub use binding::BindError;
 pub use from_bones::{Blob, SkinShape, SkinShapeError};
 pub use morph::Morph;
 pub use skin_pose::{JointDeform, SkinPose, Skinning, UnknownSkinning};

@@ -323,7 +323,7 @@ impl SkinnedMesh {
 
 /// A normal under the linear part of a transform: the inverse transpose, computed by cofactors so
 /// that a collapsed mesh has normals too. Without a direction, the original normal.
-fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
+pub(super) fn posed_normal(linear: Mat3A, normal: Vec3) -> Vec3 {
     let Mat3A { x_axis, y_axis, z_axis } = linear;
     let cofactors =
         Mat3A::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));

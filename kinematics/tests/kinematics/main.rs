@@ -2,6 +2,7 @@
 
 mod balance;
 mod balance_target;
+mod binding;
 mod chain_ik;
 mod chain_ik_gradient;
 #[path = "../common/mod.rs"]

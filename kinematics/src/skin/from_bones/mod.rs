@@ -15,6 +15,8 @@ mod surface_nets;
 mod weights;
 
 pub use body::{Blob, SkinShape, SkinShapeError};
+pub(super) use grid::map_ranges;
+pub(super) use weights::{REACH, falloff, smooth};
 
 use glam::{DVec3, Vec3};
 

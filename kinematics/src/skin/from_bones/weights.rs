@@ -67,14 +67,14 @@ fn nearest_of(body: &Body, point: DVec3, parts: &[usize]) -> Sighting {
 
 /// Weight beside the nearest joint's weight of 1. Of two joints, the farther one then has the share
 /// (1 − x)/2, which changes evenly from one joint to the other, with x = `far`/[`REACH`].
-fn falloff(far: f64) -> f64 {
+pub fn falloff(far: f64) -> f64 {
     let near = (1.0 - far / REACH).max(0.0);
     near / (2.0 - near)
 }
 
 /// Distance in local radii, beyond the nearest joint's, at which weights become 0. In the middle
 /// third of a straight bone longer than six radii it is √5 − 1 = 1.236 to the next bone.
-const REACH: f64 = 1.2;
+pub const REACH: f64 = 1.2;
 
 fn within_two_steps(skeleton: &Skeleton, joint: JointId) -> Vec<JointId> {
     let mut near = vec![joint];
