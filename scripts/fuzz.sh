@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-targets=(document js3d bvh urdf gltf json_lines two_bone chain)
+targets=(document js3d bvh urdf obj gltf json_lines two_bone chain)
 target_folder=$(realpath -m "${CARGO_TARGET_DIR:-fuzz/target}")
 logs=$target_folder/logs
 found=()

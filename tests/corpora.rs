@@ -56,6 +56,11 @@ fn robots_are_refused_or_have_valid_skeletons() {
 }
 
 #[test]
+fn meshes_are_refused_or_valid() {
+    replay("obj", checks::obj);
+}
+
+#[test]
 fn gltf_is_refused_or_has_valid_skeletons() {
     replay("gltf", checks::gltf);
 }

@@ -7,14 +7,15 @@ use super::open::{self, InputArgs};
 use super::report::{CommandError, say};
 use crate::document::{Document, Overlay, Skin};
 use crate::io::save;
-use crate::kinematics::skin::{SkinShape, Skinning};
+use crate::kinematics::skin::{BindError, SkinShape, SkinnedMesh, Skinning};
 use crate::rig::{BoneSkin, SkinSource};
 
 #[derive(clap::Args)]
 #[command(
     after_help = r#"The skin is a closed mesh around the bones in the bind pose, as thick as the joints' radii. The
 document holds its settings; the mesh is made again when the document is opened. It replaces the
-mesh of a figure from another program. Settings that are not given stay as they are in FILE, also
+mesh of a figure from another program. With --bind that mesh stays, and gets new weights, which the
+document holds with it. Settings that are not given stay as they are in FILE, also
 blobs, which only a document can have. The numbers of vertices and triangles are listed on stderr."#,
     mut_arg("file", |file| file.help(open::input_help("File with a skeleton")))
 )]
@@ -31,6 +32,10 @@ pub struct SkinArgs {
     /// Factor of all radii, above 0 [default: 1]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = number)]
     thickness: Option<f32>,
+    /// Let the mesh that FILE has follow its bones instead, by their distances inside it, in the pose
+    /// at the timeline's start
+    #[arg(long, conflicts_with_all = ["detail", "thickness"])]
+    bind: bool,
     /// How a vertex between joints follows them: linear, dual-quaternion or spread-twist [default:
     /// dual-quaternion]
     #[arg(long, visible_alias = "blend", value_name = "WAY")]
@@ -41,7 +46,10 @@ pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
     let SkinArgs { input, output, .. } = args;
     open::require_document("skin", output)?;
     let mut document = input.open()?.document;
-    let skin = args.made(&document);
+    let skin = match args.bind {
+        true => args.bound(&document).map_err(|why| CommandError::of_file(input.name(), why))?,
+        false => args.made(&document),
+    };
     let made = skin.mesh().map_err(|error| CommandError::of_file(input.name(), error))?;
     let mesh = made.mesh.mesh();
     let report = format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
@@ -53,6 +61,17 @@ pub fn run(args: &SkinArgs) -> Result<(), CommandError> {
 }
 
 impl SkinArgs {
+    /// The mesh of the document on its bones.
+    fn bound(&self, document: &Document) -> Result<Skin, BindError> {
+        let skin = document.rig.skin.as_ref().ok_or(BindError::NoMesh)?;
+        let mesh = skin.mesh_skin().ok_or(BindError::NoMesh)?;
+        let skinning = self.skinning.unwrap_or(skin.skinning);
+        let posed = document.at(document.timeline.start);
+        let bind = |mesh: &SkinnedMesh| mesh.bound(posed.skeleton(), skinning);
+        let bound = mesh.reattached(document.skeleton(), bind)?.ok_or(BindError::NoMesh)?;
+        Ok(Skin { source: SkinSource::Mesh(bound), skinning, ..skin.clone() })
+    }
+
     /// The skin of the document with the settings that are given.
     fn made(&self, document: &Document) -> Skin {
         let rig = &document.rig;

@@ -84,7 +84,9 @@ impl Document {
         };
         let own = [Channel::Rotation(hand), Channel::TargetOrientation(joint)];
         let [from, to] = if is_kept { own } else { [own[1], own[0]] };
-        if self.rig.targets[index].orientation.is_some() == is_kept {
+        let target = &self.rig.targets[index];
+        // A target that aims its joint turns it already.
+        if target.orientation.is_some() == is_kept || target.aim.is_some() {
             return;
         }
         let angles = |posed: &Posed, near: Option<Vec3>| {

@@ -62,11 +62,6 @@ const MAYA: ForeignFormat = ForeignFormat {
     advice: "Maya exports .fbx, which Blender or FBX2glTF converts to .glb",
 };
 
-const OBJ: ForeignFormat = ForeignFormat {
-    what: "an OBJ file, a mesh without joints",
-    advice: "a rig needs .glb or .gltf",
-};
-
 const IQM: ForeignFormat = ForeignFormat {
     what: "an IQM file (Inter-Quake Model)",
     advice: "Noesis or Blender with an add-on for IQM imports it and exports .glb",
@@ -102,7 +97,7 @@ const HTML: ForeignFormat = ForeignFormat {
 };
 
 /// The first words of text files, after blanks.
-const TEXT: [(&str, ForeignFormat); 11] = [
+const TEXT: [(&str, ForeignFormat); 9] = [
     ("version https://git-lfs.github.com/spec/", GIT_LFS),
     ("MD5Version", MD5),
     ("xof ", DIRECTX),
@@ -112,8 +107,6 @@ const TEXT: [(&str, ForeignFormat); 11] = [
     (":FULLY-SPECIFIED", ACCLAIM),
     ("#!OML:ASF", ACCLAIM),
     ("//Maya", MAYA),
-    ("mtllib", OBJ),
-    ("o ", OBJ),
 ];
 
 impl ForeignFormat {

@@ -1,4 +1,4 @@
-//! Files. [`open`] reads documents, Scotty3D scenes, glTF and BVH; [`save`], [`glb`],
+//! Files. [`open`] reads documents, Scotty3D scenes, glTF, BVH, OBJ and URDF; [`save`], [`glb`],
 //! [`to_bvh`], [`to_csv`] and [`to_obj`] write; [`solve_line`] answers the lines of `ik-arm solve`.
 //! [`FileFormat::ALL`] is the table of formats, from which texts about them are made; docs/files.md
 //! describes their content.

@@ -1,12 +1,12 @@
 //! The content of a file that is opened.
 
 use std::io::{self, Read, Seek};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::disk;
-use super::error::{OpenError, Remark, shortened, shortened_to, without_position};
+use super::error::{OpenError, Remark, shortened, shortened_to, system_reason, without_position};
 use super::foreign::ForeignFormat;
 use super::json::{FieldError, FieldWarnings, JsonPath, byte_at, line_and_column};
 use super::packed::GlbChunks;
@@ -114,6 +114,36 @@ impl Source {
     /// was not opened by its path.
     pub fn folder(&self) -> Option<&Path> {
         self.path()?.parent()
+    }
+
+    /// Reads at most `most` bytes of another file in the folder of this one, or below it. The error is
+    /// the reason why that is impossible.
+    pub fn neighbour(&self, name: &str, most: usize) -> Result<Vec<u8>, String> {
+        let Some(folder) = self.folder() else {
+            return Err(format!(
+                "must not be another file if the folder is unknown, got {name:?}; open the file by \
+                 its path, or one that contains all"
+            ));
+        };
+        let is_plain =
+            |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+        if name.contains([':', '\\', '\0']) || !Path::new(name).components().all(is_plain) {
+            return Err(format!("must be in the file's own folder, got {name:?}"));
+        }
+        let path = folder.join(name);
+        let failed =
+            |error| format!("{} cannot be read: {}", path.display(), system_reason(&error));
+        let target = disk::end_of_links(&path).map_err(failed)?;
+        if !target.starts_with(disk::end_of_links(folder).map_err(failed)?) {
+            let (link, target) = (path.display(), target.display());
+            return Err(format!(
+                "must be in the file's own folder, got {link}, a link to {target}"
+            ));
+        }
+        let file = disk::open_regular(&path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        file.take(most as u64).read_to_end(&mut bytes).map_err(failed)?;
+        Ok(bytes)
     }
 
     /// CRC-32 of the file, to be updated with the files that it names.

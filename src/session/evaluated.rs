@@ -91,16 +91,27 @@ impl Evaluated {
         /// Weight of a root without a bone, as a fraction of the greatest one, from which the skin
         /// is its own.
         const SHARED: f32 = 0.5;
-        let Document { rig, display, .. } = posed.document();
-        let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
-        let mesh = &skin.mesh().ok()?.mesh;
-        let pose = || mesh.posed(&mesh.pose(posed.skeleton()), skin.skinning);
-        let hit = self.posed_skin.get(pose).hit(ray.origin, ray.direction)?;
-        let weights = mesh.weights_at(&hit);
+        let hit = self.skin_in_world(posed)?.hit(ray.origin, ray.direction)?;
+        let rig = &posed.document().rig;
+        let weights = rig.skin.as_ref()?.mesh().ok()?.mesh.weights_at(&hit);
         let least = SHARED * weights.of(weights.first());
         let is_root = |joint| rig.skeleton.joint(joint).is_some_and(Joint::is_root_point);
         let root = weights.iter().find(|(joint, _)| is_root(*joint));
         Some(root.filter(|(_, weight)| *weight >= least).map_or(weights.first(), |it| it.0))
+    }
+
+    /// The middle of the body of the shown skin that a ray enters; `None` if the skin is hidden or the
+    /// ray meets none.
+    pub fn middle_of_skin(&self, posed: &Posed, ray: Ray) -> Option<Vec3> {
+        self.skin_in_world(posed)?.middle(ray.origin, ray.direction)
+    }
+
+    /// The shown skin in the pose at the playhead; `None` if it is hidden or has no mesh.
+    fn skin_in_world(&self, posed: &Posed) -> Option<&TriangleMesh> {
+        let Document { rig, display, .. } = posed.document();
+        let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin))?;
+        let mesh = &skin.mesh().ok()?.mesh;
+        Some(self.posed_skin.get(|| mesh.posed(&mesh.pose(posed.skeleton()), skin.skinning)))
     }
 
     /// The areas of the skin over the timeline.

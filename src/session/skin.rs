@@ -1,8 +1,11 @@
 use std::path::Path;
 
-use crate::document::{Channel, Document, Overlay, Skin};
-use crate::kinematics::skin::SkinShapeError;
-use crate::rig::{MeshSkin, SkinFile, SkinFileError, SkinMeshError, SkinSource};
+use glam::Vec3;
+
+use crate::document::{Channel, Document, Overlay, Ray, Skin};
+use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
+use crate::kinematics::skin::{BindError, SkinShapeError, SkinnedMesh, Skinning, VertexWeights};
+use crate::rig::{MeshSkin, SkeletonRig, SkinFile, SkinFileError, SkinMeshError, SkinSource};
 use crate::session::evaluated::SkinAreas;
 use crate::session::files::action::PathDialog;
 use crate::session::outcome::{Consequence, Outcome};
@@ -22,6 +25,13 @@ pub enum SkinEdit {
     },
     /// Makes the mesh of a file, which the skin has, a part of the document.
     PackSkin,
+    /// Lets the mesh of the skin follow the bones by weights from their distances inside it.
+    Bind,
+    /// Lets the mesh of the skin follow its first joint alone.
+    Unbind,
+    /// Places the only joint of the skeleton at a point in the world, and leaves the mesh of the skin
+    /// where it is.
+    PlaceRoot(Vec3),
     /// Sets the weight of a morph target of the skin.
     SetMorph {
         /// Index of the morph target.
@@ -42,6 +52,9 @@ impl SkinEdit {
             Self::ShowSkin { skin: true, bones: false } => "Show skin",
             Self::ShowSkin { skin: false, .. } => "Show bones",
             Self::PackSkin => "Pack skin into file",
+            Self::Bind => "Bind mesh",
+            Self::Unbind => "Unbind mesh",
+            Self::PlaceRoot(_) => "Place root",
             Self::SetMorph { .. } => "Set morph target",
             Self::SetSkin(None) => "Remove skin",
             Self::SetSkin(Some(_)) => "Change skin",
@@ -53,6 +66,9 @@ impl SkinEdit {
             Self::AddSkin => add(session),
             Self::ShowSkin { skin, bones } => show(session.shown(), skin, bones),
             Self::PackSkin => pack(session),
+            Self::Bind => bind(session),
+            Self::Unbind => unbind(session),
+            Self::PlaceRoot(at) => place_root(session, at),
             Self::SetMorph { morph, weight } => Outcome::change(session.shown(), |document| {
                 document.rig.set_morph_weight(morph.into(), weight);
             }),
@@ -87,6 +103,80 @@ fn pack(session: &Session) -> Outcome {
         SkinSource::Bones(_) => None,
     });
     packed.map(|packed| set(session, Some(packed))).into()
+}
+
+/// Lets the mesh follow the bones, and shows the weights of the selected joint.
+fn bind(session: &Session) -> Outcome {
+    let bound = attach(session, |document, mesh, posed, skinning| {
+        document.display = document.display.with(Overlay::SkinWeights, true);
+        mesh.bound(posed, skinning)
+    });
+    match bound {
+        Ok(written) => written.and(Outcome::say(
+            "Bound: the colours are the weights of the selected joint; Weights in the panel hides them",
+        )),
+        Err(refused) => refused,
+    }
+}
+
+/// Lets the mesh follow its first joint alone.
+fn unbind(session: &Session) -> Outcome {
+    let loose = attach(session, |document, mesh, posed, skinning| {
+        document.display = document.display.with(Overlay::SkinWeights, false);
+        let weights = vec![VertexWeights::rigid(JointId::new(0)); mesh.weights().len()];
+        Ok(mesh.reattached(weights, [posed; 2], skinning)?)
+    });
+    loose.unwrap_or_else(|refused| refused)
+}
+
+/// Attaches the mesh of the skin again, as it is on the shown pose. Fails with the report of the
+/// error.
+fn attach(
+    session: &Session,
+    attach: impl FnOnce(
+        &mut Document,
+        &SkinnedMesh,
+        &Skeleton,
+        Skinning,
+    ) -> Result<SkinnedMesh, BindError>,
+) -> Result<Outcome, Outcome> {
+    let posed = session.posed();
+    let edited = Outcome::edit_with(session.shown(), |document| {
+        let skin = document.rig.skin.clone().ok_or(BindError::NoMesh)?;
+        let mesh = skin.mesh_skin().ok_or(BindError::NoMesh)?;
+        let skeleton = document.rig.skeleton.clone();
+        let attached = mesh.reattached(&skeleton, |mesh| {
+            attach(document, mesh, posed.skeleton(), skin.skinning)
+        })?;
+        let source = SkinSource::Mesh(attached.ok_or(BindError::NoMesh)?);
+        document.rig.skin = Some(Skin { source, ..skin });
+        Ok::<(), BindError>(())
+    });
+    edited.map(|(written, ())| written)
+}
+
+/// Places the only joint, and shows it with the mesh.
+fn place_root(session: &Session, at: Vec3) -> Outcome {
+    let root = JointId::new(0);
+    let placed = Outcome::edit(session.shown(), |document| {
+        let before = document.skeleton().clone();
+        let offset = before.transform().inverse().transform_point3(at);
+        let placed = document.skeleton_mut().change(root, |joint| joint.offset = offset);
+        placed.map_err(|error| error.to_string())?;
+        document.display = document.display.with(Overlay::Bones, true);
+        let SkeletonRig { skeleton, skin, .. } = &mut document.rig;
+        let Some(Skin { source: SkinSource::Mesh(mesh), skinning, .. }) = skin else {
+            return Ok(());
+        };
+        let stays = |mesh: &SkinnedMesh| {
+            mesh.reattached(mesh.weights().to_vec(), [&before, skeleton], *skinning)
+        };
+        if let Some(attached) = mesh.reattached(skeleton, stays).map_err(|it| it.to_string())? {
+            *mesh = attached;
+        }
+        Ok::<(), String>(())
+    });
+    placed.and(Consequence::Select(vec![root]))
 }
 
 /// Replaces the skin, with its colour clamped to valid channels. During a drag its mesh stays;
@@ -157,6 +247,26 @@ pub(super) fn located(
 
 /// The skin under the mouse.
 impl Session {
+    /// True if the skin is a mesh that follows a root without a bone alone: joints can be placed in it.
+    pub fn has_loose_mesh(&self) -> bool {
+        let mesh = self.rig().skin.as_ref().and_then(Skin::mesh_skin);
+        let followed = mesh.and_then(MeshSkin::sole_joint);
+        followed.and_then(|joint| self.skeleton().joint(joint)).is_some_and(Joint::is_root_point)
+    }
+
+    /// True if the skeleton is a single joint without a bone.
+    pub fn has_lone_root(&self) -> bool {
+        let joints = self.skeleton().joints();
+        matches!(joints, [root] if root.is_root_point())
+    }
+
+    /// The middle of the body that a ray enters, if the shown skin is an imported mesh; `None` if it
+    /// meets none.
+    pub fn middle_of_mesh(&self, ray: Ray) -> Option<Vec3> {
+        self.rig().skin.as_ref()?.mesh_skin()?;
+        self.evaluated().middle_of_skin(self.posed(), ray)
+    }
+
     /// Areas of the cross-section of the compared skins at the active joint over the timeline;
     /// `None` if skins are not compared or have no section there.
     pub fn skin_areas(&self) -> Option<&SkinAreas> {

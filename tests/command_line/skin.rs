@@ -1,13 +1,13 @@
 //! `ik-arm skin`, and skins in `ik-arm export`, as a user runs them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use glam::Vec3;
 use ik_arm::io::{self};
-use ik_arm::kinematics::skin::Skinning;
+use ik_arm::kinematics::skin::{Skinning, VertexWeights};
 use ik_arm::rig::SkinSource;
 use tempfile::TempDir;
 
@@ -188,4 +188,28 @@ fn a_motion_whose_bind_pose_is_tangled_gets_its_skin_in_its_first_frame() {
         has("LeftHand") && has("Right") || has("RightHand") && has("Left")
     };
     assert!(!mesh.mesh().triangles.iter().any(ties), "no triangle ties a hand to the other arm");
+}
+
+#[test]
+fn bind_gives_the_mesh_of_a_file_new_weights_and_keeps_it_in_the_document() {
+    let desk = Desk::new();
+    let (figure, out) = (desk.path("human.glb"), desk.path("bound.json"));
+    let file = desk.path("human.json");
+    io::save(&example("human"), &file).expect("saved");
+    let exported = run(&["convert", "-o", figure.to_str().expect("a path")], &[&file]);
+    assert!(exported.status.success(), "{}", stderr(&exported));
+    let output = skin(&figure, &out, &["--bind"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    fs::remove_file(&figure).expect("removed");
+    let document = io::open(&out, &io::OpenOptions::default()).expect("opens").document;
+    let mesh = document.rig.skin.as_ref().and_then(|skin| skin.mesh_skin()).expect("a mesh");
+    let weights = mesh.mesh().expect("in the document").mesh.weights().to_vec();
+    let followed: HashSet<_> = weights.iter().map(VertexWeights::first).collect();
+    assert!(followed.len() > 12, "{followed:?}");
+
+    let without = skin(&desk.example("ten-joints"), &out, &["--bind"]);
+    assert_eq!(without.status.code(), Some(1));
+    assert!(stderr(&without).contains("there must be a mesh from a file"), "{}", stderr(&without));
+    let both = skin(&desk.example("ten-joints"), &out, &["--bind", "--detail", "2"]);
+    assert_eq!(both.status.code(), Some(2));
 }

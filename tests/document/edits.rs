@@ -94,6 +94,9 @@ examples! {
         AddSkin: [SkinEdit::AddSkin];
         ShowSkin: [SkinEdit::ShowSkin { skin: false, bones: true }];
         PackSkin: [SkinEdit::PackSkin];
+        Bind: [SkinEdit::Bind];
+        Unbind: [SkinEdit::Unbind];
+        PlaceRoot: [SkinEdit::PlaceRoot(Vec3::X)];
         SetMorph: [SkinEdit::SetMorph { morph: 0, weight: 0.5 }];
         SetSkin: [SkinEdit::SetSkin(Some(Skin::from_bones(&Shared::default())))];
     }
@@ -232,7 +235,10 @@ fn session_for(edit: &Edit) -> Session {
     session.apply(SelectAction::Keys(vec![(KEYED, 0.0)]));
     session.apply(SelectAction::CopyKeys);
     session.apply(PlaybackAction::SetTime(1.0));
-    if matches!(edit, Edit::Skin(SkinEdit::PackSkin | SkinEdit::SetMorph { .. })) {
+    let needs_mesh = |edit: &SkinEdit| {
+        !matches!(edit, SkinEdit::AddSkin | SkinEdit::ShowSkin { .. } | SkinEdit::SetSkin(_))
+    };
+    if matches!(edit, Edit::Skin(edit) if needs_mesh(edit)) {
         session.apply(SkinEdit::SetSkin(Some(skin_of_a_file(&session))));
     }
     if *edit == Edit::Solver(SolverEdit::ResetPosture) {

@@ -10,6 +10,7 @@ mod foreign;
 mod format_round_trips;
 mod gltf;
 mod js3d;
+mod obj;
 #[cfg(unix)]
 mod saving;
 mod skin_files;

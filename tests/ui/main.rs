@@ -30,6 +30,7 @@ mod inside;
 mod limits;
 mod looks;
 mod numbers;
+mod own_mesh;
 mod panel;
 mod pops;
 mod reach_curve;

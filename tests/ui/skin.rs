@@ -206,7 +206,7 @@ fn a_missing_mesh_is_told_in_the_panel_and_located_in_a_dialog() {
         bench.session().shell().dialog(),
         Some(Dialog::Path(PathDialog::LocateSkin { .. }))
     ));
-    assert!(bench.says("File with the mesh: .glb, .gltf, .js3d or .urdf"));
+    assert!(bench.says("File with the mesh: .glb, .gltf, .js3d, .obj or .urdf"));
 
     // What the window does with the path of the dialog.
     let locate = |bench: &mut Bench, path: &std::path::Path| {

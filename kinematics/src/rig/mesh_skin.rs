@@ -162,6 +162,36 @@ impl MeshSkin {
         self.mesh.is_ok().then(|| Self { file: None, ..self.clone() })
     }
 
+    /// A copy, saved in the document, whose mesh `attach` makes from that on the skeleton, without morph
+    /// targets; `None` without a mesh.
+    ///
+    /// # Errors
+    ///
+    /// Those of `attach`.
+    pub fn reattached<E>(
+        &self,
+        skeleton: &Skeleton,
+        attach: impl FnOnce(&SkinnedMesh) -> Result<SkinnedMesh, E>,
+    ) -> Result<Option<Self>, E> {
+        let Ok(attached) = self.unmorphed() else { return Ok(None) };
+        let in_file = FileMesh {
+            mesh: attach(&attached.mesh)?,
+            parents: skeleton.joints().iter().map(|joint| joint.parent).collect(),
+            parts: attached.parts.clone(),
+        };
+        let joints = skeleton.ids().map(Some).collect();
+        let skin = Self::new(in_file.into(), None, joints, skeleton);
+        Ok(Some(skin.with_morph_weights(self.morph_weights.clone())))
+    }
+
+    /// The joint of the skeleton that all of the mesh follows; `None` if there are several, or no mesh.
+    pub fn sole_joint(&self) -> Option<JointId> {
+        let mut weights = self.unmorphed().ok()?.mesh.weights().iter();
+        let first = weights.next()?;
+        let is_sole = first.iter().count() == 1 && weights.all(|it| it == first);
+        is_sole.then(|| first.first())
+    }
+
     /// A copy that refers to its file by another path.
     #[must_use]
     pub fn with_path(&self, path: impl FnOnce(&SkinFile) -> PathBuf) -> Self {

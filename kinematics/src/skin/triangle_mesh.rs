@@ -38,6 +38,30 @@ impl TriangleMesh {
         low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
     }
 
+    /// The middle of the body that a ray enters: half way to the point where it leaves it again. Of a
+    /// surface that it does not leave, the point where it meets it; `None` if it meets none.
+    pub fn middle(&self, origin: Vec3, direction: Vec3) -> Option<Vec3> {
+        let mut crossings: Vec<(f32, bool)> = Vec::new();
+        for corners in &self.triangles {
+            let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
+            if let Some((along, _)) = meet(origin, direction, [a, b, c]) {
+                crossings.push((along, (b - a).cross(c - a).dot(direction) < 0.0));
+            }
+        }
+        crossings.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+        let (first, _) = *crossings.first()?;
+        // Two triangles with a common edge can both be met: crossings at one place count once.
+        let least = 1e-5 * first.abs();
+        crossings.dedup_by(|next, kept| next.1 == kept.1 && next.0 - kept.0 <= least);
+        let mut inside = 0;
+        let leaves = crossings.iter().find(|(_, enters)| {
+            inside += if *enters { 1 } else { -1 };
+            inside <= 0
+        });
+        let last = leaves.map_or(first, |(along, _)| *along);
+        Some(origin + direction * (0.5 * (first + last)))
+    }
+
     /// The first triangle that a ray meets, from either side; `None` if it meets none. `direction`
     /// may have any length.
     pub fn hit(&self, origin: Vec3, direction: Vec3) -> Option<MeshHit> {

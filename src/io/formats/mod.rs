@@ -215,8 +215,15 @@ impl FileFormat {
         Self {
             title: None,
             extensions: &["obj"],
-            holds: "posed mesh of the skin",
-            reader: None,
+            holds: "mesh without joints",
+            reader: Some(Reader {
+                signature: Signature::Text(obj::is_obj),
+                has_skins: true,
+                says_up: None,
+                most_bytes: OpenError::MAX_BYTES,
+                read: obj::read,
+                former: |_| None,
+            }),
             writer: Some(Writer::Export(
                 ExportKind {
                     name: "OBJ",

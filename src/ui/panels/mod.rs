@@ -16,7 +16,7 @@ use crate::document::Overlay;
 use crate::session::{Actions, DisplayEdit, LimbFigure, PanelTab, Session, ViewAction};
 pub(super) use explain::triangle;
 use limb::LimbTarget;
-pub(super) use skeleton::{ADD_TARGETS, may_be_person};
+pub(super) use skeleton::{ADD_TARGETS, BIND, may_be_person};
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     ui.add_space(4.0);

@@ -6,8 +6,8 @@ mod notes;
 use core::f32::consts::TAU;
 
 use egui::{
-    Event, Id, InputState, Label, PointerButton, Pos2, Rect, Response, RichText, Role, Sense,
-    TouchPhase, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Event, Id, InputState, PointerButton, Pos2, Rect, Response, Role, Sense, TouchPhase, Ui, Vec2,
+    WidgetInfo, pos2,
 };
 
 use super::gizmo::screen::ScreenProjection;
@@ -17,7 +17,7 @@ use super::{commands, pose_summary, status_bar};
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, CameraMotion, Drag, DragInput, Grip, JointEdit, PlaybackAction, PointHandle,
-    SelectAction, Session, TransactionAction, ViewAction,
+    SelectAction, Session, SkinEdit, TransactionAction, ViewAction,
 };
 use navigation::{covers_view_axes, motion, show_cursor, two_fingers, view_axes, wheel};
 
@@ -64,8 +64,8 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
     notes::follow_mouse(ui, session, rect, actions);
     notes::body_follows(ui, session, rect, actions);
     notes::in_the_background(ui, session, rect);
-    if has_joints(session) && !session.rig().has_bones() {
-        invite(ui, rect);
+    if has_joints(session) {
+        notes::how_to_add_joints(ui, session, rect, actions);
     }
 
     wiggle(ui, session, pointed.filter(|_| held_grip.is_none()), actions);
@@ -127,14 +127,6 @@ fn hint(session: &Session, grip: Grip) -> Option<&'static str> {
 
 fn has_joints(session: &Session) -> bool {
     session.crowd().is_none()
-}
-
-/// Shows how to add joints, for a skeleton without bones.
-fn invite(ui: &mut Ui, rect: Rect) {
-    let line = |text: &str, size: f32| Label::new(RichText::new(text).size(size)).selectable(false);
-    let at = Rect::from_center_size(rect.center_top() + vec2(0.0, 64.0), vec2(360.0, 24.0));
-    ui.put(at, line("Click to place the first joint", 18.0));
-    ui.put(at.translate(vec2(0.0, 26.0)), line("Ctrl+click or A adds the next joint", 13.5));
 }
 
 /// Things under the mouse: the grip that a press would drag, and the joint that lights up.
@@ -230,10 +222,17 @@ fn select(
         Some(Grip::Ring(..) | Grip::Orientation(..) | Grip::Limit(..)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
-    let is_first = joint.is_none() && !session.rig().has_bones();
+    let ray = screen.ray(mouse);
+    let in_mesh = session.middle_of_mesh(ray);
+    let is_first = (joint.is_none() || in_mesh.is_some()) && !session.rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
+        let is_root = session.selection().active().is_none() && session.has_lone_root();
+        if let Some(at) = in_mesh.filter(|_| is_root && is_first) {
+            actions.push(SkinEdit::PlaceRoot(at));
+            return;
+        }
         let base = JointEdit::next_base(session);
-        let at = screen.ray(mouse).meets_plane(base, screen.projection.forward);
+        let at = in_mesh.or_else(|| ray.meets_plane(base, screen.projection.forward));
         actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
         return;
     }

@@ -2,14 +2,14 @@
 //! hand"; the switches that let heads follow the mouse and bodies their limbs.
 
 use egui::{
-    Align2, Area, FontId, Frame, Id, Order, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align2, Area, FontId, Frame, Id, Label, Order, Pos2, Rect, RichText, Role, Sense, Stroke, Ui,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 
 use crate::rig::LimbPart;
-use crate::session::{Actions, Session, SolverEdit, TransactionAction};
+use crate::session::{Actions, Session, SkinEdit, SolverEdit, TransactionAction};
 use crate::ui::gizmo::screen::ScreenProjection;
-use crate::ui::{pose_summary, style, widgets};
+use crate::ui::{panels, pose_summary, style, widgets};
 
 /// Width of the text, in points.
 const WIDTH: f32 = 232.0;
@@ -143,6 +143,41 @@ pub(super) fn body_follows(ui: &Ui, session: &Session, viewport: Rect, actions: 
             if let Some(error) = &session.posed().evaluated_skeleton().body_refused {
                 ui.set_max_width(REFUSAL);
                 ui.colored_label(style::accent(ui), format!("Not solved: {error}"));
+            }
+        });
+    });
+}
+
+/// Shows how to add joints, for a skeleton without bones, and for a mesh that does not follow its bones
+/// yet.
+pub(super) fn how_to_add_joints(ui: &Ui, session: &Session, viewport: Rect, actions: &mut Actions) {
+    let has_bones = session.rig().has_bones();
+    let [first, then] = match (session.has_loose_mesh(), has_bones, session.selection().active()) {
+        (false, true, _) => return,
+        (false, false, _) => {
+            ["Click to place the first joint", "Ctrl+click or A adds the next joint"]
+        }
+        (true, true, _) => {
+            ["Ctrl+click on the mesh to add joints", "Bound, the mesh follows the bones"]
+        }
+        (true, false, None) => {
+            ["Click on the mesh to place the first joint", "It goes to the middle of the body"]
+        }
+        (true, false, Some(_)) => {
+            ["Click on the mesh to place the next joint", "A bone leads to it from the first one"]
+        }
+    };
+    let area = Area::new(Id::unique("how to add joints")).order(Order::Middle);
+    let top = viewport.center_top() + vec2(0.0, 52.0);
+    area.pivot(Align2::CENTER_TOP).fixed_pos(top).show(ui.ctx(), |ui| {
+        ui.vertical_centered(|ui| {
+            let line = |text: &str, size: f32| {
+                Label::new(RichText::new(text).size(size)).selectable(false).extend()
+            };
+            ui.add(line(first, 18.0));
+            ui.add(line(then, 13.5));
+            if has_bones && widgets::button(ui, "Bind mesh", panels::BIND, None) {
+                actions.push(SkinEdit::Bind);
             }
         });
     });

@@ -131,6 +131,9 @@ kinds! {
         AddSkin: Build 1, |_| SkinEdit::AddSkin;
         ShowSkin: Build 1, |v| SkinEdit::ShowSkin { skin: v.coin(), bones: v.coin() };
         PackSkin: Build 1, |_| SkinEdit::PackSkin;
+        Bind: Build 1, |_| SkinEdit::Bind;
+        Unbind: Build 1, |_| SkinEdit::Unbind;
+        PlaceRoot: Build 1, |v| SkinEdit::PlaceRoot(v.small_point());
         SetMorph: Build 1, |v| SkinEdit::SetMorph { morph: v.coin().into(), weight: v.number(2.0) };
         SetSkin: Build 2, |v| SkinEdit::SetSkin(v.skin());
     }

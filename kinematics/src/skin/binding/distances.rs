@@ -226,7 +226,7 @@ impl<'a> SurfaceDistances<'a> {
     /// Goes on from the known distances along edges (Dijkstra 1959), as far as distances are greater
     /// than `least` by at most `reach`; greater ones become infinite.
     fn spread(&mut self, reach: f32, least: impl Fn(usize) -> f32) {
-        let is_far = |distance: f32, point: usize| !(distance - least(point) <= reach);
+        let is_far = |distance: f32, point: usize| distance - least(point) > reach;
         let mut queue = BinaryHeap::new();
         for (point, distance) in self.distances.iter_mut().enumerate() {
             if !distance.is_finite() || is_far(*distance, point) {

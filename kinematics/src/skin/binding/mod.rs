@@ -133,6 +133,9 @@ impl UnitBox {
 /// The reason why joints cannot be bound to a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BindError {
+    /// There is no imported mesh.
+    #[error("there must be a mesh from a file, as in a .glb or .obj, that can follow the bones")]
+    NoMesh,
     /// The skeleton has no bones.
     #[error("the skeleton must have a bone that the mesh can follow")]
     NoBones,

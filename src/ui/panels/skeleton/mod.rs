@@ -18,6 +18,7 @@ use crate::session::{Actions, JointEdit, PathEdit, Session};
 use crate::ui::panels::limb::{self, LimbTarget};
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
+pub(in crate::ui) use skin::BIND;
 pub(super) use skin::areas as skin_areas;
 pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person};
 pub(super) use targets::{note, note_height, space};

@@ -7,6 +7,7 @@ use egui::{Stroke, Ui};
 use egui_plot::{AxisHints, Line, PlotBounds, PlotPoints, VLine};
 
 use crate::document::{Channel, Overlay, Skin};
+use crate::kinematics::skeleton::JointId;
 use crate::kinematics::skin::{SkinShape, Skinning};
 use crate::rig::{BoneSkin, MeshSkin, SkinMeshError, SkinSource};
 use crate::session::{
@@ -31,6 +32,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         SkinSource::Bones(bones) => shape(ui, session, skin, bones, actions),
         SkinSource::Mesh(mesh) => {
             morphs(ui, session, mesh, actions);
+            binding(ui, session, mesh, actions);
             file(ui, mesh, actions);
         }
     }
@@ -150,6 +152,29 @@ fn morphs(ui: &mut Ui, session: &Session, mesh: &MeshSkin, actions: &mut Actions
                 ..Slider::default()
             };
             weight.show(ui, session, actions, |weight| SkinEdit::SetMorph { morph, weight });
+        }
+    });
+}
+
+/// Tooltip of the button that binds a mesh.
+pub(in crate::ui) const BIND: &str =
+    "Let the mesh follow the bones, by their distances inside it; replaces its weights";
+
+/// Shows the buttons that let the mesh follow the bones, or its first joint alone.
+fn binding(ui: &mut Ui, session: &Session, mesh: &MeshSkin, actions: &mut Actions) {
+    if mesh.in_file().is_none() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        let why_not = (!session.rig().has_bones()).then_some("Add a bone first");
+        if widgets::button(ui, "Bind", BIND, why_not) {
+            actions.push(SkinEdit::Bind);
+        }
+        let is_loose = mesh.sole_joint() == Some(JointId::new(0));
+        let why_not = is_loose.then_some("The mesh follows the first joint alone");
+        let tooltip = "Let the mesh follow the first joint alone, so that others can be placed";
+        if widgets::button(ui, "Unbind", tooltip, why_not) {
+            actions.push(SkinEdit::Unbind);
         }
     });
 }

@@ -1,10 +1,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::io::Read;
-use std::path::{Component, Path};
 
-use crate::io::disk::{self, open_regular};
-use crate::io::error::{OpenError, system_reason};
+use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfBuffer, GltfFile, index_rule};
 use crate::io::formats::gltf::material::Uri;
 use crate::io::json::{FieldError, JsonPath};
@@ -107,28 +104,8 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
 
 /// Reads the first `length` bytes of a file in the folder of the glTF file.
 fn read_file(source: &Source, uri: &str, length: usize) -> Result<Vec<u8>, String> {
-    let Some(folder) = source.folder() else {
-        return Err(format!(
-            "must not be another file if the folder is unknown, got {uri:?}; open the file by its \
-             path, or use a .glb file"
-        ));
-    };
     let name = unescaped(uri).ok_or_else(|| format!("must be the name of a file, got {uri:?}"))?;
-    let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if name.contains([':', '\\', '\0']) || !Path::new(&name).components().all(is_plain) {
-        return Err(format!("must be in the file's own folder, got {uri:?}"));
-    }
-    let path = folder.join(name);
-    let failed = |error| format!("{} cannot be read: {}", path.display(), system_reason(&error));
-    let target = disk::end_of_links(&path).map_err(failed)?;
-    if !target.starts_with(disk::end_of_links(folder).map_err(failed)?) {
-        let (link, target) = (path.display(), target.display());
-        return Err(format!("must be in the file's own folder, got {link}, a link to {target}"));
-    }
-    let file = open_regular(&path).map_err(failed)?;
-    let mut bytes = Vec::new();
-    file.take(length as u64).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+    source.neighbour(&name, length)
 }
 
 /// Decodes the escapes in a URI, like `%20`. Returns `None` if an escape or the result is invalid.
