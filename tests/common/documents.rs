@@ -281,6 +281,7 @@ fn skeleton(random: &mut Random) -> Skeleton {
             locked: random.coin(),
             connected: random.coin(),
             radius: random.finite().abs(),
+            human_bone: random.chance(0.2).then(|| "leftHand".to_owned()),
             skin: match random.coin() {
                 true => SkinStretch::NONE,
                 false => {

@@ -66,13 +66,26 @@ struct PlainName {
     word: String,
 }
 
-/// Recognises a figure by the names of its joints.
+/// Recognises a figure by the bones that its file says its joints are, or else by the names of its
+/// joints.
 pub fn humanoid(skeleton: &Skeleton) -> Result<Humanoid, NotHumanoid> {
-    let found = Found::new(skeleton, &[])?;
+    let bones = skeleton.joints().iter().map(|joint| joint.human_bone.as_deref());
+    if bones.clone().any(|bone| bone.is_some()) {
+        let names = plain_names(bones.map(Option::unwrap_or_default), &[]);
+        if let Ok(humanoid) = Found::new(skeleton, &names).and_then(Found::humanoid) {
+            return Ok(humanoid);
+        }
+    }
+    by_names(skeleton)
+}
+
+fn by_names(skeleton: &Skeleton) -> Result<Humanoid, NotHumanoid> {
+    let names = || skeleton.joints().iter().map(|joint| joint.name.as_str());
+    let found = Found::new(skeleton, &plain_names(names(), &[]))?;
     let complete = found.humanoid();
     // Rigify's ORG bones are the same skeleton again, above its DEF bones.
     if complete.is_err()
-        && let Ok(original) = Found::new(skeleton, &["org"])
+        && let Ok(original) = Found::new(skeleton, &plain_names(names(), &["org"]))
     {
         return original.humanoid().or(complete);
     }
@@ -87,10 +100,9 @@ struct Found {
 }
 
 impl Found {
-    /// Finds parts by their names, of which these words are dropped, too.
-    fn new(skeleton: &Skeleton, fillers: &[&str]) -> Result<Self, NotHumanoid> {
-        let names = plain_names(skeleton, fillers);
-        let limb = |part, side, words| limb(skeleton, &names, part, side, words);
+    /// Finds parts by the names of all joints.
+    fn new(skeleton: &Skeleton, names: &[PlainName]) -> Result<Self, NotHumanoid> {
+        let limb = |part, side, words| limb(skeleton, names, part, side, words);
         let (arm, leg) = ([UPPER_ARM, LOWER_ARM, HAND], [UPPER_LEG, LOWER_LEG, FOOT]);
         Ok(Self {
             head: skeleton.ids().find(|joint| names[joint.index()].is(None, HEAD)),
@@ -169,10 +181,9 @@ impl PlainName {
     }
 }
 
-/// The plain names of all joints.
-fn plain_names(skeleton: &Skeleton, fillers: &[&str]) -> Vec<PlainName> {
-    let words: Vec<Vec<String>> =
-        skeleton.joints().iter().map(|joint| words_of(&joint.name)).collect();
+/// The plain names for the names of all joints, of which these words are dropped, too.
+fn plain_names<'a>(names: impl Iterator<Item = &'a str>, fillers: &[&str]) -> Vec<PlainName> {
+    let words: Vec<Vec<String>> = names.map(words_of).collect();
     let common = common_beginnings(&words);
     let is_filler = |word: &String| {
         let word = word.as_str();

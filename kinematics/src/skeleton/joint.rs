@@ -99,6 +99,9 @@ pub struct Joint {
     pub radius: f32,
     /// How the joint stretches the skin that follows it.
     pub skin: SkinStretch,
+    /// The bone of a person that the joint is, if its file tells it, as VRM names bones: `leftHand`.
+    /// [`Humanoid::of`](crate::humanoid::Humanoid::of) goes by these names first.
+    pub human_bone: Option<String>,
 }
 
 impl Joint {
@@ -125,6 +128,7 @@ impl Joint {
             connected: false,
             radius: (axis.as_dvec3().length() * 0.1) as f32,
             skin: SkinStretch::NONE,
+            human_bone: None,
         }
     }
 

@@ -132,6 +132,7 @@ fn joint(joint: &Joint, index: usize) -> Result<(), Broken> {
         connected: _,
         radius,
         skin,
+        human_bone: _,
     } = joint;
     hold!(!name.trim().is_empty(), "joint {index} has a name");
     hold!(

@@ -2,6 +2,7 @@
 
 mod damage;
 mod documents;
+mod draco;
 mod export;
 mod glb;
 mod import;

@@ -88,6 +88,47 @@ fn people_without_known_names_are_recognised_by_their_shape() {
     }
 }
 
+/// A person of VRM whose joints have names that tell nothing, with the bones that a file says they are.
+fn with_bones(places: &[Place], bone: impl Fn(&str) -> Option<String>) -> Skeleton {
+    let mut person = skeleton(places, |_| Mat3::IDENTITY);
+    let joints: Vec<JointId> = person.ids().collect();
+    for (number, joint) in joints.into_iter().enumerate() {
+        let human_bone = bone(&person[joint].name);
+        person.change(joint, |it| it.human_bone = human_bone).expect("a name");
+        person.rename(joint, &format!("骨{number}")).expect("a name");
+    }
+    person
+}
+
+#[test]
+fn a_person_is_recognised_by_the_bones_that_its_file_tells() {
+    let vrm = scheme("VRM 1.0");
+    let places = without(vrm, &["Toes", "toes"]);
+    let named = skeleton(&places, |_| Mat3::IDENTITY);
+    let known = expected(vrm, &named);
+    let is_bone = |name: &str| {
+        let limbs = known.limbs().into_iter().flat_map(|(_, it)| [it.upper, it.lower, it.end]);
+        limbs.chain(known.head).any(|joint| named[joint].name == name)
+    };
+    let unnamed = with_bones(&places, |_| None);
+    assert!(Humanoid::of(&unnamed).is_err(), "without toes, the shape tells nothing");
+    let person = with_bones(&places, |name| is_bone(name).then(|| name.to_owned()));
+    assert_eq!(Humanoid::of(&person), Ok(known));
+
+    // A map is not believed more than the shape: hands for feet, and an incomplete one.
+    let swapped = with_bones(&places, |name| {
+        is_bone(name).then(|| match name.contains("Foot") {
+            true => name.replace("Foot", "Hand"),
+            false => name.replace("Hand", "Foot"),
+        })
+    });
+    assert!(Humanoid::of(&swapped).is_err());
+    let mut incomplete = named.clone();
+    let head = incomplete.find(vrm.head).expect("a head");
+    incomplete.change(head, |it| it.human_bone = Some("head".into())).expect("a name");
+    assert_eq!(Humanoid::of(&incomplete), Ok(known), "by its names");
+}
+
 fn refused(places: &[Place]) -> NotHumanoid {
     Humanoid::of(&skeleton(places, |_| Mat3::IDENTITY)).expect_err("no person")
 }

@@ -42,6 +42,8 @@ struct JointFields {
     skin_scale: Option<JsonPoint>,
     #[serde(skip_serializing_if = "Option::is_none")]
     skin_shear: Option<JsonPoint>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    human_bone: Option<String>,
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
@@ -175,6 +177,7 @@ impl JointFields {
             radius: Some(joint.radius.into()),
             skin_scale: (joint.skin.scale != SkinStretch::NONE.scale)
                 .then(|| joint.skin.scale.into()),
+            human_bone: joint.human_bone.clone(),
             skin_shear: (joint.skin.shear != SkinStretch::NONE.shear)
                 .then(|| joint.skin.shear.into()),
         }
@@ -201,6 +204,7 @@ impl JointFields {
             locked: self.locked.unwrap_or(default.locked),
             connected: self.connected.unwrap_or(default.connected),
             radius: value_or(self.radius, default.radius.min(f32::MAX)),
+            human_bone: self.human_bone,
             skin: SkinStretch {
                 scale: value_or(self.skin_scale, default.skin.scale),
                 shear: value_or(self.skin_shear, default.skin.shear),

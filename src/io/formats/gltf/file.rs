@@ -63,16 +63,24 @@ pub struct GltfExtensions {
 }
 
 impl GltfExtensions {
-    /// The nodes that are bones of a humanoid; none without one. What is no number of a node is left
-    /// out.
-    pub fn humanoid(&self) -> Vec<usize> {
-        let bones = |vrm: &'_ serde_json::Value| {
+    /// The nodes that are bones of a humanoid, with the names of these bones; none without one. What is
+    /// no number of a node is left out.
+    pub fn humanoid<'a>(&'a self) -> Vec<(usize, &'a str)> {
+        let bones = |vrm: &'a serde_json::Value| {
             let bones = vrm.get("humanoid")?.get("humanBones")?;
             let node = |bone: &serde_json::Value| usize::try_from(bone.get("node")?.as_u64()?).ok();
+            let listed = |bone: &'a serde_json::Value| {
+                Some((
+                    node(bone)?,
+                    bone.get("bone").and_then(|name| name.as_str()).unwrap_or_default(),
+                ))
+            };
             // By names, or in VRM 0.x as a list.
             Some(match bones {
-                serde_json::Value::Object(bones) => bones.values().filter_map(node).collect(),
-                serde_json::Value::Array(bones) => bones.iter().filter_map(node).collect(),
+                serde_json::Value::Object(bones) => {
+                    bones.iter().filter_map(|(name, bone)| Some((node(bone)?, &**name))).collect()
+                }
+                serde_json::Value::Array(bones) => bones.iter().filter_map(listed).collect(),
                 _ => Vec::new(),
             })
         };
@@ -105,13 +113,16 @@ impl VersionedFile {
     }
 }
 
+/// The extension that compresses meshes, which is read.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
+
 impl GltfFile<'_> {
     /// Why compressed data cannot be read, and what makes them readable; `None` for a file whose
     /// data are all there without extensions.
     pub fn compression(&self) -> Option<String> {
-        let name = self.required.iter().find(|name| name.ends_with("_compression"))?;
+        let is_unread = |name: &&String| name.ends_with("_compression") && *name != DRACO;
+        let name = self.required.iter().find(is_unread)?;
         let advice = match name.as_str() {
-            "KHR_draco_mesh_compression" => "; gltf-transform cp x.glb y.glb unpacks them",
             "EXT_meshopt_compression" => "; gltfpack -i x.glb -o y.glb unpacks them",
             _ => "",
         };
@@ -223,9 +234,34 @@ pub struct GltfPrimitive {
     pub material: Option<Whole>,
     #[serde(skip_serializing)]
     pub mode: Option<Whole>,
+    #[serde(default, skip_serializing)]
+    pub extensions: PrimitiveExtensions,
     /// The morph targets: accessors of changes by attribute.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<BTreeMap<String, Whole>>,
+}
+
+/// Extensions of a primitive that are read.
+#[derive(Default, Deserialize)]
+pub struct PrimitiveExtensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    draco: Option<JsonObject<DracoFields>>,
+}
+
+/// A compressed mesh.
+#[derive(Deserialize)]
+pub struct DracoFields {
+    #[serde(rename = "bufferView")]
+    pub view: Whole,
+    /// Numbers of attributes in the compressed mesh, by their names.
+    pub attributes: BTreeMap<String, Whole>,
+}
+
+impl GltfPrimitive {
+    /// The compressed mesh, if there is one.
+    pub fn draco(&self) -> Option<&DracoFields> {
+        self.extensions.draco.as_ref().map(|JsonObject(fields)| fields)
+    }
 }
 
 /// Attributes that are written, in their order.
@@ -371,6 +407,15 @@ pub struct GltfAccessor {
     pub normalized: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sparse: Option<JsonObject<GltfSparse>>,
+}
+
+impl GltfAccessor {
+    /// The integer that stands for 1; `None` if numbers are not normalized.
+    pub fn largest(&self) -> Option<f64> {
+        let component = Component::new(self.component)?;
+        let is_normalized = self.normalized == Some(true) && component != Component::U32;
+        component.largest().filter(|_| is_normalized)
+    }
 }
 
 /// Rows of an accessor that replace those of its buffer view.

@@ -61,7 +61,7 @@ pub fn figures(file: &GltfFile<'_>, nodes: &NodeTree, parts: &BTreeSet<usize>) -
 /// In a file with neither and without skins, the nodes with meshes; without these, if several nodes
 /// have names, all but cameras.
 pub fn parts(file: &GltfFile<'_>, nodes: &NodeTree, moving: &BTreeSet<usize>) -> BTreeSet<usize> {
-    let humanoid = file.extensions.humanoid().into_iter();
+    let humanoid = file.extensions.humanoid().into_iter().map(|(node, _)| node);
     let humanoid = humanoid.filter(|node| *node < nodes.parents.len());
     let parts: BTreeSet<usize> = moving.iter().copied().chain(humanoid).collect();
     if !(parts.is_empty() && file.skins.0.is_empty()) {

@@ -3,6 +3,7 @@
 mod animations;
 mod bind_tables;
 mod buffers;
+mod draco;
 mod exact_tracks;
 mod figures;
 mod joint_tracks;

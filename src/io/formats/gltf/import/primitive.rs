@@ -3,7 +3,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{Affine2, Vec2, Vec3};
 
 use super::buffers::{GltfBuffers, is_file, read_uri};
-use super::rows::{AccessorRows, at_accessor, view_bytes};
+use super::draco::DracoMesh;
+use super::rows::{AccessorRows, at_accessor, find_accessor, view_bytes, width};
 use crate::io::error::OpenError;
 use crate::io::formats::gltf::file::{GltfFile, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{GltfImage, GltfMaterial, GltfTextureUse, Uri, srgb};
@@ -262,9 +263,14 @@ impl PrimitiveMesh {
         joints: usize,
         at: &JsonPath,
     ) -> Result<Self, FieldError> {
-        let rows = |accessor, shape| AccessorRows::new(file, buffers, accessor, shape);
+        let draco = DracoMesh::new(file, buffers, primitive, at)?;
+        let rows = |name: &str, accessor, shape| {
+            let found = find_accessor(file, accessor)?;
+            let decoded = draco.as_ref().and_then(|mesh| mesh.rows(name, found, width(shape)));
+            decoded.map_or_else(|| AccessorRows::new(file, buffers, accessor, shape), Ok)
+        };
         let points = |name: &str| match primitive.attribute(name) {
-            Some(accessor) => Ok::<_, FieldError>(vectors(&rows(accessor, "VEC3")?)),
+            Some(accessor) => Ok::<_, FieldError>(vectors(&rows(name, accessor, "VEC3")?)),
             None => Ok(Vec::new()),
         };
         let positions = points("POSITION")?;
@@ -280,18 +286,23 @@ impl PrimitiveMesh {
         has_as_many("NORMAL", normals.len())?;
         let name = format!("TEXCOORD_{set}");
         let coordinates = match primitive.attribute(&name) {
-            Some(accessor) => coordinates(&rows(accessor, "VEC2")?),
+            Some(accessor) => coordinates(&rows(&name, accessor, "VEC2")?),
             None => Vec::new(),
         };
         has_as_many(&name, coordinates.len())?;
         let colours = match primitive.attribute(COLOURS) {
-            Some(accessor) => colours(file, buffers, accessor)?,
+            Some(accessor) => {
+                let shape = &*find_accessor(file, accessor)?.shape;
+                let shape = if shape == "VEC3" { "VEC3" } else { "VEC4" };
+                colours(&rows(COLOURS, accessor, shape)?, shape == "VEC4")
+            }
             None => Vec::new(),
         };
         has_as_many(COLOURS, colours.len())?;
         let mut weights = Vec::new();
-        for (of_joints, of_weights) in primitive.weights() {
-            let (numbers, shares) = (rows(of_joints, "VEC4")?, rows(of_weights, "VEC4")?);
+        for (set, (of_joints, of_weights)) in primitive.weights().enumerate() {
+            let numbers = rows(&format!("JOINTS_{set}"), of_joints, "VEC4")?;
+            let shares = rows(&format!("WEIGHTS_{set}"), of_weights, "VEC4")?;
             has_as_many("JOINTS_n", numbers.len())?;
             has_as_many("WEIGHTS_n", shares.len())?;
             weights.resize_with(count, Vec::new);
@@ -301,7 +312,7 @@ impl PrimitiveMesh {
         for (index, target) in primitive.targets.iter().enumerate() {
             let changes = |name: &str| {
                 let Some(accessor) = target.get(name) else { return Ok(None) };
-                let rows = rows(accessor.0 as usize, "VEC3")?;
+                let rows = AccessorRows::new(file, buffers, accessor.0 as usize, "VEC3")?;
                 if rows.len() != count {
                     let reason =
                         format!("must have {count} rows like POSITION, got {}", rows.len());
@@ -314,7 +325,10 @@ impl PrimitiveMesh {
         }
         Ok(Self {
             morphs,
-            triangles: triangles(file, buffers, primitive, count)?,
+            triangles: match draco {
+                Some(mesh) => Mode::Triangles.triangles(&mesh.corners()),
+                None => triangles(file, buffers, primitive, count)?,
+            },
             positions,
             normals,
             coordinates,
@@ -358,22 +372,14 @@ fn coordinates(rows: &AccessorRows<'_>) -> Vec<Vec2> {
 }
 
 /// Colours of vertices, of which the file has linear light, with or without opacity.
-fn colours(
-    file: &GltfFile<'_>,
-    buffers: &GltfBuffers<'_>,
-    accessor: usize,
-) -> Result<Vec<[u8; 4]>, FieldError> {
-    let shape = file.accessors.0.get(accessor).map_or("", |accessor| &accessor.shape);
-    let has_opacity = shape != "VEC3";
-    let rows =
-        AccessorRows::new(file, buffers, accessor, if has_opacity { "VEC4" } else { "VEC3" })?;
+fn colours(rows: &AccessorRows<'_>, has_opacity: bool) -> Vec<[u8; 4]> {
     let byte = |part: f32| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
     let colour = |row| {
         let [red, green, blue, opacity] = rows.row::<4>(row).map(|number| number as f32);
         let [red, green, blue] = [red, green, blue].map(|linear| byte(srgb(linear)));
         [red, green, blue, if has_opacity { byte(opacity) } else { u8::MAX }]
     };
-    Ok((0..rows.len()).map(colour).collect())
+    (0..rows.len()).map(colour).collect()
 }
 
 /// Adds a set of joints with their weights to the weights of the vertices.

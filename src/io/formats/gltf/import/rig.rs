@@ -1,4 +1,4 @@
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DVec3, Mat3, Vec3};
 
@@ -19,6 +19,7 @@ pub fn joints(
     bind_pose: &[JointPlacement],
 ) -> Vec<Joint> {
     let mut names = UniqueNames::default();
+    let humanoid: HashMap<usize, &str> = file.extensions.humanoid().into_iter().collect();
     let joint = |(index, node): (usize, &usize)| {
         let name = file.nodes.0.get(*node).and_then(|node| node.name.as_deref());
         let name = name.filter(|name| !name.trim().is_empty());
@@ -28,6 +29,10 @@ pub fn joints(
         Joint {
             offset: (bind_pose[index].base - origin).as_vec3(),
             frame: bind_pose[index].frame.as_mat3(),
+            human_bone: humanoid
+                .get(node)
+                .filter(|name| !name.is_empty())
+                .map(|it| (*it).to_owned()),
             ..Joint::new(&name, parent.map(JointId::new), Vec3::ZERO)
         }
     };

@@ -26,7 +26,10 @@ fn at_view(index: usize) -> JsonPath {
 }
 
 /// Finds the accessor `index`. Without a buffer view, its numbers are 0.
-fn find_accessor<'a>(file: &'a GltfFile<'_>, index: usize) -> Result<&'a GltfAccessor, FieldError> {
+pub fn find_accessor<'a>(
+    file: &'a GltfFile<'_>,
+    index: usize,
+) -> Result<&'a GltfAccessor, FieldError> {
     file.accessors.0.get(index).ok_or_else(|| {
         let reason = index_rule("accessors", file.accessors.0.len(), index);
         FieldError::new(at_accessor(index), reason)
@@ -108,6 +111,18 @@ impl<'a> AccessorRows<'a> {
         Ok(Self { bytes, stride, count, component, is_normalized })
     }
 
+    /// Rows of `width` numbers each.
+    pub fn of_floats(numbers: &[f32], width: usize) -> AccessorRows<'static> {
+        let component = Component::F32;
+        AccessorRows {
+            bytes: numbers.iter().flat_map(|number| number.to_le_bytes()).collect(),
+            stride: width * component.size(),
+            count: numbers.len() / width,
+            component,
+            is_normalized: false,
+        }
+    }
+
     pub fn len(&self) -> usize {
         self.count
     }
@@ -139,7 +154,8 @@ impl<'a> AccessorRows<'a> {
     }
 }
 
-fn width(shape: &str) -> usize {
+/// Count of numbers in a row of this type.
+pub fn width(shape: &str) -> usize {
     match shape {
         "VEC2" => 2,
         "VEC3" => 3,

@@ -24,7 +24,7 @@ use super::primitive::{
 use super::rows::{buffer_of_view, buffers_of};
 use crate::io::formats::gltf::UniqueNames;
 use crate::io::formats::gltf::extras::Extras;
-use crate::io::formats::gltf::file::{GltfFile, GltfMesh, GltfPrimitive, index_rule};
+use crate::io::formats::gltf::file::{DRACO, GltfFile, GltfMesh, GltfPrimitive, index_rule};
 use crate::io::formats::gltf::material::{GltfMaterial, Uri};
 use crate::io::json::{FieldError, FieldWarnings, JsonNumber, JsonPath, Whole};
 use crate::io::source::Source;
@@ -252,6 +252,10 @@ impl MeshImport<'_> {
             let material = self.material(primitive, &at)?;
             let set = material.map_or(0, |(_, material)| material.coordinates());
             accessors.extend(primitive.accessors(set));
+            if let Some(packed) = primitive.draco() {
+                let at = at.key("extensions").key(DRACO).key("bufferView");
+                buffers.insert(buffer_of_view(file, packed.view.0 as usize, at)?);
+            }
             let views = material.map(|(_, material)| image_views(file, material));
             for view in views.into_iter().flatten() {
                 buffers.extend(buffer_of_view(file, view, JsonPath::root().key("images")));
