@@ -335,7 +335,9 @@ impl SkeletonRig {
         let skin = skin.into_iter().flat_map(|mesh| mesh.corners(pose));
         let points = pose.points().chain(targets).chain(path).chain(skin);
         let (centre, radius) = bounding_sphere(points).unwrap_or_default();
-        (centre, radius.max(0.25 * reach))
+        // Joints without bones have no reach, but a mesh has a size.
+        let least = if self.has_bones() || radius == 0.0 { 0.25 * reach } else { 0.0 };
+        (centre, radius.max(least))
     }
 
     /// Centre and radius of a bounding sphere of the bones of some joints, in the world; `None`

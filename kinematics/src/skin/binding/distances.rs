@@ -58,8 +58,7 @@ impl InsideDistances {
         let mut nearest = SurfaceDistances::new(mesh, |point: usize| seen[point]);
         nearest.spread(f32::INFINITY, |_| 0.0);
         let least = nearest.distances;
-        let reach =
-            REACH as f32 * least.iter().copied().filter(|it| it.is_finite()).fold(0.0, f32::max);
+        let reach = REACH as f32 * greatest_radius(&least);
         let all_seen = map_ranges(count, |range| {
             range.map(|point| sight.all_seen(point, least[point] + reach)).collect()
         });
@@ -132,6 +131,15 @@ fn nearest_by_x(points: &[Vec3], sorted: &[usize], place: Vec3) -> usize {
     nearest.1
 }
 
+/// The greatest distance from the nearest bone, but for the most distant fiftieth of all points: so that
+/// a few that are far away do not make all points look for bones far away.
+fn greatest_radius(least: &[f32]) -> f32 {
+    let mut finite: Vec<f32> = least.iter().copied().filter(|it| it.is_finite()).collect();
+    let most = finite.len() - finite.len() / 50;
+    let Some(last) = most.checked_sub(1) else { return 0.0 };
+    *finite.select_nth_unstable_by(last, f32::total_cmp).1
+}
+
 /// For each point the radius of the body there: the distance from the nearest bone, but not less than
 /// half the mean of all points that are nearest to that bone.
 fn radii(near: &[Vec<(usize, f32)>], bones: usize) -> Vec<f32> {
@@ -165,12 +173,16 @@ impl<'a> Sight<'a> {
         Self { mesh, bones, tree: TriangleTree::new(triangles) }
     }
 
-    /// Distance of a point from the nearest bone that sees it; infinite if none does.
+    /// Distance of a point from the nearest bone that sees it, of those that are nearest; infinite if
+    /// none does.
     fn nearest_seen(&self, point: usize) -> f32 {
+        /// Maximum number of bones that are tried. Bounds the time for points within other surfaces,
+        /// which no bone sees.
+        const MOST: usize = 12;
         let mut bones: Vec<(usize, f32)> = self.straight(point).collect();
         bones.sort_unstable_by(|one, other| one.1.total_cmp(&other.1));
         let mut least = f32::INFINITY;
-        for (bone, straight) in bones {
+        for (bone, straight) in bones.into_iter().take(MOST) {
             if straight >= least {
                 break;
             }
@@ -195,7 +207,7 @@ impl<'a> Sight<'a> {
     /// Distance of a point from a bone that sees it: from the bone's nearest point, or if that does
     /// not see the point, from one of some others.
     fn seen(&self, bone: usize, point: usize) -> Option<f32> {
-        const OTHERS: [f32; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
+        const OTHERS: [f32; 3] = [0.05, 0.5, 0.95];
         let (bone, to) = (self.bones[bone], self.mesh.points[point]);
         let distance = |fraction: f32| {
             let from = bone.at(fraction);
