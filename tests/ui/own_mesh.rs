@@ -63,6 +63,10 @@ fn clicks_place_joints_in_the_middle_of_the_mesh_and_bind_lets_it_follow_them() 
     let before = vertices(&bench);
     bench.apply([SelectAction::Joints(Vec::new())]);
     assert!(bench.says("Click on the mesh to place the first joint"));
+    let beside = bench.viewport().left_center() + egui::vec2(20.0, 0.0);
+    bench.click_at(beside);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().joints().len(), 1, "beside the mesh is no place");
     let [belly, chest, head] = ["spine", "chest", "neck"].map(|joint| place(&bench, joint));
     bench.click_at(belly);
     bench.settle();
@@ -118,11 +122,13 @@ fn the_panel_binds_and_unbinds() {
     bench.apply([SelectAction::Joints(Vec::new())]);
     bench.reveal(Role::Button, "Bind");
     assert!(bench.node(Role::Button, "Bind").accesskit_node().is_disabled(), "without bones");
-    for joint in ["spine", "chest"] {
-        let at = place(&bench, joint);
-        bench.click_at(at);
-        bench.settle();
-    }
+    // With the root selected, the first click adds a bone from where the root is.
+    bench.apply([SelectAction::Joints(vec![JointId::new(0)])]);
+    let at = place(&bench, "chest");
+    bench.click_at(at);
+    bench.settle();
+    assert_eq!(bench.session().skeleton().joints().len(), 2);
+    assert!(bench.session().shown().display.shows(Overlay::Bones), "the bone is seen");
     bench.reveal(Role::Button, "Bind");
     bench.click(Role::Button, "Bind");
     bench.settle();

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use crate::document::{Channel, Document};
+use crate::document::{Channel, Document, Overlay};
 use crate::kinematics::skeleton::{
     Joint, JointId, JointLimits, JointRemap, Skeleton, SkeletonError,
 };
@@ -189,6 +189,8 @@ impl JointEdit {
 /// a bone.
 fn add(session: &Session, parent: Option<JointId>, tip: Option<Vec3>) -> Outcome {
     let added = Outcome::edit_with(session.shown(), |document| {
+        // Within a skin alone, the new joint would not be seen.
+        document.display = document.display.with(Overlay::Bones, true);
         let skeleton = document.rig.skeleton_mut();
         let Some(parent) = parent else {
             let name = skeleton.free_name("root");

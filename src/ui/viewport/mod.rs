@@ -224,7 +224,11 @@ fn select(
     };
     let ray = screen.ray(mouse);
     let in_mesh = session.middle_of_mesh(ray);
-    let is_first = (joint.is_none() || in_mesh.is_some()) && !session.rig().has_bones();
+    let is_place = match session.has_loose_mesh() {
+        true => in_mesh.is_some(),
+        false => joint.is_none(),
+    };
+    let is_first = is_place && !session.rig().has_bones();
     if modifiers.command || is_first && modifiers.is_none() {
         let is_root = session.selection().active().is_none() && session.has_lone_root();
         if let Some(at) = in_mesh.filter(|_| is_root && is_first) {

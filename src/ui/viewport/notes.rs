@@ -168,7 +168,7 @@ pub(super) fn how_to_add_joints(ui: &Ui, session: &Session, viewport: Rect, acti
         }
     };
     let area = Area::new(Id::unique("how to add joints")).order(Order::Middle);
-    let top = viewport.center_top() + vec2(0.0, 52.0);
+    let top = viewport.center_top() + vec2(0.0, MARGIN);
     area.pivot(Align2::CENTER_TOP).fixed_pos(top).show(ui.ctx(), |ui| {
         ui.vertical_centered(|ui| {
             let line = |text: &str, size: f32| {
