@@ -39,6 +39,7 @@ struct Vertex {
     @location(1) normal: vec4f,
     @location(2) coordinates: vec2f,
     @location(3) colour: vec4f, // sRGB
+    @location(4) emission_coordinates: vec2f,
 }
 
 struct Surface {
@@ -48,20 +49,29 @@ struct Surface {
     @location(2) weight: f32,
     @location(3) coordinates: vec2f,
     @location(4) colour: vec4f,
+    @location(5) emission_coordinates: vec2f,
 }
 
 @vertex
 fn vertex(v: Vertex) -> Surface {
     let world = v.position_weight.xyz + look.offset;
     let position = view.clip_from_world * vec4f(world, 1.0);
-    return Surface(position, world, v.normal.xyz, v.position_weight.w, v.coordinates, v.colour);
+    return Surface(
+        position,
+        world,
+        v.normal.xyz,
+        v.position_weight.w,
+        v.coordinates,
+        v.colour,
+        v.emission_coordinates,
+    );
 }
 
 @fragment
 fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     var emission = part.emission * (1.0 - look.has_weights);
     if HAS_EMISSION_TEXTURE {
-        emission *= textureSample(part_emission, part_sampler, s.coordinates).rgb;
+        emission *= textureSample(part_emission, part_sampler, s.emission_coordinates).rgb;
     }
     var own = look.colour.rgb * part.colour * s.colour.rgb;
     var opacity = look.colour.a;

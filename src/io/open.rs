@@ -13,9 +13,9 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::Skeleton;
 use crate::rig::{FileMesh, MeshSkin, SkinFile, SkinFileError, SkinSource};
 
-/// Opens a document, a Scotty3D scene, a glTF file (text or binary) or a BVH file. The format is
-/// detected by the content. `options` choose one of several skeletons and animations, and tell
-/// which axis points up.
+/// Opens a document, a Scotty3D scene, a glTF file (text or binary), a BVH, OBJ or URDF file. The
+/// format is detected by the content. `options` choose one of several skeletons and animations, and
+/// tell which axis points up.
 ///
 /// # Errors
 ///

@@ -36,9 +36,10 @@ struct FixedVertex {
     coordinates: Vec2,
     /// sRGB.
     colour: [u8; 4],
+    emission_coordinates: Vec2,
 }
 
-const _: () = assert!(size_of::<FixedVertex>() == 12);
+const _: () = assert!(size_of::<FixedVertex>() == 20);
 
 /// Draws skins. Nothing is created before the first skin is drawn.
 #[derive(Debug, Default)]
@@ -239,7 +240,7 @@ impl SkinPipelines {
         let look = Uniforms::<Look>::new(gpu, "skin look");
         let materials = SkinMaterials::new(gpu);
         let moved = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let fixed = wgpu::vertex_attr_array![2 => Float32x2, 3 => Unorm8x4];
+        let fixed = wgpu::vertex_attr_array![2 => Float32x2, 3 => Unorm8x4, 4 => Float32x2];
         let buffers = [
             wgpu::VertexBufferLayout {
                 array_stride: size_of::<DeformedVertex>() as u64,
@@ -346,11 +347,16 @@ impl SidedPipelines {
 
 impl SkinMesh {
     fn new(gpu: &Gpu, materials: &SkinMaterials, mesh: Shared<AttachedMesh>) -> Self {
-        let TriangleMesh { positions, texture_coordinates, colours, triangles, .. } =
-            mesh.mesh.mesh();
-        let fixed = |vertex: usize| FixedVertex {
-            coordinates: texture_coordinates.get(vertex).copied().unwrap_or_default(),
-            colour: colours.get(vertex).copied().unwrap_or([u8::MAX; 4]),
+        let triangle_mesh = mesh.mesh.mesh();
+        let TriangleMesh { positions, texture_coordinates, colours, triangles, .. } = triangle_mesh;
+        let fixed = |vertex: usize| {
+            let coordinates = texture_coordinates.get(vertex).copied().unwrap_or_default();
+            let of_emission = triangle_mesh.emission_coordinates.get(vertex).copied();
+            FixedVertex {
+                coordinates,
+                colour: colours.get(vertex).copied().unwrap_or([u8::MAX; 4]),
+                emission_coordinates: of_emission.unwrap_or(coordinates),
+            }
         };
         let fixed: Vec<FixedVertex> = (0..positions.len()).map(fixed).collect();
         let fixed = gpu.filled_buffer("skin look", &fixed, wgpu::BufferUsages::VERTEX);

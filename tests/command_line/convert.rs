@@ -77,8 +77,8 @@ fn a_file_of_another_program_becomes_a_document_and_goes_on_from_there() {
 fn what_cannot_be_converted_is_a_usage_error() {
     let desk = Desk::with("walk");
     for (to, more, said) in [
-        ("a.csv", [].as_slice(), "OUT must end in .json, .glb, .bvh or .obj"),
-        ("a", &[], "OUT must end in .json, .glb, .bvh or .obj"),
+        ("a.csv", [].as_slice(), "OUT must end in .json, .glb or .bvh"),
+        ("a", &[], "OUT must end in .json, .glb or .bvh"),
         ("a.json", &["--fps", "20"], "--fps does not apply"),
         ("a.glb", &["--unit", "m"], "--unit does not apply"),
         ("a.glb", &["--add-targets"], "--add-targets does not apply"),

@@ -166,10 +166,11 @@ fn materials_colours_and_images_are_read_from_the_files_beside_it() {
                      map_Kd ../outside.png\n";
     fs::write(at("x.mtl"), materials).expect("written");
     let text = "mtllib x.mtl\nmtllib missing.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n\
-                usemtl red\nf 1 2 3\nusemtl green\nf 1 3 2\nusemtl clear\nf 1 2 3\n";
+                usemtl red\nf 1 2 3\nusemtl green\nf 1 3 2\nusemtl clear\nf 1 2 3\n\
+                usemtl blue\nf 1 2 3\n";
     fs::write(at("x.obj"), text).expect("written");
     let opened = io::open(&at("x.obj"), &OpenOptions::default()).expect("it opens");
-    let [red, green, clear] = parts(&opened.document) else { panic!("three parts") };
+    let [red, green, clear, _] = parts(&opened.document) else { panic!("four parts") };
     assert_eq!(
         (red.colour, red.look.emission, red.look.opacity),
         ([1.0, 0.0, 0.0], [0.0, 0.5, 0.0], Some(0.25))
@@ -183,10 +184,32 @@ fn materials_colours_and_images_are_read_from_the_files_beside_it() {
         "missing.mtl cannot be read",
         "x.mtl, line 7: Kd must have 3 finite numbers",
         "../outside.png",
+        "usemtl: no .mtl file has the material \"blue\"; its faces are white",
     ] {
         assert!(told(what), "{what}: {remarks:?}");
     }
-    assert_eq!(remarks.len(), 3, "{remarks:?}");
+    assert_eq!(remarks.len(), 4, "{remarks:?}");
+}
+
+#[test]
+fn what_programs_write_beside_the_specification_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("a.mtl"), "newmtl Steel #7\nKd 1 0 0\nTr 0.25\nd 0.5\nTr 0\n").expect("written");
+    fs::write(at("my b.mtl"), "newmtl glass\nd -halo 0.25\n").expect("written");
+    let text = "g\n# a comment \\\nv 0 0 0\nv 1 0 0 # right\nv 0 1 0\nvt 0.5\nvn nan nan -nan(ind)\n\
+                mtllib a.mtl my b.mtl\nusemtl Steel #7\nf 1/1/1 2/1/1 3/1/1 # one\n\
+                usemtl glass\nf 1 2 3\n";
+    fs::write(at("x.obj"), text).expect("written");
+    let opened = io::open(&at("x.obj"), &OpenOptions::default()).expect("it opens");
+    assert!(opened.warnings.is_empty(), "{:?}", opened.warnings);
+    let [steel, glass] = parts(&opened.document) else { panic!("two parts") };
+    assert_eq!((steel.colour, steel.look.opacity), ([1.0, 0.0, 0.0], Some(0.5)));
+    assert_eq!(glass.look.opacity, Some(0.25));
+    let mesh = mesh(&opened.document).mesh();
+    assert_eq!(mesh.positions[0], Vec3::ZERO);
+    assert_eq!(mesh.texture_coordinates[0], Vec2::new(0.5, 1.0));
+    assert!(mesh.normals.iter().all(|normal| normal.distance(Vec3::Z) < 1e-6));
 }
 
 #[test]
@@ -195,7 +218,8 @@ fn what_is_wrong_is_told_with_its_line() {
     for (line, expected) in [
         ("v 1 2", "v must have 3 finite numbers, x y z, got too few"),
         ("v 1 2 nan", "got \"nan\""),
-        ("vt x", "vt must have 2 finite numbers, u v, got \"x\""),
+        ("vt x", "vt must have a finite number, u, got \"x\""),
+        ("vt 1 x", "vt must have 2 finite numbers, u v, got \"x\""),
         ("vn 1e99 0 0", "vn must have 3 finite numbers"),
         ("f 1 2", "f must have at least three corners, got 2"),
         ("f", "f must have at least three corners, got none"),

@@ -35,6 +35,7 @@ fn figure(joints: usize, seed: u64) -> Document {
         texture_coordinates: (0..count)
             .map(|_| random.vector(1.0).truncate())
             .collect::<Vec<Vec2>>(),
+        emission_coordinates: (0..count).map(|_| random.vector(1.0).truncate()).collect(),
         colours: (0..count).map(|_| [(); 4].map(|()| random.below(256) as u8)).collect(),
         triangles: (0..count as u32 / 3).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect(),
     };

@@ -96,6 +96,7 @@ fn coloured_square(parts: Vec<SkinPart>, colours: Vec<[u8; 4]>) -> Document {
         positions,
         colours,
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..TriangleMesh::default()
     };
     let weights = vec![VertexWeights::rigid(JointId::new(0)); 4];
     let mesh = SkinnedMesh::new(mesh, weights, vec![Affine3A::IDENTITY]).expect("a mesh");
@@ -307,9 +308,9 @@ fn texels_below_the_cutoff_are_not_drawn() {
 
 #[test]
 fn parts_shine_where_the_texture_of_their_emission_tells() {
-    let pixels: Vec<[u8; 4]> = (0..64).map(|at| [if at % 8 < 4 { 255 } else { 0 }; 4]).collect();
+    let halves = || (0..64).map(|at| [if at % 8 < 4 { 255 } else { 0 }; 4]).collect();
     let texture = SkinTexture::new(Vec::new(), [8, 8]);
-    texture.pixels(|_| Ok(pixels)).expect("pixels");
+    texture.pixels(|_| Ok(halves())).expect("pixels");
     let broken = SkinTexture::new(b"no image".to_vec(), [8, 8]);
     let green = |texture: SkinTexture, x: f32| {
         let look = PartLook { emission: [0.0, 1.0, 0.0], ..PartLook::default() };
@@ -323,6 +324,32 @@ fn parts_shine_where_the_texture_of_their_emission_tells() {
     };
     assert!(green(texture.clone(), -0.6) > 200 && green(texture, 0.6) < 60);
     assert!(green(broken, -0.6) < 60, "without its image it does not shine");
+
+    // With coordinates of its own, mirrored, the emission shines on the other side.
+    let mirrored = |texture: SkinTexture, x: f32| {
+        let look = PartLook { emission: [0.0, 1.0, 0.0], ..PartLook::default() };
+        let emission_texture = Some(Shared::from(texture));
+        let black = SkinPart { colour: [0.0; 3], emission_texture, look, ..SkinPart::white(2) };
+        let mut document = square(vec![black]);
+        let skin = document.rig.skin.as_ref().and_then(|skin| skin.mesh_skin()).expect("a mesh");
+        let FileMesh { mesh, parents, parts } = FileMesh::clone(skin.in_file().expect("a mesh"));
+        let mut triangles = mesh.mesh().clone();
+        let flipped = triangles.texture_coordinates.iter().map(|at| Vec2::new(1.0 - at.x, at.y));
+        triangles.emission_coordinates = flipped.collect();
+        let binds = vec![Affine3A::IDENTITY];
+        let mesh = SkinnedMesh::new(triangles, mesh.weights().to_vec(), binds).expect("a mesh");
+        let in_file = FileMesh { mesh, parents, parts };
+        let joints = vec![Some(JointId::new(0))];
+        let skin = MeshSkin::new(in_file.into(), None, joints, document.skeleton());
+        document.rig.skin = Some(Skin::new(SkinSource::Mesh(skin)));
+        let picture = draw(&Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark));
+        let (width, height) = (picture.width() as f32, picture.height() as f32);
+        let at = ((0.5 * width + 0.2 * height * x) as u32, (0.5 * height - 9.0) as u32);
+        picture.get_pixel(at.0, at.1).0[1]
+    };
+    let again = SkinTexture::new(Vec::new(), [8, 8]);
+    again.pixels(|_| Ok(halves())).expect("pixels");
+    assert!(mirrored(again.clone(), 0.6) > 200 && mirrored(again, -0.6) < 60);
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn typed(bench: &Bench, prompt: &str) -> String {
 fn after_a_click_in_the_view_a_dialog_opened_by_key_takes_the_keyboard_and_selects_its_text() {
     for (modifiers, key, prompt) in [
         (CTRL, Key::S, "Document file"),
-        (CTRL, Key::O, "Document, Scotty3D scene (.js3d), .bvh, .glb, .gltf or .urdf"),
+        (CTRL, Key::O, "Document, Scotty3D scene (.js3d), .bvh, .glb, .gltf, .obj or .urdf"),
         (CTRL, Key::P, "PNG file"),
         (CTRL, Key::E, "File"),
     ] {
@@ -517,7 +517,7 @@ fn a_file_that_cannot_be_opened_leaves_dialog_and_path_and_an_error_that_looks_l
     assert!(matches!(effects[..], [Effect::Open { .. }]));
     let why = "/nowhere/walk.bvh: there is no such file".to_owned();
     bench.apply([FileAction::NotOpened { path: "/nowhere/walk.bvh".into(), why: why.clone() }]);
-    let prompt = "Document, Scotty3D scene (.js3d), .bvh, .glb, .gltf or .urdf";
+    let prompt = "Document, Scotty3D scene (.js3d), .bvh, .glb, .gltf, .obj or .urdf";
     assert_eq!(typed(&bench, prompt), "/nowhere/walk.bvh");
     assert!(bench.shows(Role::Alert, &why), "in the dialog");
     bench.key(Key::Escape);

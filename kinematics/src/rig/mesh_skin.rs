@@ -341,7 +341,8 @@ pub struct SkinPart {
     pub colour: [f32; 3],
     /// Image that colours the triangles by the mesh's texture coordinates, repeated beyond 0 to 1.
     pub texture: Option<Shared<SkinTexture>>,
-    /// Image that multiplies the light that the part gives off, by the same coordinates.
+    /// Image that multiplies the light that the part gives off, by the mesh's coordinates of emission,
+    /// or by the same ones if it has none.
     pub emission_texture: Option<Shared<SkinTexture>>,
     /// How the triangles are drawn, beside their colour.
     pub look: PartLook,

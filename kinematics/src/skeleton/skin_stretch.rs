@@ -18,8 +18,8 @@ use glam::{DMat3, DVec3, Mat3A, Vec3};
 pub struct SkinStretch {
     /// Factors along x, y and z; below 0 to mirror.
     pub scale: Vec3,
-    /// How far the skin moves for each unit of a coordinate: x along y for x, y along x for z, z along
-    /// y for z.
+    /// Factors of the sideways movement: a point at (x, y, z) moves by `shear.x`·x and by `shear.z`·z
+    /// along y, and by `shear.y`·z along x.
     pub shear: Vec3,
 }
 

@@ -77,6 +77,7 @@ impl SkinnedMesh {
         let lists = [
             ("normals", mesh.normals.len()),
             ("texture coordinates", or_none(mesh.texture_coordinates.len())),
+            ("texture coordinates of emission", or_none(mesh.emission_coordinates.len())),
             ("colours", or_none(mesh.colours.len())),
             ("weights", weights.len()),
             ("sets of inverse bind transforms", bind_sets.iter().map(|set| set.vertices).sum()),
@@ -104,10 +105,11 @@ impl SkinnedMesh {
                 return Err(SkinError::NotFinite { vertex, got: vectors[vertex] });
             }
         }
-        let coordinates = &mesh.texture_coordinates;
-        if let Some(vertex) = coordinates.iter().position(|vector| !vector.is_finite()) {
-            let got = coordinates[vertex].extend(0.0);
-            return Err(SkinError::NotFinite { vertex, got });
+        for coordinates in [&mesh.texture_coordinates, &mesh.emission_coordinates] {
+            if let Some(vertex) = coordinates.iter().position(|vector| !vector.is_finite()) {
+                let got = coordinates[vertex].extend(0.0);
+                return Err(SkinError::NotFinite { vertex, got });
+            }
         }
         for set in &bind_sets {
             if let Some(joint) = set.inverse_binds.iter().position(|bind| !bind.is_finite()) {
@@ -266,11 +268,18 @@ impl SkinnedMesh {
 
     /// Memory in bytes, without that of the morph targets.
     pub fn bytes(&self) -> usize {
-        let TriangleMesh { positions, normals, texture_coordinates, colours, triangles } =
-            &self.mesh;
+        let TriangleMesh {
+            positions,
+            normals,
+            texture_coordinates,
+            emission_coordinates,
+            colours,
+            triangles,
+        } = &self.mesh;
         size_of_val(&positions[..])
             + size_of_val(&normals[..])
             + size_of_val(&texture_coordinates[..])
+            + size_of_val(&emission_coordinates[..])
             + size_of_val(&colours[..])
             + size_of_val(&triangles[..])
             + size_of_val(&self.weights[..])

@@ -12,6 +12,9 @@ pub struct TriangleMesh {
     /// Texture coordinates of the vertices, origin at the upper left; empty or as many as
     /// positions.
     pub texture_coordinates: Vec<Vec2>,
+    /// Texture coordinates of the vertices for images of emission, if these are others; empty or as
+    /// many as positions.
+    pub emission_coordinates: Vec<Vec2>,
     /// Colours of the vertices as sRGB with opacity, which multiply those of materials; empty or as
     /// many as positions.
     pub colours: Vec<[u8; 4]>,

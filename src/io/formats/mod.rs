@@ -280,10 +280,11 @@ impl FileFormat {
         matches!(self.writer, Some(Writer::Export(kind, _)) if kind.takes(option))
     }
 
-    /// Formats that hold a rig and can be both written and read again.
+    /// Formats that hold a rig over all times and can be both written and read again.
     pub fn convertible() -> impl Iterator<Item = Self> {
         let all = Self::ALL.iter().copied();
-        all.filter(|format| format.reader.is_some() && format.writer.is_some())
+        let both = all.filter(|format| format.reader.is_some() && format.writer.is_some());
+        both.filter(|format| !format.takes(ExportOption::Time))
     }
 
     /// Extensions, without the dot, of the files that can be read.

@@ -197,6 +197,13 @@ fn damaged_compression_leaves_the_mesh_out_with_the_reason() {
     assert!(opened.document.rig.skin.is_none());
     let told = warnings(&opened);
     assert!(told[0].contains("KHR_draco_mesh_compression.bufferView"), "{told:?}");
+    let mut text = strip.text();
+    packed(&strip, &mut text, 5);
+    text.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
+        ["POSITION"] = json!(77);
+    let opened = io::read("x.glb", &text.binary()[..], &OpenOptions::default()).expect("it opens");
+    let told = warnings(&opened);
+    assert!(told[0].contains("attributes.POSITION: must be the id of an attribute"), "{told:?}");
     let joints =
         (0..3).map(JointId::new).filter(|it| opened.document.skeleton().joint(*it).is_some());
     assert_eq!(joints.count(), 3, "the skeleton opens");

@@ -62,6 +62,12 @@ impl Strip {
         }
     }
 
+    /// The vertex at a place in the mesh's own space.
+    fn vertex_at(&self, place: Vec3) -> usize {
+        let apart = |vertex: &usize| self.positions[*vertex].distance(place);
+        (0..6).min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("a vertex")
+    }
+
     pub fn corners(&self) -> Vec<u32> {
         self.triangles.as_flattened().to_vec()
     }
@@ -564,14 +570,23 @@ fn textures_of_emission_are_read_saved_and_written() {
     text.json["materials"] = json!([
         { "emissiveTexture": { "index": 1 }, "emissiveFactor": shine, "pbrMetallicRoughness": base },
         { "emissiveTexture": { "index": 1 }, "emissiveFactor": shine },
-        // With coordinates of its own, and one that is not there: neither shines all over.
-        { "emissiveTexture": { "index": 1, "texCoord": 1 }, "emissiveFactor": shine,
-          "pbrMetallicRoughness": base },
+        // With coordinates of its own, which are moved, and one that is not there, so that it does
+        // not shine all over.
+        { "emissiveTexture": { "index": 1, "texCoord": 1, "extensions": {
+              "KHR_texture_transform": { "offset": [0.25, -0.5], "scale": [2, 2] } } },
+          "emissiveFactor": shine, "pbrMetallicRoughness": base },
         { "emissiveTexture": { "index": 9 }, "emissiveFactor": shine },
     ]);
+    let own: Vec<Vec2> =
+        (0..6).map(|at| Vec2::new(at as f32 * 0.1, 0.7 - at as f32 * 0.1)).collect();
+    let numbers: Vec<f32> = own.iter().flat_map(Vec2::to_array).collect();
+    let accessor = text.floats(2, &numbers);
+    for primitive in text.json["meshes"][0]["primitives"].as_array_mut().expect("primitives") {
+        primitive["attributes"]["TEXCOORD_1"] = json!(accessor);
+    }
     let opened = opened(&text);
     let told = warnings(&opened).join("\n");
-    assert!(told.contains("emission textures with coordinates of their own"), "{told}");
+    assert_eq!(warnings(&opened).len(), 1, "{told}");
     assert!(told.contains("must be below 2, the number of textures, got 9"), "{told}");
     let exported = glb(&opened.document);
     let again = io::read("x.glb", &exported[..], &io::OpenOptions::default()).expect("reads");
@@ -588,11 +603,31 @@ fn textures_of_emission_are_read_saved_and_written() {
                 (part.texture.is_some(), part.emission_texture.is_some(), part.look.emission[0])
             })
             .collect();
-        let dark = [(true, false, 0.0), (false, false, 0.0)];
-        assert_eq!(look, [&[(true, true, 1.0), (false, true, 1.0)][..], &dark].concat());
+        let shining = [(true, true, 1.0), (false, true, 1.0), (true, true, 1.0)];
+        assert_eq!(look, [&shining[..], &[(false, false, 0.0)]].concat());
         let file =
             |part: usize| &mesh.parts[part].emission_texture.as_ref().expect("a texture").file;
         assert_eq!((file(0), file(1)), (&png([200, 0, 0]), &png([200, 0, 0])));
+        let strip = Strip::new();
+        let TriangleMesh { texture_coordinates, emission_coordinates, triangles, .. } =
+            mesh.mesh.mesh();
+        let mut corners = triangles.as_flattened().iter().map(|corner| *corner as usize);
+        for (number, part) in mesh.parts.iter().enumerate() {
+            for corner in corners.by_ref().take(3 * part.triangles) {
+                let vertex = strip.vertex_at(mesh.mesh.mesh().positions[corner]);
+                let base = strip.coordinates[vertex];
+                let expected = match number {
+                    2 => own[vertex] * 2.0 + Vec2::new(0.25, -0.5),
+                    _ => base,
+                };
+                // The last part has no image, and so no coordinates in an exported file.
+                if number < 3 {
+                    let gap = texture_coordinates[corner].distance(base)
+                        + emission_coordinates[corner].distance(expected);
+                    assert!(gap < 1e-5, "part {number}, vertex {vertex}: {gap}");
+                }
+            }
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Distances of the points of a surface from bones, inside the body.
 //!
-//! A bone that sees a point, since no triangle is between them, is as far away as a straight line is
-//! long. From there distances go on along the edges of the mesh, to points around a corner: the way
-//! from a bone to the neighbour of its finger is that back to the palm.
+//! A bone *sees* a point if no triangle is between them; its distance is then the length of the straight
+//! line. To points that it does not see, distances go on along the edges of the mesh. So the way from
+//! the bone of a finger to the next finger leads through the palm.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -191,8 +191,12 @@ impl<'a> Sight<'a> {
         least
     }
 
-    /// The bones that see a point and are not farther away than `reach`, with their distances.
+    /// The bones that see a point and are not farther away than `reach`, with their distances; none if
+    /// `reach` is infinite, which is that of a point that no bone reaches.
     fn all_seen(&self, point: usize, reach: f32) -> Vec<(usize, f32)> {
+        if !reach.is_finite() {
+            return Vec::new();
+        }
         let near = self.straight(point).filter(|(_, straight)| *straight <= reach);
         near.filter_map(|(bone, _)| Some((bone, self.seen(bone, point)?))).collect()
     }

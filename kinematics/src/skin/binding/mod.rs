@@ -20,13 +20,12 @@ impl SkinnedMesh {
     /// The mesh as it is on a posed skeleton, with new weights by the distances of its vertices from
     /// the bones inside the body. The pose becomes the one in which the mesh is attached.
     ///
-    /// Every weight changes by at most 0.35 along an edge. Vertices that no bone reaches, such as those
+    /// Weights change smoothly along the surface. Vertices that no bone reaches, such as those
     /// of a button, follow what the nearest vertices that are reached follow.
     ///
     /// # Errors
     ///
-    /// [`BindError::NoBones`] for a skeleton without bones, or if the pose has numbers that are not
-    /// finite.
+    /// [`BindError::NoBones`] if no joint has a bone, or if the pose has numbers that are not finite.
     pub fn bound(&self, skeleton: &Skeleton, skinning: Skinning) -> Result<Self, BindError> {
         let (mesh, _) = self.baked(skeleton, skinning);
         let weights = weights(&mesh, skeleton).ok_or(BindError::NoBones)?;

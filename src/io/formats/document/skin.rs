@@ -204,6 +204,8 @@ struct FileMeshFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     texture_coordinates: Option<Bytes>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    emission_coordinates: Option<Bytes>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     colours: Option<Bytes>,
     triangles: Bytes,
     vertex_joints: Bytes,
@@ -344,7 +346,9 @@ impl FileMeshFields {
         let FileMesh { mesh, parents, parts } = mesh;
         let triangles = mesh.mesh();
         let points = |points: &[Vec3]| Bytes::of_floats(points.iter().flat_map(Vec3::to_array));
-        let coordinates = triangles.texture_coordinates.iter().flat_map(Vec2::to_array);
+        let coordinates = |all: &[Vec2]| {
+            (!all.is_empty()).then(|| Bytes::of_floats(all.iter().flat_map(Vec2::to_array)))
+        };
         let sets = mesh.bind_sets();
         let binds = sets.iter().flat_map(|set| &set.inverse_binds);
         let binds = binds.flat_map(Affine3A::to_cols_array);
@@ -361,8 +365,8 @@ impl FileMeshFields {
             bind_sets,
             positions: points(&triangles.positions),
             normals: points(&triangles.normals),
-            texture_coordinates: (!triangles.texture_coordinates.is_empty())
-                .then(|| Bytes::of_floats(coordinates)),
+            texture_coordinates: coordinates(&triangles.texture_coordinates),
+            emission_coordinates: coordinates(&triangles.emission_coordinates),
             colours: (!triangles.colours.is_empty())
                 .then(|| Bytes::of(triangles.colours.as_flattened())),
             triangles: Bytes::new(corners.flat_map(|corner| corner.to_le_bytes())),
@@ -380,14 +384,16 @@ impl FileMeshFields {
             parent.map(|parent| joint(parent, index)).transpose()
         })
         .at("parents")?;
-        let coordinates = match self.texture_coordinates {
-            Some(bytes) => bytes.floats().at("texture_coordinates")?,
-            None => Vec::new(),
+        let coordinates = |bytes: Option<Bytes>| {
+            let numbers = bytes.map(|bytes| bytes.floats()).transpose();
+            numbers.map(|rows| rows.into_iter().flatten().map(Vec2::from_array).collect())
         };
         let triangles = TriangleMesh {
             positions: self.positions.vectors().at("positions")?,
             normals: self.normals.vectors().at("normals")?,
-            texture_coordinates: coordinates.into_iter().map(Vec2::from_array).collect(),
+            texture_coordinates: coordinates(self.texture_coordinates).at("texture_coordinates")?,
+            emission_coordinates: coordinates(self.emission_coordinates)
+                .at("emission_coordinates")?,
             colours: match self.colours {
                 Some(bytes) => bytes.decoded().at("colours")?.as_chunks().0.to_vec(),
                 None => Vec::new(),

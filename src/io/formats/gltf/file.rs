@@ -265,7 +265,8 @@ impl GltfPrimitive {
 }
 
 /// Attributes that are written, in their order.
-const WRITTEN: [&str; 6] = ["POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0", "JOINTS_0", "WEIGHTS_0"];
+const WRITTEN: [&str; 7] =
+    ["POSITION", "NORMAL", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", "JOINTS_0", "WEIGHTS_0"];
 
 fn write_attributes<S: Serializer>(
     all: &BTreeMap<String, Whole>,

@@ -34,10 +34,12 @@ pub struct GltfMaterial {
 
 impl GltfMaterial {
     /// A surface without gloss, with the look of a part of a skin and the indices of the textures of
-    /// its colour and of its emission. `colour` has sRGB channels from 0 to 1.
+    /// its colour and of its emission, whose texture coordinates have the number `emission_set`.
+    /// `colour` has sRGB channels from 0 to 1.
     pub fn matte(
         colour: [f32; 3],
         [texture, emission_texture]: [Option<Whole>; 2],
+        emission_set: u32,
         look: &PartLook,
     ) -> Self {
         let PartLook { is_double_sided, alpha_cutoff, opacity, emission } = *look;
@@ -48,8 +50,8 @@ impl GltfMaterial {
             None => "OPAQUE",
         };
         let [red, green, blue] = colour.map(linear);
-        let used = |index| {
-            let (coordinates, extensions) = (Some(Whole(0)), BTreeMap::new());
+        let used = |index, set| {
+            let (coordinates, extensions) = (Some(Whole(set)), BTreeMap::new());
             JsonObject(GltfTextureUse { index, coordinates, extensions })
         };
         Self {
@@ -58,12 +60,12 @@ impl GltfMaterial {
             double_sided: Some(is_double_sided),
             roughness: Some(JsonObject(GltfRoughness {
                 factor: Some(JsonNumbers([red, green, blue, opacity.unwrap_or(1.0)])),
-                texture: texture.map(used),
+                texture: texture.map(|index| used(index, 0)),
                 metallic: 0.0,
                 roughness: 1.0,
                 roughness_texture: None,
             })),
-            emissive_texture: emission_texture.map(used),
+            emissive_texture: emission_texture.map(|index| used(index, emission_set)),
             emissive: Some(JsonPoint(Vec3::from(emission.map(linear)))),
             ..Self::default()
         }
@@ -71,14 +73,18 @@ impl GltfMaterial {
 
     /// The texture that gives the texture coordinates: that of the base colour, else of the emission.
     pub fn coordinates_of(&self) -> Option<&GltfTextureUse> {
-        self.texture_use().or(self.emissive_texture.as_ref().map(|JsonObject(used)| used))
+        self.texture_use().or(self.emission_use())
     }
 
-    /// The image of the emission, if it has the texture coordinates of the base colour.
+    /// The image of the emission.
     pub fn emission_use(&self) -> Option<&GltfTextureUse> {
-        let used = self.emissive_texture.as_ref().map(|JsonObject(used)| used)?;
-        let own = self.coordinates_of()?;
-        (used.set() == own.set() && used.moved() == own.moved()).then_some(used)
+        self.emissive_texture.as_ref().map(|JsonObject(used)| used)
+    }
+
+    /// The image of the emission, if its texture coordinates are others than those of the base colour.
+    pub fn apart_emission(&self) -> Option<&GltfTextureUse> {
+        let (used, own) = (self.emission_use()?, self.coordinates_of()?);
+        (used.set() != own.set() || used.moved() != own.moved()).then_some(used)
     }
 
     /// The image of the base colour.
@@ -110,9 +116,11 @@ impl GltfMaterial {
         }
     }
 
-    /// Number of the set of texture coordinates that the textures take.
-    pub fn coordinates(&self) -> u32 {
-        self.coordinates_of().map_or(0, GltfTextureUse::set)
+    /// Numbers of the sets of texture coordinates that the textures take: that of the base colour, and
+    /// that of the emission, if it is apart.
+    pub fn sets(&self) -> (u32, Option<u32>) {
+        let own = self.coordinates_of().map_or(0, GltfTextureUse::set);
+        (own, self.apart_emission().map(GltfTextureUse::set))
     }
 
     /// Names of the channels that are not read.
@@ -122,10 +130,6 @@ impl GltfMaterial {
         let channels = [
             ("normal textures", self.normal.is_some()),
             ("occlusion textures", self.occlusion.is_some()),
-            (
-                "emission textures with coordinates of their own",
-                self.emissive_texture.is_some() && self.emission_use().is_none(),
-            ),
             ("metallic and roughness textures", of_roughness.is_some()),
         ];
         let named = channels.into_iter().filter(|(_, has)| *has).map(|(name, _)| name.to_owned());

@@ -11,15 +11,22 @@ pub struct ObjMaterial {
     pub colour: [f32; 3],
     /// `Ke`, as sRGB.
     pub emission: [f32; 3],
-    /// `d`, from 0 to 1.
+    /// `d`, from 0 to 1; without it 1 − `Tr`, or 1.
     pub opacity: f32,
+    has_opacity: bool,
     /// File with the image of `map_Kd`.
     pub texture: Option<String>,
 }
 
 impl Default for ObjMaterial {
     fn default() -> Self {
-        Self { colour: [1.0; 3], emission: [0.0; 3], opacity: 1.0, texture: None }
+        Self {
+            colour: [1.0; 3],
+            emission: [0.0; 3],
+            opacity: 1.0,
+            has_opacity: false,
+            texture: None,
+        }
     }
 }
 
@@ -53,14 +60,15 @@ impl ObjMaterial {
             Ok::<_, String>([red, green, blue].map(|channel: f32| channel.clamp(0.0, 1.0)))
         };
         let number = || {
+            let rest = rest.strip_prefix("-halo").unwrap_or(rest);
             let [number] = numbers(rest, word, "from 0 to 1")?;
             Ok::<_, String>(f32::clamp(number, 0.0, 1.0))
         };
         match word {
             "Kd" => self.colour = colour()?,
             "Ke" => self.emission = colour()?,
-            "d" => self.opacity = number()?,
-            "Tr" => self.opacity = 1.0 - number()?,
+            "d" => (self.opacity, self.has_opacity) = (number()?, true),
+            "Tr" if !self.has_opacity => self.opacity = 1.0 - number()?,
             "map_Kd" => {
                 // Options such as `-s 1 1 1` stand before the name.
                 let name = match rest.starts_with('-') {

@@ -45,21 +45,17 @@ impl ObjMesh {
     }
 
     fn add(&mut self, at: usize, line: &str) -> Result<(), String> {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let line = line.trim();
+        let (word, name) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        // Names can have a #, such as `Material #25`.
+        let rest = name.split('#').next().unwrap_or_default();
         match word {
             "v" => self.add_position(rest)?,
-            "vt" => {
-                let [u, v] = numbers(rest, "vt", "u v")?;
-                self.coordinates.push(Vec2::new(u, 1.0 - v));
-            }
-            "vn" => {
-                let normal: [f32; 3] = numbers(rest, "vn", "x y z")?;
-                self.normals.push(Vec3::from(normal).normalize_or_zero());
-            }
+            "vt" => self.add_coordinates(rest)?,
+            "vn" => self.add_normal(rest)?,
             "f" => self.add_face(rest)?,
-            "usemtl" => rest.trim().clone_into(&mut self.material),
-            "mtllib" => self.libraries.push((rest.trim().to_owned(), at)),
+            "usemtl" => name.trim().clone_into(&mut self.material),
+            "mtllib" => self.add_libraries(at, name),
             // Names of objects and groups, smoothing, points, lines and curves.
             _ => {}
         }
@@ -79,6 +75,32 @@ impl ObjMesh {
         }
         self.positions.push(position.into());
         Ok(())
+    }
+
+    fn add_coordinates(&mut self, rest: &str) -> Result<(), String> {
+        let v_is_missing = rest.split_whitespace().nth(1).is_none();
+        let [u, v] = match v_is_missing {
+            true => [numbers::<1>(rest, "vt", "u")?[0], 0.0],
+            false => numbers(rest, "vt", "u v")?,
+        };
+        self.coordinates.push(Vec2::new(u, 1.0 - v));
+        Ok(())
+    }
+
+    fn add_normal(&mut self, rest: &str) -> Result<(), String> {
+        // Some programs write NaN for corners of triangles without an area; these become smooth.
+        let normal = match rest.to_ascii_lowercase().contains("nan") {
+            true => [0.0; 3],
+            false => numbers(rest, "vn", "x y z")?,
+        };
+        self.normals.push(Vec3::from(normal).normalize_or_zero());
+        Ok(())
+    }
+
+    /// Adds the files with materials of a line: one, whose name can have spaces, or several.
+    fn add_libraries(&mut self, at: usize, names: &str) {
+        let names = names.split_inclusive(".mtl").map(str::trim).filter(|name| !name.is_empty());
+        self.libraries.extend(names.map(|name| (name.to_owned(), at)));
     }
 
     /// Adds the triangles of a face around its first corner.
@@ -156,6 +178,7 @@ impl ObjMesh {
             texture_coordinates: corners().filter(|_| has_coordinates).map(place).collect(),
             colours: corners().filter(|_| !self.colours.is_empty()).map(colour).collect(),
             triangles: self.parts.iter().flat_map(|(_, triangles)| triangles).copied().collect(),
+            ..TriangleMesh::default()
         }
     }
 
@@ -172,8 +195,8 @@ impl ObjMesh {
     }
 }
 
-/// The lines of a text, each with the place of its first byte. A line that ends with a backslash goes
-/// on in the next one.
+/// The lines of a text, each with the place of its first byte. A line that ends with a backslash, and
+/// is no comment, goes on in the next one.
 pub fn lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     let mut rest = text.split_inclusive('\n');
     let mut next = 0;
@@ -186,7 +209,9 @@ pub fn lines(text: &str) -> impl Iterator<Item = (usize, String)> {
             };
             next += line.len();
             let line = line.trim_end();
-            let Some(begun) = line.strip_suffix('\\') else {
+            let is_comment = joined.is_empty() && line.trim_start().starts_with('#');
+            let begun = line.strip_suffix('\\').filter(|_| !is_comment);
+            let Some(begun) = begun else {
                 joined.push_str(line);
                 return Some((at, joined));
             };
@@ -205,7 +230,10 @@ pub fn numbers<const N: usize>(text: &str, word: &str, names: &str) -> Result<[f
         let parsed = word_read.and_then(|text| text.parse::<f32>().ok());
         *number = parsed.filter(|number| number.is_finite()).ok_or_else(|| {
             let got = word_read.map_or_else(|| "too few".to_owned(), |it| format!("{it:?}"));
-            format!("{word} must have {N} finite numbers, {names}, got {got}")
+            match N {
+                1 => format!("{word} must have a finite number, {names}, got {got}"),
+                _ => format!("{word} must have {N} finite numbers, {names}, got {got}"),
+            }
         })?;
     }
     Ok(numbers)

@@ -3,7 +3,7 @@
 //! ```text
 //! mtllib file.mtl            materials
 //! v x y z [w] [r g b]        position, and a colour that some programs add
-//! vt u v                     texture coordinates, origin at the lower left
+//! vt u [v]                   texture coordinates, origin at the lower left
 //! vn x y z                   normal
 //! usemtl name                material of the faces that follow
 //! f v/vt/vn v/vt/vn …        face, by indices from 1, or from −1 backwards; vt and vn may be missing
@@ -12,8 +12,8 @@
 //! # Import
 //!
 //! The mesh follows one joint, a root at the origin. Faces with more than three corners are cut into
-//! triangles around their first corner. Missing normals are smooth. `Kd`, `d`, `Ke` and `map_Kd` of
-//! materials are read.
+//! triangles around their first corner. Missing normals are smooth. `Kd`, `d` (or `Tr`), `Ke` and
+//! `map_Kd` of materials are read.
 //!
 //! # Export
 //!

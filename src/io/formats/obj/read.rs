@@ -23,7 +23,9 @@ pub fn is_obj(text: &str) -> bool {
     let first = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
     let word = first.split_whitespace().next().unwrap_or_default();
     let has_more = first.split_whitespace().nth(1).is_some();
-    has_more && matches!(word, "v" | "vn" | "vt" | "o" | "g" | "s" | "mtllib" | "usemtl")
+    // Some programs begin with a group without a name.
+    let is_group = word == "g";
+    is_group || has_more && matches!(word, "v" | "vn" | "vt" | "o" | "s" | "mtllib" | "usemtl")
 }
 
 /// Reads the mesh of a file, on a joint at the origin.
@@ -57,6 +59,7 @@ pub fn read(source: &Source, options: &OpenOptions) -> Result<Opened, OpenError>
     for (name, triangles) in &mesh.parts {
         parts.push(materials.part(name, triangles.len()));
     }
+    materials.warn_of_unknown(mesh.parts.iter().map(|(name, _)| name));
     let triangles = mesh.mesh();
     let weights = vec![VertexWeights::rigid(JointId::new(0)); triangles.positions.len()];
     let skinned = SkinnedMesh::new(triangles, weights, vec![Affine3A::IDENTITY])
@@ -129,6 +132,23 @@ impl<'a> ObjMaterials<'a> {
             };
             self.warnings.extend(warning.map(|it| self.source.remark_about(*at, "mtllib", &it)));
         }
+    }
+
+    /// Warns of the materials of faces that none of the files that could be read has.
+    fn warn_of_unknown<'n>(&mut self, names: impl Iterator<Item = &'n String>) {
+        if self.materials.is_empty() {
+            return;
+        }
+        let is_unknown = |name: &&String| !name.is_empty() && !self.materials.contains_key(*name);
+        let mut unknown = names.filter(is_unknown);
+        let Some(first) = unknown.next() else { return };
+        let others = match unknown.count() {
+            0 => String::new(),
+            others => format!(", nor {others} others of the faces"),
+        };
+        let reason =
+            format!("usemtl: no .mtl file has the material {first:?}{others}; its faces are white");
+        self.warnings.push(Remark::new(reason));
     }
 
     /// The part of a skin with the material of this name; white, if there is none.

@@ -206,6 +206,11 @@ impl GltfWriter {
             let coordinates = self.add_floats(&part.coordinates, ARRAY);
             attributes.insert("TEXCOORD_0".to_owned(), coordinates);
         }
+        let emission_set = u32::from(!part.emission_coordinates.is_empty());
+        if emission_set == 1 {
+            let coordinates = self.add_floats(&part.emission_coordinates, ARRAY);
+            attributes.insert("TEXCOORD_1".to_owned(), coordinates);
+        }
         if !part.colours.is_empty() {
             attributes.insert("COLOR_0".to_owned(), self.add_floats(&part.colours, ARRAY));
         }
@@ -214,8 +219,12 @@ impl GltfWriter {
         let indices = part.indices.iter().flat_map(|index| index.to_le_bytes());
         let count = part.indices.len();
         let indices = self.add(indices, ELEMENT_ARRAY, count, Component::U32, "SCALAR");
-        let material =
-            self.json.materials.push(GltfMaterial::matte(part.colour, textures, &part.look));
+        let material = self.json.materials.push(GltfMaterial::matte(
+            part.colour,
+            textures,
+            emission_set,
+            &part.look,
+        ));
         GltfPrimitive {
             attributes,
             indices: Some(indices),

@@ -34,10 +34,12 @@ pub struct MeshPart {
     pub look: PartLook,
     /// Image that multiplies the colour.
     pub texture: Option<Shared<SkinTexture>>,
-    /// Image that multiplies the emission, by the same coordinates.
+    /// Image that multiplies the emission.
     pub emission_texture: Option<Shared<SkinTexture>>,
     /// Texture coordinates; empty without a texture.
     pub coordinates: Vec<[f32; 2]>,
+    /// Those of the emission, if they are others.
+    pub emission_coordinates: Vec<[f32; 2]>,
     /// Colours of the vertices as linear light with opacity; empty for white ones.
     pub colours: Vec<[f32; 4]>,
     pub positions: Vec<[f32; 3]>,
@@ -95,7 +97,7 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
         rest = others;
         let colour = std::array::from_fn(|channel| skin.colour[channel] * part.colour[channel]);
         let set_of = |corners: &[u32; 3]| sets[corners[0] as usize];
-        let has_texture = part.texture.is_some() || part.emission_texture.is_some();
+        let textured = [part.texture.is_some(), part.emission_texture.is_some()];
         for of_set in triangles.chunk_by(|one, other| set_of(one) == set_of(other)) {
             let corners = of_set
                 .iter()
@@ -106,16 +108,17 @@ fn parts(skin: &Skin, mesh: &AttachedMesh, skeleton: &Skeleton) -> Vec<MeshPart>
                 look: part.look,
                 texture: part.texture.clone(),
                 emission_texture: part.emission_texture.clone(),
-                ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), has_texture)
+                ..of_corners(&mesh.mesh, &corners.collect::<Vec<_>>(), textured)
             });
         }
     }
     parts
 }
 
-/// The triangles with these corners, and the vertices that they have.
-fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPart {
-    let TriangleMesh { positions, normals, texture_coordinates, colours, .. } = mesh.mesh();
+/// The triangles with these corners, and the vertices that they have, with images of colour and of
+/// emission or without.
+fn of_corners(mesh: &SkinnedMesh, corners: &[u32], [colour, emission]: [bool; 2]) -> MeshPart {
+    let TriangleMesh { positions, normals, colours, .. } = mesh.mesh();
     let mut places: Vec<Option<u32>> = vec![None; positions.len()];
     corners.iter().for_each(|corner| places[*corner as usize] = Some(0));
     let vertices: Vec<usize> = (0..places.len()).filter(|at| places[*at].is_some()).collect();
@@ -123,7 +126,10 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
         places[*vertex] = Some(place as u32);
     }
     let weights = || vertices.iter().map(|vertex| &mesh.weights()[*vertex]);
-    let coordinates = vertices.iter().filter_map(|vertex| texture_coordinates.get(*vertex));
+    let coordinates = |all: &[Vec2], is_used: bool| -> Vec<[f32; 2]> {
+        let used = vertices.iter().filter(|_| is_used);
+        used.filter_map(|vertex| all.get(*vertex)).map(Vec2::to_array).collect()
+    };
     let colours = vertices.iter().filter_map(|vertex| colours.get(*vertex));
     let in_light = |[red, green, blue, opacity]: &[u8; 4]| {
         let [red, green, blue, opacity] =
@@ -150,7 +156,8 @@ fn of_corners(mesh: &SkinnedMesh, corners: &[u32], has_texture: bool) -> MeshPar
         normals: vertices.iter().map(|vertex| normals[*vertex].to_array()).collect(),
         joints: weights().map(VertexWeights::joints).collect(),
         weights: weights().map(VertexWeights::weights).collect(),
-        coordinates: coordinates.filter(|_| has_texture).map(Vec2::to_array).collect(),
+        coordinates: coordinates(&mesh.mesh().texture_coordinates, colour || emission),
+        emission_coordinates: coordinates(&mesh.mesh().emission_coordinates, emission),
         indices: corners.iter().filter_map(|corner| places[*corner as usize]).collect(),
         morphs: mesh.morphs().iter().map(of_part).collect(),
         ..MeshPart::default()

@@ -55,11 +55,13 @@ impl StretchParts {
         let length = |axis: &usize| columns.col(*axis).length();
         let shortest = (0..3).min_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or_default();
         let (first, second) = ((shortest + 1) % 3, (shortest + 2) % 3);
+        let longest = if length(&first) < length(&second) { second } else { first };
+        let middle = 3 - longest - shortest;
         // Flat stretches have a rotation, too: columns without length get a direction.
         let mut turn = DMat3::IDENTITY;
-        *turn.col_mut(first) = columns.col(first).normalize_or(DVec3::X);
-        let across = columns.col(second).reject_from_normalized(turn.col(first));
-        *turn.col_mut(second) = across.normalize_or(turn.col(first).any_orthonormal_vector());
+        *turn.col_mut(longest) = columns.col(longest).normalize_or(DVec3::X);
+        let across = columns.col(middle).reject_from_normalized(turn.col(longest));
+        *turn.col_mut(middle) = across.normalize_or(turn.col(longest).any_orthonormal_vector());
         *turn.col_mut(shortest) = turn.col(first).cross(turn.col(second));
         let scale = [0, 1, 2].map(|axis| turn.col(axis).dot(columns.col(axis)));
         Self { turn, scale: scale.into(), axes }
@@ -103,9 +105,9 @@ mod tests {
         let state = &mut 7;
         let vector = |state: &mut u64| Vec3::from_array([(); 3].map(|()| random(state)));
         for case in 0..200 {
-            let flat = f32::from(u8::from(case % 10 != 0));
+            let is_flat = |every: usize| f32::from(u8::from(case % every != 0));
             let [from, to] = [(); 2].map(|()| SkinStretch {
-                scale: (Vec3::ONE + 0.9 * vector(state)) * Vec3::new(1.0, 1.0, flat),
+                scale: (Vec3::ONE + 0.9 * vector(state)) * Vec3::new(1.0, is_flat(20), is_flat(10)),
                 shear: 0.8 * vector(state),
             });
             let mut near = StretchParts::NONE;

@@ -36,7 +36,14 @@ impl<'a> DracoMesh<'a> {
         let mut mesh = Mesh::new();
         let mut bytes = DecoderBuffer::new(bytes).with_limits(limits);
         let decoded = MeshDecoder::new().decode(&mut bytes, &mut mesh);
-        decoded.map_err(|error| FieldError::new(at, format!("cannot be decoded: {error}")))?;
+        decoded
+            .map_err(|error| FieldError::new(at.clone(), format!("cannot be decoded: {error}")))?;
+        for (name, id) in &fields.attributes {
+            if mesh.attribute_by_unique_id(id.0).is_none() {
+                let reason = format!("must be the id of an attribute of the mesh, got {}", id.0);
+                return Err(FieldError::new(at.key("attributes").key(name), reason));
+            }
+        }
         Ok(Some(Self { mesh, fields }))
     }
 

@@ -23,13 +23,17 @@ pub struct PartMaterial {
     pub emission_texture: Option<Shared<SkinTexture>>,
     /// What moves the texture coordinates.
     pub moved: Option<Affine2>,
+    /// What moves those of the emission; `None` if they are the same.
+    pub emission_moved: Option<Affine2>,
     pub look: PartLook,
 }
 
 impl PartMaterial {
     /// White with a look.
     pub fn white(look: PartLook) -> Self {
-        Self { colour: [1.0; 3], texture: None, emission_texture: None, moved: None, look }
+        let (texture, emission_texture) = (None, None);
+        let (moved, emission_moved) = (None, None);
+        Self { colour: [1.0; 3], texture, emission_texture, moved, emission_moved, look }
     }
 
     /// Returns whether the alpha of the material hides all of it.
@@ -63,6 +67,8 @@ impl ImageCache {
         warnings: &mut FieldWarnings,
     ) -> PartMaterial {
         let moved = material.coordinates_of().and_then(GltfTextureUse::moved);
+        let apart = material.apart_emission();
+        let emission_moved = apart.map(|used| used.moved().unwrap_or(Affine2::IDENTITY));
         let mut look = material.look();
         let colour = material.roughness.as_ref().map_or([1.0; 3], |JsonObject(it)| it.colour());
         let mut read = |used: &GltfTextureUse| {
@@ -78,7 +84,7 @@ impl ImageCache {
         if material.emissive_texture.is_some() && emission_texture.is_none() {
             look.emission = [0.0; 3];
         }
-        PartMaterial { colour, texture, emission_texture, moved, look }
+        PartMaterial { colour, texture, emission_texture, moved, emission_moved, look }
     }
 
     /// The image of a texture; `None` if it has failed before.
@@ -155,6 +161,8 @@ pub struct PrimitiveMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates; empty if the file has none.
     pub coordinates: Vec<Vec2>,
+    /// Those of the emission, if they are apart; empty if the file has none.
+    pub emission_coordinates: Vec<Vec2>,
     /// Colours as sRGB with opacity; empty if the file has none.
     pub colours: Vec<[u8; 4]>,
     /// For each vertex the joints, numbered as in the skin's list, with their weights; empty for a
@@ -238,10 +246,12 @@ impl GltfPrimitive {
         })
     }
 
-    /// The accessors that [`PrimitiveMesh::new`] reads with the texture coordinates `set`.
-    pub fn accessors(&self, set: u32) -> BTreeSet<usize> {
-        let names = ["POSITION", "NORMAL", COLOURS, &format!("TEXCOORD_{set}")];
-        let attributes = names.into_iter().filter_map(|name| self.attribute(name));
+    /// The accessors that [`PrimitiveMesh::new`] reads with these sets of texture coordinates.
+    pub fn accessors(&self, (set, of_emission): (u32, Option<u32>)) -> BTreeSet<usize> {
+        let sets = [Some(set), of_emission].into_iter().flatten();
+        let sets = sets.filter_map(|set| self.attribute(&format!("TEXCOORD_{set}")));
+        let names = ["POSITION", "NORMAL", COLOURS];
+        let attributes = names.into_iter().filter_map(|name| self.attribute(name)).chain(sets);
         let weights = self.weights().flat_map(|(joints, weights)| [joints, weights]);
         let indices = self.indices.iter().map(|indices| indices.0 as usize);
         let of_morph = |morph: &BTreeMap<String, Whole>| {
@@ -253,13 +263,13 @@ impl GltfPrimitive {
 }
 
 impl PrimitiveMesh {
-    /// Reads a primitive, with the texture coordinates `set`. `at` is its path, and `joints` the
+    /// Reads a primitive, with these sets of texture coordinates. `at` is its path, and `joints` the
     /// number of joints of the skin.
     pub fn new(
         file: &GltfFile<'_>,
         buffers: &GltfBuffers<'_>,
         primitive: &GltfPrimitive,
-        set: u32,
+        (set, of_emission): (u32, Option<u32>),
         joints: usize,
         at: &JsonPath,
     ) -> Result<Self, FieldError> {
@@ -284,12 +294,15 @@ impl PrimitiveMesh {
         };
         let normals = points("NORMAL")?;
         has_as_many("NORMAL", normals.len())?;
-        let name = format!("TEXCOORD_{set}");
-        let coordinates = match primitive.attribute(&name) {
-            Some(accessor) => coordinates(&rows(&name, accessor, "VEC2")?),
-            None => Vec::new(),
+        let coordinates = |set: u32| {
+            let name = format!("TEXCOORD_{set}");
+            let Some(accessor) = primitive.attribute(&name) else { return Ok(Vec::new()) };
+            let coordinates = coordinates(&rows(&name, accessor, "VEC2")?);
+            has_as_many(&name, coordinates.len())?;
+            Ok::<_, FieldError>(coordinates)
         };
-        has_as_many(&name, coordinates.len())?;
+        let emission_coordinates = of_emission.map(coordinates).transpose()?.unwrap_or_default();
+        let coordinates = coordinates(set)?;
         let colours = match primitive.attribute(COLOURS) {
             Some(accessor) => {
                 let shape = &*find_accessor(file, accessor)?.shape;
@@ -332,6 +345,7 @@ impl PrimitiveMesh {
             positions,
             normals,
             coordinates,
+            emission_coordinates,
             colours,
             weights,
         })

@@ -126,7 +126,7 @@ impl MeshImport<'_> {
             }
             for (at, primitive) in mesh.surfaces() {
                 let material = self.material(primitive, &at)?;
-                let set = material.map_or(0, |(_, material)| material.coordinates());
+                let set = material.map_or((0, None), |(_, material)| material.sets());
                 let count = of_skin.len();
                 let read = PrimitiveMesh::new(file, &buffers, primitive, set, count, &at)?;
                 let look = material.map(|(index, material)| {
@@ -250,7 +250,7 @@ impl MeshImport<'_> {
         let mut buffers = BTreeSet::new();
         for (at, primitive) in meshes.iter().flat_map(UsedMesh::surfaces) {
             let material = self.material(primitive, &at)?;
-            let set = material.map_or(0, |(_, material)| material.coordinates());
+            let set = material.map_or((0, None), |(_, material)| material.sets());
             accessors.extend(primitive.accessors(set));
             if let Some(packed) = primitive.draco() {
                 let at = at.key("extensions").key(DRACO).key("bufferView");
@@ -382,13 +382,16 @@ impl MeshBuilder {
         primitive: PrimitiveMesh,
         rigid: Option<(usize, DAffine3)>,
         is_mirrored: bool,
-        PartMaterial { colour, texture, emission_texture, moved, look }: PartMaterial,
+        material: PartMaterial,
         of_skin: &[usize],
     ) {
+        let PartMaterial { colour, texture, emission_texture, moved, emission_moved, look } =
+            material;
         let PrimitiveMesh {
             mut positions,
             mut normals,
             coordinates,
+            emission_coordinates,
             colours,
             weights,
             mut triangles,
@@ -430,6 +433,20 @@ impl MeshBuilder {
         let coordinates = coordinates.into_iter().map(|it| moved.transform_point2(it));
         self.mesh.texture_coordinates.extend(coordinates);
         self.mesh.texture_coordinates.resize(first + count, glam::Vec2::ZERO);
+        if emission_moved.is_some() || !self.mesh.emission_coordinates.is_empty() {
+            let TriangleMesh { texture_coordinates, emission_coordinates: all, .. } =
+                &mut self.mesh;
+            all.extend_from_slice(&texture_coordinates[all.len()..first]);
+            match emission_moved {
+                Some(moved) => {
+                    all.extend(
+                        emission_coordinates.into_iter().map(|it| moved.transform_point2(it)),
+                    );
+                }
+                None => all.extend_from_slice(&texture_coordinates[first..]),
+            }
+            all.resize(first + count, glam::Vec2::ZERO);
+        }
         if !(colours.is_empty() && self.mesh.colours.is_empty()) {
             self.mesh.colours.resize(first, [u8::MAX; 4]);
             self.mesh.colours.extend(colours);
