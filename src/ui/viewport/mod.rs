@@ -9,11 +9,13 @@ use egui::{
     Event, Id, InputState, PointerButton, Pos2, Rect, Response, Role, Sense, TouchPhase, Ui, Vec2,
     WidgetInfo, pos2,
 };
+use glam::Vec3;
 
 use super::gizmo::screen::ScreenProjection;
 use super::gizmo::{Gizmo, aims, freedom, locked_axis};
 use super::keyboard::{self, focus};
 use super::{commands, pose_summary, status_bar};
+use crate::document::Ray;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Actions, CameraMotion, Drag, DragInput, Grip, JointEdit, PlaybackAction, PointHandle,
@@ -222,23 +224,18 @@ fn select(
         Some(Grip::Ring(..) | Grip::Orientation(..) | Grip::Limit(..)) => return,
         _ => joint_at(session, screen, gizmo, mouse),
     };
-    let ray = screen.ray(mouse);
-    let in_mesh = session.middle_of_mesh(ray);
-    let is_place = match session.has_loose_mesh() {
-        true => in_mesh.is_some(),
-        false => joint.is_none(),
-    };
-    let is_first = is_place && !session.rig().has_bones();
-    if modifiers.command || is_first && modifiers.is_none() {
-        let is_root = session.selection().active().is_none() && session.has_lone_root();
-        if let Some(at) = in_mesh.filter(|_| is_root && is_first) {
-            actions.push(SkinEdit::PlaceRoot(at));
+    let is_first = modifiers.is_none() && !session.rig().has_bones();
+    if modifiers.command || is_first {
+        let ray = screen.ray(mouse);
+        let in_mesh = session.middle_of_mesh(ray);
+        let is_place = match session.has_loose_mesh() {
+            true => in_mesh.is_some(),
+            false => joint.is_none(),
+        };
+        if modifiers.command || is_place {
+            place_joint(session, ray, screen.projection.forward, in_mesh, actions);
             return;
         }
-        let base = JointEdit::next_base(session);
-        let at = in_mesh.or_else(|| ray.meets_plane(base, screen.projection.forward));
-        actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
-        return;
     }
     let mut selection =
         if modifiers.shift { session.selection().joints().to_vec() } else { Vec::new() };
@@ -252,6 +249,24 @@ fn select(
     if selection != session.selection().joints() {
         actions.push(SelectAction::Joints(selection));
     }
+}
+
+/// Adds a bone that ends at `in_mesh`, or without it in the plane through its base across the view.
+/// The lone first joint of a mesh goes there itself.
+fn place_joint(
+    session: &Session,
+    ray: Ray,
+    forward: Vec3,
+    in_mesh: Option<Vec3>,
+    actions: &mut Actions,
+) {
+    let is_root = session.selection().active().is_none() && session.has_lone_root();
+    if let Some(at) = in_mesh.filter(|_| is_root) {
+        actions.push(SkinEdit::PlaceRoot(at));
+        return;
+    }
+    let at = in_mesh.or_else(|| ray.meets_plane(JointEdit::next_base(session), forward));
+    actions.extend(at.map(|tip| JointEdit::AddJoint { tip: Some(tip) }));
 }
 
 /// The rectangle rounded to whole pixels, so that each pixel of the scene covers one pixel of the

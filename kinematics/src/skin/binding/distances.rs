@@ -78,7 +78,7 @@ impl InsideDistances {
             }
         }
         let mut distances = Self { radii: radii(&near, bones.len()), near };
-        distances.fill_unreached(mesh, bones);
+        distances.fill_unreached(&sight);
         distances
     }
 
@@ -86,28 +86,21 @@ impl InsideDistances {
     pub fn at(&self, point: usize) -> (f32, &[(usize, f32)]) {
         (self.radii[point], &self.near[point])
     }
-}
 
-impl InsideDistances {
     /// Gives points that no bone reaches the distances of the nearest point that one reaches; if
     /// there is none, all points the straight distances.
-    fn fill_unreached(&mut self, mesh: &WeldedMesh, bones: &[BoneSegment]) {
+    fn fill_unreached(&mut self, sight: &Sight<'_>) {
+        let points = &sight.mesh.points;
         let (mut reached, unreached): (Vec<usize>, Vec<usize>) =
-            (0..mesh.points.len()).partition(|point| !self.near[*point].is_empty());
+            (0..points.len()).partition(|point| !self.near[*point].is_empty());
         if reached.is_empty() {
-            let straight = |point: &Vec3| {
-                let distance =
-                    |bone: &BoneSegment| bone.distance(bone.at(bone.nearest(*point)), *point);
-                bones.iter().map(distance).enumerate().collect()
-            };
-            self.near = mesh.points.iter().map(straight).collect();
-            self.radii = radii(&self.near, bones.len());
+            self.near = (0..points.len()).map(|point| sight.straight(point).collect()).collect();
+            self.radii = radii(&self.near, sight.bones.len());
             return;
         }
-        reached
-            .sort_unstable_by(|one, other| mesh.points[*one].x.total_cmp(&mesh.points[*other].x));
+        reached.sort_unstable_by(|one, other| points[*one].x.total_cmp(&points[*other].x));
         for point in unreached {
-            let nearest = nearest_by_x(&mesh.points, &reached, mesh.points[point]);
+            let nearest = nearest_by_x(points, &reached, points[point]);
             self.near[point] = self.near[nearest].clone();
             self.radii[point] = self.radii[nearest];
         }

@@ -27,9 +27,9 @@ impl SkinnedMesh {
     ///
     /// [`BindError::NoBones`] if no joint has a bone, or if the pose has numbers that are not finite.
     pub fn bound(&self, skeleton: &Skeleton, skinning: Skinning) -> Result<Self, BindError> {
-        let (mesh, _) = self.baked(skeleton, skinning);
+        let (mesh, morphs) = self.baked(skeleton, skinning);
         let weights = weights(&mesh, skeleton).ok_or(BindError::NoBones)?;
-        Ok(self.reattached(weights, [skeleton; 2], skinning)?)
+        Ok(attached(mesh, weights, skeleton)?.with_morphs(morphs)?)
     }
 
     /// The mesh as it is on the posed skeleton `from`, attached with these weights to the posed
@@ -45,14 +45,7 @@ impl SkinnedMesh {
         skinning: Skinning,
     ) -> Result<Self, SkinError> {
         let (mesh, morphs) = self.baked(from, skinning);
-        let pose = to.pose_in_skeleton();
-        let inverse_bind = |(id, joint): (JointId, &Joint)| {
-            let inverse = (pose.full(id) * joint.stretched(Affine3A::IDENTITY)).inverse();
-            // A joint that makes the skin flat cannot be undone.
-            if inverse.is_finite() { inverse } else { pose.full(id).inverse() }
-        };
-        let inverse_binds = to.iter().map(inverse_bind).collect();
-        Self::new(mesh, weights, inverse_binds)?.with_morphs(morphs)
+        attached(mesh, weights, to)?.with_morphs(morphs)
     }
 
     /// The triangles and morph targets as they are on a posed skeleton, in skeleton space.
@@ -79,6 +72,21 @@ impl SkinnedMesh {
         };
         (mesh, self.morphs().iter().map(turned).collect())
     }
+}
+
+/// A mesh in the space of a posed skeleton, attached to that pose.
+fn attached(
+    mesh: TriangleMesh,
+    weights: Vec<VertexWeights>,
+    skeleton: &Skeleton,
+) -> Result<SkinnedMesh, SkinError> {
+    let pose = skeleton.pose_in_skeleton();
+    let inverse_bind = |(id, joint): (JointId, &Joint)| {
+        let inverse = (pose.full(id) * joint.stretched(Affine3A::IDENTITY)).inverse();
+        // A joint that makes the skin flat cannot be undone.
+        if inverse.is_finite() { inverse } else { pose.full(id).inverse() }
+    };
+    SkinnedMesh::new(mesh, weights, skeleton.iter().map(inverse_bind).collect())
 }
 
 /// The weights of a mesh in the space of a posed skeleton; `None` for a skeleton without bones.

@@ -59,8 +59,8 @@ impl TriangleTree {
 }
 
 /// Adds the boxes of triangles with these indices, of which the first is at `start` in the order of
-/// the leaves. Sorts the triangles by their middles along the longest side of the box around these, and cuts
-/// them into halves there.
+/// the leaves. Sorts the triangles by their middles along the longest side of the box around these,
+/// and cuts them into halves there.
 fn split(triangles: &[[Vec3; 3]], indices: &mut [u32], start: usize, boxes: &mut Vec<TreeBox>) {
     const MOST: usize = 4;
     let corners = indices.iter().flat_map(|index| triangles[*index as usize]);
