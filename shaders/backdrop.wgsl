@@ -1,6 +1,4 @@
-// Background: the sky with the planes in front of it.
-
-const MAX_DISTANCE = 1e30;
+// Background: the sky.
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -10,6 +8,5 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let ray = pixel_ray(position.xy);
-    return vec4f(behind_planes(sky(position.xy), ray, MAX_DISTANCE), 1.0);
+    return vec4f(sky(position.xy), 1.0);
 }

@@ -74,5 +74,5 @@ fn vertex(@builtin(vertex_index) number: u32) -> Surface {
 @fragment
 fn fragment(s: Surface) -> @location(0) vec4f {
     let colour = lit(s.colour, normalize(s.normal));
-    return vec4f(in_scene(colour, s.world, s.position.xy), 1.0);
+    return vec4f(fogged(colour, s.world, s.position.xy), 1.0);
 }

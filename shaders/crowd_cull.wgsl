@@ -67,7 +67,8 @@ fn add_limb(lod: u32, number: u32, limb: Limb, colour: vec3f) {
     let normal = unit(towards - direction * dot(direction, towards), -crowd.forward);
     let entry = crowd.lods[lod].first + 2u * next_slot(lod);
     visible[entry] = number;
-    visible[entry + 1u] = pack4x8unorm(vec4f(in_scene_at(middle, lit(colour, normal)), 1.0));
+    let seen = fogged(lit(colour, normal), middle, pixel_of(middle));
+    visible[entry + 1u] = pack4x8unorm(vec4f(behind_floor(seen, middle), 1.0));
 }
 
 // A number from 0 to 1 that is always the same for a limb (M. O'Neill, "PCG", 2014).
@@ -77,29 +78,18 @@ fn random(limb: u32) -> f32 {
     return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
 }
 
-// Like `in_scene`, but without derivatives, which compute shaders do not have: the size of a pixel on each
-// plane is computed instead.
-fn in_scene_at(point: vec3f, colour: vec3f) -> vec3f {
-    let clip = view.clip_from_world * vec4f(point, 1.0);
-    let position = (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * view.size;
-    let ray = pixel_ray(position);
-    let along = dot(point - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    let pixels = array(
-        pixel_on(ray, vec3f(1.0, 0.0, 0.0)).zy,
-        pixel_on(ray, vec3f(0.0, 1.0, 0.0)).xz,
-        pixel_on(ray, vec3f(0.0, 0.0, 1.0)).xy,
-    );
-    return behind_planes_of(fogged(colour, position, along), ray, along, pixels);
+// The colour of a point as it shines through the floor if that is in front of it. The floor cannot be drawn
+// over the points of far limbs, each of which has one depth for its whole pixel.
+fn behind_floor(colour: vec3f, point: vec3f) -> vec3f {
+    let towards = to_eye(point);
+    let part = -point.y / towards.y;
+    let is_behind = point.y < 0.0 && towards.y > 0.0 && (view.orthographic > 0.5 || part < 1.0);
+    let opacity = view.ground.a * presence(point + towards * part, FLOOR_RADIUS);
+    return mix(colour, view.ground.rgb, select(0.0, opacity, is_behind));
 }
 
-// Size of a pixel on the plane through the origin with this normal, along each axis of the world, in
-// cells, like `pixel_in_cells`.
-fn pixel_on(ray: Ray, normal: vec3f) -> vec3f {
-    let per_depth = ray.direction / dot(ray.direction, normal);
-    let hit = ray.origin - per_depth * dot(ray.origin, normal);
-    let right = normalize(view.right);
-    let up = normalize(view.up);
-    let across = abs(right - per_depth * dot(right, normal));
-    let along = abs(up - per_depth * dot(up, normal));
-    return max((across + along) * pixel_at(hit) / view.cell, vec3f(1e-6));
+// Position of a point in the picture, in pixels.
+fn pixel_of(point: vec3f) -> vec2f {
+    let clip = view.clip_from_world * vec4f(point, 1.0);
+    return (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * view.size;
 }

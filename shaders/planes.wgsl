@@ -1,21 +1,43 @@
-// The three grids and the ground in front of a pixel's colour. All three planes are intersected
-// analytically and blended from far to near, so that they intersect each other and the arm
-// correctly in one pass. The code has no branches, since software rasterizers gain nothing from
-// branches.
+// The floor and the grids: squares in the planes through the world's origin, blended over what is
+// behind them.
 
 const LINE_WIDTH = 1.1; // points
 const MAX_LINE_WIDTH = 0.012; // limit of `LINE_WIDTH` in cells
 const FINE = 0.4;
-const COARSE = 0.65; // opacity of every fifth line
+const COARSE = 0.75; // opacity of every fifth line
+const FLOOR = 2u; // index of the floor; 0 and 1 are the walls x = 0 and z = 0
+const FROM_BELOW = 0.25; // opacity of the floor seen from below, as a multiple
 
-struct Layer {
-    along: f32,
-    colour: vec4f, // premultiplied
+struct Plane {
+    @builtin(position) position: vec4f,
+    @location(0) point: vec3f,
+    @location(1) @interpolate(flat) index: u32,
 }
 
-// Fraction of a pixel that is covered by lines one cell apart. A line thinner than a pixel is drawn
-// one pixel wide and fainter, and cells smaller than a pixel are averaged, so that nothing flickers
-// (after B. Golus, "The Best Darn Grid Shader (Yet)", 2023).
+// Coordinates of a point in a plane.
+fn in_plane(point: vec3f, index: u32) -> vec2f {
+    let in_walls = select(point.zy, point.xy, index == 1u);
+    return select(in_walls, point.xz, index == FLOOR);
+}
+
+// Point of a plane at these coordinates.
+fn from_plane(at: vec2f, index: u32) -> vec3f {
+    let in_walls = select(vec3f(0.0, at.yx), vec3f(at, 0.0), index == 1u);
+    return select(in_walls, vec3f(at.x, 0.0, at.y), index == FLOOR);
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) index: u32) -> Plane {
+    let reach = view.planes_radius * select(WALL_RADIUS, FLOOR_RADIUS, index == FLOOR);
+    let aside = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+    let point = from_plane(in_plane(view.planes_centre, index) + aside * reach, index);
+    return Plane(view.clip_from_world * vec4f(point, 1.0), point, index);
+}
+
+// Fraction of a pixel that is covered by lines one cell apart, at a point `at` in cells; `pixel` is
+// the size of a pixel in cells. A line thinner than a pixel is drawn one pixel wide and fainter, and
+// cells smaller than a pixel are averaged, so that nothing flickers (after B. Golus, "The Best Darn
+// Grid Shader (Yet)", 2023).
 fn lines(at: vec2f, pixel: vec2f) -> f32 {
     let nearest = round(at);
     let strength = select(vec2f(FINE), vec2f(COARSE), nearest - round(nearest / 5.0) * 5.0 == vec2f(0.0));
@@ -26,65 +48,15 @@ fn lines(at: vec2f, pixel: vec2f) -> f32 {
     return max(cover.x, cover.y);
 }
 
-// Premultiplied colour of a grid with coloured axes at a point `at`, in cells from the origin;
-// `pixel` is the size of a pixel in cells.
-fn grid(at: vec2f, pixel: vec2f, axis_u: vec3f, axis_v: vec3f) -> vec4f {
-    let cover = lines(at, pixel);
-    let axes = saturate(1.0 + 0.9 * view.pixel_scale - abs(at) / pixel) * 0.85;
-    let lined = mix(vec4f(view.grid.rgb * cover, cover), vec4f(axis_v, 1.0), axes.x);
-    return mix(lined, vec4f(axis_u, 1.0), axes.y);
-}
-
-fn over(front: vec4f, back: vec4f) -> vec4f {
-    return front + back * (1.0 - front.a);
-}
-
-// 1 if a plane is hit after the start of a ray and before `limit`, else 0.
-fn met(along: f32, limit: f32) -> f32 {
-    return select(0.0, 1.0, along > nearest_along() && along < limit);
-}
-
-fn pixel_in_cells(at: vec2f) -> vec2f {
-    return max(fwidth(at), vec2f(1e-6));
-}
-
-// The colour `behind` at distance `limit` along the ray of a pixel, with all nearer planes blended
-// over it.
-fn behind_planes(behind: vec3f, ray: Ray, limit: f32) -> vec3f {
-    let along = -ray.origin / ray.direction;
-    let yz = pixel_in_cells((ray.origin + ray.direction * along.x).zy / view.cell);
-    let xz = pixel_in_cells((ray.origin + ray.direction * along.y).xz / view.cell);
-    let xy = pixel_in_cells((ray.origin + ray.direction * along.z).xy / view.cell);
-    return behind_planes_of(behind, ray, limit, array(yz, xz, xy));
-}
-
-// The same with the size of a pixel on each plane, in cells.
-fn behind_planes_of(behind: vec3f, ray: Ray, limit: f32, pixels: array<vec2f, 3>) -> vec3f {
-    let along = -ray.origin / ray.direction;
-    let on_yz = ray.origin + ray.direction * along.x;
-    let on_xz = ray.origin + ray.direction * along.y;
-    let on_xy = ray.origin + ray.direction * along.z;
-
-    let yz = grid(on_yz.zy / view.cell, pixels[0], view.axes[2].rgb, view.axes[1].rgb);
-    let xz = grid(on_xz.xz / view.cell, pixels[1], view.axes[0].rgb, view.axes[2].rgb);
-    let xy = grid(on_xy.xy / view.cell, pixels[2], view.axes[0].rgb, view.axes[1].rgb);
-
-    let ground = vec4f(view.ground.rgb, 1.0) * (view.ground.a * view.shown.w);
-    let floor = over(xz * view.shown.y, ground);
-
-    var near = Layer(along.z, xy * view.shown.z * presence(on_xy, WALL_RADIUS) * met(along.z, limit));
-    var middle = Layer(along.y, floor * presence(on_xz, FLOOR_RADIUS) * met(along.y, limit));
-    var far = Layer(along.x, yz * view.shown.x * presence(on_yz, WALL_RADIUS) * met(along.x, limit));
-    if near.along > middle.along { let swap = near; near = middle; middle = swap; }
-    if middle.along > far.along { let swap = middle; middle = far; far = swap; }
-    if near.along > middle.along { let swap = near; near = middle; middle = swap; }
-    let laid = over(near.colour, over(middle.colour, far.colour));
-    return laid.rgb + behind * (1.0 - laid.a);
-}
-
-// The colour of a surface at a point of the world that a pixel shows: fogged, and behind the planes.
-fn in_scene(colour: vec3f, world: vec3f, position: vec2f) -> vec3f {
-    let ray = pixel_ray(position);
-    let along = dot(world - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    return behind_planes(fogged(colour, position, along), ray, along);
+@fragment
+fn fragment(p: Plane) -> @location(0) vec4f {
+    let is_floor = p.index == FLOOR;
+    let at = in_plane(p.point, p.index) / view.cell;
+    let lined = lines(at, max(fwidth(at), vec2f(1e-6))) * select(view.walls.a, view.grid.a, is_floor);
+    let lines = vec4f(select(view.walls.rgb, view.grid.rgb, is_floor), 1.0) * lined;
+    let side = select(FROM_BELOW, 1.0, view.eye.y > 0.0);
+    let ground = vec4f(view.ground.rgb, 1.0) * (select(0.0, view.ground.a, is_floor) * side);
+    let laid = lines + ground * (1.0 - lines.a);
+    let shown = presence(p.point, select(WALL_RADIUS, FLOOR_RADIUS, is_floor));
+    return vec4f(laid.rgb / max(laid.a, 1e-6), laid.a * shown);
 }

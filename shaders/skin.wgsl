@@ -5,6 +5,7 @@ struct Look {
     wire: vec4f,
     offset: vec3f, // in the world
     has_weights: f32, // 1 to colour by weights, else 0
+    tint: vec4f, // over what has a weight; opacity where the weight is 1
     ramp: array<vec4f, 5>, // colours of the weights from 0 to 1
 }
 
@@ -94,10 +95,12 @@ fn fragment(s: Surface, @builtin(front_facing) is_front: bool) -> @location(0) v
     }
     let of_weight = along_ramp(look.ramp, s.weight * 4.0).rgb;
     let emitted = decoded(emission);
-    let light = reflected(mix(own, of_weight, look.has_weights), normal) + emitted;
+    let tint = look.tint.a * smoothstep(0.1, 0.6, s.weight);
+    let tinted = mix(mix(own, of_weight, look.has_weights), look.tint.rgb, tint);
+    let light = reflected(tinted, normal) + emitted;
     // As bright as `encoded` is exact.
     let colour = encoded(min(light, vec3f(1.4)));
-    return vec4f(in_scene(colour, s.world, s.position.xy), opacity);
+    return vec4f(fogged(colour, s.world, s.position.xy), opacity);
 }
 
 // The depth alone, but where the texture cuts out.
@@ -111,5 +114,5 @@ fn fragment_depth(s: Surface) -> @location(0) vec4f {
 
 @fragment
 fn fragment_wire(s: Surface) -> @location(0) vec4f {
-    return vec4f(in_scene(look.wire.rgb, s.world, s.position.xy), look.wire.a);
+    return vec4f(fogged(look.wire.rgb, s.world, s.position.xy), look.wire.a);
 }

@@ -14,6 +14,7 @@ struct Instance {
     @location(6) origin: vec3f,
     @location(7) colour: vec4f,
     @location(8) stripes: vec2f, // 1 with stripes or 0 without, winding in radians
+    @location(9) least_radius: f32, // on screen, of the thicker end, in points
 }
 
 struct Surface {
@@ -35,11 +36,14 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     let axes = mat3x3f(i.x_length.xyz, i.y_base_radius.xyz, i.z_tip_radius.xyz);
     let length = i.x_length.w;
     let radii = vec2f(i.y_base_radius.w, i.z_tip_radius.w);
-    let local = vec3f(v.along * length, 0.0, 0.0) + v.rim * mix(radii.x, radii.y, v.along);
+    let centre = i.origin + axes[0] * (v.along * length);
+    let pixel = pixel_size(dot(centre - view.eye, view.forward));
+    let grow = max(1.0, i.least_radius * view.pixel_scale * pixel / max(radii.x, radii.y));
+    let around = v.rim * (mix(radii.x, radii.y, v.along) * grow);
     // A taper tilts the side's normal towards the thinner end, but not the caps' normals.
     let taper = (radii.x - radii.y) / max(length, 1e-6);
     let tilt = select(0.0, taper, length > 0.0) * dot(v.normal.yz, v.normal.yz);
-    let world = i.origin + axes * local;
+    let world = centre + axes * around;
     return Surface(
         view.clip_from_world * vec4f(world, 1.0),
         world,
@@ -71,7 +75,7 @@ fn stripe_shade(s: Surface) -> f32 {
 
 fn shaded(s: Surface) -> vec3f {
     let colour = lit(s.colour.rgb * (1.0 - stripe_shade(s)), normalize(s.normal));
-    return in_scene(colour, s.world, s.position.xy);
+    return fogged(colour, s.world, s.position.xy);
 }
 
 @fragment

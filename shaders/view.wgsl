@@ -16,12 +16,12 @@ struct View {
     size: vec2f,
     cell: f32, // width of a grid cell
     padding: f32,
-    shown: vec4f, // 1 or 0 for the grids at x = 0, y = 0, z = 0 and the ground
     sky_top: vec4f,
     sky_bottom: vec4f,
+    // With the opacity of what is shown of the floor and the walls; 0 hides it.
     ground: vec4f,
     grid: vec4f,
-    axes: array<vec4f, 3>,
+    walls: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -94,8 +94,7 @@ fn lit(colour: vec3f, normal: vec3f) -> vec3f {
     return encoded(reflected(colour, normal));
 }
 
-// Radii at which the ground and the vertical grids have faded out, as multiples of the planes'
-// radius.
+// Radii at which the floor and the walls have faded out, as multiples of the planes' radius.
 const FLOOR_RADIUS = 2.2;
 const WALL_RADIUS = 1.0;
 
@@ -103,13 +102,12 @@ const WALL_RADIUS = 1.0;
 // planes' radius.
 fn presence(point: vec3f, radius: f32) -> f32 {
     let out = (point - view.planes_centre) / (view.planes_radius * radius);
-    let near = 1.0 - saturate(dot(out, out));
-    return near * near;
+    return smoothstep(0.0, 1.0, 1.0 - dot(out, out));
 }
 
-// Fades a colour into the sky with its distance `along` the ray of the pixel.
-fn fogged(colour: vec3f, position: vec2f, along: f32) -> vec3f {
-    let depth = along / (view.focus_distance * 7.0);
+// Fades the colour of a point of the world into the sky behind its pixel.
+fn fogged(colour: vec3f, world: vec3f, position: vec2f) -> vec3f {
+    let depth = dot(world - view.eye, view.forward) / (view.focus_distance * 7.0);
     return mix(sky(position), colour, exp(-depth * depth));
 }
 

@@ -219,10 +219,12 @@ impl Display {
 }
 
 impl Default for Display {
-    /// A display of the surroundings, targets, skin, trail and paths.
+    /// A display of the surroundings without the walls, targets, skin, trail and paths.
     fn default() -> Self {
         let shown = [Overlay::Cursor, Overlay::Skin, Overlay::Trail, Overlay::Paths];
-        Overlay::SURROUNDINGS.into_iter().chain(shown).collect()
+        let is_wall = |overlay: &Overlay| matches!(overlay, Overlay::GridXy | Overlay::GridYz);
+        let surroundings = Overlay::SURROUNDINGS.into_iter().filter(|overlay| !is_wall(overlay));
+        surroundings.chain(shown).collect()
     }
 }
 

@@ -1,13 +1,10 @@
 use super::Gpu;
 use super::pipeline::{PipelineDescriptor, PipelineOutput};
 
-pub(super) const SHADER: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/backdrop.wgsl"),
-);
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/backdrop.wgsl"),);
 
-/// Draws the sky, the ground and the grids behind everything else.
+/// Draws the sky behind everything else.
 #[derive(Debug)]
 pub(super) struct Backdrop {
     pipeline: wgpu::RenderPipeline,

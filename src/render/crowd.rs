@@ -11,7 +11,6 @@ use crate::scene::{Colour, Scene};
 
 pub(super) const CULL: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
     include_str!("../../shaders/crowd_cull.wgsl")
 );
@@ -149,14 +148,25 @@ impl Crowds {
         }
     }
 
+    /// Draws the arms that are near.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_lods(pass, |lod| !lod.is_far());
+    }
+
+    /// Draws the arms that are far, whose colours have been mixed with that of the floor.
+    pub fn draw_far(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_lods(pass, CrowdLod::is_far);
+    }
+
+    fn draw_lods(&self, pass: &mut wgpu::RenderPass<'_>, is_drawn: impl Fn(&CrowdLod) -> bool) {
         let Some((renderer, _)) = self.uploaded() else {
             return;
         };
         pass.set_bind_group(1, &renderer.buffers.draw, &[]);
-        for (lod, pipeline) in renderer.draw.iter().enumerate() {
+        let lods = CrowdLod::ALL.iter().zip(&renderer.draw).enumerate();
+        for (index, (_, pipeline)) in lods.filter(|(_, (lod, _))| is_drawn(lod)) {
             pass.set_pipeline(pipeline);
-            let offset = lod * size_of::<DrawArguments>();
+            let offset = index * size_of::<DrawArguments>();
             pass.draw_indirect(&renderer.arguments, offset as u64);
         }
     }

@@ -2,7 +2,6 @@ use bytemuck::{Pod, Zeroable};
 
 pub(super) const ARMS: &str = concat!(
     include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
     include_str!("../../shaders/crowd.wgsl"),
     include_str!("../../shaders/crowd_draw.wgsl"),
     include_str!("../../shaders/crowd_arms.wgsl"),
@@ -68,6 +67,11 @@ impl CrowdLod {
 
     const fn of_limbs(topology: wgpu::PrimitiveTopology, vertices: u32) -> Self {
         Self { shader: FAR, topology, sides: 0, vertices, words: 4 }
+    }
+
+    /// True if its limbs are lines or points.
+    pub fn is_far(&self) -> bool {
+        self.sides == 0
     }
 
     /// Uniforms of all levels, whose lists have room for `stride` arms.

@@ -89,8 +89,8 @@ impl LabelPainter {
         }
         let (text, size) = (&self.text, Vec2::new(size.0 as f32, size.1 as f32));
         let labels = scene.labels.iter().zip(&text.galleys);
-        let sized = labels.clone().map(|(label, galley)| (label, width(galley) * scale));
-        self.places.place(sized, &scene.camera, size, scale);
+        let widths = text.galleys.iter().map(|galley| width(galley) * scale);
+        self.places.place(scene, widths, size, scale);
 
         let halo = scene.palette.sky_bottom.with_opacity(0.55).channels();
         let around = HALO.map(|offset| (offset * scale, halo));

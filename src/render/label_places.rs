@@ -1,7 +1,7 @@
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use crate::document::Camera;
-use crate::scene::{Label, LabelSide};
+use crate::document::Projection;
+use crate::scene::{LabelSide, Scene};
 
 /// Height of a line in points.
 pub(super) const LINE_HEIGHT: f32 = 15.0;
@@ -12,15 +12,21 @@ const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
 const LETTERS: f32 = 0.75;
 /// Maximum number of lines by which a label is moved away from its point to be clear of others.
 const MOST_LINES: u8 = 3;
+/// Columns and rows of the points of a text at which it may cover a limb.
+const SAMPLES: [u16; 2] = [6, 2];
+/// How many of these points a text may cover rather than take its next best place.
+const COST_OF_PLACE: u32 = 1;
 
-/// Where labels are written, so that none covers another or leaves the picture: on its own side of
-/// its point if there is room, else on another side, else farther away. Earlier labels of a scene
-/// choose first.
+/// Where labels are written, so that none covers another or leaves the picture, nor a limb where
+/// there is room beside it: on its own side of its point, else on another side, else farther away.
+/// Earlier labels of a scene choose first.
 #[derive(Debug, Default)]
 pub(super) struct LabelPlaces {
     pens: Vec<Option<Vec2>>,
     /// Corners of the placed texts.
     taken: Vec<[Vec2; 2]>,
+    /// What the texts should not cover.
+    limbs: Vec<SeenLimb>,
 }
 
 impl LabelPlaces {
@@ -29,24 +35,27 @@ impl LabelPlaces {
         &self.pens
     }
 
-    /// Places labels, each with the width of its text in pixels, on a picture of a size in pixels.
-    /// `scale` is the number of pixels per point.
-    pub fn place<'a>(
+    /// Places the labels of a scene, of which each text has a width in pixels, on a picture of a size
+    /// in pixels. `scale` is the number of pixels per point.
+    pub fn place(
         &mut self,
-        labels: impl Iterator<Item = (&'a Label, f32)>,
-        camera: &Camera,
+        scene: &Scene,
+        widths: impl Iterator<Item = f32>,
         size: Vec2,
         scale: f32,
     ) {
         self.pens.clear();
         self.taken.clear();
-        let projection = camera.projection(size.x / size.y);
-        for (label, width) in labels {
-            let Some(at) = projection.project(label.at) else {
+        self.limbs.clear();
+        let projection = scene.camera.projection(size.x / size.y);
+        if !scene.labels.is_empty() {
+            self.limbs.extend(SeenLimb::all(scene, &projection, size));
+        }
+        for (label, width) in scene.labels.iter().zip(widths) {
+            let Some(point) = pixel(&projection, label.at, size) else {
                 self.pens.push(None);
                 continue;
             };
-            let point = (at * Vec2::new(0.5, -0.5) + 0.5) * size;
             let ball = label.clearance / projection.half_height_at(label.at) * size.y / 2.0;
             let away = ball * DIAGONAL + label.gap * scale;
             let text = Text { point, away, width, line: LINE_HEIGHT * scale };
@@ -58,9 +67,12 @@ impl LabelPlaces {
                 let [low, high] = text.corners(*pen);
                 low.cmpge(Vec2::ZERO).all() && high.cmple(size).all()
             };
-            let free = || text.places(label.side).filter(is_free);
-            let pen = free().find(is_inside).or_else(|| free().next());
-            let pen = pen.unwrap_or_else(|| text.pen(label.side, 0));
+            let cost = |(nth, pen): &(u32, Vec2)| {
+                let covered = text.covered(*pen, &self.limbs);
+                (!is_free(pen), !is_inside(pen), covered + COST_OF_PLACE * nth)
+            };
+            let best = (0..).zip(text.places(label.side)).min_by_key(cost);
+            let pen = best.map_or_else(|| text.pen(label.side, 0), |(_, pen)| pen);
             self.taken.push(text.corners(pen));
             self.pens.push(Some(pen));
         }
@@ -94,9 +106,68 @@ impl Text {
         point + Vec2::new(across, drop)
     }
 
+    /// Number of points of the text, of [`SAMPLES`] that are spread evenly over it, at which it
+    /// covers a limb.
+    fn covered(self, pen: Vec2, limbs: &[SeenLimb]) -> u32 {
+        let [low, high] = self.corners(pen);
+        let [columns, rows] = SAMPLES;
+        let covers = |nth: u16| {
+            let [column, row] = [nth % columns, nth / columns].map(f32::from);
+            let part =
+                Vec2::new(column, row) / Vec2::new(f32::from(columns - 1), f32::from(rows - 1));
+            let at = low + (high - low) * part;
+            limbs.iter().any(|limb| limb.covers(at))
+        };
+        (0..columns * rows).filter(|nth| covers(*nth)).count() as u32
+    }
+
     fn corners(self, pen: Vec2) -> [Vec2; 2] {
         [pen - Vec2::new(0.0, LETTERS * self.line), pen + Vec2::new(self.width, 0.0)]
     }
+}
+
+/// A limb in the picture, in pixels.
+#[derive(Clone, Copy, Debug)]
+struct SeenLimb {
+    from: Vec2,
+    to: Vec2,
+    radius: f32,
+}
+
+impl SeenLimb {
+    /// The cones of a scene, and the limbs that cast shadows: those of a skin. A limb that is partly
+    /// behind the eye is left out.
+    fn all(scene: &Scene, projection: &Projection, size: Vec2) -> impl Iterator<Item = Self> {
+        let cones = scene.solids.iter().chain(&scene.guide_solids).map(|solid| {
+            let [from, to] = [0.0, solid.shape.length]
+                .map(|along| solid.transform.transform_point3(Vec3::X * along));
+            (from, to, solid.shape.base_radius.max(solid.shape.tip_radius))
+        });
+        let with_shadows = scene
+            .shadows
+            .iter()
+            .map(|limb| (limb.base, limb.tip, limb.base_radius.max(limb.tip_radius)));
+        cones.chain(with_shadows).filter_map(move |(from, to, radius)| {
+            let pixels = 0.5 * size.y / projection.half_height_at(from.midpoint(to));
+            Some(Self {
+                from: pixel(projection, from, size)?,
+                to: pixel(projection, to, size)?,
+                radius: radius * pixels,
+            })
+        })
+    }
+
+    fn covers(&self, at: Vec2) -> bool {
+        let along = self.to - self.from;
+        let part = (at - self.from).dot(along) / along.length_squared();
+        let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+        at.distance_squared(self.from + along * part) < self.radius * self.radius
+    }
+}
+
+/// Position of a point in the picture, in pixels; `None` behind the eye.
+fn pixel(projection: &Projection, point: Vec3, size: Vec2) -> Option<Vec2> {
+    Some((projection.project(point)? * Vec2::new(0.5, -0.5) + 0.5) * size)
 }
 
 fn overlap([low, high]: [Vec2; 2], [other_low, other_high]: [Vec2; 2]) -> bool {
@@ -105,11 +176,9 @@ fn overlap([low, high]: [Vec2; 2], [other_low, other_high]: [Vec2; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::document::{Document, Overlay, Theme, Track, TwistReferenceKind};
-    use crate::scene::Scene;
+    use crate::scene::Label;
     use crate::session::Overlays;
 
     const SIZE: Vec2 = Vec2::new(720.0, 700.0);
@@ -120,8 +189,7 @@ mod tests {
     fn placed(scene: &Scene) -> Vec<[Vec2; 2]> {
         let mut places = LabelPlaces::default();
         let width = |label: &Label| LETTER * scene.text(label).chars().count() as f32;
-        let labels = scene.labels.iter().map(|label| (label, width(label)));
-        places.place(labels, &scene.camera, SIZE, 1.0);
+        places.place(scene, scene.labels.iter().map(width), SIZE, 1.0);
         assert_eq!(places.pens().len(), scene.labels.len());
         places.taken
     }
@@ -151,6 +219,43 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Number of points of texts that cover a limb, at their places and at those that their own
+    /// sides have.
+    fn covered(scene: &Scene) -> [u32; 2] {
+        let mut places = LabelPlaces::default();
+        let width = |label: &Label| LETTER * scene.text(label).chars().count() as f32;
+        places.place(scene, scene.labels.iter().map(width), SIZE, 1.0);
+        let projection = scene.camera.projection(SIZE.x / SIZE.y);
+        let points = |label: &Label, pen: Vec2| {
+            let point = pixel(&projection, label.at, SIZE).expect("before the eye");
+            let ball = label.clearance / projection.half_height_at(label.at) * SIZE.y / 2.0;
+            let away = ball * DIAGONAL + label.gap;
+            let text = Text { point, away, width: width(label), line: LINE_HEIGHT };
+            [pen, text.pen(label.side, 0)].map(|pen| text.covered(pen, &places.limbs))
+        };
+        let each = scene
+            .labels
+            .iter()
+            .zip(places.pens())
+            .map(|(label, pen)| points(label, pen.expect("before the eye")));
+        each.fold([0, 0], |sum, each| [sum[0] + each[0], sum[1] + each[1]])
+    }
+
+    #[test]
+    fn names_of_an_arm_stand_beside_its_limbs() {
+        let mut sum = [0, 0];
+        for angle in (0_u8..36).map(|nth| f32::from(nth) * 0.17) {
+            let mut document = Document::default();
+            let home = Vec3::new(320.0 * angle.cos(), 180.0, 320.0 * angle.sin());
+            document.rig.targets[0].home = home;
+            let scene = Scene::new(&document.at(0.0), &Overlays::default(), Theme::Dark);
+            let [chosen, own] = covered(&scene);
+            assert!(chosen <= own, "at {angle}: {chosen} points over limbs instead of {own}");
+            sum = [sum[0] + chosen, sum[1] + own];
+        }
+        assert!(sum[1] > 36 && 2 * sum[0] < sum[1], "{sum:?} points over limbs");
     }
 
     #[test]

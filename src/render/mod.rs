@@ -19,6 +19,7 @@ mod line;
 mod mesh;
 mod picture;
 mod pipeline;
+mod planes;
 mod readback;
 mod renderer;
 mod shadow;
@@ -49,7 +50,7 @@ pub use texture::{PaintTexture, TexturePainter};
 pub use triangle::{Corner, TrianglePainter};
 
 /// Names and WGSL sources of all complete shaders.
-pub fn shaders() -> [(&'static str, &'static str); 15] {
+pub fn shaders() -> [(&'static str, &'static str); 16] {
     [
         ("backdrop", backdrop::SHADER),
         ("crowd_arms", crowd_lod::ARMS),
@@ -59,6 +60,7 @@ pub fn shaders() -> [(&'static str, &'static str); 15] {
         ("globe", globe::SHADER),
         ("label", label::SHADER),
         ("line", line::SHADER),
+        ("planes", planes::SHADER),
         ("shadow", shadow::SHADER),
         ("shell", shell::SHADER),
         ("skin", skin::SHADER),

@@ -2,6 +2,7 @@ use super::backdrop::Backdrop;
 use super::crowd::Crowds;
 use super::label::LabelPainter;
 use super::line::Lines;
+use super::planes::PlanePainter;
 use super::shadow::Shadows;
 use super::skin::Skins;
 use super::solid::Solids;
@@ -18,6 +19,7 @@ pub struct Renderer {
     view: ViewUniforms,
     solids: Solids,
     backdrop: Backdrop,
+    planes: PlanePainter,
     shadows: Shadows,
     spheres: Spheres,
     lines: Lines,
@@ -59,6 +61,7 @@ impl Renderer {
         Self {
             solids: Solids::new(gpu, view.layout()),
             backdrop: Backdrop::new(gpu, view.layout()),
+            planes: PlanePainter::new(gpu, view.layout()),
             shadows: Shadows::new(gpu, view.layout()),
             spheres: Spheres::new(gpu, view.layout()),
             lines: Lines::new(gpu, view.layout()),
@@ -101,6 +104,7 @@ impl Renderer {
     /// most [`Renderer::LISTS`].
     pub fn upload(&mut self, gpu: &Gpu, scene: &Scene, canvas: &Canvas, scale: f32) {
         let size = canvas.drawn_size();
+        self.planes.show(&scene.planes);
         let uploaded = self.view.upload(gpu, scene, size, scale * canvas.resolution_scale())
             + self.solids.upload(gpu, scene, size)
             + self.shadows.upload(gpu, scene)
@@ -122,6 +126,7 @@ impl Renderer {
 
     fn triangles(&self) -> u32 {
         Backdrop::TRIANGLES
+            + self.planes.triangles()
             + self.solids.triangles()
             + self.shadows.triangles()
             + self.spheres.triangles()
@@ -184,6 +189,8 @@ impl Renderer {
         self.crowds.draw(&mut pass);
         self.solids.draw(&mut pass);
         self.skins.draw_opaque(&mut pass);
+        self.planes.draw(&mut pass);
+        self.crowds.draw_far(&mut pass);
         self.shadows.draw(&mut pass);
         self.solids.draw_hidden(&mut pass);
         self.spheres.draw(&mut pass);

@@ -9,13 +9,10 @@ use super::view::Uniforms;
 use crate::kinematics::Shared;
 use crate::kinematics::skin::TriangleMesh;
 use crate::rig::AttachedMesh;
-use crate::scene::{Colour, Palette, Scene, SkinInstance};
+use crate::scene::{Colour, Palette, Scene, SkinInstance, WeightColours};
 
-pub(super) const SHADER: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/skin.wgsl"),
-);
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/skin.wgsl"),);
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -24,10 +21,11 @@ struct Look {
     wire: Vec4,
     offset: Vec3,
     has_weights: f32,
+    tint: Vec4,
     ramp: [Vec4; Palette::GAINS],
 }
 
-const _: () = assert!(size_of::<Look>() == 8 * 16);
+const _: () = assert!(size_of::<Look>() == 9 * 16);
 
 /// What poses do not change of a vertex.
 #[repr(C)]
@@ -424,18 +422,24 @@ impl DrawnSkin {
         self.is_mirrored = skin.pose.to_world().matrix3.determinant() < 0.0;
         self.is_opaque = skin.colour.channels()[3] >= 1.0;
         self.has_wireframe = skin.wireframe.is_some();
+        let (has_weights, tint) = match skin.weights_of {
+            None => (0.0, Vec4::ZERO),
+            Some((_, WeightColours::Ramp)) => (1.0, Vec4::ZERO),
+            Some((_, WeightColours::Tint(tint))) => (0.0, screen(tint)),
+        };
         let look = Look {
             colour: screen(skin.colour),
             wire: skin.wireframe.map_or(Vec4::ZERO, screen),
             offset: skin.offset,
-            has_weights: if skin.weights_of.is_some() { 1.0 } else { 0.0 },
+            has_weights,
+            tint,
             ramp: palette.gains.map(screen),
         };
         let deformation = Deformation {
             mesh: &skin.mesh.mesh,
             pose: &skin.pose,
             skinning: skin.skinning,
-            weights_of: skin.weights_of,
+            weights_of: skin.weights_of.map(|(joint, _)| joint),
         };
         self.look.upload(gpu, look)
             + pipelines.deformer.update(gpu, &mesh.vertices, &mut self.deformed, deformation)

@@ -7,11 +7,8 @@ use super::mesh::{MeshBuffers, SolidVertex, ball, cone};
 use super::pipeline::{PipelineDescriptor, PipelineOutput};
 use crate::scene::{Ball, Scene, Solid};
 
-pub(super) const SHADER: &str = concat!(
-    include_str!("../../shaders/view.wgsl"),
-    include_str!("../../shaders/planes.wgsl"),
-    include_str!("../../shaders/solid.wgsl"),
-);
+pub(super) const SHADER: &str =
+    concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/solid.wgsl"),);
 
 /// Levels of detail from the thinnest solids on screen to the thickest.
 const LODS: [DetailLevel; 8] = [
@@ -46,9 +43,16 @@ struct SolidInstance {
     colour: [f32; 4],
     /// 1 with stripes or 0 without, then the winding of the stripes in radians.
     stripes: [f32; 2],
+    /// Least radius of the thicker end on screen, in points.
+    least_radius: f32,
 }
 
-const _: () = assert!(size_of::<SolidInstance>() == 84);
+const _: () = assert!(size_of::<SolidInstance>() == 88);
+
+/// Least radii on screen, in points, so that what is far away or thin can be seen.
+const LEAST_CONE: f32 = 0.8;
+const LEAST_BALL: f32 = 1.2;
+const LEAST_GUIDE_BALL: f32 = 3.5;
 
 /// Draws tapered cylinders and balls. Guides also show faintly through the surfaces that hide them.
 #[derive(Debug)]
@@ -78,7 +82,7 @@ impl Solids {
         let vertex = wgpu::vertex_attr_array![0 => Float32, 1 => Float32x3, 2 => Float32x3];
         let instance = wgpu::vertex_attr_array![
             3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x3, 7 => Float32x4,
-            8 => Float32x2
+            8 => Float32x2, 9 => Float32
         ];
         let buffers = [
             wgpu::VertexBufferLayout {
@@ -129,13 +133,15 @@ impl Solids {
         for instance in scene.solids.iter().map(SolidInstance::of_solid) {
             lods[lod_of(&instance)].cones.push(instance);
         }
-        for instance in scene.balls.iter().map(SolidInstance::of_ball) {
+        for instance in scene.balls.iter().map(|ball| SolidInstance::of_ball(ball, LEAST_BALL)) {
             lods[lod_of(&instance)].balls.push(instance);
         }
         for instance in scene.guide_solids.iter().map(SolidInstance::of_solid) {
             lods[lod_of(&instance)].guide_cones.push(instance);
         }
-        for instance in scene.guide_balls.iter().map(SolidInstance::of_ball) {
+        for instance in
+            scene.guide_balls.iter().map(|ball| SolidInstance::of_ball(ball, LEAST_GUIDE_BALL))
+        {
             lods[lod_of(&instance)].guide_balls.push(instance);
         }
         lods.iter_mut().map(|lod| lod.upload(gpu)).sum()
@@ -221,10 +227,11 @@ impl SolidInstance {
             origin: solid.transform.translation.into(),
             colour: solid.colour.channels(),
             stripes: winding.map_or([0.0, 0.0], |winding| [1.0, winding]),
+            least_radius: LEAST_CONE,
         }
     }
 
-    fn of_ball(ball: &Ball) -> Self {
+    fn of_ball(ball: &Ball, least_radius: f32) -> Self {
         Self {
             x: Vec3::X,
             length: 0.0,
@@ -235,6 +242,7 @@ impl SolidInstance {
             origin: ball.centre,
             colour: ball.colour.channels(),
             stripes: [0.0, 0.0],
+            least_radius,
         }
     }
 }

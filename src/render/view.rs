@@ -23,15 +23,14 @@ struct ViewData {
     size: Vec2,
     cell: f32,
     padding: f32,
-    shown: Vec4,
     sky_top: Vec4,
     sky_bottom: Vec4,
     ground: Vec4,
     grid: Vec4,
-    axes: [Vec4; 3],
+    walls: Vec4,
 }
 
-const _: () = assert!(size_of::<ViewData>() == 64 + 5 * 16 + 16 + 8 * 16);
+const _: () = assert!(size_of::<ViewData>() == 64 + 5 * 16 + 16 + 5 * 16);
 
 /// The uniforms that all shaders of a scene share, on the device.
 #[derive(Debug)]
@@ -58,14 +57,13 @@ impl ViewUniforms {
 }
 
 impl ViewData {
-    /// Opacity of the ground, from 0 to 1.
-    const GROUND_OPACITY: f32 = 0.55;
-
     fn new(scene: &Scene, (width, height): (u32, u32), scale: f32) -> Self {
         let (palette, planes) = (&scene.palette, &scene.planes);
         let projection = scene.camera.projection(width as f32 / height as f32);
         let screen = |colour: Colour| Vec4::from_array(colour.channels());
-        let shown = [planes.grid_yz, planes.grid_xz, planes.grid_xy, planes.ground];
+        let shown = |colour: Colour, is_shown: bool| {
+            screen(if is_shown { colour } else { colour.with_opacity(0.0) })
+        };
         Self {
             clip_from_world: projection.clip_from_world,
             eye: projection.eye,
@@ -81,12 +79,11 @@ impl ViewData {
             size: Vec2::new(width as f32, height as f32),
             cell: planes.cell,
             padding: 0.0,
-            shown: Vec4::from_array(shown.map(|shown| if shown { 1.0 } else { 0.0 })),
             sky_top: screen(palette.sky_top),
             sky_bottom: screen(palette.sky_bottom),
-            ground: screen(palette.ground.with_opacity(Self::GROUND_OPACITY)),
-            grid: screen(palette.grid),
-            axes: palette.axes.map(screen),
+            ground: shown(palette.ground, planes.ground),
+            grid: shown(palette.grid, planes.grid_xz),
+            walls: screen(palette.wall),
         }
     }
 }

@@ -13,5 +13,5 @@ pub use builder::SceneBuilder;
 pub use palette::{Colour, Palette};
 pub use scene::Scene;
 pub use shapes::Globe;
-pub use shapes::{Ball, Line, Planes, Shadow, SkinInstance, Solid, SphereShell};
+pub use shapes::{Ball, Line, Planes, Shadow, SkinInstance, Solid, SphereShell, WeightColours};
 pub use shapes::{Label, LabelSide};

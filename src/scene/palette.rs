@@ -24,10 +24,12 @@ pub struct Palette {
     pub sky_top: Colour,
     /// Background at the bottom of the picture.
     pub sky_bottom: Colour,
-    /// Ground.
+    /// Floor, with its opacity: what is below it shines through.
     pub ground: Colour,
-    /// Grid lines.
+    /// Lines of the grid in the floor, with opacity.
     pub grid: Colour,
+    /// Lines of the grids in the walls, with opacity.
+    pub wall: Colour,
     /// Labels.
     pub text: Colour,
     /// Colour ramp of [`Palette::gain`], in steps that are equal in Oklab. Opacity and contrast
@@ -56,8 +58,9 @@ impl Palette {
                 axes: [0xe04b4b, 0x6fb33c, 0x4a86f0].map(Colour::rgb),
                 sky_top: Colour::rgb(0x2c313a),
                 sky_bottom: Colour::rgb(0x171a1f),
-                ground: Colour::rgb(0x3a404a),
-                grid: Colour::rgb(0x9aa4b4),
+                ground: Colour::rgb(0x454b56).with_opacity(0.75),
+                grid: Colour::rgb(0x9aa4b4).with_opacity(0.75),
+                wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
                 gains: ramp([0x4d667f, 0x954f9d, 0xd63f71, 0xf76c43, 0xffa83f]),
                 shadow: 0.62,
@@ -70,10 +73,11 @@ impl Palette {
                 guide: Colour::rgb(0x1c1f24),
                 accent: Colour::rgb(0x6a42c4),
                 axes: [0xd03232, 0x458f20, 0x2864d8].map(Colour::rgb),
-                sky_top: Colour::rgb(0xf6f8fa),
-                sky_bottom: Colour::rgb(0xd9dfe6),
-                ground: Colour::rgb(0xffffff),
-                grid: Colour::rgb(0x5a6678),
+                sky_top: Colour::rgb(0xe9edf1),
+                sky_bottom: Colour::rgb(0xd0d7df),
+                ground: Colour::rgb(0xf6f8fa).with_opacity(0.75),
+                grid: Colour::rgb(0x5a6678).with_opacity(0.55),
+                wall: Colour::rgb(0x5a6678),
                 text: Colour::rgb(0x1c1f24),
                 gains: ramp([0x7cabcc, 0xa17cd4, 0xc4499a, 0xbb1a40, 0x850609]),
                 shadow: 0.42,

@@ -129,8 +129,17 @@ pub struct SkinInstance {
     pub colour: Colour,
     /// Colour of the edges of the triangles; `None` hides them.
     pub wireframe: Option<Colour>,
-    /// The joint whose weights colour the surface; `None` for the plain colour.
-    pub weights_of: Option<JointId>,
+    /// The joint whose weights colour the surface, and how; `None` for the plain colour.
+    pub weights_of: Option<(JointId, WeightColours)>,
+}
+
+/// Colours of the weights of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WeightColours {
+    /// The colours of [`Palette::weight`](super::Palette::weight).
+    Ramp,
+    /// This colour over the plain one: with its own opacity where the weight is 1.
+    Tint(Colour),
 }
 
 /// The ground and the grids: planes through the world's origin, drawn around a centre up to a

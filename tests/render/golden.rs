@@ -47,6 +47,10 @@ fn all_guides() -> Document {
     from(showing(Document::default(), &Overlay::GUIDES), Vec3::ZERO, 1650.0)
 }
 
+fn walls() -> Document {
+    showing(Document::default(), &[Overlay::GridXy, Overlay::GridYz])
+}
+
 /// Close view of a hand whose Cursor is out of reach.
 fn too_far() -> Document {
     let document = posed(Vec3::new(420.0, 330.0, 120.0));
@@ -100,6 +104,7 @@ fn the_arm_in_the_light_theme() {
 #[test]
 fn the_arm_with_all_its_guides() {
     check("all_guides", &all_guides(), Theme::Dark);
+    check("walls", &walls(), Theme::Light);
 }
 
 #[test]
@@ -153,9 +158,9 @@ fn a_guide_that_is_missing_is_noticed() {
         (Overlay::Shadow, "default", Document::default(), Theme::Dark),
         (Overlay::Axes, "folded", folded(), Theme::Dark),
         (Overlay::Ground, "light", Document::default(), Theme::Light),
-        (Overlay::GridXy, "default", Document::default(), Theme::Dark),
+        (Overlay::GridXy, "walls", walls(), Theme::Light),
         (Overlay::GridXz, "default", Document::default(), Theme::Dark),
-        (Overlay::GridYz, "default", Document::default(), Theme::Dark),
+        (Overlay::GridYz, "walls", walls(), Theme::Light),
         (Overlay::Labels, "default", Document::default(), Theme::Dark),
     ];
     for (layer, name, document, theme) in cases {

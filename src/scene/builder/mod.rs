@@ -84,12 +84,26 @@ impl SceneBuilder {
     }
 }
 
-/// Adds rods along the world's axes, half as long as the rig's reach. Arrowheads belong to handles.
+/// Adds lines along the world's axes, which fade out a little outside the rig. Arrowheads belong to
+/// handles.
 fn add_axes(scene: &mut Scene, reach: f32) {
-    let length = 0.5 * reach;
-    let radius = 0.009 * length;
+    /// Length of an axis as a multiple of the rig's reach.
+    const LENGTH: f32 = 1.1;
+    /// Number of lines of an axis, which get fainter.
+    const STEPS: u8 = 12;
+    /// Opacities at the origin of the positive and the negative half.
+    const HALVES: [(f32, f32); 2] = [(1.0, 0.75), (-1.0, 0.25)];
     for (axis, colour) in Vec3::AXES.into_iter().zip(scene.palette.axes) {
-        scene.add_solid(Vec3::ZERO, axis * length, radius, radius, colour);
+        // The height of the rig shows without an axis below the floor.
+        let halves = HALVES.into_iter().filter(|(sign, _)| *sign > 0.0 || axis != Vec3::Y);
+        for (sign, opacity) in halves {
+            let end = axis * (sign * LENGTH * reach);
+            for step in 0..STEPS {
+                let [from, to] = [step, step + 1].map(|at| f32::from(at) / f32::from(STEPS));
+                let colour = colour.with_opacity(opacity * (1.0 - from));
+                scene.lines.push(Line { from: end * from, to: end * to, colour, dashed: false });
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{SkinPose, Skinning};
 use crate::rig::AttachedMesh;
-use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow, SkinInstance};
+use crate::scene::{Ball, Colour, Label, LabelSide, Scene, Shadow, SkinInstance, WeightColours};
 use crate::session::Overlays;
 
 /// Opacity of a skin over its bones.
@@ -54,14 +54,13 @@ impl<'a> ShownSkin<'a> {
         let mut pose: Shared<SkinPose> = scene.spare_skin_pose.take().unwrap_or_default();
         self.mesh.mesh.write_pose(posed, pose.make_mut());
         let guide = scene.palette.guide;
-        let is_coloured = display.shows(Overlay::SkinWeights);
         let instance = SkinInstance {
             mesh: self.mesh.clone(),
             skinning: self.skin.skinning,
             offset: Vec3::ZERO,
             colour: self.colour(),
             wireframe: display.shows(Overlay::Wireframe).then(|| guide.with_opacity(WIRE)),
-            weights_of: overlays.selection.last().copied().filter(|_| is_coloured),
+            weights_of: coloured_weights(scene, overlays, display),
             pose,
         };
         let Some(ComparedSkins { low, .. }) = self.compared else {
@@ -123,6 +122,26 @@ impl<'a> ShownSkin<'a> {
             scene.guide_balls.push(Ball { centre: base, radius: 1.1 * radius, colour });
         }
     }
+}
+
+/// The joint whose weights colour a skin: if the display shows weights, the selected one; else that
+/// under the mouse or the selected one lights up.
+fn coloured_weights(
+    scene: &Scene,
+    overlays: &Overlays,
+    display: Display,
+) -> Option<(JointId, WeightColours)> {
+    /// Opacities of the tints of a joint under the mouse and of a selected one.
+    const TINTS: [f32; 2] = [0.35, 0.5];
+    let selected = overlays.selection.last().copied();
+    if display.shows(Overlay::SkinWeights) {
+        return selected.map(|joint| (joint, WeightColours::Ramp));
+    }
+    let [lit, chosen] = TINTS;
+    let hovered = overlays.hovered.filter(|joint| !overlays.selection.contains(joint));
+    let lit = hovered.map(|joint| (joint, scene.palette.guide.with_opacity(lit)));
+    let tint = lit.or(selected.map(|joint| (joint, scene.palette.accent.with_opacity(chosen))));
+    tint.map(|(joint, colour)| (joint, WeightColours::Tint(colour)))
 }
 
 impl ComparedSkins {
