@@ -13,7 +13,7 @@ struct Instance {
     @location(5) z_tip_radius: vec4f,
     @location(6) origin: vec3f,
     @location(7) colour: vec4f,
-    @location(8) stripes: vec2f, // 1 with stripes or 0 without, winding in radians
+    @location(8) winding: vec2f, // 1 if it winds, else 0; winding in radians
     @location(9) least_radius: f32, // on screen, of the thicker end, in points
 }
 
@@ -23,13 +23,39 @@ struct Surface {
     // At the edges of a solid, centroid sampling takes the normal from inside the solid.
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(flat) colour: vec4f,
-    @location(3) around_along: vec3f, // position on the rim and along the solid
-    @location(4) @interpolate(flat) stripes: vec2f, // strength, winding
 }
 
-const STRIPES = 5.0;
-const STRIPE_WIDTH = 0.13; // as a fraction of the distance between two stripes
-const STRIPE_SHADE = 0.3;
+// The section of a solid that winds, towards its tip: its thickness, and the power of its round
+// rectangle, which is 2 for a circle.
+const THICKNESS = 0.66;
+const POWER = 3.2;
+
+// Point and normal of the side of a solid that winds.
+struct Wound {
+    rim: vec3f,
+    normal: vec3f,
+}
+
+fn wound(rim: vec3f, normal: vec3f, along: f32, winding: f32) -> Wound {
+    let turn = winding * along;
+    let axis = vec2f(cos(turn), sin(turn));
+    let shape = smoothstep(0.0, 1.0, along);
+    let flat = vec2f(mix(1.0, THICKNESS, shape), 1.0);
+    let power = mix(2.0, POWER, shape);
+    // In axes that wind along.
+    let round = vec2f(dot(rim.yz, axis), dot(rim.yz, vec2f(-axis.y, axis.x)));
+    let size = abs(round);
+    let stretch = pow(max(pow(size.x, power) + pow(size.y, power), 1e-12), -1.0 / power);
+    let at = round * stretch * flat * length(round);
+    let out = sign(round) * pow(size, vec2f(power - 1.0)) / flat;
+    let side = out * inverseSqrt(max(dot(out, out), 1e-12));
+    let back = mat2x2f(axis, vec2f(-axis.y, axis.x));
+    let is_cap = abs(normal.x) > 0.5;
+    return Wound(
+        vec3f(rim.x, back * at),
+        select(vec3f(0.0, back * side), normal, is_cap),
+    );
+}
 
 @vertex
 fn vertex(v: Vertex, i: Instance) -> Surface {
@@ -39,7 +65,11 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     let centre = i.origin + axes[0] * (v.along * length);
     let pixel = pixel_size(dot(centre - view.eye, view.forward));
     let grow = max(1.0, i.least_radius * view.pixel_scale * pixel / max(radii.x, radii.y));
-    let around = v.rim * (mix(radii.x, radii.y, v.along) * grow);
+    var side = Wound(v.rim, v.normal);
+    if i.winding.x > 0.0 {
+        side = wound(v.rim, v.normal, v.along, i.winding.y);
+    }
+    let around = side.rim * (mix(radii.x, radii.y, v.along) * grow);
     // A taper tilts the side's normal towards the thinner end, but not the caps' normals.
     let taper = (radii.x - radii.y) / max(length, 1e-6);
     let tilt = select(0.0, taper, length > 0.0) * dot(v.normal.yz, v.normal.yz);
@@ -47,34 +77,13 @@ fn vertex(v: Vertex, i: Instance) -> Surface {
     return Surface(
         view.clip_from_world * vec4f(world, 1.0),
         world,
-        axes * (v.normal + vec3f(tilt, 0.0, 0.0)),
+        axes * (side.normal + vec3f(tilt, 0.0, 0.0)),
         i.colour,
-        vec3f(v.rim.yz, v.along),
-        vec2f(i.stripes.x * dot(v.normal.yz, v.normal.yz), i.stripes.y),
     );
 }
 
-// Darkness of the stripes at a pixel. The angle around the solid jumps at a seam, so its derivative
-// is computed from the position on the rim instead.
-fn stripe_shade(s: Surface) -> f32 {
-    let rim = s.around_along.xy;
-    let turn = vec2f(
-        rim.x * dpdx(rim.y) - rim.y * dpdx(rim.x),
-        rim.x * dpdy(rim.y) - rim.y * dpdy(rim.x),
-    ) / max(dot(rim, rim), 1e-6);
-    let wound = vec2f(dpdx(s.around_along.z), dpdy(s.around_along.z)) * s.stripes.y;
-    let per_radian = STRIPES / 6.2831853;
-    let pixel = max(length(turn - wound) * per_radian, 1e-6);
-    let at = (atan2(rim.y, rim.x) - s.around_along.z * s.stripes.y) * per_radian;
-    let off = abs(at - round(at));
-    let width = max(STRIPE_WIDTH, pixel);
-    let sharp = saturate(0.5 + (width * 0.5 - off) / pixel) * STRIPE_WIDTH / width;
-    let cover = mix(sharp, STRIPE_WIDTH, saturate(pixel * 2.0 - 1.0));
-    return cover * STRIPE_SHADE * s.stripes.x;
-}
-
 fn shaded(s: Surface) -> vec3f {
-    let colour = lit(s.colour.rgb * (1.0 - stripe_shade(s)), normalize(s.normal));
+    let colour = lit(s.colour.rgb, normalize(s.normal));
     return fogged(colour, s.world, s.position.xy);
 }
 

@@ -51,7 +51,7 @@ pub enum Overlay {
     TwistReferences,
     /// The limbs as tapered cylinders instead of bones.
     Cylinders,
-    /// A hand at the end of each limb that is a cylinder, and stripes along its forearm.
+    /// A hand at the end of each limb that is a cylinder, whose forearm winds as it rolls.
     Hand,
     /// The axes of the limb's Root, Limb and Socket.
     Frames,

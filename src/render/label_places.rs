@@ -147,7 +147,12 @@ impl SeenLimb {
             .shadows
             .iter()
             .map(|limb| (limb.base, limb.tip, limb.base_radius.max(limb.tip_radius)));
-        cones.chain(with_shadows).filter_map(move |(from, to, radius)| {
+        let hands = scene.hands.iter().map(|hand| {
+            let [from, to] = [0.1, 0.8]
+                .map(|along| hand.transform.transform_point3(Vec3::X * along * hand.size));
+            (from, to, 0.2 * hand.size)
+        });
+        cones.chain(with_shadows).chain(hands).filter_map(move |(from, to, radius)| {
             let pixels = 0.5 * size.y / projection.half_height_at(from.midpoint(to));
             Some(Self {
                 from: pixel(projection, from, size)?,

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 
 use super::Gpu;
+use crate::scene::hand_mesh;
 
 /// Triangles on the device, counter-clockwise as seen from outside.
 #[derive(Debug)]
@@ -92,22 +93,25 @@ const _: () = assert!(size_of::<SolidVertex>() == 28);
 /// vertices run from the centre of the base over both rims to the centre of the tip. Each rim has
 /// two rows, with the normals of the cap and of the side.
 pub(super) fn cone(gpu: &Gpu, segments: u16) -> MeshBuffers {
-    let (vertices, indices) = cone_triangles(segments);
+    let (vertices, indices) = cone_triangles(segments, 1);
     MeshBuffers::new(gpu, "cone", &vertices, &indices)
 }
 
-fn cone_triangles(segments: u16) -> (Vec<SolidVertex>, Vec<u16>) {
-    let rows: [(f32, f32, Option<f32>); 6] = [
-        (0.0, 0.0, Some(-1.0)),
-        (0.0, 1.0, Some(-1.0)),
-        (0.0, 1.0, None),
-        (1.0, 1.0, None),
-        (1.0, 1.0, Some(1.0)),
-        (1.0, 0.0, Some(1.0)),
-    ];
+/// The same with as many rows as a cone needs that winds.
+pub(super) fn wound_cone(gpu: &Gpu) -> MeshBuffers {
+    let (vertices, indices) = cone_triangles(64, 24);
+    MeshBuffers::new(gpu, "cone that winds", &vertices, &indices)
+}
+
+/// A side of `steps` rows of triangles.
+fn cone_triangles(segments: u16, steps: u16) -> (Vec<SolidVertex>, Vec<u16>) {
+    let base = [(0.0, 0.0, Some(-1.0)), (0.0, 1.0, Some(-1.0))];
+    let side = (0..=steps).map(|step| (f32::from(step) / f32::from(steps), 1.0, None));
+    let tip = [(1.0, 1.0, Some(1.0)), (1.0, 0.0, Some(1.0))];
+    let rows: Vec<(f32, f32, Option<f32>)> = base.into_iter().chain(side).chain(tip).collect();
     let vertices: Vec<_> = rows
-        .into_iter()
-        .flat_map(|(along, radius, cap)| {
+        .iter()
+        .flat_map(|&(along, radius, cap)| {
             circle(segments).map(move |around| {
                 let side = Vec3::new(0.0, around.x, -around.y);
                 let normal = cap.map_or(side, |x| Vec3::X * x);
@@ -135,14 +139,32 @@ pub(super) fn ball(gpu: &Gpu, segments: u16) -> MeshBuffers {
     MeshBuffers::new(gpu, "ball", &vertices, &indices)
 }
 
+/// Mesh of a hand of size 1.
+pub(super) fn hand(gpu: &Gpu) -> MeshBuffers {
+    let mesh = hand_mesh();
+    let points = mesh.positions.iter().zip(&mesh.normals);
+    let vertices: Vec<_> = points
+        .map(|(rim, normal)| SolidVertex { along: 0.0, rim: *rim, normal: *normal })
+        .collect();
+    let indices: Vec<u16> = mesh.triangles.as_flattened().iter().map(|it| *it as u16).collect();
+    MeshBuffers::new(gpu, "hand", &vertices, &indices)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_cone_is_closed_and_faces_outwards() {
-        let (vertices, indices) = cone_triangles(64);
-        assert_eq!(indices.len() / 3, 4 * 64, "two fans and a side");
+        for steps in [1, 24] {
+            check_cone(steps);
+        }
+    }
+
+    fn check_cone(steps: u16) {
+        let (vertices, indices) = cone_triangles(64, steps);
+        let sides = 2 * usize::from(steps) * 64;
+        assert_eq!(indices.len() / 3, 2 * 64 + sides, "two fans and a side");
         let mut volume = 0.0;
         for triangle in indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|corner| vertices[usize::from(triangle[corner])]);

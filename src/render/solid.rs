@@ -3,9 +3,9 @@ use glam::{Mat3, Vec3};
 
 use super::Gpu;
 use super::instances::InstanceBuffer;
-use super::mesh::{MeshBuffers, SolidVertex, ball, cone};
+use super::mesh::{MeshBuffers, SolidVertex, ball, cone, hand, wound_cone};
 use super::pipeline::{PipelineDescriptor, PipelineOutput};
-use crate::scene::{Ball, Scene, Solid};
+use crate::scene::{Ball, Hand, Scene, Solid};
 
 pub(super) const SHADER: &str =
     concat!(include_str!("../../shaders/view.wgsl"), include_str!("../../shaders/solid.wgsl"),);
@@ -41,8 +41,8 @@ struct SolidInstance {
     tip_radius: f32,
     origin: Vec3,
     colour: [f32; 4],
-    /// 1 with stripes or 0 without, then the winding of the stripes in radians.
-    stripes: [f32; 2],
+    /// 1 if it winds, else 0; then the winding in radians.
+    winding: [f32; 2],
     /// Least radius of the thicker end on screen, in points.
     least_radius: f32,
 }
@@ -60,6 +60,11 @@ pub(super) struct Solids {
     visible: wgpu::RenderPipeline,
     hidden: wgpu::RenderPipeline,
     lods: [DetailMeshes; LODS.len()],
+    wound: MeshBuffers,
+    wound_cones: InstanceBuffer<SolidInstance>,
+    /// `None` before the first hand.
+    hand: Option<MeshBuffers>,
+    hands: InstanceBuffer<SolidInstance>,
 }
 
 /// Meshes and instances of one level of detail.
@@ -75,8 +80,8 @@ struct DetailMeshes {
 
 impl Solids {
     /// Number of instance buffers: cones, balls, guide cones and guide balls at each level of
-    /// detail.
-    pub const LISTS: usize = 4 * LODS.len();
+    /// detail, cones that wind, and hands.
+    pub const LISTS: usize = 4 * LODS.len() + 2;
 
     pub fn new(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> Self {
         let vertex = wgpu::vertex_attr_array![0 => Float32, 1 => Float32x3, 2 => Float32x3];
@@ -113,6 +118,10 @@ impl Solids {
             visible: visible.build(gpu),
             hidden: hidden.build(gpu),
             lods: LODS.map(|lod| DetailMeshes::new(gpu, lod.segments)),
+            wound: wound_cone(gpu),
+            wound_cones: InstanceBuffer::new("cones that wind"),
+            hand: None,
+            hands: InstanceBuffer::new("hands"),
         }
     }
 
@@ -131,7 +140,14 @@ impl Solids {
         };
         let lods = &mut self.lods;
         for instance in scene.solids.iter().map(SolidInstance::of_solid) {
-            lods[lod_of(&instance)].cones.push(instance);
+            let winds = instance.winding[0] > 0.0;
+            let cones =
+                if winds { &mut self.wound_cones } else { &mut lods[lod_of(&instance)].cones };
+            cones.push(instance);
+        }
+        scene.hands.iter().for_each(|hand| self.hands.push(SolidInstance::of_hand(hand)));
+        if !scene.hands.is_empty() {
+            self.hand.get_or_insert_with(|| hand(gpu));
         }
         for instance in scene.balls.iter().map(|ball| SolidInstance::of_ball(ball, LEAST_BALL)) {
             lods[lod_of(&instance)].balls.push(instance);
@@ -144,16 +160,23 @@ impl Solids {
         {
             lods[lod_of(&instance)].guide_balls.push(instance);
         }
-        lods.iter_mut().map(|lod| lod.upload(gpu)).sum()
+        let sent: u64 = lods.iter_mut().map(|lod| lod.upload(gpu)).sum();
+        sent + self.wound_cones.upload(gpu) + self.hands.upload(gpu)
     }
 
     /// Number of triangles drawn; guides are drawn twice.
     pub fn triangles(&self) -> u32 {
-        self.lods.iter().map(DetailMeshes::triangles).sum()
+        let in_lods: u32 = self.lods.iter().map(DetailMeshes::triangles).sum();
+        let of_hand = self.hand.as_ref().map_or(0, MeshBuffers::triangles);
+        in_lods + self.wound_cones.count() * self.wound.triangles() + self.hands.count() * of_hand
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.visible);
+        draw(pass, &self.wound, &self.wound_cones);
+        if let Some(hand) = &self.hand {
+            draw(pass, hand, &self.hands);
+        }
         for lod in self.lods.iter().rev() {
             draw(pass, &lod.cone, &lod.cones);
         }
@@ -216,7 +239,7 @@ fn draw(
 impl SolidInstance {
     fn of_solid(solid: &Solid) -> Self {
         let axes = Mat3::from(solid.transform.matrix3);
-        let winding = solid.stripes.filter(|winding| winding.is_finite());
+        let winding = solid.winding.filter(|winding| winding.is_finite());
         Self {
             x: axes.x_axis,
             length: solid.shape.length,
@@ -226,7 +249,7 @@ impl SolidInstance {
             tip_radius: solid.shape.tip_radius,
             origin: solid.transform.translation.into(),
             colour: solid.colour.channels(),
-            stripes: winding.map_or([0.0, 0.0], |winding| [1.0, winding]),
+            winding: winding.map_or([0.0, 0.0], |winding| [1.0, winding]),
             least_radius: LEAST_CONE,
         }
     }
@@ -241,8 +264,24 @@ impl SolidInstance {
             tip_radius: ball.radius,
             origin: ball.centre,
             colour: ball.colour.channels(),
-            stripes: [0.0, 0.0],
+            winding: [0.0, 0.0],
             least_radius,
+        }
+    }
+
+    fn of_hand(hand: &Hand) -> Self {
+        let axes = Mat3::from(hand.transform.matrix3);
+        Self {
+            x: axes.x_axis,
+            length: 0.0,
+            y: axes.y_axis,
+            base_radius: hand.size,
+            z: axes.z_axis,
+            tip_radius: hand.size,
+            origin: hand.transform.translation.into(),
+            colour: hand.colour.channels(),
+            winding: [0.0, 0.0],
+            least_radius: 0.0,
         }
     }
 }

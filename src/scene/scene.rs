@@ -6,8 +6,8 @@ use glam::{Quat, Vec3};
 
 use super::shapes::TextRange;
 use super::{
-    Ball, Colour, Globe, Label, LabelSide, Line, Palette, Planes, Shadow, SkinInstance, Solid,
-    SphereShell,
+    Ball, Colour, Globe, Hand, Label, LabelSide, Line, Palette, Planes, Shadow, SkinInstance,
+    Solid, SphereShell,
 };
 use crate::document::{Camera, Display, Theme};
 use crate::kinematics::Shared;
@@ -32,6 +32,8 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     /// Balls.
     pub balls: Vec<Ball>,
+    /// Hands.
+    pub hands: Vec<Hand>,
     /// Cones and cylinders that also show faintly through the surfaces that hide them.
     pub guide_solids: Vec<Solid>,
     /// Balls that also show faintly through the surfaces that hide them.
@@ -72,6 +74,7 @@ impl Scene {
             shadows: Vec::new(),
             solids: Vec::new(),
             balls: Vec::new(),
+            hands: Vec::new(),
             guide_solids: Vec::new(),
             guide_balls: Vec::new(),
             shells: Vec::new(),
@@ -90,6 +93,7 @@ impl Scene {
         self.shadows.clear();
         self.solids.clear();
         self.balls.clear();
+        self.hands.clear();
         self.guide_solids.clear();
         self.guide_balls.clear();
         self.shells.clear();
@@ -190,6 +194,7 @@ impl Scene {
         for balls in [&mut self.balls, &mut self.guide_balls] {
             balls.retain(|ball| ball.centre.is_finite() && ball.radius.is_finite());
         }
+        self.hands.retain(|hand| hand.transform.is_finite() && hand.size.is_finite());
         self.shells.retain(|shell| shell.centre.is_finite() && shell.radius.is_finite());
         self.lines.retain(|line| line.from.is_finite() && line.to.is_finite());
         self.labels.retain(|label| label.at.is_finite() && label.clearance.is_finite());

@@ -24,9 +24,10 @@ pub struct Solid {
     pub shape: TaperedCylinder,
     /// Colour of the surface.
     pub colour: Colour,
-    /// Angle in radians by which darker stripes along the side wind from base to tip, right-handed
-    /// about the solid's +x. `None` or an angle that is not finite means no stripes.
-    pub stripes: Option<f32>,
+    /// Angle in radians by which the side winds from base to tip, right-handed about the solid's +x.
+    /// The section of a solid that winds becomes flatter towards the tip, thinnest along its y; it
+    /// stays round if this is `None` or not finite.
+    pub winding: Option<f32>,
 }
 
 impl Solid {
@@ -39,7 +40,7 @@ impl Solid {
         colour: Colour,
     ) -> Self {
         let (transform, shape) = TaperedCylinder::between(base, tip, base_radius, tip_radius);
-        Self { transform, shape, colour, stripes: None }
+        Self { transform, shape, colour, winding: None }
     }
 }
 
@@ -50,6 +51,17 @@ pub struct Ball {
     pub centre: Vec3,
     /// Radius in world units.
     pub radius: f32,
+    /// Colour of the surface.
+    pub colour: Colour,
+}
+
+/// A right hand with the surface of [`hand_mesh`](super::hand_mesh).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    /// Rigid transform to the world from the space of the wrist.
+    pub transform: Affine3A,
+    /// Distance from the wrist to the tip of the middle finger, in world units.
+    pub size: f32,
     /// Colour of the surface.
     pub colour: Colour,
 }

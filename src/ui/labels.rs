@@ -131,7 +131,7 @@ pub(in crate::ui) fn overlay(overlay: Overlay) -> (&'static str, &'static str) {
         Overlay::CompareSkinning => {
             ("Compare", "Show the skin three times, once for each way of blending")
         }
-        Overlay::Hand => ("Hand", "Show the hand, and stripes for the forearm roll"),
+        Overlay::Hand => ("Hand", "Show the hand; the forearm winds as it rolls"),
         Overlay::Frames => ("Frames", "Show the axes of Root, Limb and Socket"),
         Overlay::SingularityGlobe => {
             ("Singularity globe", "Colour the outer limit by how fast the elbow turns")

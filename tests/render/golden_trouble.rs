@@ -5,13 +5,14 @@
 //! committing.
 
 use crate::common::arm::Arm;
-use glam::{Affine3A, DVec3, EulerRot, Mat3, Quat, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec3};
 use ik_arm::document::{AxisView, Camera, Display, Document, Overlay, Theme};
+use ik_arm::kinematics::skin::TriangleMesh;
 use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;
 use ik_arm::rig::TaperedCylinder;
-use ik_arm::scene::{Colour, Globe, Palette, Scene, Solid};
+use ik_arm::scene::{Colour, Globe, Hand, Palette, Scene, Solid, hand_mesh};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pollster::block_on;
@@ -268,63 +269,82 @@ fn the_colours_of_gains_rise_in_contrast() {
     }
 }
 
-/// The default arm, without its hand, with stripes on both limbs, from near.
-fn striped(upper: Option<f32>, lower: Option<f32>) -> Scene {
+/// The default arm, without its hand, with a lower limb that winds, from near.
+fn winding(lower: Option<f32>) -> Scene {
     let mut document = Document::default();
-    document.camera = Camera { distance: 720.0, ..document.camera };
+    document.camera = Camera { distance: 460.0, ..document.camera };
     document.display = document.display.with(Overlay::Hand, false);
     let mut scene = scene(&document, Theme::Dark);
-    let colours = [scene.palette.upper, scene.palette.lower];
-    for (colour, stripes) in colours.into_iter().zip([upper, lower]) {
-        let limbs = scene.solids.iter_mut().filter(|solid| solid.colour == colour);
-        assert_eq!(limbs.map(|limb| limb.stripes = stripes).count(), 1);
-    }
+    let colour = scene.palette.lower;
+    let limbs = scene.solids.iter_mut().filter(|solid| solid.colour == colour);
+    assert_eq!(limbs.map(|limb| limb.winding = lower).count(), 1);
     scene
 }
 
 #[test]
-fn straight_and_winding_stripes() {
+fn a_lower_limb_that_winds() {
     let turn = 270_f32.to_radians();
-    check("stripes", &striped(Some(0.0), Some(turn)));
-    for (upper, lower) in [(Some(0.0), Some(-turn)), (Some(turn), Some(turn)), (None, Some(turn))] {
-        assert!(compare(&draw(&striped(upper, lower)), &kept("stripes")).is_err());
+    check("winding", &winding(Some(turn)));
+    for other in [Some(0.0), Some(-turn), None] {
+        let drawn = draw(&winding(other));
+        assert!(compare(&drawn, &kept("winding")).is_err(), "{other:?}");
     }
-    let none = draw(&striped(None, None));
     for no_angle in [f32::NAN, f32::INFINITY] {
-        assert_eq!(draw(&striped(Some(no_angle), None)), none);
+        assert_eq!(draw(&winding(Some(no_angle))), draw(&winding(None)));
     }
 }
 
-/// Along a cylinder's middle as it is seen from the front, a line k of n is where 2πk/n + t·winding
-/// is a quarter turn: from +y to +z.
+/// Half of the height of a round rectangle of the radius 1 across and 0.66 through, with the power
+/// 3.2, whose thin axis is turned from the vertical by an angle.
+fn half_height(along: f32, angle: f32) -> f32 {
+    let shape = along * along * (3.0 - 2.0 * along);
+    let (thin, power) = (1.0 - 0.34 * shape, 2.0 + 1.2 * shape);
+    let points = (0..720).map(|nth| (nth as f32 * 0.5).to_radians());
+    let heights = points.map(|turn| {
+        let (sine, cosine) = turn.sin_cos();
+        let size = (cosine.abs().powf(power) + sine.abs().powf(power)).powf(-1.0 / power);
+        thin * size * cosine * angle.cos() - size * sine * angle.sin()
+    });
+    heights.fold(0.0, f32::max)
+}
+
+/// From the front a section is as high as its thin axis is turned away from the vertical.
 #[test]
-fn stripes_wind_right_handed_from_base_to_tip() {
+fn limbs_wind_right_handed_from_base_to_tip() {
     const SIDE: u32 = 400;
-    const STRIPES: f32 = 5.0;
+    const RADIUS: f32 = 60.0;
     let (transform, shape) =
-        TaperedCylinder::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, 30.0, 30.0);
-    for winding in [270_f32, -270.0, 500.0].map(f32::to_radians) {
-        // Turned so that its +y is the world's, whatever +y the cone was given.
-        let transform = Affine3A { matrix3: glam::Mat3A::IDENTITY, ..transform };
-        let camera = Camera { target: Vec3::ZERO, distance: 300.0, ..Document::default().camera };
+        TaperedCylinder::between(Vec3::NEG_X * 100.0, Vec3::X * 100.0, RADIUS, RADIUS);
+    for (start, winding) in [(0.6, 90_f32), (0.6, -90.0), (-0.3, 250.0)] {
+        let (start, winding) = (start as f32, winding.to_radians());
+        let transform = Affine3A { matrix3: glam::Mat3A::from_rotation_x(start), ..transform };
+        let camera = Camera {
+            target: Vec3::ZERO,
+            distance: 400.0,
+            orthographic: true,
+            ..Document::default().camera
+        };
         let mut scene =
             bare(globe(TwistReference::Transport), Theme::Light, camera.along(AxisView::Front));
         scene.globe = None;
-        let (colour, stripes) = (Colour([200, 200, 200, 255]), Some(winding));
-        scene.solids.push(Solid { transform, shape, colour, stripes });
+        let empty = picture(&scene, SIDE);
+        let colour = Colour([60, 60, 60, 255]);
+        scene.solids.push(Solid { transform, shape, colour, winding: Some(winding) });
         let drawn = picture(&scene, SIDE);
         let projection = scene.camera.projection(1.0);
-        for step in 5..95 {
-            let along = step as f32 / 100.0;
-            let at = projection.project(Vec3::new(200.0 * along - 100.0, 0.0, 30.0)).expect("seen");
-            let pixel = (at * glam::Vec2::new(0.5, -0.5) + 0.5) * SIDE as f32;
-            let shade = drawn.get_pixel(pixel.x as u32, pixel.y as u32).0[0];
-            let phase = (0.25 - along * winding / std::f32::consts::TAU) * STRIPES;
-            let off = (phase - phase.round()).abs();
-            // A line is 0.13 wide, and a pixel on its edge is between.
-            if !(0.03..0.12).contains(&off) {
-                assert_eq!(shade < 160, off < 0.03, "at {along}, {off} off a line: {shade}");
-            }
+        let pixels = SIDE as f32 / 2.0 / projection.half_height_at(Vec3::ZERO);
+        for step in 2..49 {
+            let along = step as f32 / 50.0;
+            let at = projection.project(Vec3::new(200.0 * along - 100.0, 0.0, 0.0)).expect("seen");
+            let column = ((at.x * 0.5 + 0.5) * SIDE as f32) as u32;
+            let is_drawn =
+                |row: &u32| drawn.get_pixel(column, *row) != empty.get_pixel(column, *row);
+            let height = (0..SIDE).filter(is_drawn).count() as f32;
+            let expected = 2.0 * RADIUS * pixels * half_height(along, start + winding * along);
+            assert!(
+                (height - expected).abs() < 4.0,
+                "at {along} of {winding}: {height}, {expected}"
+            );
         }
     }
 }
@@ -342,7 +362,7 @@ fn hand(theme: Theme, yaw: f32) -> Scene {
     scene.globe = None;
     let colour = scene.palette.joint;
     let held_up = Mat3::from_cols(Vec3::Y, Vec3::NEG_Z, Vec3::NEG_X);
-    scene.add_hand(Affine3A::from_mat3(held_up), 100.0, colour);
+    scene.hands.push(Hand { transform: Affine3A::from_mat3(held_up), size: 100.0, colour });
     scene
 }
 
@@ -353,24 +373,58 @@ fn a_hand_from_its_palm_and_from_its_back() {
 }
 
 #[test]
-fn a_hand_has_the_given_length_and_the_thumb_of_a_right_hand() {
-    let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -1.1, 2.0);
-    let transform = Affine3A::from_rotation_translation(turn, Vec3::new(7.0, -3.0, 12.0));
-    for size in [0.5, 100.0] {
-        let mut scene = scene(&Document::default(), Theme::Dark);
-        let before = (scene.balls.len(), scene.solids.len());
-        scene.add_hand(transform, size, scene.palette.joint);
-        let local = |point: Vec3| transform.inverse().transform_point3(point) / size;
-        let balls: Vec<_> = scene.balls[before.0..]
-            .iter()
-            .map(|ball| (local(ball.centre), ball.radius / size))
-            .collect();
-        let longest = balls.iter().map(|(at, radius)| at.length() + radius).fold(0.0, f32::max);
-        assert!((longest - 1.0).abs() < 0.01, "{longest}");
-        let widest = |sign: f32| balls.iter().map(|(at, _)| at.z * sign).fold(0.0, f32::max);
-        assert!(widest(-1.0) > 1.3 * widest(1.0), "the thumb is at −z");
-        let furthest = balls.iter().max_by(|a, b| a.0.x.total_cmp(&b.0.x)).expect("balls");
-        assert!(furthest.0.y < 0.0, "fingers bend towards the palm, at −y");
-        assert!(scene.solids.len() > before.1 + 15, "five fingers and a palm");
+fn a_hand_is_one_closed_body_of_length_1_with_the_thumb_of_a_right_hand() {
+    let mesh = hand_mesh();
+    let mut edges = std::collections::HashMap::new();
+    for [a, b, c] in &mesh.triangles {
+        for edge in [[a, b], [b, c], [c, a]] {
+            *edges.entry(edge).or_insert(0) += 1;
+        }
     }
+    let is_closed = |[from, to]: &[&u32; 2]| edges.get(&[*to, *from]) == Some(&1);
+    assert!(!edges.is_empty() && edges.keys().all(is_closed));
+    assert!(edges.values().all(|count| *count == 1));
+    assert!((1_000..20_000).contains(&mesh.positions.len()), "{}", mesh.positions.len());
+    let greatest =
+        |of: &dyn Fn(&Vec3) -> f32| mesh.positions.iter().map(of).fold(f32::MIN, f32::max);
+    let longest = greatest(&|at| at.length());
+    assert!((longest - 1.0).abs() < 0.02, "{longest}");
+    assert!(greatest(&|at| -at.z) > 1.3 * greatest(&|at| at.z), "the thumb is at −z");
+    let furthest = mesh.positions.iter().max_by(|a, b| a.x.total_cmp(&b.x)).expect("vertices");
+    assert!(furthest.y < 0.0, "fingers bend towards the palm, at −y");
+    // A plane across the fingers cuts each of them apart.
+    let cuts = cuts_at(&mesh, 0.68);
+    assert_eq!(cuts, 4, "fingers");
+}
+
+/// Number of closed curves in which a plane across x cuts a mesh.
+fn cuts_at(mesh: &TriangleMesh, x: f32) -> usize {
+    let is_beyond = |vertex: u32| mesh.positions[vertex as usize].x > x;
+    let mut group: Vec<usize> = (0..mesh.triangles.len()).collect();
+    fn root(group: &mut [usize], mut at: usize) -> usize {
+        while group[at] != at {
+            group[at] = group[group[at]];
+            at = group[at];
+        }
+        at
+    }
+    let is_cut = |corners: &[u32; 3]| {
+        let beyond = corners.iter().filter(|corner| is_beyond(**corner)).count();
+        beyond == 1 || beyond == 2
+    };
+    let mut of_edge = std::collections::HashMap::new();
+    for (index, corners) in mesh.triangles.iter().enumerate().filter(|(_, it)| is_cut(it)) {
+        for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
+            if is_beyond(from) != is_beyond(to) {
+                let other = *of_edge.entry([from.min(to), from.max(to)]).or_insert(index);
+                let (one, other) = (root(&mut group, index), root(&mut group, other));
+                group[one] = other;
+            }
+        }
+    }
+    let cut: Vec<usize> =
+        (0..mesh.triangles.len()).filter(|it| is_cut(&mesh.triangles[*it])).collect();
+    let roots: std::collections::HashSet<usize> =
+        cut.into_iter().map(|index| root(&mut group, index)).collect();
+    roots.len()
 }

@@ -7,7 +7,7 @@ use crate::kinematics::limb_ik::Limb;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::two_bone::Reach;
 use crate::rig::{LimbFrames, LimbPart};
-use crate::scene::{Ball, Colour, Label, LabelSide, Line, Palette, Scene, Shadow, Solid};
+use crate::scene::{Ball, Colour, Hand, Label, LabelSide, Line, Palette, Scene, Shadow, Solid};
 use crate::session::Overlays;
 
 /// Radius of the balls of target and pole, on a limb of thickness 1.
@@ -66,7 +66,7 @@ impl<'a> CylinderLimb<'a> {
             let transform = Affine3A::from_mat3_translation(turn.as_mat3(), at);
             let hand = self.limb.hand.unwrap_or(self.limb.lower);
             let colour = colours.of(Some(hand), scene.palette.joint);
-            scene.add_hand(transform, LimbFrames::HAND * self.thickness, colour);
+            self.add_hand(scene, transform, colour, display.shows(Overlay::Shadow));
         }
         let is_posing = self.target.is_posing();
         if display.shows(Overlay::Cursor) && is_posing {
@@ -89,8 +89,7 @@ impl<'a> CylinderLimb<'a> {
         }
     }
 
-    /// Adds the two limbs. With a `roll`, stripes wind along the lower limb by that angle, in
-    /// radians.
+    /// Adds the two limbs. With a `roll`, the lower limb winds by that angle, in radians.
     fn add_limbs(&self, scene: &mut Scene, roll: Option<f32>, colours: BodyColours<'_>) {
         let (frames, palette) = (&self.frames, scene.palette);
         scene.solids.extend([
@@ -98,13 +97,13 @@ impl<'a> CylinderLimb<'a> {
                 transform: frames.world(LimbPart::UpperLimb),
                 shape: frames.upper(),
                 colour: colours.of(Some(self.limb.upper), palette.upper),
-                stripes: None,
+                winding: None,
             },
             Solid {
                 transform: frames.world(LimbPart::LowerLimb),
                 shape: frames.lower(),
                 colour: colours.of(Some(self.limb.lower), palette.lower),
-                stripes: roll,
+                winding: roll,
             },
         ]);
         let hand = self.limb.hand.or(Some(self.limb.lower));
@@ -118,6 +117,21 @@ impl<'a> CylinderLimb<'a> {
             radius: radius * self.thickness,
             colour: colours.of(joint, palette.joint),
         }));
+    }
+
+    /// Adds the hand, whose wrist has this transform to the world.
+    fn add_hand(&self, scene: &mut Scene, transform: Affine3A, colour: Colour, has_shadow: bool) {
+        /// Ends of its shadow along the hand, with their radii, as fractions of its size.
+        const SHADOW: [(f32, f32); 2] = [(0.1, 0.16), (0.75, 0.13)];
+        let size = LimbFrames::HAND * self.thickness;
+        scene.hands.push(Hand { transform, size, colour });
+        if has_shadow {
+            let [(base, base_radius), (tip, tip_radius)] = SHADOW.map(|(along, radius)| {
+                (transform.transform_point3(Vec3::X * along * size), radius * size)
+            });
+            let limb = Shadow { base, base_radius, tip, tip_radius };
+            scene.shadows.extend(limb.above_ground());
+        }
     }
 
     fn add_target(&self, scene: &mut Scene, has_handles: bool) {

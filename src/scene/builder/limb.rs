@@ -63,7 +63,7 @@ fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display
             transform: limb.world(LimbPart::Pointer),
             shape: limb.pointer(),
             colour,
-            stripes: None,
+            winding: None,
         });
     }
     for (overlay, part, radius) in [

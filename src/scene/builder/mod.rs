@@ -4,7 +4,6 @@ mod balance;
 mod cylinders;
 mod drawn_skeleton;
 mod figure;
-mod hand;
 mod joint_limits;
 mod limb;
 mod skeleton;

@@ -529,7 +529,7 @@ fn hand_orientation(ui: &mut Ui, limb: LimbTarget<'_>, actions: &mut Actions) {
     let roll = rig.hand_roll(limb.session.posed().skeleton(), joint).unwrap_or_default();
     widgets::pair(ui, "Forearm roll τ", |ui| {
         ui.label(RichText::new(format!("{:.1}°", roll.to_degrees())).monospace())
-            .on_hover_text("Hand rotation about the forearm, spread along its stripes");
+            .on_hover_text("Hand rotation about the forearm, spread along the forearm");
     });
 }
 
