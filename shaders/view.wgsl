@@ -31,6 +31,7 @@ const KEY_DIRECTION = vec3f(0.298142, 0.596285, 0.745356);
 const KEY = vec3f(0.76, 0.74, 0.70);
 const FILL_DIRECTION = vec3f(-0.842152, 0.421076, -0.336861);
 const FILL = vec3f(0.22, 0.24, 0.28);
+const LAMP_WIDTH = 0.25;
 const SKY_AMBIENT = vec3f(0.34, 0.36, 0.40);
 const GROUND_AMBIENT = vec3f(0.23, 0.22, 0.21);
 
@@ -81,11 +82,18 @@ fn encoded(light: vec3f) -> vec3f {
     return select(high, light * 12.92, light <= vec3f(0.0031308));
 }
 
+// Part of the light of a wide lamp that a surface gets, by the cosine of the angle between its normal and the
+// middle of the lamp: also where it faces a little away, and without an edge.
+fn from_wide_light(cosine: f32) -> f32 {
+    let seen = saturate((cosine + LAMP_WIDTH) / (1.0 + LAMP_WIDTH));
+    return mix(seen * seen, seen, 0.5);
+}
+
 // Light that a surface reflects from both lights and the ambient light.
 fn reflected(colour: vec3f, normal: vec3f) -> vec3f {
     let ambient = mix(GROUND_AMBIENT, SKY_AMBIENT, normal.y * 0.5 + 0.5);
-    let key = KEY * max(dot(normal, KEY_DIRECTION), 0.0);
-    let fill = FILL * max(dot(normal, FILL_DIRECTION), 0.0);
+    let key = KEY * from_wide_light(dot(normal, KEY_DIRECTION));
+    let fill = FILL * from_wide_light(dot(normal, FILL_DIRECTION));
     return decoded(colour) * (ambient + key + fill);
 }
 

@@ -102,8 +102,15 @@ impl Palette {
         Colour::rgb(if self.theme == Theme::Dark { dark } else { light })
     }
 
-    /// Colour of an onion skin with this opacity: the fainter, the farther it is from the playhead.
+    /// See-through colour of an onion skin: the fainter, the farther it is from the playhead.
     pub(super) fn onion_skin(&self, skin: &OnionSkin) -> Colour {
+        const OPACITY: f32 = 0.5;
+        let plain = if skin.past { self.grid } else { self.accent };
+        plain.with_opacity(OPACITY * skin.opacity)
+    }
+
+    /// Opaque colour of the bones of an onion skin.
+    pub(super) fn onion_skin_bones(&self, skin: &OnionSkin) -> Colour {
         // Contrast of an opaque onion skin with the background, from 0 to 1.
         const CONTRAST: f32 = 0.7;
         let plain = if skin.past { self.joint } else { self.accent };

@@ -1,9 +1,10 @@
 use glam::Vec3;
 
-use crate::document::{Document, Overlay, Posed, Track, TwistReferenceKind};
+use crate::document::{Document, Overlay, Posed, Skin, Track, TwistReferenceKind};
 use crate::kinematics::Shared;
 use crate::kinematics::chain_ik::{ChainSolver, ChainTarget, Method, SubStep};
 use crate::kinematics::skeleton::{JointId, SkeletonPose};
+use crate::kinematics::skin::SkinPose;
 use crate::kinematics::twist::TransportedFrame;
 use crate::kinematics::two_bone::TwoBonePose;
 use crate::rig::{Crowd, LimbFrames};
@@ -136,10 +137,22 @@ fn twist_reference_poses(
 pub struct OnionSkin {
     /// The pose, in world space.
     pub pose: SkeletonPose,
+    /// The pose of the rig's mesh; `None` if none is shown.
+    pub skin: Option<Shared<SkinPose>>,
     /// True if the frame is before the playhead.
     pub past: bool,
     /// Opacity: 1 nearest to the playhead, less farther away.
     pub opacity: f32,
+}
+
+impl OnionSkin {
+    fn write_skin(&mut self, posed: &Posed) {
+        let Document { rig, display, .. } = posed.document();
+        let skin = rig.skin.as_ref().filter(|_| display.shows(Overlay::Skin));
+        let Some(Ok(mesh)) = skin.map(Skin::mesh) else { return self.skin = None };
+        let pose = self.skin.get_or_insert_default();
+        mesh.mesh.write_pose(posed.skeleton(), pose.make_mut());
+    }
 }
 
 /// Writes into `skins` the rig in frames before and after those of `posed` that are on the
@@ -173,6 +186,7 @@ pub(in crate::session) fn write_onion_skins(
         }
         let skin = &mut skins[made];
         posed.skeleton().write_pose(&mut skin.pose);
+        skin.write_skin(&posed);
         (skin.past, skin.opacity) = (place < 0, 1.0 / place.unsigned_abs() as f32);
         made += 1;
     }

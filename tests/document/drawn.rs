@@ -66,7 +66,7 @@ fn shadows_of_short_bones_do_not_add_up() {
 }
 
 #[test]
-fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
+fn an_onion_skin_of_a_figure_is_its_skin_or_else_its_bones_with_hips() {
     let mut session = Session::default();
     session.apply(open_example("walk"));
     session.apply(PlaybackAction::SetTime(0.5));
@@ -84,6 +84,14 @@ fn an_onion_skin_of_a_figure_has_hips_and_is_as_broad_as_the_figure() {
         let overlays = shown.overlays();
         let [.., skin] = &overlays.onion_skins[..] else { panic!("onion skins") };
         let scene = Scene::new(shown.posed(), &overlays, Theme::Dark);
+        assert_eq!(skin.skin.is_some(), has_skin);
+        if has_skin {
+            let [own, onion_skins @ ..] = &scene.skins[..] else { panic!("no skins") };
+            assert_eq!(onion_skins.len(), overlays.onion_skins.len());
+            assert!(onion_skins.iter().all(|it| it.mesh.is_same(&own.mesh) && it.pose != own.pose));
+            assert!(onion_skins.iter().all(|it| (0.1..0.6).contains(&it.colour.channels()[3])));
+            continue;
+        }
         let skeleton = shown.skeleton();
         let joint = |name: &str| skeleton.find(name).expect("a joint");
         // The legs start beside the pelvis: a rod leads to each.

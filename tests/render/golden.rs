@@ -336,6 +336,19 @@ fn the_weights_of_a_joint_colour_the_skin() {
 }
 
 #[test]
+fn the_parts_of_a_skin_that_are_selected_or_under_the_mouse_light_up() {
+    let document = bind_pose();
+    let selected = with_selection(&document, 13);
+    let hovered = Overlays { hovered: Some(JointId::new(4)), ..Overlays::default() };
+    let scene = |overlays: &Overlays| Scene::new(&document.at(0.0), overlays, Theme::Light);
+    pictures::check("skin_selected-light", &scene(&selected));
+    pictures::check("skin_hovered-light", &scene(&hovered));
+    for other in [&hovered, &Overlays::default()] {
+        assert!(compare(&draw(&scene(other)), &kept("skin_selected-light")).is_err());
+    }
+}
+
+#[test]
 fn the_wireframe_and_the_bones_of_a_skin() {
     for (name, theme) in [("skin_wireframe", Theme::Dark), ("skin_wireframe-light", Theme::Light)] {
         check(name, &showing(example("two-targets"), &[Overlay::Wireframe]), theme);

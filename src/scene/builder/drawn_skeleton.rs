@@ -235,21 +235,12 @@ impl<'a> DrawnSkeleton<'a> {
         self.are_leaves[joint.index()] || (self.depths[joint.index()] + 1).is_multiple_of(bones)
     }
 
-    /// Adds the figure in the pose of another frame. `thickness` is the radius of a joint's part of
-    /// the skin; `None` without a skin.
-    pub fn add_onion_skin(
-        &self,
-        scene: &mut Scene,
-        colour: Colour,
-        thickness: impl Fn(JointId) -> Option<f32>,
-    ) {
+    /// Adds the bones in the pose of another frame.
+    pub fn add_onion_skin(&self, scene: &mut Scene, colour: Colour) {
         for joint in self.pose.ids() {
             let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
-            let [from, to] = match thickness(joint) {
-                Some(thickness) => [thickness; 2],
-                None => [self.radius(joint), self.tip_radius(joint)],
-            };
-            let [from, to] = [from, to].map(|radius| ONION_SKIN * radius);
+            let [from, to] =
+                [self.radius(joint), self.tip_radius(joint)].map(|radius| ONION_SKIN * radius);
             if base != tip {
                 scene.add_solid(base, tip, from, to, colour);
                 scene.balls.push(Ball { centre: tip, radius: to, colour });

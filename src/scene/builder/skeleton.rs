@@ -106,9 +106,16 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         skin.add(scene, posed.skeleton(), overlays, display);
     }
     for onion_skin in &overlays.onion_skins {
-        let colour = scene.palette.onion_skin(onion_skin);
-        let thickness = |joint: JointId| Some(skin.as_ref()?.thickness(joint) * scale);
-        drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour, thickness);
+        match (&skin, &onion_skin.skin) {
+            (Some(skin), Some(pose)) => {
+                let colour = scene.palette.onion_skin(onion_skin);
+                skin.add_in_pose(scene, pose.clone(), colour);
+            }
+            _ => {
+                let colour = scene.palette.onion_skin_bones(onion_skin);
+                drawn.posed(&onion_skin.pose).add_onion_skin(scene, colour);
+            }
+        }
     }
     let all = display.shows(Overlay::FkPose);
     if all || rig.targets.iter().any(Target::is_blended) {

@@ -75,6 +75,19 @@ impl<'a> ShownSkin<'a> {
         }
     }
 
+    /// Adds the skin in another pose, in one colour.
+    pub fn add_in_pose(&self, scene: &mut Scene, pose: Shared<SkinPose>, colour: Colour) {
+        scene.skins.push(SkinInstance {
+            mesh: self.mesh.clone(),
+            pose,
+            skinning: self.skin.skinning,
+            offset: Vec3::ZERO,
+            colour,
+            wireframe: None,
+            weights_of: None,
+        });
+    }
+
     /// Offsets in the world of the skins that are drawn.
     fn offsets(&self) -> impl Iterator<Item = Vec3> + use<> {
         let step = self.compared.map_or(Vec3::ZERO, |compared| compared.step);
@@ -132,16 +145,14 @@ fn coloured_weights(
     display: Display,
 ) -> Option<(JointId, WeightColours)> {
     /// Opacities of the tints of a joint under the mouse and of a selected one.
-    const TINTS: [f32; 2] = [0.35, 0.5];
+    const TINTS: [f32; 2] = [0.25, 0.5];
     let selected = overlays.selection.last().copied();
     if display.shows(Overlay::SkinWeights) {
         return selected.map(|joint| (joint, WeightColours::Ramp));
     }
-    let [lit, chosen] = TINTS;
     let hovered = overlays.hovered.filter(|joint| !overlays.selection.contains(joint));
-    let lit = hovered.map(|joint| (joint, scene.palette.guide.with_opacity(lit)));
-    let tint = lit.or(selected.map(|joint| (joint, scene.palette.accent.with_opacity(chosen))));
-    tint.map(|(joint, colour)| (joint, WeightColours::Tint(colour)))
+    let (joint, opacity) = hovered.zip(Some(TINTS[0])).or(selected.zip(Some(TINTS[1])))?;
+    Some((joint, WeightColours::Tint(scene.palette.accent.with_opacity(opacity))))
 }
 
 impl ComparedSkins {
