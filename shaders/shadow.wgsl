@@ -65,15 +65,24 @@ fn vertex(@builtin(vertex_index) index: u32, i: Instance) -> Ground {
     return Ground(view.clip_from_world * vec4f(point, 1.0), point, base, tip);
 }
 
+// How much a limb of a length hides at a distance `along` from its base: all in the middle, half at its ends,
+// and nothing farther than `soft` beyond. So the shares of limbs in a row add up to 1.
+fn share_at(along: f32, length: f32, soft: f32) -> f32 {
+    return smoothstep(-soft, soft, along) - smoothstep(-soft, soft, along - length);
+}
+
 // Part of the ambient light that the limb hides: that of the ball at the nearest point of its axis.
 fn hidden_ambient(g: Ground, axis: vec3f) -> f32 {
     let from_base = g.point - g.base.xyz;
-    let part = saturate(dot(axis, from_base) / max(dot(axis, axis), 1e-6));
+    let along = dot(axis, from_base) / max(dot(axis, axis), 1e-6);
+    let part = saturate(along);
     let away = axis * part - from_base;
     let far = max(length(away), 1e-6);
-    let ratio = min(mix(g.base.w, g.tip.w, part) / far, 1.0);
+    let radius = mix(g.base.w, g.tip.w, part);
+    let ratio = min(radius / far, 1.0);
     let hidden = ratio * ratio * saturate(away.y / far);
-    return saturate((hidden - LEAST_AMBIENT) / (1.0 - LEAST_AMBIENT));
+    let long = length(axis);
+    return share_at(along * long, long, radius) * saturate((hidden - LEAST_AMBIENT) / (1.0 - LEAST_AMBIENT));
 }
 
 // Computes the opacity of the shadow from the point of the limb's axis that is closest to the ray
@@ -84,7 +93,8 @@ fn fragment(g: Ground) -> @location(0) vec4f {
     let from_base = g.point - g.base.xyz;
     let slant = dot(axis, KEY_DIRECTION);
     let across = max(dot(axis, axis) - slant * slant, 1e-6);
-    let part = saturate((dot(axis, from_base) - slant * dot(from_base, KEY_DIRECTION)) / across);
+    let along = (dot(axis, from_base) - slant * dot(from_base, KEY_DIRECTION)) / across;
+    let part = saturate(along);
     let away = axis * part - from_base;
     let radius = mix(g.base.w, g.tip.w, part);
     let height = max(dot(away, KEY_DIRECTION), 0.0);
@@ -92,7 +102,9 @@ fn fragment(g: Ground) -> @location(0) vec4f {
     let softness = radius * CONTACT + height * LIGHT_WIDTH;
     // A limb much thinner than its soft edge is wide hides only a part of the light.
     let hidden = saturate(THIN * radius / softness);
-    let shade = hidden * (1.0 - smoothstep(-softness, softness, miss));
+    let long = sqrt(across);
+    let share = share_at(along * long, long, radius + softness);
+    let shade = share * hidden * (1.0 - smoothstep(-softness, softness, miss));
     let faded = shade * (1.0 - saturate(height / (view.planes_radius * 1.6)));
     let lit = (1.0 - faded * view.shadow_strength)
         * (1.0 - hidden_ambient(g, axis) * AMBIENT * view.shadow_strength);

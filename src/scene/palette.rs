@@ -63,7 +63,7 @@ impl Palette {
                 wall: Colour::rgb(0x9aa4b4),
                 text: Colour::rgb(0xeef0f4),
                 gains: ramp([0x4d667f, 0x954f9d, 0xd63f71, 0xf76c43, 0xffa83f]),
-                shadow: 0.62,
+                shadow: 0.7,
             },
             Theme::Light => Self {
                 theme,
@@ -80,7 +80,7 @@ impl Palette {
                 wall: Colour::rgb(0x5a6678),
                 text: Colour::rgb(0x1c1f24),
                 gains: ramp([0x7cabcc, 0xa17cd4, 0xc4499a, 0xbb1a40, 0x850609]),
-                shadow: 0.42,
+                shadow: 0.5,
             },
         }
     }

@@ -12,7 +12,7 @@ use ik_arm::kinematics::twist::{Stereographic, TwistReference};
 use ik_arm::kinematics::two_bone::Pointer;
 use ik_arm::render::PictureRenderer;
 use ik_arm::rig::TaperedCylinder;
-use ik_arm::scene::{Colour, Globe, Hand, Palette, Scene, Solid, hand_mesh};
+use ik_arm::scene::{Colour, Globe, Hand, Palette, Scene, Shadow, Solid, hand_mesh};
 use ik_arm::session::Overlays;
 use image::RgbaImage;
 use pollster::block_on;
@@ -345,6 +345,49 @@ fn limbs_wind_right_handed_from_base_to_tip() {
                 (height - expected).abs() < 4.0,
                 "at {along} of {winding}: {height}, {expected}"
             );
+        }
+    }
+}
+
+/// Brightness of the floor in a row of pixels under limbs that lie along x, from above.
+fn floor_under(limbs: &[[f32; 2]]) -> Vec<f32> {
+    const SIDE: u32 = 200;
+    let camera = Camera {
+        target: Vec3::ZERO,
+        distance: 600.0,
+        orthographic: true,
+        ..Document::default().camera
+    };
+    let document = Document {
+        display: Display::from_iter([Overlay::Ground]),
+        camera: camera.along(AxisView::Top),
+        ..Document::default()
+    };
+    let mut scene = scene(&document, Theme::Light);
+    let limb = |[from, to]: &[f32; 2]| {
+        let [base, tip] = [*from, *to].map(|x| Vec3::new(x, 40.0, 50.0));
+        Shadow { base, base_radius: 12.0, tip, tip_radius: 12.0 }
+    };
+    scene.shadows = limbs.iter().map(limb).collect();
+    let drawn = picture(&scene, SIDE);
+    (0..SIDE).map(|column| f32::from(drawn.get_pixel(column, SIDE / 2).0[1])).collect()
+}
+
+#[test]
+fn limbs_in_a_row_cast_the_shadow_of_one_limb_without_beads() {
+    let bare = floor_under(&[]);
+    let shade = |limbs: &[[f32; 2]]| -> Vec<f32> {
+        floor_under(limbs).iter().zip(&bare).map(|(shaded, bare)| bare - shaded).collect()
+    };
+    let one = shade(&[[-120.0, 120.0]]);
+    let darkest = one.iter().copied().fold(0.0, f32::max);
+    assert!(darkest > 30.0, "{darkest}");
+    for parts in [2_u8, 5, 12] {
+        let end = |nth: u8| 240.0 * f32::from(nth) / f32::from(parts) - 120.0;
+        let row: Vec<[f32; 2]> = (0..parts).map(|nth| [end(nth), end(nth + 1)]).collect();
+        for (column, (several, one)) in shade(&row).iter().zip(&one).enumerate() {
+            let off = several - one;
+            assert!((-0.3 * darkest..=2.0).contains(&off), "{parts} at {column}: {several}, {one}");
         }
     }
 }
