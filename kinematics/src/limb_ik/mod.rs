@@ -118,7 +118,8 @@ impl Limb {
     }
 
     /// The limb for a target of `joint`, the last of an unbranched chain or the bone below which a
-    /// hand or foot is the last.
+    /// hand or foot is the last. Fingers and toes do not count: what is shorter from the base of a
+    /// hand or foot to the farthest tip than the bone above it.
     ///
     /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body,
     /// the last is the hand or foot, and the limb ends at its base. Any other chain is better posed
@@ -127,15 +128,17 @@ impl Limb {
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
-        let end = hand(skeleton, joint).unwrap_or(joint);
-        let is_end = skeleton.children(end).next().is_none();
+        let end = match is_end(skeleton, joint) {
+            true => joint,
+            false => hand(skeleton, joint).unwrap_or(joint),
+        };
         let above = || skeleton.ancestors(end).skip(1);
         let is_on_body = above().any(|joint| !is_single(&joint));
         let bones =
             usize::from(has_bone(&end)) + above().take_while(is_single).filter(has_bone).count();
         let parent = skeleton[end].parent?;
         match bones {
-            _ if !is_end => None,
+            _ if !is_end(skeleton, end) => None,
             2 => Self::ending_at(skeleton, end).ok(),
             3 | 4 if is_on_body => Self::ending_at(skeleton, parent).ok(),
             _ => None,
@@ -155,6 +158,28 @@ impl Limb {
         let above = skeleton[self.upper].parent;
         skeleton.ancestors(self.lower).take_while(move |joint| Some(*joint) != above)
     }
+}
+
+/// True for a joint without children, and for a hand or foot with fingers or toes.
+fn is_end(skeleton: &Skeleton, joint: JointId) -> bool {
+    /// Length of a hand or foot with its fingers or toes, at most, relative to the bone above it.
+    const LENGTH: f32 = 0.8;
+    /// Joints of a finger or toe, at most.
+    const MOST: usize = 5;
+    if skeleton.children(joint).next().is_none() {
+        return true;
+    }
+    let Some(parent) = skeleton[joint].parent else { return false };
+    let most = LENGTH * skeleton[parent].axis.length();
+    let mut open = vec![(joint, 0.0, 0)];
+    while let Some((joint, length, depth)) = open.pop() {
+        if length + skeleton[joint].axis.length() > most || depth > MOST {
+            return false;
+        }
+        let below = skeleton.children(joint);
+        open.extend(below.map(|it| (it, length + skeleton[it].offset.length(), depth + 1)));
+    }
+    true
 }
 
 /// The only child at the tip of a joint's bone.

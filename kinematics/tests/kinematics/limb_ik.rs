@@ -444,6 +444,18 @@ fn limbs_are_found_by_their_ends() {
     let spine = skeleton.add(Joint::new("spine", Some(PELVIS), Vec3::Y)).expect("a joint");
     assert_eq!(Limb::for_end(&skeleton, foot), Some(limb));
     assert_eq!(Limb::for_end(&skeleton, spine), None);
+    let mut with_toes = skeleton.clone();
+    let shin = skeleton[limb.lower].axis.length();
+    with_toes.change(foot, |foot| foot.axis = Vec3::Z * 0.4 * shin).expect("a foot");
+    for (name, length) in [("toe", 0.2), ("long toe", 0.3)] {
+        let axis = Vec3::Z * length * shin;
+        let toe = Joint { offset: with_toes[foot].axis, ..Joint::new(name, Some(foot), axis) };
+        with_toes.add(toe).expect("a joint");
+        assert_eq!(Limb::for_end(&with_toes, foot), Some(limb), "a foot with toes");
+        assert_eq!(Limb::for_end(&with_toes, limb.lower), Some(limb));
+    }
+    with_toes.change(foot, |foot| foot.axis = Vec3::Z * 0.9 * shin).expect("a foot");
+    assert_eq!(Limb::for_end(&with_toes, foot), None, "longer than a foot");
     let mut chain = Skeleton::with_root("root");
     let upper = chain.add(Joint::new("upper", Some(JointId::new(0)), Vec3::X)).expect("a joint");
     let lower = Joint { offset: Vec3::X, ..Joint::new("lower", Some(upper), Vec3::X) };
