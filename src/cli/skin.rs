@@ -32,9 +32,13 @@ pub struct SkinArgs {
     /// Factor of all radii, above 0 [default: 1]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = number)]
     thickness: Option<f32>,
+    /// Give each joint a body of its own, which moves with it alone, as an artist's mannequin has;
+    /// `--jointed=false` makes one surface of all [default: false]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    jointed: Option<bool>,
     /// Let the mesh that FILE has follow its bones instead, by their distances inside it, in the pose
     /// at the timeline's start
-    #[arg(long, conflicts_with_all = ["detail", "thickness"])]
+    #[arg(long, conflicts_with_all = ["detail", "thickness", "jointed"])]
     bind: bool,
     /// How a vertex between joints follows them: linear, dual-quaternion or spread-twist [default:
     /// dual-quaternion]
@@ -86,6 +90,7 @@ impl SkinArgs {
         };
         shape.detail = self.detail.unwrap_or(shape.detail);
         shape.thickness = self.thickness.unwrap_or(shape.thickness);
+        shape.is_jointed = self.jointed.unwrap_or(shape.is_jointed);
         let source = SkinSource::Bones(BoneSkin::new(rig.skeleton.clone(), shape));
         let skinning = self.skinning.unwrap_or(old.skinning);
         Skin { source, skinning, ..old }

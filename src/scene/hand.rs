@@ -1,7 +1,7 @@
 use glam::{Quat, Vec3};
 
 use crate::kinematics::skeleton::{Joint, JointId, Skeleton};
-use crate::kinematics::skin::{Blob, SkinShape, SkinnedMesh, TriangleMesh};
+use crate::kinematics::skin::{Blob, BlobSphere, SkinShape, SkinnedMesh, TriangleMesh};
 
 /// A finger, with lengths in units of the hand's length.
 struct Finger {
@@ -74,7 +74,7 @@ const HEELS: [[(Vec3, f32); 2]; 3] = [
     [(Vec3::new(0.12, -0.03, -0.08), 0.1), (Vec3::new(0.27, -0.06, -0.2), 0.092)],
 ];
 /// Cells of the grid on the smallest radius.
-const DETAIL: f32 = 3.0;
+const DETAIL: f32 = 2.0;
 
 /// The surface of a right hand in the space of the wrist: +x points towards the fingertips, +y out of
 /// the back of the hand (the palm faces −y) and +z to the little finger's side (the thumb is at −z).
@@ -108,12 +108,10 @@ fn add_chain(joints: &mut Vec<Joint>, name: &str, points: &[(Vec3, f32)]) {
 /// The bodies of the palm: from the wrist to each knuckle and to the middle between two, so that they
 /// make one surface, and the heels of the hand.
 fn palm() -> impl Iterator<Item = Blob> {
-    let ends = |[(base, base_radius), (tip, tip_radius)]: [(Vec3, f32); 2]| Blob {
+    let sphere = |(centre, radius)| BlobSphere { centre, radius };
+    let ends = move |ends: [(Vec3, f32); 2]| Blob {
         joint: JointId::new(0),
-        base,
-        tip,
-        base_radius,
-        tip_radius,
+        spheres: ends.map(sphere).to_vec(),
     };
     let knuckles = FINGERS.iter().map(|finger| (finger.knuckle, finger.radius * KNUCKLE));
     let between = FINGERS.windows(2).map(|pair| {

@@ -127,7 +127,7 @@ fn a_person_of_another_program_gets_targets() {
 fn a_list_tells_skeletons_animations_and_targets() {
     let desk = Desk::with("human");
     let told = list(&desk.path("human.json"), &[]);
-    assert_eq!(told["skeletons"][0]["joints"], 19);
+    assert_eq!(told["skeletons"][0]["joints"], 49);
     assert_eq!(told["animations"], serde_json::json!([]));
     assert_eq!(told["targets"].as_array().expect("a list").len(), 5);
 

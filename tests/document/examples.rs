@@ -1,10 +1,11 @@
 //! The examples with targets: each does what its sentence says, at every frame.
 
-use glam::Vec3;
+use glam::{DVec2, DVec3, Vec3};
 use ik_arm::document::{Channel, Document};
 use ik_arm::io::Example;
 use ik_arm::kinematics::limb_ik::Limb;
 use ik_arm::kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
+use ik_arm::kinematics::skin::Skinning;
 use ik_arm::rig::{EvaluatedSkeleton, TargetSpace};
 
 use crate::common::Random;
@@ -380,5 +381,82 @@ fn the_cameras_show_the_whole_motion() {
     for name in ["walk", "wheel", "table"] {
         let document = opened(name);
         assert_all_in_picture(&document, &Posed::all(&document));
+    }
+}
+
+// The human's body
+
+/// The volume inside some closed surfaces, counted once where they overlap: by rays along z through
+/// a square grid.
+fn volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    const RAYS: u32 = 160;
+    let corners = |triangle: &[u32; 3]| triangle.map(|it| positions[it as usize].as_dvec3());
+    let used = || triangles.iter().flat_map(corners);
+    let low = used().reduce(DVec3::min).expect("a triangle") - 1e-3;
+    let high = used().reduce(DVec3::max).expect("a triangle") + 1e-3;
+    let cell = (high - low) / f64::from(RAYS);
+    let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); (RAYS * RAYS) as usize];
+    for [a, b, c] in triangles.iter().map(corners) {
+        let [from, to] = [a.min(b).min(c), a.max(b).max(c)].map(|it| (it - low) / cell);
+        let twice = (b - a).truncate().perp_dot((c - a).truncate());
+        for column in from.x as u32..=to.x as u32 {
+            for row in from.y as u32..=to.y as u32 {
+                // Not in the middle of a cell, where symmetric bodies have edges.
+                let place = DVec2::new(f64::from(column) + 0.437, f64::from(row) + 0.561);
+                let at = low.truncate() + place * cell.truncate();
+                let part = |from: DVec3, to: DVec3| {
+                    (from.truncate() - at).perp_dot(to.truncate() - at) / twice
+                };
+                let parts = [part(b, c), part(c, a), part(a, b)];
+                if parts.iter().all(|part| *part > 0.0) {
+                    let z = parts[0] * a.z + parts[1] * b.z + parts[2] * c.z;
+                    let ray = (column * RAYS + row) as usize;
+                    crossings[ray].push((z, if twice < 0.0 { 1 } else { -1 }));
+                }
+            }
+        }
+    }
+    let inside = |ray: &mut Vec<(f64, i32)>| {
+        ray.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+        let (mut depth, mut length) = (0, 0.0);
+        for pair in ray.windows(2) {
+            depth += pair[0].1;
+            length += if depth > 0 { pair[1].0 - pair[0].0 } else { 0.0 };
+        }
+        length
+    };
+    crossings.iter_mut().map(inside).sum::<f64>() * cell.x * cell.y
+}
+
+#[test]
+fn the_humans_limbs_keep_their_volume_when_they_bend() {
+    let human = opened("human");
+    let attached = human.rig.skin.as_ref().expect("a skin").mesh().expect("a mesh");
+    let mesh = &attached.mesh;
+    for (joint, axis, above) in [
+        ("left_forearm", Vec3::NEG_X, "left_upper_arm"),
+        ("right_shin", Vec3::X, "right_thigh"),
+        ("left_thigh", Vec3::NEG_X, "pelvis"),
+        ("right_upper_arm", Vec3::NEG_Z, "right_shoulder"),
+    ] {
+        let mut skeleton = Skeleton::clone(human.skeleton());
+        skeleton.ids().for_each(|id| skeleton.set_rotation(id, Vec3::ZERO).expect("finite"));
+        let find = |name: &str| human.skeleton().find(name).expect("a joint");
+        let moved = |id: JointId| human.skeleton().ancestors(id).any(|it| it == find(joint));
+        let is_shown = |triangle: &&[u32; 3]| {
+            let id = mesh.weights()[triangle[0] as usize].first();
+            moved(id) || id == find(above)
+        };
+        let triangles: Vec<[u32; 3]> =
+            mesh.mesh().triangles.iter().filter(is_shown).copied().collect();
+        let mut at = |bend: f32| {
+            skeleton.set_rotation(find(joint), axis * bend.to_radians()).expect("finite");
+            volume(&mesh.posed(&mesh.pose(&skeleton), Skinning::Linear).positions, &triangles)
+        };
+        let straight = at(0.0);
+        for bend in [90.0, 140.0] {
+            let ratio = at(bend) / straight;
+            assert!((0.9..1.1).contains(&ratio), "{joint} by {bend}°: {ratio} of its volume");
+        }
     }
 }

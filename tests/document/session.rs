@@ -582,7 +582,7 @@ fn selected_and_copied_keys_follow_their_joints() {
     let mut session = Session::default();
     session.apply(open_example("human"));
     let channels: Vec<Channel> =
-        (0..19).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
+        (0..49).map(|joint| Channel::Rotation(JointId::new(joint))).collect();
     session.apply(KeysEdit::Key(channels));
     let name = |session: &Session, joint: JointId| session.skeleton()[joint].name.clone();
     let foot = name(&session, JointId::new(15));

@@ -592,7 +592,7 @@ fn the_examples_hold_what_their_names_say() {
     let arm = example("arm");
     assert_eq!(arm, Document::default());
     assert_eq!(count("two-targets"), (9, 2));
-    assert_eq!(count("human"), (19, 5));
+    assert_eq!(count("human"), (49, 5));
     assert_eq!(count("snake"), (24, 0));
     assert_eq!(count("ten-joints"), (10, 1));
     assert_eq!(count("degenerate"), (17, 5));

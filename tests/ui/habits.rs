@@ -169,7 +169,7 @@ fn new_opens_the_arm_and_asks_before_changes_are_lost() {
     bench.settle();
     assert_eq!(bench.session().skeleton().joints().len(), 1);
     bench.choose(&["File", "New", "Figure"]);
-    assert_eq!(bench.session().skeleton().joints().len(), 19);
+    assert_eq!(bench.session().skeleton().joints().len(), 49);
 }
 
 #[test]

@@ -251,7 +251,7 @@ fn dragging_an_elbow_turns_it_about_the_line_to_the_target() {
     bench.apply([SelectAction::Joints(Vec::new())]);
     let (elbow, hand) = (bench.tip("right_upper_arm"), bench.tip("right_forearm"));
     let start = bench.on_screen(elbow);
-    bench.drag_and_drop(LEFT, start, start + vec2(0.0, -25.0));
+    bench.drag_and_drop(LEFT, start, start + vec2(-25.0, 0.0));
     let twist = target(&bench, "right_forearm").limb().expect("a limb").twist;
     assert!(twist.abs() > 0.1, "{twist}");
     assert!(bench.tip("right_forearm").distance(hand) <= 1e-5, "the hand stays");

@@ -186,7 +186,7 @@ impl BoneSkin {
     }
 
     pub(super) fn remapped(&self, remap: &JointRemap) -> Self {
-        let moved = |blob: &Blob| remap.get(blob.joint).map(|joint| Blob { joint, ..*blob });
+        let moved = |blob: &Blob| remap.get(blob.joint).map(|joint| Blob { joint, ..blob.clone() });
         let blobs = self.shape.blobs.iter().filter_map(moved).collect();
         let pose = self.shape.pose.iter();
         let pose = pose.filter_map(|(joint, angles)| Some((remap.get(*joint)?, *angles)));

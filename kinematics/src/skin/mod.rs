@@ -40,7 +40,7 @@ mod triangle_mesh;
 mod vertex_weights;
 
 pub use binding::BindError;
-pub use from_bones::{Blob, SkinShape, SkinShapeError};
+pub use from_bones::{Blob, BlobSphere, SkinShape, SkinShapeError};
 pub use morph::Morph;
 pub use skin_pose::{JointDeform, SkinPose, Skinning, UnknownSkinning};
 pub use skinned_mesh::{BindSet, SkinError, SkinnedMesh};

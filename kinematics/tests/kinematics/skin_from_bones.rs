@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec3, Vec3};
 use ik_arm_kinematics::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use ik_arm_kinematics::skin::{
-    Blob, SkinShape, SkinShapeError, SkinnedMesh, Skinning, VertexWeights,
+    Blob, BlobSphere, SkinShape, SkinShapeError, SkinnedMesh, Skinning, VertexWeights,
 };
 
 use crate::common::{Random, cases};
@@ -258,13 +258,11 @@ fn parallel_siblings_do_not_melt_together() {
 #[test]
 fn blobs_are_part_of_the_surface_and_move_with_their_joint() {
     let skeleton = tube(2, 4.0, 0.5);
-    let blob = Blob {
-        joint: 1.into(),
-        base: Vec3::new(0.0, 2.0, 0.0),
-        tip: Vec3::new(2.0, 2.0, 0.0),
-        base_radius: 0.4,
-        tip_radius: 0.6,
-    };
+    let spheres = vec![
+        BlobSphere { centre: Vec3::new(0.0, 2.0, 0.0), radius: 0.4 },
+        BlobSphere { centre: Vec3::new(2.0, 2.0, 0.0), radius: 0.6 },
+    ];
+    let blob = Blob { joint: 1.into(), spheres };
     let shape = SkinShape { blobs: vec![blob], ..SkinShape::default() };
     let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
     assert_is_closed(&mesh, "blob");
@@ -273,6 +271,119 @@ fn blobs_are_part_of_the_surface_and_move_with_their_joint() {
     assert!((farthest - 2.6).abs() < 0.02, "{farthest}");
     for (position, weights) in mesh.mesh().positions.iter().zip(mesh.weights()) {
         assert!(position.x < 1.0 || weights.of(1.into()) == 1.0, "{weights:?} at {position}");
+    }
+}
+
+/// Centres and radii of spheres along the Catmull–Rom spline through some spheres, over the lengths of
+/// its chords. Between two spheres the radius stays between theirs: its slope at a sphere is that of
+/// Catmull and Rom, at most three times the smaller of those to the neighbours, and 0 at an extreme.
+fn swept(spheres: &[(DVec3, f64)], steps: usize) -> Vec<(DVec3, f64)> {
+    let last = spheres.len() - 1;
+    let chord = |span: usize| spheres[span].0.distance(spheres[span + 1].0);
+    let slopes = |span: usize| {
+        let (from, to) = (spheres[span], spheres[span + 1]);
+        ((to.0 - from.0) / chord(span), (to.1 - from.1) / chord(span))
+    };
+    let slope = |at: usize| {
+        if at == 0 || at == last {
+            return slopes(at.min(last - 1));
+        }
+        let (before, after) = (slopes(at - 1), slopes(at));
+        let [h, k] = [chord(at - 1), chord(at)];
+        let mean = |a: f64, b: f64| (a * h + b * k) / (h + k);
+        let most = 3.0 * before.1.abs().min(after.1.abs());
+        let radius = match before.1 * after.1 > 0.0 {
+            true => mean(before.1, after.1).clamp(-most, most),
+            false => 0.0,
+        };
+        ((before.0 * h + after.0 * k) / (h + k), radius)
+    };
+    let at = |span: usize, s: f64| {
+        let (from, to, h) = (spheres[span], spheres[span + 1], chord(span));
+        let (m, n) = (slope(span), slope(span + 1));
+        let [a, b, c, d] = [
+            (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
+            s * (1.0 - s) * (1.0 - s) * h,
+            s * s * (3.0 - 2.0 * s),
+            s * s * (s - 1.0) * h,
+        ];
+        (a * from.0 + b * m.0 + c * to.0 + d * n.0, a * from.1 + b * m.1 + c * to.1 + d * n.1)
+    };
+    let within = |span: usize| (0..=steps).map(move |step| (span, step as f64 / steps as f64));
+    (0..last).flat_map(within).map(|(span, s)| at(span, s)).collect()
+}
+
+#[test]
+fn a_blob_of_many_spheres_is_what_one_sphere_passes_through_on_a_curve() {
+    for seed in 0..cases(20) as u64 {
+        let mut random = Random(4000 + seed);
+        let mut centre = Vec3::ZERO;
+        let mut direction = random.direction();
+        let spheres: Vec<BlobSphere> = (0..3 + random.below(5))
+            .map(|_| {
+                direction = (direction + 0.5 * random.direction()).normalize();
+                centre += direction * random.within(1.5..4.0);
+                BlobSphere { centre, radius: random.within(0.6..1.4) }
+            })
+            .collect();
+        let wide = |it: &BlobSphere| (it.centre.as_dvec3(), f64::from(it.radius));
+        let expected = swept(&spheres.iter().map(wide).collect::<Vec<_>>(), 400);
+        let skeleton = Skeleton::with_root("root");
+        let blobs = vec![Blob { joint: 0.into(), spheres }];
+        let shape = SkinShape { blobs, ..SkinShape::default() };
+        let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+        assert_is_closed(&mesh, &format!("seed {seed}"));
+        for position in &mesh.mesh().positions {
+            let distances = expected.iter().map(|it| position.as_dvec3().distance(it.0) - it.1);
+            let distance = distances.fold(f64::INFINITY, f64::min);
+            // Round cones between points of a curve leave out at most its sagitta.
+            assert!(distance.abs() < 0.03, "seed {seed}: {position} is {distance} outside");
+        }
+    }
+}
+
+#[test]
+fn a_jointed_skin_has_a_closed_body_for_each_joint_that_moves_with_it_alone() {
+    for seed in 0..cases(60) as u64 {
+        let skeleton = any_skeleton(&mut Random(seed));
+        let shape = SkinShape { is_jointed: true, ..coarse() };
+        let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+        let case = format!("seed {seed}, {} joints", skeleton.joints().len());
+        assert_is_closed(&mesh, &case);
+        assert_eq!(pieces(&mesh), skeleton.joints().len(), "{case}: bodies");
+        for weights in mesh.weights() {
+            assert_eq!(weights.iter().filter(|(_, weight)| *weight == 1.0).count(), 1, "{case}");
+        }
+        for triangle in &mesh.mesh().triangles {
+            let [a, b, c] = triangle.map(|corner| mesh.weights()[corner as usize]);
+            assert!(a == b && b == c, "{case}: a triangle of two bodies");
+        }
+    }
+}
+
+/// The volume that closed triangles enclose.
+fn volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    let of = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3());
+        a.dot(b.cross(c)) / 6.0
+    };
+    triangles.iter().map(of).sum()
+}
+
+#[test]
+fn a_jointed_skin_keeps_its_volume_however_far_it_bends() {
+    for bend in [0.5_f32, 1.571, 2.443] {
+        let mut skeleton = tube(3, 3.0, 0.5);
+        let shape = SkinShape { is_jointed: true, ..SkinShape::default() };
+        let mesh = SkinnedMesh::from_bones(&skeleton, &shape).expect("skin");
+        let straight = volume(&mesh.mesh().positions, &mesh.mesh().triangles);
+        skeleton.set_rotation(1.into(), Vec3::X * bend).expect("finite");
+        skeleton.set_rotation(2.into(), Vec3::Z * bend).expect("finite");
+        for skinning in Skinning::ALL {
+            let posed = mesh.posed(&mesh.pose(&skeleton), skinning);
+            let bent = volume(&posed.positions, &mesh.mesh().triangles);
+            assert!((bent / straight - 1.0).abs() < 1e-4, "{skinning:?}: {bent} of {straight}");
+        }
     }
 }
 
@@ -325,20 +436,26 @@ fn what_cannot_become_a_skin_is_refused_with_the_reason() {
         refused(&tube, SkinShape { thickness: f32::NAN, ..SkinShape::default() }),
         "skin thickness must be finite and above 0, got NaN"
     );
-    let blob = |joint: usize, radius| Blob {
-        joint: joint.into(),
-        base: Vec3::ZERO,
-        tip: Vec3::Y,
-        base_radius: 1.0,
-        tip_radius: radius,
+    let blob = |joint: usize, radius| {
+        let sphere = |centre, radius| BlobSphere { centre, radius };
+        let spheres = vec![sphere(Vec3::ZERO, 1.0), sphere(Vec3::Y, radius)];
+        Blob { joint: joint.into(), spheres }
     };
     let with = |blob| SkinShape { blobs: vec![blob], ..SkinShape::default() };
     assert_eq!(refused(&tube, with(blob(2, 1.0))), "the joint of blob 0 must be below 2, got 2");
     assert_eq!(
         refused(&tube, with(blob(0, 0.0))),
-        "centres and radii of blob 0 must be finite, and the radii above 0"
+        "blob 0 must have spheres with finite centres, and finite radii above 0"
     );
-    let far = Blob { base: Vec3::X * 1e30, ..blob(0, 1.0) };
+    let none = Blob { joint: 0.into(), spheres: Vec::new() };
+    assert_eq!(refused(&tube, with(none)), refused(&tube, with(blob(0, 0.0))));
+    let many = vec![blob(0, 1.0); SkinShape::MOST_SPHERES];
+    assert_eq!(
+        refused(&tube, SkinShape { blobs: many, ..SkinShape::default() }),
+        "the blobs of a skin must have at most 8192 spheres, got 16384"
+    );
+    let mut far = blob(0, 1.0);
+    far.spheres[0].centre = Vec3::X * 1e30;
     let error = SkinnedMesh::from_bones(&tube, &with(far)).expect_err("refused");
     assert!(matches!(error, SkinShapeError::TooThin { .. }), "{error}");
     let huge = self::tube(2, 1.6e38, 1e38);

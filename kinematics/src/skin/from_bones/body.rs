@@ -4,7 +4,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::round_cone::RoundCone;
+use super::sweep::{BlobSphere, Sweep};
 use crate::skeleton::{Joint, JointId, Skeleton, SkeletonPose};
 use crate::skin::SkinError;
 
@@ -18,24 +18,22 @@ pub struct SkinShape {
     pub thickness: f32,
     /// Bodies beside the bones.
     pub blobs: Vec<Blob>,
+    /// Each joint has a closed surface of its own, which moves with it alone, as the parts of an
+    /// artist's mannequin do. Otherwise each tree of joints has one.
+    pub is_jointed: bool,
     /// Euler angles in radians of the joints in the pose in which the surface is made; 0 for joints
     /// that are not in the list, as in the bind pose.
     pub pose: Vec<(JointId, Vec3)>,
 }
 
-/// A body beside a joint's bone, the convex hull of two spheres, for example a rib cage or a heel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A body beside a joint's bone, for example a rib cage or a heel: what a sphere passes through that
+/// goes from each of some spheres to the next one, along a smooth curve if there are more than two.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Blob {
     /// The joint that the blob moves with.
     pub joint: JointId,
-    /// Centre of the first sphere, in the joint's own space.
-    pub base: Vec3,
-    /// Centre of the second sphere, in the joint's own space.
-    pub tip: Vec3,
-    /// Radius of the first sphere, in skeleton units.
-    pub base_radius: f32,
-    /// Radius of the second sphere, in skeleton units.
-    pub tip_radius: f32,
+    /// The spheres, at least one.
+    pub spheres: Vec<BlobSphere>,
 }
 
 impl SkinShape {
@@ -43,8 +41,8 @@ impl SkinShape {
     pub const LEAST_DETAIL: f32 = 1.2;
     /// The finest grid.
     pub const MOST_DETAIL: f32 = 16.0;
-    /// The most blobs.
-    pub const MOST_BLOBS: usize = 4096;
+    /// The most spheres of all blobs together.
+    pub const MOST_SPHERES: usize = 8192;
 
     /// Checks the numbers, and that the joints of blobs and pose exist.
     ///
@@ -52,15 +50,16 @@ impl SkinShape {
     ///
     /// [`SkinShapeError`] names the number and the rule.
     pub fn check(&self, skeleton: &Skeleton) -> Result<(), SkinShapeError> {
-        let Self { detail, thickness, blobs, pose } = self;
+        let Self { detail, thickness, blobs, is_jointed: _, pose } = self;
         if !(Self::LEAST_DETAIL..=Self::MOST_DETAIL).contains(detail) {
             return Err(SkinShapeError::Detail(*detail));
         }
         if !(thickness.is_finite() && *thickness > 0.0) {
             return Err(SkinShapeError::Thickness(*thickness));
         }
-        if blobs.len() > Self::MOST_BLOBS {
-            return Err(SkinShapeError::TooManyBlobs(blobs.len()));
+        let spheres = blobs.iter().map(|blob| blob.spheres.len().max(1)).sum();
+        if spheres > Self::MOST_SPHERES {
+            return Err(SkinShapeError::TooManySpheres(spheres));
         }
         let joints = skeleton.joints().len();
         let is_sound =
@@ -72,12 +71,10 @@ impl SkinShape {
             if blob.joint.index() >= joints {
                 return Err(SkinShapeError::BlobJoint { blob: index, joints, got: blob.joint });
             }
-            let is_radius = |radius: f32| radius.is_finite() && radius > 0.0;
-            let is_sound = blob.base.is_finite()
-                && blob.tip.is_finite()
-                && is_radius(blob.base_radius)
-                && is_radius(blob.tip_radius);
-            if !is_sound {
+            let is_sound = |sphere: &BlobSphere| {
+                sphere.centre.is_finite() && sphere.radius.is_finite() && sphere.radius > 0.0
+            };
+            if blob.spheres.is_empty() || !blob.spheres.iter().all(is_sound) {
                 return Err(SkinShapeError::Blob { blob: index });
             }
         }
@@ -87,7 +84,7 @@ impl SkinShape {
 
 impl Default for SkinShape {
     fn default() -> Self {
-        Self { detail: 2.0, thickness: 1.0, blobs: Vec::new(), pose: Vec::new() }
+        Self { detail: 2.0, thickness: 1.0, blobs: Vec::new(), is_jointed: false, pose: Vec::new() }
     }
 }
 
@@ -100,9 +97,9 @@ pub enum SkinShapeError {
     /// The thickness is not above 0.
     #[error("skin thickness must be finite and above 0, got {0}")]
     Thickness(f32),
-    /// There are too many blobs.
-    #[error("a skin must have at most 4096 blobs, got {0}")]
-    TooManyBlobs(usize),
+    /// The blobs have too many spheres.
+    #[error("the blobs of a skin must have at most 8192 spheres, got {0}")]
+    TooManySpheres(usize),
     /// A blob is on a joint that does not exist.
     #[error("the joint of blob {blob} must be below {joints}, got {}", got.index())]
     BlobJoint {
@@ -113,8 +110,9 @@ pub enum SkinShapeError {
         /// The joint that does not exist.
         got: JointId,
     },
-    /// A blob's centre is not finite, or a radius is not finite and above 0.
-    #[error("centres and radii of blob {blob} must be finite, and the radii above 0")]
+    /// A blob has no sphere, or one whose centre is not finite or whose radius is not finite and
+    /// above 0.
+    #[error("blob {blob} must have spheres with finite centres, and finite radii above 0")]
     Blob {
         /// Index of the blob.
         blob: usize,
@@ -143,12 +141,12 @@ pub enum SkinShapeError {
     NotFinite(#[from] SkinError),
 }
 
-/// One round cone of a body.
-#[derive(Clone, Copy, Debug)]
+/// A bone or blob of a body.
+#[derive(Clone, Debug)]
 pub struct Part {
     /// The joint that it moves with.
     pub joint: JointId,
-    pub cone: RoundCone,
+    pub sweep: Sweep,
     kind: PartKind,
 }
 
@@ -174,7 +172,7 @@ pub enum Member {
     Bend(usize, usize, f64),
 }
 
-/// The parts of one connected tree, and the groups that blend.
+/// The parts of one closed surface, and the groups that blend.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub parts: Vec<Part>,
@@ -182,8 +180,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root that has any
-    /// part.
+    /// The bodies of a skeleton in its bind pose, in skeleton space: one for each root, or each
+    /// joint of a jointed shape, that has any part.
     pub fn all(skeleton: &Skeleton, shape: &SkinShape) -> Result<Vec<Self>, SkinShapeError> {
         shape.check(skeleton)?;
         let pose = skeleton.bind_pose_in_skeleton();
@@ -194,12 +192,13 @@ impl Body {
             return Err(SkinShapeError::NoRadius);
         }
         let root = |joint: JointId| skeleton.ancestors(joint).last().unwrap_or(joint);
-        let roots = skeleton.ids().filter(|joint| skeleton[*joint].parent.is_none());
-        let of_root = |tree: JointId| {
-            let parts = parts.iter().copied().filter(|part| root(part.joint) == tree);
-            Self::new(parts.collect(), skeleton)
-        };
-        Ok(roots.map(of_root).filter(|body| !body.parts.is_empty()).collect())
+        let first = |part: &Part| if shape.is_jointed { part.joint } else { root(part.joint) };
+        let mut of_first = vec![Vec::new(); skeleton.joints().len()];
+        for part in parts {
+            of_first[first(&part).index()].push(part);
+        }
+        let bodies = of_first.into_iter().filter(|parts| !parts.is_empty());
+        Ok(bodies.map(|parts| Self::new(parts, skeleton)).collect())
     }
 
     fn new(parts: Vec<Part>, skeleton: &Skeleton) -> Self {
@@ -219,10 +218,21 @@ impl Body {
         Self { parts, groups }
     }
 
+    /// The joint that all parts move with; `None` if they move with several.
+    pub fn sole_joint(&self) -> Option<JointId> {
+        let joint = self.parts.first()?.joint;
+        self.parts.iter().all(|part| part.joint == joint).then_some(joint)
+    }
+
+    /// The sweeps of all parts.
+    pub fn sweeps(&self) -> impl Iterator<Item = &Sweep> {
+        self.parts.iter().map(|part| &part.sweep)
+    }
+
     /// Makes parts that are thinner than `radius` that thick.
     pub fn thicken(&mut self, radius: f64) {
         for part in &mut self.parts {
-            part.cone = part.cone.thickened(radius);
+            part.sweep = part.sweep.thickened(radius);
         }
     }
 }
@@ -240,8 +250,8 @@ fn bones(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> 
         let (base, tip) = (pose.base(id).as_dvec3(), pose.tip(id).as_dvec3());
         let [base_radius, tip_radius] =
             [joint.radius, radius].map(|radius| f64::from(radius * thickness));
-        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
-        Part { joint: id, cone, kind: PartKind::Bone }
+        let sweep = Sweep::straight(base, tip, base_radius, tip_radius);
+        Part { joint: id, sweep, kind: PartKind::Bone }
     };
     with_radius.map(bone).collect()
 }
@@ -256,8 +266,8 @@ fn links(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> 
         let child = pose.base(id).as_dvec3();
         let near = nearest_on_segment(base, tip, child);
         let is_apart = near.distance(child) > 1e-4 * radius;
-        let cone = || RoundCone::new(near, child, radius, radius);
-        let part = || Part { joint: parent, cone: cone(), kind: PartKind::Link };
+        let sweep = || Sweep::straight(near, child, radius, radius);
+        let part = || Part { joint: parent, sweep: sweep(), kind: PartKind::Link };
         (radius > 0.0 && is_apart).then(part)
     };
     skeleton.iter().filter_map(link).collect()
@@ -266,12 +276,12 @@ fn links(skeleton: &Skeleton, pose: &SkeletonPose, thickness: f32) -> Vec<Part> 
 fn blobs(blobs: &[Blob], pose: &SkeletonPose, thickness: f32) -> Vec<Part> {
     let part = |blob: &Blob| {
         let space = pose.full(blob.joint);
-        let [base, tip] =
-            [blob.base, blob.tip].map(|centre| space.transform_point3(centre).as_dvec3());
-        let [base_radius, tip_radius] =
-            [blob.base_radius, blob.tip_radius].map(|radius| f64::from(radius * thickness));
-        let cone = RoundCone::new(base, tip, base_radius, tip_radius);
-        Part { joint: blob.joint, cone, kind: PartKind::Blob }
+        let placed = |sphere: &BlobSphere| BlobSphere {
+            centre: space.transform_point3(sphere.centre),
+            radius: sphere.radius * thickness,
+        };
+        let spheres: Vec<BlobSphere> = blob.spheres.iter().map(placed).collect();
+        Part { joint: blob.joint, sweep: Sweep::through(&spheres), kind: PartKind::Blob }
     };
     blobs.iter().map(part).collect()
 }
@@ -294,7 +304,11 @@ fn group(parts: &[Part], of_parent: &[usize], of_joint: &[usize]) -> Group {
     let bones = [of_parent, of_joint].map(|of| of.iter().find(is_bone).copied());
     let mut members: Vec<Member> = match bones {
         [Some(above), Some(own)] => {
-            vec![Member::Bend(above, own, bend_width(&parts[above].cone, &parts[own].cone, false))]
+            vec![Member::Bend(
+                above,
+                own,
+                bend_width(&parts[above].sweep, &parts[own].sweep, false),
+            )]
         }
         bones => bones.into_iter().flatten().map(Member::Part).collect(),
     };
@@ -311,7 +325,7 @@ fn forks(parts: &[Part], skeleton: &Skeleton) -> Vec<Group> {
     for (second, other) in bones() {
         for (first, part) in bones().take_while(|(first, _)| *first < second) {
             if parent(part).is_some() && parent(part) == parent(other) {
-                let width = bend_width(&part.cone, &other.cone, true);
+                let width = bend_width(&part.sweep, &other.sweep, true);
                 if width > 0.0 {
                     forks.push(Group { members: vec![Member::Bend(first, second, width)] });
                 }
@@ -323,15 +337,15 @@ fn forks(parts: &[Part], skeleton: &Skeleton) -> Vec<Group> {
 
 /// Width of the blend of two bones, at most half of their smaller radius: the more, the sharper the
 /// bend, since bones in line would swell where they meet.
-fn bend_width(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
+fn bend_width(one: &Sweep, other: &Sweep, are_siblings: bool) -> f64 {
     let most = 0.5 * one.least_radius().min(other.least_radius());
     most * sharpness(one, other, are_siblings)
 }
 
 /// The sharpness of the bend between two bones: 0 if they go straight on with one radius, 1 for a
 /// bend by 90° or more or if one is twice as thick. 0 for bones that do not meet.
-fn sharpness(one: &RoundCone, other: &RoundCone, are_siblings: bool) -> f64 {
-    let direction = |cone: &RoundCone| cone.direction().try_normalize();
+fn sharpness(one: &Sweep, other: &Sweep, are_siblings: bool) -> f64 {
+    let direction = |bone: &Sweep| bone.direction().try_normalize();
     let cosine = direction(one).zip(direction(other)).map(|(one, other)| one.dot(other));
     let apart = |one: (DVec3, f64), other: (DVec3, f64)| one.0.distance_squared(other.0);
     let (ends, sign) = if are_siblings {

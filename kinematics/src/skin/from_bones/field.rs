@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::body::{Body, Group, Member, Part};
-use super::round_cone::{RoundCone, Sighting};
+use super::round_cone::Sighting;
+use super::sweep::Sweep;
 
 /// The parts of a body that shape its surface near a point, so that the distance costs as much as
 /// there are parts nearby. Equal to the field of all parts in its range, but for rounding.
@@ -14,7 +15,7 @@ pub struct Field {
     /// Indices of the parts in the body.
     parts: Vec<usize>,
     /// The parts.
-    cones: Vec<RoundCone>,
+    sweeps: Vec<Sweep>,
     /// The distance within which each part blends with others, and its inverse.
     widths: Vec<[f64; 2]>,
     /// Groups of parts, by their indices in `parts`.
@@ -42,12 +43,12 @@ impl Field {
     /// The field of all parts.
     pub fn new(body: &Body) -> Self {
         let widths = |part: &Part| {
-            let width = 0.5 * part.cone.least_radius();
+            let width = 0.5 * part.sweep.least_radius();
             [width, 1.0 / width]
         };
         Self {
             parts: (0..body.parts.len()).collect(),
-            cones: body.parts.iter().map(|part| part.cone).collect(),
+            sweeps: body.parts.iter().map(|part| part.sweep.clone()).collect(),
             widths: body.parts.iter().map(widths).collect(),
             groups: body.groups.clone(),
         }
@@ -59,7 +60,7 @@ impl Field {
         // Each distance changes by at most `radius` on the way, that of a group by a little more
         // where its members have different widths.
         let reach = 2.2 * radius;
-        let distances: Vec<f64> = self.cones.iter().map(|cone| cone.distance(point)).collect();
+        let distances: Vec<f64> = self.sweeps.iter().map(|part| part.distance(point)).collect();
         let mut members = Vec::new();
         let mut kept: Vec<(f64, Group)> = Vec::new();
         for group in &self.groups {
@@ -72,7 +73,9 @@ impl Field {
         }
         let least = kept.iter().map(|(distance, _)| *distance).fold(f64::INFINITY, f64::min);
         kept.retain(|(distance, _)| *distance <= least + reach);
-        self.with_groups(&without_subsets(kept))
+        let mut near = self.with_groups(&without_subsets(kept));
+        near.sweeps.iter_mut().for_each(|part| *part = part.near(point, radius));
+        near
     }
 
     /// The field of some groups, and of the parts in them.
@@ -90,7 +93,7 @@ impl Field {
         };
         Self {
             parts: used.iter().map(|old| self.parts[*old]).collect(),
-            cones: used.iter().map(|old| self.cones[*old]).collect(),
+            sweeps: used.iter().map(|old| self.sweeps[*old].clone()).collect(),
             widths: used.iter().map(|old| self.widths[*old]).collect(),
             groups: groups.iter().map(reindexed).collect(),
         }
@@ -106,7 +109,7 @@ impl Field {
     pub fn distance(&self, point: DVec3, scratch: &mut FieldScratch) -> f64 {
         let FieldScratch { distances, members, .. } = scratch;
         distances.clear();
-        distances.extend(self.cones.iter().map(|cone| cone.distance(point)));
+        distances.extend(self.sweeps.iter().map(|part| part.distance(point)));
         let mut least = f64::INFINITY;
         for group in &self.groups {
             self.measure(group, distances, members);
@@ -119,7 +122,7 @@ impl Field {
     pub fn sighting(&self, point: DVec3, scratch: &mut FieldScratch) -> Sighting {
         let FieldScratch { sightings, distances, members } = scratch;
         sightings.clear();
-        sightings.extend(self.cones.iter().map(|cone| cone.sighting(point)));
+        sightings.extend(self.sweeps.iter().map(|part| part.sighting(point)));
         distances.clear();
         distances.extend(sightings.iter().map(|seen| seen.distance));
         let mut nearest = Sighting::NONE;

@@ -188,7 +188,7 @@ pub fn corner_offset(corner: u8) -> IVec3 {
 }
 
 /// Maps items in their order; on all cores with the feature `parallel`.
-fn map_in_order<I: Sync, T: Send>(items: &[I], map: impl Fn(&I) -> T + Sync + Send) -> Vec<T> {
+pub fn map_in_order<I: Sync, T: Send>(items: &[I], map: impl Fn(&I) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "parallel")]
     {
         use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};

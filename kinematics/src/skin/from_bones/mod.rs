@@ -3,8 +3,8 @@
 //! Each bone is a round cone with the radii of its joint. The signed distances of the parts of a
 //! joint and of its parent blend smoothly, two bones the more the sharper the bend between them;
 //! all others by the minimum. The surface of that field is meshed by dual marching cubes, a form of
-//! surface nets whose meshes are closed manifolds, one for each tree; its vertices are then moved
-//! onto the surface.
+//! surface nets whose meshes are closed manifolds, one for each tree, or for each joint of a jointed
+//! shape; its vertices are then moved onto the surface.
 
 mod body;
 mod field;
@@ -12,10 +12,12 @@ mod grid;
 mod pose;
 mod round_cone;
 mod surface_nets;
+mod sweep;
 mod weights;
 
 pub use body::{Blob, SkinShape, SkinShapeError};
 pub(super) use grid::map_ranges;
+pub use sweep::BlobSphere;
 pub(super) use weights::{REACH, falloff, smooth};
 
 use glam::{DVec3, Vec3};
@@ -26,15 +28,15 @@ use body::Body;
 use field::Field;
 use grid::Grid;
 use pose::PosedBones;
-use round_cone::RoundCone;
 use surface_nets::SurfaceNet;
+use sweep::Sweep;
 use weights::Weights;
 
 impl SkinnedMesh {
     /// A skin around the bones of a skeleton in its bind pose, or in the pose of the shape, in
-    /// skeleton space. Each tree of
-    /// joints with radii above 0 gets one closed surface. Parts thinner than a cell of the grid,
-    /// which only a skeleton of very different sizes has, become as thick as a cell.
+    /// skeleton space. Each tree of joints with radii above 0 gets one closed surface, or each joint
+    /// if the shape is jointed. Parts thinner than a cell of the grid, which only a skeleton of very
+    /// different sizes has, become as thick as a cell.
     ///
     /// # Errors
     ///
@@ -48,12 +50,17 @@ impl SkinnedMesh {
             return Ok(posed.attached(mesh)?);
         }
         let mut bodies = Body::all(skeleton, shape)?;
-        let cell = cell_size(&bodies, shape.detail)?;
+        let cells = cell_sizes(&bodies, shape)?;
+        for (body, cell) in bodies.iter_mut().zip(&cells) {
+            body.thicken(f64::from(SkinShape::LEAST_DETAIL) * cell);
+        }
+        let bodies: Vec<(Body, f64)> = bodies.into_iter().zip(cells).collect();
+        let surfaces =
+            grid::map_in_order(&bodies, |(body, cell)| Surface::new(body, *cell, skeleton));
         let mut mesh = TriangleMesh::default();
         let mut weights = Vec::new();
-        for body in &mut bodies {
-            body.thicken(f64::from(SkinShape::LEAST_DETAIL) * cell);
-            add(body, cell, skeleton, &mut mesh, &mut weights);
+        for surface in surfaces {
+            surface.add_to(&mut mesh, &mut weights);
         }
         let pose = skeleton.bind_pose_in_skeleton();
         let inverse_binds = skeleton.ids().map(|joint| pose.full(joint).inverse());
@@ -61,57 +68,95 @@ impl SkinnedMesh {
     }
 }
 
-/// Size of a cell of the grid: the smallest radius divided by the detail, but not so small that the
-/// surface has more than about 200,000 cells.
-fn cell_size(bodies: &[Body], detail: f32) -> Result<f64, SkinShapeError> {
+/// Size of the cells of each body's grid: the smallest radius divided by the detail, but not so small
+/// that all surfaces together have more than about 200,000 cells. Trees have cells of one size. Each
+/// body of a jointed shape has cells of its own, which are coarser where small details would make
+/// them many, such as an ear on a head.
+fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeError> {
     const MOST_CELLS: f64 = 2e5;
     const MOST_CELLS_ALONG: f64 = 1e5;
-    let cones = || bodies.iter().flat_map(|body| &body.parts).map(|part| &part.cone);
-    let least = cones().map(RoundCone::least_radius).fold(f64::INFINITY, f64::min);
-    let area: f64 = cones().map(RoundCone::area).sum();
-    let cell = (least / f64::from(detail)).max((area / MOST_CELLS).sqrt());
+    const MOST_CELLS_OF_JOINT: f64 = 4000.0;
+    let area = |body: &Body| body.sweeps().map(Sweep::area).sum::<f64>();
+    let least = |body: &Body| body.sweeps().map(Sweep::least_radius).fold(f64::INFINITY, f64::min);
+    let mut cells: Vec<f64> =
+        bodies.iter().map(|body| least(body) / f64::from(shape.detail)).collect();
+    if shape.is_jointed {
+        for (cell, body) in cells.iter_mut().zip(bodies) {
+            let coarsest = least(body) / f64::from(SkinShape::LEAST_DETAIL);
+            let coarse = (area(body) / MOST_CELLS_OF_JOINT).sqrt().min(coarsest);
+            *cell = cell.max(coarse);
+        }
+    } else {
+        let least = cells.iter().copied().fold(f64::INFINITY, f64::min);
+        cells.fill(least);
+    }
+    let count = bodies.iter().zip(&cells).map(|(body, cell)| area(body) / (cell * cell));
+    let coarser = (count.sum::<f64>() / MOST_CELLS).sqrt().max(1.0);
+    cells.iter_mut().for_each(|cell| *cell *= coarser);
     let size = bodies.iter().map(bounds).map(|(low, high)| (high - low).max_element());
-    let ratio = size.fold(0.0, f64::max) / cell;
-    if !ratio.is_finite() || ratio >= MOST_CELLS_ALONG {
+    let along = size.zip(&cells).map(|(size, cell)| size / cell);
+    let ratio =
+        along.fold(0.0, |most, ratio| if ratio.is_nan() { f64::INFINITY } else { ratio.max(most) });
+    if ratio >= MOST_CELLS_ALONG {
         return Err(SkinShapeError::TooThin { most: MOST_CELLS_ALONG, got: ratio });
     }
-    Ok(cell)
+    Ok(cells)
 }
 
 /// Lowest and highest corner of a box around a body.
 fn bounds(body: &Body) -> (DVec3, DVec3) {
-    let boxes = body.parts.iter().map(|part| {
-        let (centre, radius) = part.cone.bounds();
-        (centre - radius, centre + radius)
-    });
+    let boxes = body.sweeps().map(Sweep::bounds);
     boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
 }
 
-/// Adds the mesh of a body and its weights.
-fn add(
+/// The mesh of a body, with the weights of its vertices.
+struct Surface {
+    vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    weights: Vec<VertexWeights>,
+}
+
+impl Surface {
+    fn new(body: &Body, cell: f64, skeleton: &Skeleton) -> Self {
+        const ROUNDS: usize = 2;
+        let (low, high) = bounds(body);
+        let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
+        let mut net = SurfaceNet::new(&grid);
+        let normals = surface_nets::relax(&mut net, &grid, ROUNDS);
+        let triangles: Vec<[u32; 3]> =
+            net.quads.iter().flat_map(|quad| halves(&net.vertices, *quad)).collect();
+        let weights = match body.sole_joint() {
+            Some(joint) => vec![VertexWeights::rigid(joint); net.vertices.len()],
+            None => weights_by_distance(body, &net, &grid, &triangles, skeleton),
+        };
+        Self { vertices: net.vertices, normals, triangles, weights }
+    }
+
+    fn add_to(self, mesh: &mut TriangleMesh, weights: &mut Vec<VertexWeights>) {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(self.vertices.iter().map(|at| at.as_vec3()));
+        let normals = self.normals.iter().map(|normal| normal.as_vec3().normalize_or(Vec3::Y));
+        mesh.normals.extend(normals);
+        let triangles = self.triangles.iter();
+        mesh.triangles.extend(triangles.map(|corners| corners.map(|corner| corner + first)));
+        weights.extend(self.weights);
+    }
+}
+
+fn weights_by_distance(
     body: &Body,
-    cell: f64,
+    net: &SurfaceNet,
+    grid: &Grid,
+    triangles: &[[u32; 3]],
     skeleton: &Skeleton,
-    mesh: &mut TriangleMesh,
-    weights: &mut Vec<VertexWeights>,
-) {
-    const ROUNDS: usize = 2;
-    let (low, high) = bounds(body);
-    let grid = Grid::new(&Field::new(body), cell, low - 2.0 * cell, high + 2.0 * cell);
-    let mut net = SurfaceNet::new(&grid);
-    let normals = surface_nets::relax(&mut net, &grid, ROUNDS);
+) -> Vec<VertexWeights> {
     let field = |vertex: usize| &grid.blocks[net.blocks[vertex] as usize];
     let by_distance = Weights::new(body, skeleton);
     let at = |vertex: usize| by_distance.at(net.vertices[vertex], field(vertex).parts());
-    let mut own = grid::map_ranges(net.vertices.len(), |range| range.map(at).collect());
-    let triangles: Vec<[u32; 3]> =
-        net.quads.iter().flat_map(|quad| halves(&net.vertices, *quad)).collect();
-    weights::smooth(&mut own, &edges(&triangles));
-    let first = mesh.positions.len() as u32;
-    mesh.positions.extend(net.vertices.iter().map(|at| at.as_vec3()));
-    mesh.normals.extend(normals.iter().map(|normal| normal.as_vec3().normalize_or(Vec3::Y)));
-    mesh.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
-    weights.extend(own);
+    let mut weights = grid::map_ranges(net.vertices.len(), |range| range.map(at).collect());
+    weights::smooth(&mut weights, &edges(triangles));
+    weights
 }
 
 /// The two triangles of a quad, cut along its shorter diagonal.

@@ -4,6 +4,7 @@
 use glam::{Affine3A, Mat3, Mat3A, Vec3};
 
 use super::body::{Blob, SkinShape};
+use super::sweep::BlobSphere;
 use crate::skeleton::{Joint, JointId, JointLimits, Skeleton, SkeletonPose};
 use crate::skin::{SkinError, SkinnedMesh};
 
@@ -41,7 +42,8 @@ impl PosedBones {
         }
         let turned = |blob: &Blob| {
             let turn = rotations.get(blob.joint.index()).copied().unwrap_or(Mat3A::IDENTITY);
-            Blob { base: turn * blob.base, tip: turn * blob.tip, ..*blob }
+            let turned = |it: &BlobSphere| BlobSphere { centre: turn * it.centre, ..*it };
+            Blob { spheres: blob.spheres.iter().map(turned).collect(), ..*blob }
         };
         let blobs = shape.blobs.iter().map(turned).collect();
         let shape = SkinShape { blobs, pose: Vec::new(), ..shape.clone() };

@@ -119,10 +119,9 @@ impl RoundCone {
         (self.base.midpoint(self.tip), 0.5 * self.base.distance(self.tip) + radius)
     }
 
-    /// About the area of the surface.
-    pub fn area(&self) -> f64 {
-        let (sum, length) = (self.base_radius + self.tip_radius, self.base.distance(self.tip));
-        core::f64::consts::PI * sum * (length + sum)
+    /// About the area of the surface between the two ends.
+    pub fn side(&self) -> f64 {
+        core::f64::consts::PI * (self.base_radius + self.tip_radius) * self.base.distance(self.tip)
     }
 
     pub fn least_radius(&self) -> f64 {

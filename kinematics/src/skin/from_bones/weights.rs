@@ -57,9 +57,9 @@ impl<'a> Weights<'a> {
 /// bones start at one point the surface behind them follows the bone that they start from.
 fn nearest_of(body: &Body, point: DVec3, parts: &[usize]) -> Sighting {
     let seen = parts.iter().map(|part| {
-        let cone = &body.parts[*part].cone;
-        let seen = cone.sighting(point);
-        let behind = (cone.start().0 - point).dot(cone.direction()).max(0.0);
+        let sweep = &body.parts[*part].sweep;
+        let seen = sweep.sighting(point);
+        let behind = (sweep.start().0 - point).dot(sweep.direction()).max(0.0);
         Sighting { distance: seen.distance + 0.5 * behind, ..seen }
     });
     seen.fold(Sighting::NONE, Sighting::nearer)

@@ -18,8 +18,8 @@ use crate::io::texture::TextureReader;
 use crate::kinematics::Shared;
 use crate::kinematics::skeleton::{JointId, Skeleton};
 use crate::kinematics::skin::{
-    BindSet, Blob, Morph, SkinShape, SkinShapeError, SkinnedMesh, Skinning, TriangleMesh,
-    VertexWeights,
+    BindSet, Blob, BlobSphere, Morph, SkinShape, SkinShapeError, SkinnedMesh, Skinning,
+    TriangleMesh, VertexWeights,
 };
 use crate::rig::{
     BoneSkin, FileMesh, MeshSkin, PartLook, Skin, SkinFile, SkinFileError, SkinPart, SkinSource,
@@ -43,6 +43,8 @@ struct SkinShapeFields {
     thickness: Option<JsonNumber>,
     #[serde(skip_serializing_if = "Option::is_none")]
     blobs: Option<Vec<JsonObject<BlobFields>>>,
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    jointed: bool,
     /// The pose in which the mesh is made; without it, the bind pose.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pose: Vec<JsonObject<JointAnglesFields>>,
@@ -57,13 +59,19 @@ struct JointAnglesFields {
 #[derive(Serialize, Deserialize)]
 struct BlobFields {
     joint: Whole,
-    base: JsonPoint,
-    /// Without it, the blob is a sphere.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Centre and radius of each sphere.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    spheres: Vec<JsonNumbers<4>>,
+    /// Centre of the first sphere, as older versions of the program write it.
+    #[serde(skip_serializing)]
+    base: Option<JsonPoint>,
+    /// Without it, there is one sphere.
+    #[serde(skip_serializing)]
     tip: Option<JsonPoint>,
-    radius: JsonNumber,
+    #[serde(skip_serializing)]
+    radius: Option<JsonNumber>,
     /// Without it, both radii are the same.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing)]
     tip_radius: Option<JsonNumber>,
 }
 
@@ -113,6 +121,7 @@ impl SkinShapeFields {
             detail: Some(shape.detail.into()),
             thickness: Some(shape.thickness.into()),
             blobs: (!shape.blobs.is_empty()).then_some(blobs),
+            jointed: shape.is_jointed,
             pose: shape.pose.iter().map(JointAnglesFields::new).map(JsonObject).collect(),
         }
     }
@@ -124,6 +133,7 @@ impl SkinShapeFields {
             detail: value_or(self.detail, default.detail),
             thickness: value_or(self.thickness, default.thickness),
             blobs: converted(blobs, |JsonObject(blob)| blob.blob(joints)).at("blobs")?,
+            is_jointed: self.jointed,
             pose: converted(self.pose, |JsonObject(angles)| angles.angles(joints)).at("pose")?,
         };
         if let Err(error) = shape.check(skeleton) {
@@ -151,25 +161,35 @@ impl JointAnglesFields {
 
 impl BlobFields {
     fn new(blob: &Blob) -> Self {
-        let Blob { joint, base, tip, base_radius, tip_radius } = *blob;
+        let numbers = |sphere: &BlobSphere| JsonNumbers(sphere.centre.extend(sphere.radius).into());
         Self {
-            joint: joint.into(),
-            base: base.into(),
-            tip: (tip != base).then_some(tip.into()),
-            radius: base_radius.into(),
-            tip_radius: (tip_radius != base_radius).then_some(tip_radius.into()),
+            joint: blob.joint.into(),
+            spheres: blob.spheres.iter().map(numbers).collect(),
+            base: None,
+            tip: None,
+            radius: None,
+            tip_radius: None,
         }
     }
 
     fn blob(self, joints: usize) -> Result<Blob, FieldError> {
-        let (JsonPoint(base), JsonNumber(base_radius)) = (self.base, self.radius);
-        Ok(Blob {
-            joint: joint(self.joint, joints).at("joint")?,
-            base,
-            tip: value_or(self.tip, base),
-            base_radius,
-            tip_radius: value_or(self.tip_radius, base_radius),
-        })
+        let joint = joint(self.joint, joints).at("joint")?;
+        let sphere =
+            |JsonNumbers([x, y, z, radius])| BlobSphere { centre: [x, y, z].into(), radius };
+        let listed: Vec<BlobSphere> = self.spheres.into_iter().map(sphere).collect();
+        let spheres = match (listed.is_empty(), self.base.zip(self.radius)) {
+            (false, _) => listed,
+            (true, Some((JsonPoint(centre), JsonNumber(radius)))) => {
+                let base = BlobSphere { centre, radius };
+                let tip = BlobSphere {
+                    centre: value_or(self.tip, centre),
+                    radius: value_or(self.tip_radius, radius),
+                };
+                if tip == base { vec![base] } else { vec![base, tip] }
+            }
+            (true, None) => return Err("must have `spheres`, or `base` and `radius`".into()),
+        };
+        Ok(Blob { joint, spheres })
     }
 }
 

@@ -100,6 +100,14 @@ fn shape(ui: &mut Ui, session: &Session, skin: &Skin, bones: &BoneSkin, actions:
         let source = SkinSource::Bones(bones.with_shape(shape));
         SkinEdit::SetSkin(Some(Skin { source, ..skin.clone() }))
     };
+    let kinds = [
+        (false, "One surface", "Make one surface that bends at the joints"),
+        (true, "A body for each joint", "Give each joint a body of its own, as a mannequin has"),
+    ];
+    let tooltip = "Choose whether the skin bends or has joints";
+    let choice = Choice { label: "Kind", name: "Skin kind", tooltip, shown: "" };
+    let chosen = choice.pick(ui, &kinds, |is_jointed| *is_jointed == shape.is_jointed);
+    actions.extend(chosen.map(|is_jointed| with(SkinShape { is_jointed, ..shape.clone() })));
     let default = SkinShape::default();
     let detail = Slider {
         name: "Skin detail",

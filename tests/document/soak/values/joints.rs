@@ -10,7 +10,7 @@ use ik_arm::kinematics::chain_ik::{Method, Root, SolverOptions};
 use ik_arm::kinematics::diagnosis::{Remedy, Start, WidenedLimit, WiderLimit};
 use ik_arm::kinematics::skeleton::{Cone, JointId, JointLimits, Limit, RotationAxis};
 use ik_arm::kinematics::skin::{
-    Blob, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
+    Blob, BlobSphere, SkinShape, SkinnedMesh, Skinning, TriangleMesh, VertexWeights,
 };
 use ik_arm::kinematics::twist::TwistReferenceKind;
 use ik_arm::rig::{
@@ -66,11 +66,13 @@ impl Values<'_> {
         let detail = self.one_of(&[1.2, 1.2, 1.5, 0.0, f32::NAN]);
         let thickness = self.one_of(&[0.5, 1.0, 2.0, -1.0, f32::INFINITY]);
         let joint = self.joint();
-        let (base, tip) = (self.small_point(), self.small_point());
-        let blob = Blob { joint, base, tip, base_radius: 1.0, tip_radius: 2.0 };
-        let blobs = if self.chance(0.2) { vec![blob] } else { Vec::new() };
-        let pose = if self.chance(0.2) { vec![(joint, base)] } else { Vec::new() };
-        let shape = SkinShape { detail, thickness, blobs, pose };
+        let mut sphere = |radius| BlobSphere { centre: self.small_point(), radius };
+        let spheres = [1.0, 2.0, 0.7].map(&mut sphere).to_vec();
+        let angles = self.small_point();
+        let blobs = if self.chance(0.2) { vec![Blob { joint, spheres }] } else { Vec::new() };
+        let pose = if self.chance(0.2) { vec![(joint, angles)] } else { Vec::new() };
+        let is_jointed = self.chance(0.3);
+        let shape = SkinShape { detail, thickness, blobs, is_jointed, pose };
         skin.source = SkinSource::Bones(bones.with_shape(shape));
         Some(skin)
     }
