@@ -14,6 +14,8 @@ const LETTERS: f32 = 0.75;
 const MOST_LINES: u8 = 3;
 /// Columns and rows of the points of a text at which it may cover a limb.
 const SAMPLES: [u16; 2] = [6, 2];
+/// Least radius in pixels of what a text should not cover.
+const LEAST_RADIUS: f32 = 3.0;
 /// How many of these points a text may cover rather than take its next best place.
 const COST_OF_PLACE: u32 = 1;
 
@@ -67,12 +69,19 @@ impl LabelPlaces {
                 let [low, high] = text.corners(*pen);
                 low.cmpge(Vec2::ZERO).all() && high.cmple(size).all()
             };
-            let cost = |(nth, pen): &(u32, Vec2)| {
-                let covered = text.covered(*pen, &self.limbs);
-                (!is_free(pen), !is_inside(pen), covered + COST_OF_PLACE * nth)
-            };
-            let best = (0..).zip(text.places(label.side)).min_by_key(cost);
-            let pen = best.map_or_else(|| text.pen(label.side, 0), |(_, pen)| pen);
+            let mut best = (text.pen(label.side, 0), (true, true, u32::MAX));
+            for (nth, pen) in (0..).zip(text.places(label.side)) {
+                let covered = text.covered(pen, &self.limbs);
+                let cost = (!is_free(&pen), !is_inside(&pen), covered + COST_OF_PLACE * nth);
+                if cost < best.1 {
+                    best = (pen, cost);
+                }
+                if best.1 <= (false, false, COST_OF_PLACE * (nth + 1)) {
+                    // Later places cost at least this much.
+                    break;
+                }
+            }
+            let (pen, _) = best;
             self.taken.push(text.corners(pen));
             self.pens.push(Some(pen));
         }
@@ -135,8 +144,8 @@ struct SeenLimb {
 }
 
 impl SeenLimb {
-    /// The cones of a scene, and the limbs that cast shadows: those of a skin. A limb that is partly
-    /// behind the eye is left out.
+    /// The cones, hands and lines of a scene, and the limbs that cast shadows: those of a skin. What
+    /// is partly behind the eye is left out.
     fn all(scene: &Scene, projection: &Projection, size: Vec2) -> impl Iterator<Item = Self> {
         let cones = scene.solids.iter().chain(&scene.guide_solids).map(|solid| {
             let [from, to] = [0.0, solid.shape.length]
@@ -148,16 +157,16 @@ impl SeenLimb {
             .iter()
             .map(|limb| (limb.base, limb.tip, limb.base_radius.max(limb.tip_radius)));
         let hands = scene.hands.iter().map(|hand| {
-            let [from, to] = [0.1, 0.8]
-                .map(|along| hand.transform.transform_point3(Vec3::X * along * hand.size));
-            (from, to, 0.2 * hand.size)
+            let [(from, from_radius), (to, to_radius)] = hand.ends();
+            (from, to, from_radius.max(to_radius))
         });
-        cones.chain(with_shadows).chain(hands).filter_map(move |(from, to, radius)| {
+        let lines = scene.lines.iter().map(|line| (line.from, line.to, 0.0));
+        cones.chain(with_shadows).chain(hands).chain(lines).filter_map(move |(from, to, radius)| {
             let pixels = 0.5 * size.y / projection.half_height_at(from.midpoint(to));
             Some(Self {
                 from: pixel(projection, from, size)?,
                 to: pixel(projection, to, size)?,
-                radius: radius * pixels,
+                radius: (radius * pixels).max(LEAST_RADIUS),
             })
         })
     }

@@ -66,6 +66,15 @@ pub struct Hand {
     pub colour: Colour,
 }
 
+impl Hand {
+    /// Centres and radii in the world of two balls whose hull is about the hand.
+    pub fn ends(&self) -> [(Vec3, f32); 2] {
+        [(0.1, 0.16), (0.75, 0.13)].map(|(along, radius)| {
+            (self.transform.transform_point3(Vec3::X * along * self.size), radius * self.size)
+        })
+    }
+}
+
 /// A see-through sphere with a brighter rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereShell {

@@ -121,14 +121,10 @@ impl<'a> CylinderLimb<'a> {
 
     /// Adds the hand, whose wrist has this transform to the world.
     fn add_hand(&self, scene: &mut Scene, transform: Affine3A, colour: Colour, has_shadow: bool) {
-        /// Ends of its shadow along the hand, with their radii, as fractions of its size.
-        const SHADOW: [(f32, f32); 2] = [(0.1, 0.16), (0.75, 0.13)];
-        let size = LimbFrames::HAND * self.thickness;
-        scene.hands.push(Hand { transform, size, colour });
+        let hand = Hand { transform, size: LimbFrames::HAND * self.thickness, colour };
+        scene.hands.push(hand);
         if has_shadow {
-            let [(base, base_radius), (tip, tip_radius)] = SHADOW.map(|(along, radius)| {
-                (transform.transform_point3(Vec3::X * along * size), radius * size)
-            });
+            let [(base, base_radius), (tip, tip_radius)] = hand.ends();
             let limb = Shadow { base, base_radius, tip, tip_radius };
             scene.shadows.extend(limb.above_ground());
         }

@@ -93,7 +93,7 @@ fn add_axes(scene: &mut Scene, reach: f32) {
     /// Opacities at the origin of the positive and the negative half.
     const HALVES: [(f32, f32); 2] = [(1.0, 0.75), (-1.0, 0.25)];
     for (axis, colour) in Vec3::AXES.into_iter().zip(scene.palette.axes) {
-        // The height of the rig shows without an axis below the floor.
+        // No y axis below the floor.
         let halves = HALVES.into_iter().filter(|(sign, _)| *sign > 0.0 || axis != Vec3::Y);
         for (sign, opacity) in halves {
             let end = axis * (sign * LENGTH * reach);
@@ -108,12 +108,13 @@ fn add_axes(scene: &mut Scene, reach: f32) {
 
 /// Adds the trail of the hand or the selected joint, with a dot for every frame.
 fn add_trail(scene: &mut Scene, overlays: &Overlays, reach: f32) {
-    // Radius of a dot as a fraction of the rig's reach.
-    const DOT_RADIUS: f32 = 0.004;
-    let (radius, colour) = (DOT_RADIUS * reach, scene.palette.accent);
+    // Radii of a dot and of the tube between two dots, as fractions of the rig's reach.
+    const DOT_RADIUS: f32 = 0.0045;
+    const TUBE_RADIUS: f32 = 0.002;
+    let colour = scene.palette.accent;
+    let [radius, tube] = [DOT_RADIUS, TUBE_RADIUS].map(|part| part * reach);
     for ends in overlays.trail.windows(2).filter(|ends| ends[0] != ends[1]) {
-        let colour = colour.with_opacity(0.6);
-        scene.lines.push(Line { from: ends[0], to: ends[1], colour, dashed: false });
+        scene.add_guide_solid(ends[0], ends[1], tube, tube, colour);
     }
     let dots = overlays.trail.iter().map(|centre| Ball { centre: *centre, radius, colour });
     scene.balls.extend(dots);
