@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Takes the pictures of docs/guide.md and docs/kinematics.md from the program itself: docs/pictures.
+# Takes pictures from the program itself: those of docs/guide.md and docs/kinematics.md in
+# docs/pictures, and those of the examples in assets/pictures. With names of examples, only theirs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=scripts/setup.sh
@@ -13,7 +14,14 @@ main() {
     set_up virtual-display
     cargo build --release --locked
     trap clean_up EXIT
-    mkdir -p "$pictures"
+    mkdir -p "$pictures" assets/pictures
+    mapfile -t examples < <("$program" examples | awk '{ print $1 }')
+    for example in "${@:-${examples[@]}}"; do
+        picture_of_example "$example"
+    done
+    if (($#)); then
+        return
+    fi
     picture_of_window start
     picture_of_window tour gui --tour 4
     picture_of_window twist gui --tour 8
@@ -40,6 +48,27 @@ picture_of_window() {
     close_window
     stop_virtual_display
     shrink "$name"
+}
+
+# Frames of an example in six columns, evenly spaced in time; one frame if it stands still.
+picture_of_example() {
+    local name=$1 frames=$settings/frames quality=(-quality 76 -strip) all time nth
+    "$program" examples "$name" -o "$settings/$name.json"
+    rm -rf "$frames" && mkdir -p "$frames"
+    "$program" export "$settings/$name.json" --size 16x10 --fps 30 -o "$frames/####.png"
+    all=("$frames"/*.png)
+    rm -rf "$frames" && mkdir -p "$frames"
+    if ((${#all[@]} == 1)); then
+        "$program" render "$settings/$name.json" --size 576x360 -o "$frames/0.png"
+        convert "$frames/0.png" -resize 288x180 "${quality[@]}" "assets/pictures/$name.jpg"
+        return
+    fi
+    for nth in {10..33}; do
+        time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * ($nth - 10) / 24 }")
+        "$program" render "$settings/$name.json" --time "$time" --size 576x360 -o "$frames/$nth.png"
+    done
+    montage "$frames"/*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
+        "assets/pictures/$name.jpg"
 }
 
 press() {

@@ -17,6 +17,9 @@ pub struct Example {
     pub sentence: &'static str,
     /// Content of the example's file.
     pub text: &'static str,
+    /// A JPEG picture of frames of the size [`Example::FRAME_SIZE`] in rows, read like text: one
+    /// frame of an example that stands still, several of one that moves.
+    pub picture: &'static [u8],
 }
 
 /// A list of examples.
@@ -44,11 +47,32 @@ macro_rules! examples {
             title: $title,
             sentence: $sentence,
             text: include_str!(concat!("../../assets/", $folder, $name, ".json")),
+            picture: include_bytes!(concat!("../../assets/pictures/", $name, ".jpg")),
         },)*)*]
     };
 }
 
+impl ExampleGroup {
+    /// All groups, in the order in which they are listed.
+    pub const ALL: [Self; 4] = [Self::Basics, Self::WhyNot, Self::InsideSolver, Self::HardCases];
+
+    /// Name on screen.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Basics => "Basics",
+            Self::WhyNot => "Why not?",
+            Self::InsideSolver => "Inside a solver",
+            Self::HardCases => "Hard cases",
+        }
+    }
+}
+
 impl Example {
+    /// Width and height in pixels of a frame of an example's picture.
+    pub const FRAME_SIZE: [usize; 2] = [288, 180];
+    /// Frames per second at which an example's picture is played.
+    pub const FRAME_RATE: f64 = 10.0;
+
     /// All examples, in the order in which they are listed.
     pub const ALL: [Self; 35] = examples! {
         Basics in "" {
@@ -60,19 +84,18 @@ impl Example {
                  whose head looks at a point.";
             "walk", "Walk" =>
                 "A figure that walks: its feet stand at their targets while the pelvis moves on, \
-                 and its arms swing by FK; press Space to play.";
+                 and its arms swing by FK.";
             "reaching-down", "Reaching down" =>
                 "A figure that squats to lift something from the floor: only its hands with their \
-                 rotations, its gaze and its balance are given, and its feet stay; press Space to \
-                 play.";
+                 rotations, its gaze and its balance are given, and its feet stay.";
             "looking-at-the-hand", "Looking at the hand" =>
-                "A figure whose neck and head turn to its hand, wherever it goes: drag it, or press \
-                 Space to play.";
+                "A figure whose neck and head turn to its hand, wherever it goes; press Space to \
+                 stop, and drag it.";
             "wheel", "Two hands on a wheel" =>
                 "A figure whose hands hold a wheel that turns: their targets are on the wheel.";
             "candy-wrapper", "Candy wrapper" =>
-                "A forearm that is twisted by 180°, with its skin blended in three ways; press \
-                 Space to play, and watch the area of its middle.";
+                "A forearm that is twisted by 180°, with its skin blended in three ways: watch the \
+                 area of its middle.";
             "table", "Table" => "An arm whose hand rests on a table while its shoulder moves.";
             "snake", "Snake" =>
                 "Drag the circle at the head across the floor: 24 joints follow its path.";
@@ -83,9 +106,9 @@ impl Example {
                 "A chain with one target, to watch the solvers at work.";
             "jumping-chain", "Jumping chain" =>
                 "A chain that follows its target smoothly, and as a thin figure what each frame \
-                 would do by itself: it jumps; press Space to play.";
+                 would do by itself: it jumps.";
             "keyframes", "Keyframes" =>
-                "An arm whose hand goes along a spline through six keys; press Space to play.";
+                "An arm whose hand goes along a spline through six keys.";
             "degenerate", "Degenerate cases" =>
                 "Cases that break careless solvers: a bone without length, a target at the root, a \
                  straight chain, targets out of reach, all of it in a mirror.";

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::files::action::{FileAction, FileContents, PathDialog};
 use crate::document::{Bake, Document};
-use crate::io::Progress;
+use crate::io::{ExampleGroup, Progress};
 use crate::kinematics::skeleton::JointId;
 
 /// A dialog above the panels. All dialogs except the statistics are modal: they take all keyboard
@@ -16,6 +16,8 @@ pub enum Dialog {
     Shortcuts,
     /// Terms of the user interface and their meanings.
     Glossary,
+    /// Pictures of the built-in examples of a group.
+    Examples(ExampleGroup),
     /// Frame times; not modal.
     Statistics,
     /// Offers to open the document that an earlier run of the program left unsaved.

@@ -1,6 +1,7 @@
 //! Actions shared by menus, keys and buttons.
 
 use crate::document::{AxisView, Camera};
+use crate::io::ExampleGroup;
 use crate::kinematics::skeleton::JointId;
 use crate::session::{
     Action, Dialog, Edit, FileAction, JointEdit, PathDialog, Session, ShellAction, SolverAction,
@@ -17,6 +18,10 @@ pub(in crate::ui) fn save_as(session: &Session) -> FileAction {
 
 pub(in crate::ui) fn save_picture(session: &Session) -> FileAction {
     FileAction::AskPath(session.files().save_picture_dialog())
+}
+
+pub(in crate::ui) fn show_examples() -> ShellAction {
+    ShellAction::OpenDialog(Dialog::Examples(ExampleGroup::Basics))
 }
 
 pub(in crate::ui) const AXIS_VIEWS: [(AxisView, &str, &str); 6] = [

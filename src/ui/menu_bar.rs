@@ -74,6 +74,7 @@ fn file(ui: &mut Ui, session: &Session, actions: &mut Actions) {
         item(ui, "Arm", "Ctrl+N", || FileAction::New, actions);
         item(ui, "Figure", "Ctrl+Alt+N", || FileAction::NewFigure, actions);
         item(ui, "Empty", "Ctrl+Shift+N", || FileAction::NewEmpty, actions);
+        item(ui, "Example…", "", commands::show_examples, actions);
     });
     item(ui, "Open…", "Ctrl+O", commands::open, actions);
     ui.add_enabled_ui(!session.files().recent().is_empty(), |ui| {
@@ -270,11 +271,13 @@ fn view(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 fn examples(ui: &mut Ui, actions: &mut Actions) {
+    item(ui, "Pictures of all…", "", commands::show_examples, actions);
+    ui.separator();
     examples_of(ExampleGroup::Basics, ui, actions);
     ui.separator();
-    ui.menu_button("Why not?", |ui| examples_of(ExampleGroup::WhyNot, ui, actions));
-    ui.menu_button("Inside a solver", |ui| examples_of(ExampleGroup::InsideSolver, ui, actions));
-    ui.menu_button("Hard cases", |ui| examples_of(ExampleGroup::HardCases, ui, actions));
+    for group in &ExampleGroup::ALL[1..] {
+        ui.menu_button(group.title(), |ui| examples_of(*group, ui, actions));
+    }
 }
 
 fn examples_of(group: ExampleGroup, ui: &mut Ui, actions: &mut Actions) {

@@ -9,7 +9,7 @@ use egui::{
     RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2,
 };
 
-use super::{style, widgets};
+use super::{commands, style, widgets};
 use crate::session::{Actions, Session, TourAction, TourEnd, TourState, TourStep, filled};
 
 /// Distance from the edges of the view, in points.
@@ -34,6 +34,10 @@ fn contents(ui: &mut Ui, actions: &mut Actions) {
         let take = widgets::primary_button(ui, "Take the tour", None);
         if take.on_hover_text("Begin the tour; your document is kept").clicked() {
             actions.push(TourAction::Enter(0));
+        }
+        let examples = ui.button("Examples…");
+        if examples.on_hover_text("Choose an example by its picture").clicked() {
+            actions.push(commands::show_examples());
         }
         let play = ui.button("Just play");
         if play.on_hover_text("Close this for good; Help → Tour has it too").clicked() {

@@ -446,6 +446,11 @@ impl Step {
         }
     }
 
+    pub fn opens_example(&self) -> bool {
+        let Self::Action(action) = self else { return false };
+        matches!(**action, Action::File(FileAction::OpenExample(_)))
+    }
+
     pub fn apply(self, session: &mut Session) -> Option<Effect> {
         match self {
             Self::Arm(edit) if has_arm(session.shown()) => {

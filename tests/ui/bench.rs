@@ -15,8 +15,8 @@ use glam::{Quat, Vec3};
 use ik_arm::document::{Ray, Theme};
 use ik_arm::kinematics::skeleton::JointId;
 use ik_arm::session::{
-    Action, Actions, Effect, Grip, GripRing, PanelTab, Preferences, SelectAction, Session,
-    ShellAction, ViewAction,
+    Action, Actions, Effect, Grip, GripRing, PanelTab, PlaybackAction, Preferences, SelectAction,
+    Session, ShellAction, ViewAction,
 };
 use ik_arm::ui::{self, FrameTime, FrameTimes, Machine, style};
 
@@ -114,9 +114,17 @@ impl Bench {
         Self::after([open_example(name)])
     }
 
+    /// Applies actions and waits until nothing moves. An example that plays when it is opened is
+    /// stopped at its start.
     pub fn apply(&mut self, actions: impl IntoIterator<Item = impl Into<Step>>) {
+        let session = &mut self.harness.state_mut().session;
         for action in actions {
-            action.into().apply(&mut self.harness.state_mut().session);
+            let step = action.into();
+            let opens_example = step.opens_example();
+            step.apply(session);
+            if opens_example {
+                session.apply(PlaybackAction::Play(false));
+            }
         }
         self.settle();
     }
@@ -392,14 +400,23 @@ impl Bench {
         for _ in 0..40 {
             let (rect, view) = (self.rect(role, name), self.viewport());
             let has_note = rect.right() < view.left() && self.has_note();
-            if rect.bottom() < view.bottom() - 8.0 - if has_note { NOTE } else { 0.0 } {
+            let is_hidden = rect.right() < view.left() && rect.top() < self.bottom_of_outliner();
+            let room = view.bottom() - 8.0 - if has_note { NOTE } else { 0.0 };
+            if rect.bottom() < room && !is_hidden {
                 return;
             }
-            self.move_to(egui::pos2(rect.center().x, self.viewport().center().y));
-            self.wheel(-3.0);
+            self.move_to(egui::pos2(rect.center().x, self.viewport().center().y + 40.0));
+            self.wheel(if is_hidden { 0.5 } else { -3.0 });
             self.settle();
         }
         panic!("{name} cannot be scrolled to");
+    }
+
+    /// The lower end of the tree of joints, below which the panel scrolls.
+    pub fn bottom_of_outliner(&self) -> f32 {
+        let legend = self.shows(Role::Label, "by angles");
+        let last = if legend { (Role::Label, "by angles") } else { (Role::Button, "Joints") };
+        self.rect(last.0, last.1).bottom()
     }
 
     fn has_note(&self) -> bool {

@@ -14,6 +14,7 @@ mod common;
 mod controls;
 mod crowd;
 mod dialogs;
+mod example_pictures;
 mod export;
 mod figure_pops;
 mod figures;

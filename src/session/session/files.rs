@@ -114,7 +114,7 @@ fn open_example(example: Example) -> Outcome {
         Ok(opened) => opened.document,
         Err(error) => return Outcome::fail(error.to_string()),
     };
-    let plays = document.follows_path() && document.is_animated();
+    let plays = document.is_animated();
     let looks_inside = example.group == ExampleGroup::InsideSolver;
     let opening = Opening { document, ..Opening::default() };
     Outcome::from(Consequence::Open(Box::new(opening)))

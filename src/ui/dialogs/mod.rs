@@ -1,5 +1,6 @@
 //! Dialogs: about, shortcuts, and questions for a path, a name or a decision.
 
+mod examples;
 mod export;
 mod files;
 mod path;
@@ -24,6 +25,9 @@ pub(in crate::ui) fn ui(
     actions: &mut Actions,
 ) {
     let is_new = is_new(ui, session.shell().dialog());
+    if !matches!(session.shell().dialog(), Some(Dialog::Examples(_))) {
+        examples::forget_pictures(ui);
+    }
     let Some(dialog) = session.shell().dialog() else { return };
     if is_new && dialog.is_modal() {
         // Otherwise the focused widget would receive the dialog's first key.
@@ -33,6 +37,7 @@ pub(in crate::ui) fn ui(
         Dialog::About => "About ik-arm",
         Dialog::Shortcuts => "Shortcuts",
         Dialog::Glossary => "Glossary",
+        Dialog::Examples(_) => "Examples",
         Dialog::Statistics => "Statistics",
         Dialog::Recover { .. } => "Recover unsaved changes?",
         Dialog::Unsaved { .. } => "Save changes?",
@@ -58,6 +63,10 @@ pub(in crate::ui) fn ui(
         Dialog::Shortcuts => shortcuts(ui, session, actions),
         Dialog::Glossary => {
             glossary::dialog(ui, actions);
+            close(ui, actions);
+        }
+        Dialog::Examples(group) => {
+            examples::ui(ui, *group, actions);
             close(ui, actions);
         }
         Dialog::Recover { document, file } => {

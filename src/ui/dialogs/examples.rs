@@ -1,0 +1,184 @@
+//! The built-in examples as pictures, which play under the mouse.
+
+use std::collections::HashMap;
+
+use egui::{
+    Align2, Color32, ColorImage, CornerRadius, Id, Label, Rect, Response, Role, ScrollArea, Sense,
+    Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo,
+    pos2, vec2,
+};
+use image::{DynamicImage, ImageFormat, RgbImage};
+
+use crate::io::{Example, ExampleGroup};
+use crate::session::{Actions, Dialog, FileAction, ShellAction};
+use crate::ui::{style, widgets};
+
+/// Size of a picture in points.
+const PICTURE: Vec2 = vec2(192.0, 120.0);
+/// Height of the title below a picture.
+const TITLE: f32 = 24.0;
+const GAP: f32 = 12.0;
+const MOST_COLUMNS: usize = 4;
+/// Height of the window without the pictures.
+const FRAME: f32 = 220.0;
+/// Height of the sentence about the example under the mouse: two lines.
+const SENTENCE: f32 = 40.0;
+/// Number of pictures that are decoded in one frame of the window: more would be felt.
+const DECODED_AT_ONCE: usize = 2;
+
+/// Shows the examples of a group.
+pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
+    let window = ui.ctx().content_rect().size();
+    let columns = ((window.x - 80.0) / (PICTURE.x + GAP)).floor() as usize;
+    let columns = columns.clamp(1, MOST_COLUMNS);
+    ui.set_width(columns as f32 * (PICTURE.x + GAP) + GAP);
+    let groups = ExampleGroup::ALL.map(|it| (it, it.title(), "Show the examples of this group"));
+    let chosen = widgets::segments(ui, group, &groups);
+    actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
+    ui.add_space(8.0);
+    let height = (window.y - FRAME).clamp(PICTURE.y + TITLE, 3.2 * (PICTURE.y + TITLE + GAP));
+    let examples: Vec<Example> = Example::of(group).collect();
+    let mut pictures = Pictures::kept(ui);
+    pictures.decode_some(ui, &examples);
+    let mut pointed = None;
+    let area = ScrollArea::vertical().id_salt(group.title()).max_height(height);
+    area.auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = Vec2::splat(GAP);
+        for row in examples.chunks(columns) {
+            ui.horizontal(|ui| {
+                for example in row {
+                    let card = card(ui, example, &mut pictures);
+                    if card.clicked() {
+                        actions.push(ShellAction::CloseDialog);
+                        actions.push(FileAction::OpenExample(*example));
+                    }
+                    if card.hovered() || card.has_focus() {
+                        pointed = Some(*example);
+                    }
+                }
+            });
+        }
+    });
+    pictures.keep(ui);
+    let sentence = pointed.map_or("Point at a picture to see it move.", |it| it.sentence);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), SENTENCE), Sense::hover());
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+    inside.set_clip_rect(rect.intersect(ui.clip_rect()));
+    inside.add_space(4.0);
+    inside.add(Label::new(sentence).wrap().selectable(false));
+}
+
+/// Shows an example's picture and title, and plays the picture under the mouse.
+fn card(ui: &mut Ui, example: &Example, pictures: &mut Pictures) -> Response {
+    let (rect, card) = ui.allocate_exact_size(PICTURE + vec2(0.0, TITLE), Sense::click());
+    card.widget_info(|| WidgetInfo::labeled(Role::Button, true, example.title));
+    if !ui.is_rect_visible(rect) {
+        return card;
+    }
+    let is_chosen = card.hovered() || card.has_focus();
+    let picture = Rect::from_min_size(rect.min, PICTURE);
+    let rounding = CornerRadius::same(6);
+    let visuals = ui.visuals();
+    let painter = ui.painter();
+    painter.rect_filled(picture, rounding, visuals.extreme_bg_color);
+    if let Some((texture, uv)) = pictures.shown(ui, example, is_chosen) {
+        let shape = egui::epaint::RectShape::filled(picture, rounding, Color32::WHITE);
+        painter.add(shape.with_texture(texture.id(), uv));
+    }
+    let edge = match is_chosen {
+        true => Stroke::new(2.0, style::accent(ui)),
+        false => visuals.widgets.noninteractive.bg_stroke,
+    };
+    painter.rect_stroke(picture, rounding, edge, StrokeKind::Outside);
+    let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
+    let at = pos2(rect.left() + 2.0, rect.bottom() - 0.5 * TITLE + 1.0);
+    let font = TextStyle::Body.resolve(ui.style());
+    painter.text(at, Align2::LEFT_CENTER, example.title, font, colour);
+    card
+}
+
+/// The decoded pictures of the examples that are in view, by their names.
+#[derive(Clone, Default)]
+struct Pictures {
+    /// The first frame of each.
+    stills: HashMap<&'static str, TextureHandle>,
+    /// All frames of the one that plays, and when it began.
+    playing: Option<(&'static str, TextureHandle, f64)>,
+}
+
+fn kept_pictures() -> Id {
+    Id::unique("pictures of examples")
+}
+
+/// Frees the memory of the pictures.
+pub(super) fn forget_pictures(ui: &Ui) {
+    ui.data_mut(|data| data.remove::<Pictures>(kept_pictures()));
+}
+
+impl Pictures {
+    fn kept(ui: &Ui) -> Self {
+        ui.data(|data| data.get_temp(kept_pictures())).unwrap_or_default()
+    }
+
+    fn keep(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(kept_pictures(), self));
+    }
+
+    /// Decodes the next pictures that are missing.
+    fn decode_some(&mut self, ui: &Ui, examples: &[Example]) {
+        let missing = examples.iter().filter(|it| !self.stills.contains_key(it.name));
+        let missing: Vec<&Example> = missing.collect();
+        for example in missing.iter().take(DECODED_AT_ONCE) {
+            let [width, height] = Example::FRAME_SIZE.map(|pixels| pixels as u32);
+            let frames = decoded(example);
+            let still = image::imageops::crop_imm(&frames, 0, 0, width, height).to_image();
+            self.stills.insert(example.name, texture(ui, example, &still));
+        }
+        if missing.len() > DECODED_AT_ONCE {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// The texture of an example, and the part of it that is shown now.
+    fn shown(
+        &mut self,
+        ui: &Ui,
+        example: &Example,
+        is_played: bool,
+    ) -> Option<(TextureHandle, Rect)> {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        if !is_played {
+            self.playing.take_if(|(name, ..)| *name == example.name);
+            return self.stills.get(example.name).map(|still| (still.clone(), whole));
+        }
+        let now = ui.input(|input| input.time);
+        let is_new = self.playing.as_ref().is_none_or(|(name, ..)| *name != example.name);
+        if is_new {
+            let frames = texture(ui, example, &decoded(example));
+            self.playing = Some((example.name, frames, now));
+        }
+        let (_, frames, begun) = self.playing.as_ref()?;
+        let [width, height] = frames.size();
+        let (columns, rows) =
+            ((width / Example::FRAME_SIZE[0]).max(1), (height / Example::FRAME_SIZE[1]).max(1));
+        let frame = ((now - begun) * Example::FRAME_RATE) as usize % (columns * rows);
+        let size = vec2(1.0 / columns as f32, 1.0 / rows as f32);
+        let at = vec2((frame % columns) as f32, (frame / columns) as f32) * size;
+        if columns * rows > 1 {
+            ui.ctx().request_repaint_after_secs(1.0 / Example::FRAME_RATE as f32);
+        }
+        Some((frames.clone(), Rect::from_min_size(at.to_pos2(), size)))
+    }
+}
+
+/// All frames of an example; black if they cannot be decoded.
+fn decoded(example: &Example) -> RgbImage {
+    let decoded = image::load_from_memory_with_format(example.picture, ImageFormat::Jpeg);
+    decoded.map_or_else(|_| RgbImage::new(1, 1), DynamicImage::into_rgb8)
+}
+
+fn texture(ui: &Ui, example: &Example, picture: &RgbImage) -> TextureHandle {
+    let size = [picture.width(), picture.height()].map(|pixels| pixels as usize);
+    let image = ColorImage::from_rgb(size, picture.as_raw());
+    ui.ctx().load_texture(example.name, image, TextureOptions::LINEAR)
+}
