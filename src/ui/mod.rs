@@ -46,7 +46,8 @@ pub fn show(ui: &mut Ui, session: &Session, machine: &Machine, actions: &mut Act
     let keys = session.preferences().shows_timeline(session.document()).then(|| {
         // In a low window the timeline gives way to the view.
         let most = (ui.available_height() - VIEW_HEIGHT).clamp(88.0, 328.0);
-        let panel = Panel::bottom("keys").default_size(120.0).size_range(88.0..=most);
+        let height = timeline::height(ui, session).clamp(88.0, most);
+        let panel = Panel::bottom("keys").default_size(height).size_range(88.0..=most);
         reserve(panel.resizable(true), ui, None)
     });
     Panel::left("controls")

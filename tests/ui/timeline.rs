@@ -579,7 +579,8 @@ fn the_zoom_of_the_timeline_is_that_of_one_document() {
     bench.wheel(3.0);
     bench.settle();
     assert!(keys(&bench) > 1.5 * was);
-    bench.apply([FileAction::Discard(Box::new(opened()))]);
+    bench.apply_moving([FileAction::Discard(Box::new(opened()))]);
+    bench.apply([PlaybackAction::Play(false)]);
     let ruler = |bench: &Bench| bench.rect(Role::Slider, "Timeline ruler");
     let first = |bench: &Bench| key_of_hand(bench, 0.0).x - ruler(bench).left();
     let mut fresh = Bench::with_timeline(LARGE);
@@ -599,4 +600,27 @@ fn the_status_line_says_how_many_keys_and_joints_are_selected() {
         ShellAction::ClearMessage.into(),
     ]);
     assert!(bench.says("and 2 more selected"));
+}
+
+#[test]
+fn channels_stand_below_their_joint_which_folds_them_and_has_all_their_keys() {
+    let mut bench = Bench::with_timeline(LARGE);
+    bench.apply([open_example("walk")]);
+    let channels = |bench: &Bench| {
+        ["pelvis · rotation", "pelvis · offset"]
+            .map(|name| bench.shows(Role::Button, &format!("Channel {name}")))
+    };
+    assert_eq!(channels(&bench), [true; 2]);
+    bench.click(Role::Button, "Keys of pelvis");
+    assert_eq!(channels(&bench), [false; 2], "folded");
+    let keys = bench.rect(Role::Button, "Keys of pelvis at 0.50 s");
+    bench.click_at(keys.center());
+    bench.settle();
+    let pelvis = bench.joint("pelvis");
+    let mut picked = bench.session().selection().keys().to_vec();
+    picked.sort_unstable_by_key(|(channel, _)| format!("{channel:?}"));
+    let expected = [Channel::Offset(pelvis), Channel::Rotation(pelvis)].map(|it| (it, 0.5));
+    assert_eq!(picked, expected);
+    bench.click(Role::Button, "Keys of pelvis");
+    assert_eq!(channels(&bench), [true; 2]);
 }

@@ -50,7 +50,7 @@ pub(in crate::ui) fn of_rows(
             actions.push(KeysEdit::PasteKeys);
             ui.close();
         }
-        if let Some(DopeSheetRow::Channel(channel)) = row {
+        if let Some(DopeSheetRow::Channel { channel, .. }) = row {
             clear(ui, session, channel, actions);
         }
     });

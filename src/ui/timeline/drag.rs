@@ -3,7 +3,7 @@
 use egui::{Id, Key, Pos2, Ui, Vec2};
 use glam::Vec3;
 
-use super::rows::{DopeSheetRow, KeySet};
+use super::rows::KeySet;
 use super::time_scale::{TimeScale, span};
 use super::value_scale::{ValueKind, ValueScales};
 use crate::document::Timeline;
@@ -122,8 +122,8 @@ pub(in crate::ui) fn press_keys(
 ) {
     let selected = session.selection().keys();
     let picked = |of: &[KeyOf]| {
-        let of = KeySet::of(of);
-        move |key: &&KeyOf| of.has(DopeSheetRow::Channel(key.0), key.1)
+        let of = KeySet::of(session, of);
+        move |key: &&KeyOf| of.has_key(**key)
     };
     let (is_selected, is_pointed) = (picked(selected), picked(&pointed));
     let all_selected = pointed.iter().all(|key| is_selected(&key));

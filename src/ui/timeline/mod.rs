@@ -17,7 +17,7 @@ pub(in crate::ui) use transport_bar::HEIGHT as TRANSPORT_HEIGHT;
 use egui::{Rect, Ui};
 
 use crate::session::{Actions, Session};
-use rows::TimelineAreas;
+use rows::{FoldedJoints, TimelineAreas};
 use time_scale::TimeScale;
 
 /// Shows the transport bar, with a ruler of its own while the timeline is closed.
@@ -27,6 +27,13 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
     } else {
         transport_bar::slim(ui, session, actions);
     }
+}
+
+/// Height at first of the timeline of a document, in points: enough for its rows, within bounds.
+pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
+    const RANGE: (f32, f32) = (120.0, 220.0);
+    let rows = rows::rows(session, &FoldedJoints::kept(ui)).len() + 1;
+    (rows::RULER + rows::ROW * rows as f32 + 8.0).clamp(RANGE.0, RANGE.1)
 }
 
 /// Shows the timeline.

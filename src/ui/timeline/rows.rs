@@ -1,13 +1,15 @@
 //! The areas of the timeline on screen; its rows, their keys, and clicks on their names.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
-use egui::{Color32, FontId, Rect, Response, StrokeKind, TextStyle, Ui, UiBuilder, pos2, vec2};
+use egui::{Color32, FontId, Id, Rect, Response, StrokeKind, TextStyle, Ui, UiBuilder, pos2, vec2};
 use glam::Vec3;
 
 use crate::document::Channel;
+use crate::kinematics::skeleton::JointId;
 use crate::kinematics::spline::Spline;
 use crate::session::{Key, KeysEdit, Session};
+use crate::ui::labels;
 
 /// Width in points of the column of channel names.
 pub(super) const NAMES: f32 = 180.0;
@@ -89,11 +91,62 @@ pub(in crate::ui) fn line(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     ui.painter().galley(at, galley, colour);
 }
 
-/// A row with the keys of all channels or of one channel.
+/// A row with the keys of all channels, of all of a joint, or of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::ui) enum DopeSheetRow {
     All,
-    Channel(Channel),
+    /// The heading of a joint with several channels that have keys.
+    Joint {
+        joint: JointId,
+        is_folded: bool,
+    },
+    Channel {
+        channel: Channel,
+        /// True if it stands below the heading of its joint.
+        is_below: bool,
+    },
+}
+
+/// The joints whose rows are folded.
+#[derive(Clone, Default)]
+pub(in crate::ui) struct FoldedJoints(HashSet<JointId>);
+
+impl FoldedJoints {
+    fn id() -> Id {
+        Id::unique("folded joints of the timeline")
+    }
+
+    pub fn kept(ui: &Ui) -> Self {
+        ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
+    }
+
+    /// Folds a joint, or unfolds it.
+    pub fn toggle(ui: &Ui, joint: JointId) {
+        let mut folded = Self::kept(ui);
+        if !folded.0.remove(&joint) {
+            folded.0.insert(joint);
+        }
+        ui.data_mut(|data| data.insert_temp(Self::id(), folded));
+    }
+}
+
+/// The rows below that of all keys: those of channels without a joint, then joint by joint in the
+/// order of the skeleton. A joint with several channels has a heading.
+pub(in crate::ui) fn rows(session: &Session, folded: &FoldedJoints) -> Vec<DopeSheetRow> {
+    let mut of_joint: BTreeMap<Option<JointId>, Vec<Channel>> = BTreeMap::new();
+    for channel in channels(session) {
+        of_joint.entry(labels::joint_of_channel(session, channel)).or_default().push(channel);
+    }
+    let mut rows = Vec::new();
+    for (joint, channels) in of_joint {
+        let heading = joint.filter(|_| channels.len() > 1);
+        let is_folded = heading.is_some_and(|joint| folded.0.contains(&joint));
+        rows.extend(heading.map(|joint| DopeSheetRow::Joint { joint, is_folded }));
+        let is_below = heading.is_some();
+        let row = |channel| DopeSheetRow::Channel { channel, is_below };
+        rows.extend(channels.into_iter().filter(|_| !is_folded).map(row));
+    }
+    rows
 }
 
 /// The channels that have keys.
@@ -104,38 +157,36 @@ pub(in crate::ui) fn channels(session: &Session) -> Vec<Channel> {
 impl DopeSheetRow {
     /// Sorted times of the row's keys between `from` and `to`, in seconds.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
-        let keys = &session.document().keys;
-        match self {
-            Self::Channel(channel) => {
-                keys.track(channel).map_or_else(Vec::new, |track| times(track, from, to).collect())
-            }
-            Self::All => {
-                let tracks = keys.tracks();
-                let mut all: Vec<f64> =
-                    tracks.flat_map(|(_, track)| times(track, from, to)).collect();
-                all.sort_unstable_by(f64::total_cmp);
-                all.dedup();
-                all
-            }
-        }
+        let tracks = self.tracks(session);
+        let mut all: Vec<f64> = tracks.flat_map(|(_, track)| times(track, from, to)).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        all.dedup();
+        all
     }
 
     /// The row's keys at a time in seconds.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
-        match self {
-            Self::Channel(channel) => vec![(channel, time)],
-            Self::All => {
-                let tracks = session.document().keys.tracks();
-                let there = tracks.filter(|(_, track)| track.get(time).is_some());
-                there.map(|(channel, _)| (channel, time)).collect()
+        let there = self.tracks(session).filter(|(_, track)| track.get(time).is_some());
+        there.map(|(channel, _)| (channel, time)).collect()
+    }
+
+    /// The channels of the row that have keys.
+    fn tracks(self, session: &Session) -> impl Iterator<Item = (Channel, &Spline<Vec3>)> {
+        let tracks = session.document().keys.tracks();
+        tracks.filter(move |(of_track, _)| match self {
+            Self::All => true,
+            Self::Joint { joint, .. } => {
+                labels::joint_of_channel(session, *of_track) == Some(joint)
             }
-        }
+            Self::Channel { channel, .. } => *of_track == channel,
+        })
     }
 
     /// Channels to which "Add key" adds a key in this row.
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
-            Self::Channel(channel) => vec![channel],
+            Self::Channel { channel, .. } => vec![channel],
+            Self::Joint { .. } => self.tracks(session).map(|(channel, _)| channel).collect(),
             Self::All => KeysEdit::keyed_channels(session.shown()).collect(),
         }
     }
@@ -165,19 +216,24 @@ pub(in crate::ui) fn after_click<'a, T: Copy + PartialEq + 'a, C: FromIterator<T
 /// A set of keys with fast lookup.
 pub(in crate::ui) struct KeySet {
     keys: HashSet<(Channel, u64)>,
+    joints: HashSet<(JointId, u64)>,
     times: HashSet<u64>,
 }
 
 impl KeySet {
     pub fn new(session: &Session) -> Self {
-        Self::of(session.selection().keys())
+        Self::of(session, session.selection().keys())
     }
 
-    pub fn of(keys: &[Key]) -> Self {
+    pub fn of(session: &Session, keys: &[Key]) -> Self {
         let bits = |time: f64| (time + 0.0).to_bits();
         let keys = keys.iter();
+        let joint = |(channel, time): &Key| {
+            Some((labels::joint_of_channel(session, *channel)?, bits(*time)))
+        };
         Self {
             keys: keys.clone().map(|(channel, time)| (*channel, bits(*time))).collect(),
+            joints: keys.clone().filter_map(joint).collect(),
             times: keys.map(|(_, time)| bits(*time)).collect(),
         }
     }
@@ -187,7 +243,12 @@ impl KeySet {
         let bits = (time + 0.0).to_bits();
         match row {
             DopeSheetRow::All => self.times.contains(&bits),
-            DopeSheetRow::Channel(channel) => self.keys.contains(&(channel, bits)),
+            DopeSheetRow::Joint { joint, .. } => self.joints.contains(&(joint, bits)),
+            DopeSheetRow::Channel { channel, .. } => self.has_key((channel, time)),
         }
+    }
+
+    pub fn has_key(&self, (channel, time): Key) -> bool {
+        self.keys.contains(&(channel, (time + 0.0).to_bits()))
     }
 }

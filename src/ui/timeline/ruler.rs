@@ -162,9 +162,13 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     }
     for (x, label) in ticks.lines(scale, timeline, ticks.major) {
         painter.vline(x, rect.bottom() - 7.0..=rect.bottom(), Stroke::new(1.0, strong));
-        let (text, colour) = match label {
-            RulerLabel::Second(second) => (format!("{second} s"), strong),
-            RulerLabel::Frame(frame) => (format!("f {frame}"), weak),
+        // All labels have one unit: frames, where frames are labelled.
+        let (text, colour) = match (label, ticks.major) {
+            (RulerLabel::Second(second), RulerStep::Seconds(_)) => (format!("{second} s"), strong),
+            (RulerLabel::Second(second), RulerStep::Frames(_)) => {
+                (format!("f {:.0}", second as f64 * timeline.frame_rate), strong)
+            }
+            (RulerLabel::Frame(frame), _) => (format!("f {frame}"), weak),
         };
         let at = pos2(x, rect.top() + 1.0);
         painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);

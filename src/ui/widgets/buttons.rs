@@ -3,7 +3,7 @@
 
 use egui::{
     Align, Button, Color32, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
-    Stroke, Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Stroke, Ui, Vec2, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use super::choices::explained;
@@ -137,6 +137,14 @@ impl Icon {
             }
         }
     }
+}
+
+/// A triangle that points to the right if the row is folded, otherwise down.
+pub(in crate::ui) fn fold_mark(painter: &Painter, at: Pos2, is_folded: bool, colour: Color32) {
+    let corners = [vec2(-3.0, -2.0), vec2(3.0, -2.0), vec2(0.0, 3.0)];
+    let turned = |it: Vec2| if is_folded { vec2(it.y, -it.x) } else { it };
+    let corners = corners.map(|corner| at + turned(corner)).to_vec();
+    painter.add(Shape::convex_polygon(corners, colour, Stroke::NONE));
 }
 
 /// The diamond that marks a key; `size` is the distance in points from its centre to a corner.

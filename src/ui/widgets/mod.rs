@@ -9,7 +9,7 @@ mod slider;
 pub(in crate::ui) mod text;
 
 pub(in crate::ui) use buttons::{
-    Icon, IconButton, KeyButton, button, diamond, primary_button, wide_button,
+    Icon, IconButton, KeyButton, button, diamond, fold_mark, primary_button, wide_button,
 };
 pub(in crate::ui) use choices::{
     Choice, check_box, check_boxes, explained, name, overlay_check_box, segment, segments, tabs,

@@ -1,4 +1,4 @@
-//! The dope sheet: a row for all keys and one for every keyed channel.
+//! The dope sheet: a row for all keys and one for every keyed channel, joint by joint.
 
 pub(super) mod mouse;
 
@@ -9,18 +9,21 @@ use egui::{
 };
 
 use super::context_menu;
-use super::rows::{self, DopeSheetRow, KeySet, ROW, TimelineAreas, channels};
+use super::rows::{self, DopeSheetRow, FoldedJoints, KeySet, ROW, TimelineAreas};
 use super::time_scale::TimeScale;
-use crate::document::Channel;
+use crate::document::{Channel, Quantity};
+use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, KeysEdit, SelectAction, Session};
 use crate::ui::widgets::diamond;
-use crate::ui::{labels, style};
+use crate::ui::{labels, style, widgets};
 use mouse::DopeSheetView;
 
 /// Distance in points from the centre of a key's diamond to a corner.
 const SIZE: f32 = 5.0;
 /// Half the height of a diamond among dense keys, in points.
 const SMALLEST: f32 = 2.0;
+/// Space at the left of a name below a heading, in points.
+const INDENT: f32 = 12.0;
 /// A key that is closer than this distance, in points, to the key at its left has no tooltip.
 const NEAR: f32 = 5.0;
 
@@ -32,8 +35,8 @@ pub(in crate::ui) fn ui(
     ruler: &Response,
     actions: &mut Actions,
 ) {
-    let channels = channels(session);
-    if channels.is_empty() {
+    let rows = rows::rows(session, &FoldedJoints::kept(ui));
+    if rows.is_empty() {
         let sentence = "No keys. Pose the rig and press K to add keys at the playhead";
         rows::hint(ui, areas, sentence);
         return;
@@ -45,13 +48,23 @@ pub(in crate::ui) fn ui(
     let first = Rect::from_min_size(areas.names.min, vec2(areas.whole.width(), ROW));
     shown.row(ui, DopeSheetRow::All, first, actions);
     let rest = Rect::from_min_max(pos2(areas.whole.left(), first.bottom()), areas.whole.max);
-    let offset = shown.scrolled(ui, &channels, rest, actions);
+    let offset = shown.scrolled(ui, &rows, rest, actions);
 
-    let sheet = DopeSheetView { session, scale, channels: &channels, area: areas.keys, offset };
+    let sheet = DopeSheetView { session, scale, rows: &rows, area: areas.keys, offset };
     mouse::press(ui, &sheet, &body, ruler, actions);
     mouse::follow(ui, &sheet, actions);
     context_menu::of_rows(ui, &sheet, &body, actions);
     mouse::paint_box(ui, &sheet);
+}
+
+/// Colour of a channel's keys, by what it holds: angles, places, or anything else.
+fn key_colour(ui: &Ui, channel: Channel) -> Color32 {
+    let palette = style::palette(ui);
+    match channel.quantity() {
+        Quantity::Rotation | Quantity::Angle => style::colour(palette.upper),
+        Quantity::Point | Quantity::Length => style::colour(palette.lower),
+        _ => ui.visuals().text_color(),
+    }
 }
 
 struct DopeSheet<'a> {
@@ -63,11 +76,11 @@ struct DopeSheet<'a> {
 }
 
 impl DopeSheet<'_> {
-    /// Shows the visible rows of `channels` in a scroll area. Returns the scroll offset in points.
+    /// Shows the visible ones of some rows in a scroll area. Returns the scroll offset in points.
     fn scrolled(
         &self,
         ui: &mut Ui,
-        channels: &[Channel],
+        rows: &[DopeSheetRow],
         rect: Rect,
         actions: &mut Actions,
     ) -> f32 {
@@ -77,14 +90,14 @@ impl DopeSheet<'_> {
         let scroll = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             let area = ScrollArea::vertical().id_salt("rows").auto_shrink(false);
             area.scroll_source(source).show_viewport(ui, |ui, seen| {
-                ui.set_height(ROW * channels.len() as f32);
+                ui.set_height(ROW * rows.len() as f32);
                 let (top, left) = (ui.max_rect().top(), rect.left());
                 let first = (seen.top() / ROW).floor().max(0.0) as usize;
                 let count = (seen.height() / ROW).ceil() as usize + 1;
-                for (row, channel) in channels.iter().enumerate().skip(first).take(count) {
-                    let at = pos2(left, top + ROW * row as f32);
+                for (nth, row) in rows.iter().enumerate().skip(first).take(count) {
+                    let at = pos2(left, top + ROW * nth as f32);
                     let rect = Rect::from_min_size(at, vec2(rect.width(), ROW));
-                    self.row(ui, DopeSheetRow::Channel(*channel), rect, actions);
+                    self.row(ui, *row, rect, actions);
                 }
             })
         });
@@ -101,19 +114,43 @@ impl DopeSheet<'_> {
             DopeSheetRow::All => {
                 rows::line(ui, name, "All", ui.visuals().strong_text_color());
             }
-            DopeSheetRow::Channel(channel) => self.name(ui, channel, name, actions),
+            DopeSheetRow::Joint { joint, is_folded } => self.heading(ui, joint, is_folded, name),
+            DopeSheetRow::Channel { channel, is_below } => {
+                self.name(ui, channel, is_below, name, actions);
+            }
         }
         self.keys(ui, row, keys, actions);
-        if let DopeSheetRow::Channel(channel) = row
+        if let DopeSheetRow::Channel { channel, .. } = row
             && self.session.history().is_overridden(channel)
         {
             self.overridden(ui, channel, keys);
         }
     }
 
-    /// Shows the name of a channel. A click selects the channel, and with Shift or Ctrl adds it to
-    /// the selection or removes it.
-    fn name(&self, ui: &Ui, channel: Channel, rect: Rect, actions: &mut Actions) {
+    /// Shows the name of a joint. A click folds or unfolds its rows.
+    fn heading(&self, ui: &Ui, joint: JointId, is_folded: bool, rect: Rect) {
+        let joints = &self.session.rig().skeleton;
+        let name = joints.joint(joint).map_or("–", |joint| &joint.name);
+        let response = ui.interact(rect, Id::unique(("timeline joint", joint)), Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, true, !is_folded, format!("Keys of {name}"))
+        });
+        rows::paint_state(ui, rect, false, &response);
+        let mark = pos2(rect.left() + 12.0, rect.center().y);
+        widgets::fold_mark(ui.painter(), mark, is_folded, ui.visuals().weak_text_color());
+        let text = rect.with_min_x(rect.left() + INDENT);
+        rows::line(ui, text, name, ui.visuals().strong_text_color());
+        if response.clicked() {
+            self.ruler.request_focus();
+            FoldedJoints::toggle(ui, joint);
+        }
+        let verb = if is_folded { "Show" } else { "Hide" };
+        response.on_hover_text(format!("{verb} the channels of {name}"));
+    }
+
+    /// Shows the name of a channel, without its joint if it stands below that. A click selects the
+    /// channel, and with Shift or Ctrl adds it to the selection or removes it.
+    fn name(&self, ui: &Ui, channel: Channel, is_below: bool, rect: Rect, actions: &mut Actions) {
         let session = self.session;
         let selected = session.selection().channels().contains(&channel);
         let shown = labels::channel(session, channel);
@@ -126,7 +163,12 @@ impl DopeSheet<'_> {
         let visuals = ui.visuals();
         let is_lit = selected || response.hovered();
         let colour = if is_lit { visuals.strong_text_color() } else { visuals.text_color() };
-        rows::line(ui, rect, &shown, colour);
+        if is_below {
+            let short = labels::channel_of_joint(channel);
+            rows::line(ui, rect.with_min_x(rect.left() + 1.6 * INDENT), &short, colour);
+        } else {
+            rows::line(ui, rect, &shown, colour);
+        }
         if response.clicked() {
             self.ruler.request_focus();
             let channels = rows::after_click(ui, session.selection().channels(), channel);
@@ -155,10 +197,9 @@ impl DopeSheet<'_> {
             let hovered = x - last >= NEAR && self.key(ui, row, time, at, rect, actions);
             last = x;
             let visuals = ui.visuals();
-            let plain = if row == DopeSheetRow::All {
-                visuals.weak_text_color()
-            } else {
-                visuals.text_color()
+            let plain = match row {
+                DopeSheetRow::All | DopeSheetRow::Joint { .. } => visuals.weak_text_color(),
+                DopeSheetRow::Channel { channel, .. } => key_colour(ui, channel),
             };
             let (size, fill, rim) = if picked {
                 (SIZE + 1.0, style::accent(ui), Stroke::new(1.5, visuals.strong_text_color()))
@@ -186,7 +227,15 @@ impl DopeSheet<'_> {
             DopeSheetRow::All => {
                 (Id::unique(("timeline keys", time.to_bits())), format!("Keys at {time:.2} s"))
             }
-            DopeSheetRow::Channel(channel) => (
+            DopeSheetRow::Joint { joint, .. } => {
+                let joints = &self.session.rig().skeleton;
+                let name = joints.joint(joint).map_or("–", |joint| &joint.name);
+                (
+                    Id::unique(("timeline keys of joint", joint, time.to_bits())),
+                    format!("Keys of {name} at {time:.2} s"),
+                )
+            }
+            DopeSheetRow::Channel { channel, .. } => (
                 Id::unique(("timeline key", channel, time.to_bits())),
                 format!("Key of {} at {time:.2} s", labels::channel(self.session, channel)),
             ),

@@ -3,7 +3,6 @@
 use egui::{Event, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2};
 use glam::Vec3;
 
-use crate::document::Channel;
 use crate::session::{Actions, Key, KeysEdit, PlaybackAction, SelectAction, Session};
 use crate::ui::timeline::drag::{self, BoxDrag, KeyDrag, KeyShift, Press, TimelineDrag};
 use crate::ui::timeline::rows::{DopeSheetRow, KeySet, ROW, take_keyboard};
@@ -17,9 +16,10 @@ const REACH: f32 = 7.0;
 pub(in crate::ui) struct DopeSheetView<'a> {
     pub session: &'a Session,
     pub scale: TimeScale,
-    pub channels: &'a [Channel],
+    /// The rows below that of all keys.
+    pub rows: &'a [DopeSheetRow],
     pub area: Rect,
-    /// Scroll offset of the channels' rows in points.
+    /// Scroll offset of these rows in points.
     pub offset: f32,
 }
 
@@ -31,7 +31,7 @@ impl DopeSheetView<'_> {
             return Some(DopeSheetRow::All);
         }
         let row = ((y - ROW + self.offset) / ROW).floor().max(0.0) as usize;
-        self.channels.get(row).map(|channel| DopeSheetRow::Channel(*channel))
+        self.rows.get(row).copied()
     }
 
     /// Row, and time in seconds, of the key nearest to a screen position; `None` if no key of the
@@ -45,7 +45,7 @@ impl DopeSheetView<'_> {
         Some((row, nearest))
     }
 
-    /// Distance in points from the top of the first channel's row, which may be scrolled out of
+    /// Distance in points from the top of the first of these rows, which may be scrolled out of
     /// view, down to a screen position.
     fn content_y(&self, at: Pos2) -> f32 {
         at.y - self.area.top() - ROW + self.offset
@@ -55,11 +55,14 @@ impl DopeSheetView<'_> {
     /// [`Self::content_y`].
     fn keys_in(&self, times: (f64, f64), ys: (f32, f32)) -> Vec<Key> {
         let centre = |row: usize| ROW * (row as f32 + 0.5);
-        let rows = self.channels.iter().enumerate();
+        let rows = self.rows.iter().enumerate();
         let inside = rows.filter(|(row, _)| (ys.0..=ys.1).contains(&centre(*row)));
-        let keys = inside.flat_map(|(_, channel)| {
-            let found = DopeSheetRow::Channel(*channel).times(self.session, times.0, times.1);
-            found.into_iter().map(|time| (*channel, time))
+        // A heading has the keys of the rows below it, unless they are folded.
+        let own =
+            inside.filter(|(_, row)| !matches!(row, DopeSheetRow::Joint { is_folded: false, .. }));
+        let keys = own.flat_map(|(_, row)| {
+            let found = row.times(self.session, times.0, times.1);
+            found.into_iter().flat_map(|time| row.keys(self.session, time))
         });
         keys.collect()
     }
@@ -172,10 +175,8 @@ fn draw_box(
         let (time, y) = (sheet.scale.time(mouse.x), sheet.content_y(mouse));
         let times = (drag.time.min(time), drag.time.max(time));
         let inside = sheet.keys_in(times, (drag.y.min(y), drag.y.max(y)));
-        let picked = KeySet::of(&keys);
-        keys.extend(
-            inside.into_iter().filter(|(it, at)| !picked.has(DopeSheetRow::Channel(*it), *at)),
-        );
+        let picked = KeySet::of(sheet.session, &keys);
+        keys.extend(inside.into_iter().filter(|key| !picked.has_key(*key)));
     }
     if keys != sheet.session.selection().keys() {
         actions.push(SelectAction::Keys(keys));
