@@ -90,7 +90,8 @@ fn the_whole_left_panel_is_in_sight_at_1280_by_800() {
     let last = bench.rect(Role::Button, "Reset all");
     assert!(
         last.bottom() < bench.viewport().bottom() && last.right() < bench.viewport().left(),
-        "{last:?}"
+        "{last:?} in {:?}",
+        bench.viewport()
     );
 }
 

@@ -534,6 +534,7 @@ fn the_stiffness_of_free_roots_is_set_on_the_solver_page() {
     let mut bench = Bench::example("human");
     assert_eq!(bench.session().rig().solver.root, Root::Free);
     bench.show_tab(PanelTab::Solver);
+    bench.toggle(&["Settings"]);
     bench.reveal(Role::SpinButton, "Root stiffness");
     bench.click(Role::SpinButton, "Root stiffness");
     bench.key_with(Modifiers::COMMAND, Key::A);
@@ -760,4 +761,68 @@ fn a_race_of_many_iterations_stays_inside_the_window() {
             assert!(!is_on_page || rect.right() <= edge, "{name:?} ends at {}", rect.right());
         }
     }
+}
+
+// The outliner
+
+/// Whether the tree shows a joint.
+fn lists(bench: &Bench, name: &str) -> bool {
+    bench.shows(Role::Button, &format!("Joint {name}"))
+}
+
+#[test]
+fn hands_are_folded_until_a_finger_is_selected() {
+    let mut bench = Bench::example("human");
+    assert!(lists(&bench, "left_hand") && !lists(&bench, "left_index_1"));
+    let finger = bench.joint("left_index_2");
+    bench.apply([SelectAction::Joints(vec![finger])]);
+    bench.settle();
+    assert!(lists(&bench, "left_index_2") && !lists(&bench, "right_index_1"));
+}
+
+#[test]
+fn rows_fold_at_their_triangles_and_by_the_arrow_keys() {
+    let mut bench = built();
+    let row = bench.rect(Role::Button, "Joint joint");
+    let dot = |depth: f32| egui::pos2(row.left() + 13.0 * depth + 7.0, row.center().y);
+    bench.click_at(dot(1.0));
+    bench.settle();
+    assert!(lists(&bench, "joint") && !lists(&bench, "joint_1"));
+    bench.click_at(dot(1.0));
+    bench.settle();
+    assert!(lists(&bench, "joint_2"));
+    select(&mut bench, "joint_1");
+    bench.key(Key::ArrowLeft);
+    bench.settle();
+    assert!(!lists(&bench, "joint_2"));
+    bench.key(Key::ArrowRight);
+    bench.settle();
+    assert!(lists(&bench, "joint_2"));
+}
+
+#[test]
+fn the_filter_shows_joints_by_parts_of_their_names_with_those_above_them() {
+    let mut bench = Bench::example("human");
+    bench.click(Role::TextInput, "Filter joints");
+    bench.type_text("thumb");
+    bench.settle();
+    for name in ["left_thumb_3", "right_thumb_1", "left_hand", "pelvis"] {
+        assert!(lists(&bench, name), "{name}");
+    }
+    assert!(!lists(&bench, "head") && !lists(&bench, "left_index_1"));
+    bench.type_text("s");
+    bench.settle();
+    assert!(bench.says("No joint has such a name"));
+}
+
+#[test]
+fn the_outliner_keeps_its_height_and_folds_as_a_whole() {
+    let mut bench = Bench::example("human");
+    let end = bench.bottom_of_outliner();
+    bench.wait(1.0);
+    assert_eq!(bench.bottom_of_outliner(), end, "it does not grow by itself");
+    bench.click(Role::Button, "Joints");
+    assert!(!lists(&bench, "pelvis") && bench.bottom_of_outliner() < end - 100.0);
+    bench.click(Role::Button, "Joints");
+    assert!(lists(&bench, "pelvis"));
 }

@@ -8,7 +8,7 @@ mod skeleton;
 mod solver;
 pub(in crate::ui) mod statistics;
 
-use egui::{ScrollArea, Ui};
+use egui::{CentralPanel, ScrollArea, Ui};
 
 use super::parts::Parts;
 use super::widgets;
@@ -19,33 +19,42 @@ use limb::LimbTarget;
 pub(super) use skeleton::{ADD_TARGETS, BIND, may_be_person};
 
 pub(super) fn left(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    ui.add_space(4.0);
-    let note = skeleton::noted(session);
     let height = ui.available_height();
-    let room = height - note.map_or(0.0, |_| skeleton::note_height(height));
-    let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
-    rows.show(ui, |ui| {
-        let limb = LimbTarget::sole(session);
-        match limb {
-            Some(limb) => limb::ui(ui, limb, actions),
-            None => skeleton::ui(ui, session, actions),
+    skeleton::outliner(ui, session, actions);
+    CentralPanel::no_frame().show(ui, |ui| {
+        let note = skeleton::noted(session);
+        let room = ui.available_height() - note.map_or(0.0, |_| skeleton::note_height(height));
+        let rows = ScrollArea::vertical().auto_shrink(false).max_height(room);
+        rows.show(ui, |ui| properties(ui, session, actions));
+        if let Some(target) = note {
+            skeleton::note(ui, session, &target, actions);
         }
-        guides(ui, session, limb.is_some(), actions);
-        if let Some(limb) = limb {
-            limb::more(ui, limb, actions);
-            skeleton::folded(ui, session, actions);
-        }
-        let bodies = [Overlay::Cylinders, Overlay::Hand, Overlay::Paths];
-        let display: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(bodies).collect();
-        widgets::folded_section(ui, "Display", |ui| {
-            widgets::check_boxes(ui, session, 3, &display, None, actions);
-        });
-        resets(ui, actions);
-        ui.add_space(8.0);
     });
-    if let Some(target) = note {
-        skeleton::note(ui, session, &target, actions);
+}
+
+/// Shows what is selected, the rig, the guides and the display.
+fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let limb = LimbTarget::sole(session);
+    match limb {
+        Some(limb) => limb::ui(ui, limb, actions),
+        None => {
+            skeleton::selected(ui, session, actions);
+            skeleton::ui(ui, session, actions);
+        }
     }
+    guides(ui, session, limb.is_some(), actions);
+    if let Some(limb) = limb {
+        limb::more(ui, limb, actions);
+        skeleton::folded(ui, session, actions);
+        skeleton::selected(ui, session, actions);
+    }
+    let bodies = [Overlay::Cylinders, Overlay::Hand, Overlay::Paths];
+    let display: Vec<_> = Overlay::SURROUNDINGS.into_iter().chain(bodies).collect();
+    widgets::folded_section(ui, "Display", |ui| {
+        widgets::check_boxes(ui, session, 3, &display, None, actions);
+    });
+    resets(ui, actions);
+    ui.add_space(8.0);
 }
 
 /// Shows the controls of a part of another page.

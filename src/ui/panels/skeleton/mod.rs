@@ -18,6 +18,7 @@ use crate::session::{Actions, JointEdit, PathEdit, Session};
 use crate::ui::panels::limb::{self, LimbTarget};
 use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
+pub(super) use outliner::panel as outliner;
 pub(in crate::ui) use skin::BIND;
 pub(super) use skin::areas as skin_areas;
 pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person};
@@ -35,19 +36,14 @@ pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
     Some(rig.targets[index])
 }
 
-/// Shows the joints of a figure that is one limb, whose other settings stand elsewhere.
+/// Shows the skin of a figure that is one limb, whose other settings stand elsewhere.
 pub(in crate::ui) fn folded(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    widgets::named_folded_section(ui, "joints of a limb", "Joints and skin", |ui| {
-        outliner::ui(ui, session, actions);
-        ui.separator();
+    widgets::named_folded_section(ui, "skin of a limb", "Skin", |ui| {
         skin::ui(ui, session, actions);
     });
-    selected(ui, session, actions);
 }
 
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    widgets::section(ui, "Joints", |ui| outliner::ui(ui, session, actions));
-    selected(ui, session, actions);
     widgets::section(ui, "Targets", |ui| {
         targets::list(ui, session, actions);
         balance::ui(ui, session, actions);
@@ -58,7 +54,7 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 }
 
 /// Shows the settings of the selected joint and of its target.
-fn selected(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+pub(in crate::ui) fn selected(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let rig = session.rig();
     if let Some(selected) = session.selection().active()
         && let Some(joint) = rig.skeleton.joint(selected)

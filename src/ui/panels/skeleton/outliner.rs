@@ -1,8 +1,11 @@
-//! The outliner: the tree of joints, their selection, and buttons that edit the tree.
+//! The outliner: the tree of joints, their selection, a filter, and buttons that edit the tree.
 
+use std::collections::HashMap;
+
+use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{
-    Align2, Color32, Key, Painter, Pos2, Response, RichText, Role, ScrollArea, Sense, TextStyle,
-    Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, Frame, Key, Margin, Painter, Panel, Pos2, Rect, Response, RichText, Role,
+    ScrollArea, Sense, TextEdit, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use crate::kinematics::skeleton::JointId;
@@ -12,41 +15,119 @@ use crate::ui::{commands, style, widgets};
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
-const ROWS: f32 = 9.0;
+/// Width of the place of a triangle that folds a row.
+const TRIANGLE: f32 = 14.0;
+/// Number of children from which a joint that has a parent is folded at first: fingers, for example.
+const FOLDED_FROM: usize = 4;
 
 const NONE_SELECTED: &str = "Select a joint first";
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    // The buttons are above the tree: below it they would move under the mouse as the tree grows.
-    buttons(ui, session, actions);
-    ui.add_space(4.0);
-    tree(ui, session, actions);
+/// Shows the outliner in a panel of its own, whose height can be dragged. It is folded at first for a
+/// figure that is one limb.
+pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let is_limb = session.rig().sole_limb().is_some();
+    let state = ui.make_persistent_id(("outliner", is_limb));
+    let mut state = CollapsingState::load_with_default_open(ui, state, !is_limb);
+    let [first, most] = [0.34, 0.6].map(|part| (part * ui.available_height()).max(LEAST_HEIGHT));
+    // The panel around it has a margin.
+    let frame = Frame::side_top_panel(ui.style());
+    let panel = match state.is_open() {
+        true => Panel::top("outliner")
+            .resizable(true)
+            .default_size(HEIGHT.min(first))
+            .size_range(LEAST_HEIGHT..=most)
+            .frame(frame.inner_margin(Margin::symmetric(0, 4))),
+        false => Panel::top("folded outliner")
+            .resizable(false)
+            .show_separator_line(false)
+            .frame(frame.inner_margin(Margin::ZERO)),
+    };
+    panel.show(ui, |ui| {
+        let filter = heading(ui, session, &mut state);
+        if state.is_open() {
+            buttons(ui, session, actions);
+            ui.add_space(4.0);
+            tree(ui, session, &filter, actions);
+        }
+    });
+    state.store(ui);
+}
+
+/// Least and first height of the open panel, in points.
+const LEAST_HEIGHT: f32 = 150.0;
+const HEIGHT: f32 = 268.0;
+
+/// Shows the title and the filter, and returns what is typed there.
+fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> String {
+    let typed = ui.make_persistent_id("filter of joints");
+    let mut filter: String = ui.data(|data| data.get_temp(typed)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let title = format!("Joints ({})", session.skeleton().joints().len());
+        let is_open = state.is_open();
+        let (rect, triangle) = ui.allocate_exact_size(vec2(TRIANGLE + 2.0, ROW), Sense::CLICK);
+        paint_default_icon(
+            ui,
+            state.openness(ui),
+            &triangle.clone().with_new_rect(rect.shrink2(vec2(2.5, 5.5))),
+        );
+        let label = ui.add(egui::Label::new(RichText::new(title).strong()).sense(Sense::click()));
+        label.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, "Joints"));
+        let tooltip = if is_open { "Hide the joints" } else { "Show the joints as a tree" };
+        if label.on_hover_text(tooltip).clicked() || triangle.clicked() {
+            state.toggle(ui);
+        }
+        if is_open {
+            ui.add_space(8.0);
+            let edit = TextEdit::singleline(&mut filter).hint_text("Filter");
+            let edit = ui.add(edit.desired_width(ui.available_width() - 12.0));
+            widgets::name(ui, &edit, "Filter joints");
+            edit.on_hover_text("Show only joints whose names contain this text");
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(typed, filter.clone()));
+    filter
 }
 
 /// True if a row of the tree had the keyboard focus in the previous frame.
 #[derive(Clone, Copy, Default)]
 struct OutlinerFocus(bool);
 
+/// Which joints are folded or unfolded by the user, by their names.
+#[derive(Clone, Default)]
+struct Folds(HashMap<String, bool>);
+
 /// A joint with its depth in the tree.
 struct OutlinerRow {
     joint: JointId,
     depth: usize,
+    /// True if its children are hidden; `None` without children.
+    is_folded: Option<bool>,
+    /// False if it is there only because a joint below it is found by the filter.
+    is_found: bool,
     /// Influence of the targets that turn the joint.
     influence: f32,
     /// True if the target that ends here is enabled; `None` without a target.
     target: Option<bool>,
 }
 
-fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let rows = rows(session);
-    let height = ROW * ROWS.min(rows.len().max(1) as f32);
-    let area = ScrollArea::both().auto_shrink([false, false]).max_height(height);
+fn tree(ui: &mut Ui, session: &Session, filter: &str, actions: &mut Actions) {
+    let kept = ui.make_persistent_id("folded joints");
+    let mut folds: Folds = ui.data(|data| data.get_temp(kept)).unwrap_or_default();
+    unfold_above_new(ui, session, &mut folds);
+    let rows = rows(session, filter, &folds);
+    // Contents that were higher than the panel would make it grow.
+    let whole = ui.available_rect_before_wrap();
+    let lines = if whole.width() < ONE_LINE { 2.0 } else { 1.0 };
+    let (above, below) = whole.split_top_bottom_at_y(whole.bottom() - lines * LEGEND);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(above));
+    let area = ScrollArea::both().auto_shrink([false, false]);
     let mut pointed = None;
-    area.id_salt("joints").show(ui, |ui| {
+    area.id_salt("joints").show(&mut inside, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut focused = OutlinerFocus(false);
         for row in &rows {
-            let response = show(ui, session, row);
+            let response = show(ui, session, row, &mut folds);
             if response.hovered() {
                 pointed = Some(row.joint);
             }
@@ -60,16 +141,45 @@ fn tree(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     if pointed.is_some() && pointed != session.selection().hovered() || was && pointed.is_none() {
         actions.push(SelectAction::Hover(pointed));
     }
-    ui.data_mut(|data| data.insert_temp(said, pointed.is_some()));
-    if rows.is_empty() {
-        ui.weak("No joints. Add a root to start.");
+    ui.data_mut(|data| {
+        data.insert_temp(said, pointed.is_some());
+        data.insert_temp(kept, folds);
+    });
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(below));
+    if session.skeleton().joints().is_empty() {
+        inside.weak("No joints. Add a root to start.");
+    } else if rows.is_empty() {
+        inside.weak("No joint has such a name.");
     } else {
-        legend(ui);
+        legend(&mut inside);
+    }
+    ui.advance_cursor_after_rect(whole);
+}
+
+/// Height of a line of the legend, and width that it needs to be one line, in points.
+const LEGEND: f32 = 20.0;
+const ONE_LINE: f32 = 236.0;
+
+/// Unfolds the joints above one that has just been selected.
+fn unfold_above_new(ui: &Ui, session: &Session, folds: &mut Folds) {
+    let seen = ui.make_persistent_id("selected in the tree");
+    let active = session.selection().active();
+    let was = ui.data(|data| data.get_temp::<Option<JointId>>(seen)).flatten();
+    if active == was {
+        return;
+    }
+    ui.data_mut(|data| data.insert_temp(seen, active));
+    let skeleton = session.skeleton();
+    let above = active.into_iter().flat_map(|joint| skeleton.ancestors(joint).skip(1));
+    for joint in above {
+        folds.0.insert(skeleton[joint].name.clone(), false);
     }
 }
 
-/// Rows in depth-first order, so that children follow their parent.
-fn rows(session: &Session) -> Vec<OutlinerRow> {
+/// Rows in depth-first order, so that children follow their parent: all that are not in a folded
+/// joint or, with a filter, those that it finds and the joints above them.
+fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
+    let filter = filter.trim().to_lowercase();
     let skeleton = session.skeleton();
     let mut children = vec![Vec::new(); skeleton.joints().len()];
     let mut open = Vec::new();
@@ -85,16 +195,46 @@ fn rows(session: &Session) -> Vec<OutlinerRow> {
     for target in &rig.targets {
         targets[rig.end_of(target).index()] = Some(target.enabled);
     }
+    let (found, has_found_below) = found(session, &filter);
     let mut rows = Vec::with_capacity(children.len());
     while let Some((joint, depth)) = open.pop() {
-        open.extend(children[joint.index()].iter().map(|&child| (child, depth + 1)));
-        let (influence, target) = (influences[joint.index()], targets[joint.index()]);
-        rows.push(OutlinerRow { joint, depth, influence, target });
+        let (index, below) = (joint.index(), &children[joint.index()]);
+        let is_first = depth > 0 && below.len() >= FOLDED_FROM;
+        let is_folded =
+            filter.is_empty() && *folds.0.get(&skeleton[joint].name).unwrap_or(&is_first);
+        if !is_folded {
+            open.extend(below.iter().map(|&child| (child, depth + 1)));
+        }
+        if !found[index] && !has_found_below[index] {
+            continue;
+        }
+        rows.push(OutlinerRow {
+            joint,
+            depth,
+            is_folded: (!below.is_empty()).then_some(is_folded),
+            is_found: found[index],
+            influence: influences[index],
+            target: targets[index],
+        });
     }
     rows
 }
 
-fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
+/// For each joint whether its name contains the filter, and whether that of a joint below it does.
+fn found(session: &Session, filter: &str) -> (Vec<bool>, Vec<bool>) {
+    let skeleton = session.skeleton();
+    let names = skeleton.joints().iter().map(|joint| &joint.name);
+    let found: Vec<bool> = names.map(|name| name.to_lowercase().contains(filter)).collect();
+    let mut below = vec![false; found.len()];
+    for (joint, it) in skeleton.iter().rev() {
+        if let Some(parent) = it.parent {
+            below[parent.index()] |= found[joint.index()] || below[joint.index()];
+        }
+    }
+    (found, below)
+}
+
+fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow, folds: &mut Folds) -> Response {
     let rig = session.rig();
     let joint = &rig.skeleton[row.joint];
     let selected = session.selection().joints().contains(&row.joint);
@@ -104,9 +244,19 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         let white = egui::Color32::WHITE;
         fonts.layout_no_wrap(joint.name.clone(), font.clone(), white).size().x
     });
-    let marks = if row.target.is_some() { 44.0 } else { 24.0 };
+    let marks = TRIANGLE + if row.target.is_some() { 44.0 } else { 24.0 };
     let size = vec2(ui.available_width().max(indent + width + marks), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let triangle = Rect::from_min_size(pos2(rect.left() + indent, rect.top()), vec2(TRIANGLE, ROW));
+    let triangle = row.is_folded.map(|is_folded| {
+        let verb = if is_folded { "Show" } else { "Hide" };
+        let mark = ui.interact(triangle, response.id.with("fold"), Sense::CLICK);
+        let clicked = mark.on_hover_text(format!("{verb} the joints below")).clicked();
+        if clicked || response.has_focus() && toggles(ui, is_folded) {
+            folds.0.insert(joint.name.clone(), !is_folded);
+        }
+        (triangle, is_folded)
+    });
     response.widget_info(|| {
         WidgetInfo::selected(Role::Button, true, selected, format!("Joint {}", joint.name))
     });
@@ -126,10 +276,13 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         painter.rect_stroke(inside, 4.0, visuals.selection.stroke, egui::StrokeKind::Inside);
     }
     for depth in 0..row.depth.min(12) {
-        let x = rect.left() + 8.0 + INDENT * depth as f32;
+        let x = rect.left() + 0.5 * TRIANGLE + INDENT * depth as f32;
         painter.vline(x, rect.y_range(), visuals.widgets.noninteractive.bg_stroke);
     }
-    let at = pos2(rect.left() + indent + 8.0, rect.center().y);
+    if let Some((triangle, is_folded)) = triangle {
+        widgets::fold_mark(painter, triangle.center(), is_folded, visuals.weak_text_color());
+    }
+    let at = pos2(rect.left() + indent + TRIANGLE + 6.0, rect.center().y);
     let palette = style::palette(ui);
     if joint.locked {
         locked_dot(painter, at, style::colour(palette.joint));
@@ -137,11 +290,15 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         let colour = palette.upper.mixed(palette.accent, row.influence);
         free_dot(painter, at, style::colour(colour));
     }
-    let text = if selected { visuals.strong_text_color() } else { visuals.text_color() };
+    let text = match (selected, row.is_found) {
+        (true, _) => visuals.strong_text_color(),
+        (false, true) => visuals.text_color(),
+        (false, false) => visuals.weak_text_color(),
+    };
     painter.text(at + vec2(9.0, 0.0), Align2::LEFT_CENTER, &joint.name, font, text);
     if let Some(enabled) = row.target {
         let colour = if enabled { style::accent(ui) } else { visuals.weak_text_color() };
-        let centre = pos2(rect.left() + indent + width + 30.0, rect.center().y);
+        let centre = pos2(rect.left() + indent + TRIANGLE + width + 30.0, rect.center().y);
         target_mark(painter, centre, colour);
     }
     reveal(ui, session, row, &response);
@@ -156,6 +313,12 @@ fn show(ui: &mut Ui, session: &Session, row: &OutlinerRow) -> Response {
         said.push("has a target".to_owned());
     }
     response.on_hover_text(format!("{}. Double-click to rename", said.join(", ")))
+}
+
+/// True if the arrow key is pressed that folds or unfolds a row.
+fn toggles(ui: &Ui, is_folded: bool) -> bool {
+    let key = if is_folded { Key::ArrowRight } else { Key::ArrowLeft };
+    ui.input(|input| input.key_pressed(key))
 }
 
 fn free_dot(painter: &Painter, at: Pos2, colour: Color32) {
@@ -242,8 +405,7 @@ fn respond(
         return;
     }
     focus::leave_letters(ui, response.id);
-    let arrows = egui::EventFilter { vertical_arrows: true, ..Default::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    focus::take_arrows(ui, response.id);
     viewport::viewport(ui, session, actions);
     let presses = |key| ui.input(|input| input.num_presses(key)) as isize;
     let by = presses(Key::ArrowDown) - presses(Key::ArrowUp);

@@ -14,8 +14,14 @@ use runs::why_not;
 /// The method and its settings, a run of it, and the iterations of that run.
 pub(in crate::ui) fn solver(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     method(ui, session, actions);
-    settings(ui, session, actions);
     buttons(ui, session, actions);
+    // Who poses limbs does not need them.
+    if session.limb().is_some() {
+        let id = "settings beside limbs";
+        widgets::named_folded_section(ui, id, "Settings", |ui| settings(ui, session, actions));
+    } else {
+        widgets::section(ui, "Settings", |ui| settings(ui, session, actions));
+    }
     // The comparison shows its own table.
     if session.solvers().comparison().is_none() {
         report(ui, session, actions);

@@ -4,7 +4,7 @@
 pub(in crate::ui) mod space;
 mod turn;
 
-use egui::{RichText, ScrollArea, Ui};
+use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use crate::document::{Channel, SkeletonRig, Target, TargetMotion, TargetPath};
 use crate::kinematics::chain_ik::{Root, Status};
@@ -53,11 +53,8 @@ fn row(
     widgets::pair(ui, "", |ui| {
         what_is_missing(ui, report, session.rig().tolerance());
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            let mut enabled = target.enabled;
-            let name = format!("Target of {end_name}");
-            let check = ui.checkbox(&mut enabled, "").on_hover_text("Enable this target");
-            widgets::name(ui, &check, &name);
-            if check.changed() {
+            if switch(ui, target.enabled, end_name) {
+                let enabled = !target.enabled;
                 actions.push(TargetEdit::SetTarget(Target { enabled, ..*target }));
             }
             let selected = session.selection().active();
@@ -68,6 +65,25 @@ fn row(
             }
         });
     });
+}
+
+/// Shows the mark of a target, filled while it is enabled, and returns whether it was pressed.
+fn switch(ui: &mut Ui, is_enabled: bool, end_name: &str) -> bool {
+    let (rect, switch) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
+    let name = format!("Target of {end_name}");
+    switch.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_enabled, &name));
+    let visuals = ui.visuals();
+    let colour = if is_enabled { style::accent(ui) } else { visuals.weak_text_color() };
+    let ring = if switch.hovered() { 6.5 } else { 5.5 };
+    ui.painter().circle_stroke(rect.center(), ring, (1.5, colour));
+    if is_enabled {
+        ui.painter().circle_filled(rect.center(), 2.5, colour);
+    }
+    if switch.has_focus() {
+        ui.painter().circle_stroke(rect.center(), 8.0, visuals.selection.stroke);
+    }
+    let verb = if is_enabled { "Disable" } else { "Enable" };
+    switch.on_hover_text(format!("{verb} this target")).clicked()
 }
 
 /// Shows the distance from a tip to its target, or else the rotation that is missing; a tick if
