@@ -52,23 +52,26 @@ picture_of_window() {
 
 # Frames of an example in six columns, evenly spaced in time; one frame if it stands still.
 picture_of_example() {
-    local name=$1 frames=$settings/frames quality=(-quality 76 -strip) all time nth
-    "$program" examples "$name" -o "$settings/$name.json"
-    rm -rf "$frames" && mkdir -p "$frames"
-    "$program" export "$settings/$name.json" --size 16x10 --fps 30 -o "$frames/####.png"
+    local name=$1 frames quality=(-quality 76 -strip) file all time nth
+    frames=$(mktemp -d)
+    file=$frames/example.json
+    "$program" examples "$name" -o "$file"
+    "$program" export "$file" --size 16x10 --fps 30 -o "$frames/####.png"
     all=("$frames"/*.png)
-    rm -rf "$frames" && mkdir -p "$frames"
+    rm "$frames"/*.png
     if ((${#all[@]} == 1)); then
-        "$program" render "$settings/$name.json" --size 576x360 -o "$frames/0.png"
+        "$program" render "$file" --size 576x360 -o "$frames/0.png"
         convert "$frames/0.png" -resize 288x180 "${quality[@]}" "assets/pictures/$name.jpg"
+        rm -r "$frames"
         return
     fi
     for nth in {10..33}; do
         time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * ($nth - 10) / 24 }")
-        "$program" render "$settings/$name.json" --time "$time" --size 576x360 -o "$frames/$nth.png"
+        "$program" render "$file" --time "$time" --size 576x360 -o "$frames/$nth.png"
     done
     montage "$frames"/*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
         "assets/pictures/$name.jpg"
+    rm -r "$frames"
 }
 
 press() {

@@ -28,7 +28,7 @@ main() {
     cargo build --release --locked
     trap clean_up EXIT
     open_window "$scene"
-    press 439 697 # "Just play"
+    press 534 697 # "Just play"
     rm -rf "$frames"
     mkdir -p "$frames"
     drag_hand_over_shoulder_and_back
