@@ -158,7 +158,8 @@ impl DopeSheetRow {
     /// Sorted times of the row's keys between `from` and `to`, in seconds.
     pub fn times(self, session: &Session, from: f64, to: f64) -> Vec<f64> {
         let tracks = self.tracks(session);
-        let mut all: Vec<f64> = tracks.flat_map(|(_, track)| times(track, from, to)).collect();
+        let mut all: Vec<f64> =
+            tracks.into_iter().flat_map(|(_, track)| times(track, from, to)).collect();
         all.sort_unstable_by(f64::total_cmp);
         all.dedup();
         all
@@ -166,27 +167,34 @@ impl DopeSheetRow {
 
     /// The row's keys at a time in seconds.
     pub fn keys(self, session: &Session, time: f64) -> Vec<Key> {
-        let there = self.tracks(session).filter(|(_, track)| track.get(time).is_some());
+        let tracks = self.tracks(session).into_iter();
+        let there = tracks.filter(|(_, track)| track.get(time).is_some());
         there.map(|(channel, _)| (channel, time)).collect()
     }
 
-    /// The channels of the row that have keys.
-    fn tracks(self, session: &Session) -> impl Iterator<Item = (Channel, &Spline<Vec3>)> {
-        let tracks = session.document().keys.tracks();
-        tracks.filter(move |(of_track, _)| match self {
-            Self::All => true,
+    /// The channels of the row that have keys. That of one channel is looked up: a selection box over
+    /// many rows asks for it at each of its keys.
+    fn tracks(self, session: &Session) -> Vec<(Channel, &Spline<Vec3>)> {
+        let keys = &session.document().keys;
+        match self {
+            Self::All => keys.tracks().collect(),
             Self::Joint { joint, .. } => {
-                labels::joint_of_channel(session, *of_track) == Some(joint)
+                let is_below = |channel| labels::joint_of_channel(session, channel) == Some(joint);
+                keys.tracks().filter(|(channel, _)| is_below(*channel)).collect()
             }
-            Self::Channel { channel, .. } => *of_track == channel,
-        })
+            Self::Channel { channel, .. } => {
+                keys.track(channel).map(|track| (channel, track)).into_iter().collect()
+            }
+        }
     }
 
     /// Channels to which "Add key" adds a key in this row.
     pub fn channels(self, session: &Session) -> Vec<Channel> {
         match self {
             Self::Channel { channel, .. } => vec![channel],
-            Self::Joint { .. } => self.tracks(session).map(|(channel, _)| channel).collect(),
+            Self::Joint { .. } => {
+                self.tracks(session).into_iter().map(|(channel, _)| channel).collect()
+            }
             Self::All => KeysEdit::keyed_channels(session.shown()).collect(),
         }
     }

@@ -220,9 +220,14 @@ fn rows(session: &Session, filter: &str, folds: &Folds) -> Vec<OutlinerRow> {
     rows
 }
 
-/// For each joint whether its name contains the filter, and whether that of a joint below it does.
+/// For each joint whether its name contains the filter, and whether that of a joint below it does; all
+/// joints are found by an empty filter.
 fn found(session: &Session, filter: &str) -> (Vec<bool>, Vec<bool>) {
     let skeleton = session.skeleton();
+    if filter.is_empty() {
+        let joints = skeleton.joints().len();
+        return (vec![true; joints], vec![false; joints]);
+    }
     let names = skeleton.joints().iter().map(|joint| &joint.name);
     let found: Vec<bool> = names.map(|name| name.to_lowercase().contains(filter)).collect();
     let mut below = vec![false; found.len()];
