@@ -841,3 +841,31 @@ fn invalid_keys_are_named() {
         refusal(&with("\"metres_per_unit\":0")).contains("metres_per_unit: must be above 0, got 0")
     );
 }
+
+#[test]
+fn blobs_of_older_releases_are_one_or_two_spheres() {
+    let document = |blob: &str| {
+        with(&format!(
+            r#""rig":"skeleton","skeleton":{{"joints":[{{"name":"a","axis":[0,1,0],"radius":0.1}}]}},
+            "skin":{{"bones":{{"blobs":[{{"joint":0,{blob}}}]}}}}"#
+        ))
+    };
+    for (older, spheres) in [
+        (r#""base":[1,2,3],"radius":0.5"#, "[[1,2,3,0.5]]"),
+        (r#""base":[1,2,3],"tip":[4,5,6],"radius":0.5"#, "[[1,2,3,0.5],[4,5,6,0.5]]"),
+        (
+            r#""base":[1,2,3],"tip":[4,5,6],"radius":0.5,"tip_radius":0.25"#,
+            "[[1,2,3,0.5],[4,5,6,0.25]]",
+        ),
+        (r#""base":[1,2,3],"radius":0.5,"tip_radius":0.25"#, "[[1,2,3,0.5],[1,2,3,0.25]]"),
+    ] {
+        let [older, now] = [older.to_owned(), format!("\"spheres\":{spheres}")]
+            .map(|blob| open(&document(&blob)).document.rig.skin);
+        assert!(older.is_some());
+        assert_eq!(older, now, "{spheres}");
+    }
+    for blob in [r#""tip":[4,5,6]"#, r#""base":[1,2,3]"#] {
+        let message = refusal(&document(blob));
+        assert!(message.contains("must have `spheres`, or `base` and `radius`"), "{message}");
+    }
+}

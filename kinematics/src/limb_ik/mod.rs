@@ -117,9 +117,11 @@ impl Limb {
         Err(NoLimb::NoUpperJoint)
     }
 
-    /// The limb for a target of `joint`, the last of an unbranched chain or the bone below which a
-    /// hand or foot is the last. Fingers and toes do not count: what is shorter from the base of a
-    /// hand or foot to the farthest tip than the bone above it.
+    /// The limb for a target of `joint`, which is the last joint of a chain without branches, or the
+    /// one before it.
+    ///
+    /// Fingers and toes are no part of the chain: a hand or foot is its last joint if it is shorter,
+    /// from its base to the farthest tip below it, than 0.8 times the bone above it.
     ///
     /// A chain of two bones is a limb. In a chain of three or four bones that branches off a body,
     /// the last is the hand or foot, and the limb ends at its base. Any other chain is better posed
@@ -128,17 +130,16 @@ impl Limb {
     pub fn for_end(skeleton: &Skeleton, joint: JointId) -> Option<Self> {
         let is_single = |joint: &JointId| skeleton.children(*joint).nth(1).is_none();
         let has_bone = |joint: &JointId| has_length(skeleton[*joint].axis);
-        let end = match is_end(skeleton, joint) {
-            true => joint,
-            false => hand(skeleton, joint).unwrap_or(joint),
-        };
+        let end = [Some(joint), hand(skeleton, joint)]
+            .into_iter()
+            .flatten()
+            .find(|joint| is_end(skeleton, *joint))?;
         let above = || skeleton.ancestors(end).skip(1);
         let is_on_body = above().any(|joint| !is_single(&joint));
         let bones =
             usize::from(has_bone(&end)) + above().take_while(is_single).filter(has_bone).count();
         let parent = skeleton[end].parent?;
         match bones {
-            _ if !is_end(skeleton, end) => None,
             2 => Self::ending_at(skeleton, end).ok(),
             3 | 4 if is_on_body => Self::ending_at(skeleton, parent).ok(),
             _ => None,

@@ -107,9 +107,9 @@ pub(in crate::ui) enum DopeSheetRow {
     },
 }
 
-/// The joints whose rows are folded.
+/// The names of the joints whose rows are folded.
 #[derive(Clone, Default)]
-pub(in crate::ui) struct FoldedJoints(HashSet<JointId>);
+pub(in crate::ui) struct FoldedJoints(HashSet<String>);
 
 impl FoldedJoints {
     fn id() -> Id {
@@ -121,10 +121,10 @@ impl FoldedJoints {
     }
 
     /// Folds a joint, or unfolds it.
-    pub fn toggle(ui: &Ui, joint: JointId) {
+    pub fn toggle(ui: &Ui, name: &str) {
         let mut folded = Self::kept(ui);
-        if !folded.0.remove(&joint) {
-            folded.0.insert(joint);
+        if !folded.0.remove(name) {
+            folded.0.insert(name.to_owned());
         }
         ui.data_mut(|data| data.insert_temp(Self::id(), folded));
     }
@@ -137,10 +137,12 @@ pub(in crate::ui) fn rows(session: &Session, folded: &FoldedJoints) -> Vec<DopeS
     for channel in channels(session) {
         of_joint.entry(labels::joint_of_channel(session, channel)).or_default().push(channel);
     }
+    let skeleton = session.skeleton();
     let mut rows = Vec::new();
     for (joint, channels) in of_joint {
         let heading = joint.filter(|_| channels.len() > 1);
-        let is_folded = heading.is_some_and(|joint| folded.0.contains(&joint));
+        let name = heading.and_then(|joint| skeleton.joint(joint)).map(|joint| &joint.name);
+        let is_folded = name.is_some_and(|name| folded.0.contains(name));
         rows.extend(heading.map(|joint| DopeSheetRow::Joint { joint, is_folded }));
         let is_below = heading.is_some();
         let row = |channel| DopeSheetRow::Channel { channel, is_below };

@@ -130,7 +130,7 @@ impl DopeSheet<'_> {
     /// Shows the name of a joint. A click folds or unfolds its rows.
     fn heading(&self, ui: &Ui, joint: JointId, is_folded: bool, rect: Rect) {
         let joints = &self.session.rig().skeleton;
-        let name = joints.joint(joint).map_or("–", |joint| &joint.name);
+        let name = joints.joint(joint).map_or("–", |joint| joint.name.as_str());
         let response = ui.interact(rect, Id::unique(("timeline joint", joint)), Sense::click());
         response.widget_info(|| {
             WidgetInfo::selected(Role::Button, true, !is_folded, format!("Keys of {name}"))
@@ -142,7 +142,7 @@ impl DopeSheet<'_> {
         rows::line(ui, text, name, ui.visuals().strong_text_color());
         if response.clicked() {
             self.ruler.request_focus();
-            FoldedJoints::toggle(ui, joint);
+            FoldedJoints::toggle(ui, name);
         }
         let verb = if is_folded { "Show" } else { "Hide" };
         response.on_hover_text(format!("{verb} the channels of {name}"));
