@@ -76,7 +76,7 @@ impl Palette {
                 sky_top: Colour::rgb(0xe9edf1),
                 sky_bottom: Colour::rgb(0xd0d7df),
                 ground: Colour::rgb(0xf6f8fa).with_opacity(0.75),
-                grid: Colour::rgb(0x5a6678).with_opacity(0.55),
+                grid: Colour::rgb(0x5a6678).with_opacity(0.7),
                 wall: Colour::rgb(0x5a6678),
                 text: Colour::rgb(0x1c1f24),
                 gains: ramp([0x7cabcc, 0xa17cd4, 0xc4499a, 0xbb1a40, 0x850609]),

@@ -17,6 +17,10 @@ use crate::rig::Crowd;
 /// Ratio of the radius of a singular direction's mark to the radius of the globe.
 const MARK_RADIUS: f32 = 0.026;
 
+/// Bytes of the labels of a scene with all guides, more than there are: a longer number then takes no
+/// memory.
+const TEXT: usize = 1024;
+
 /// Everything that is drawn in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -103,6 +107,7 @@ impl Scene {
         self.lines.clear();
         self.labels.clear();
         self.text.clear();
+        self.text.reserve(TEXT);
     }
 
     /// Text of a label of this scene; empty for a label of another scene.

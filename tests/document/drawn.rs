@@ -1,7 +1,7 @@
 //! Parts of a skeleton in a scene: bones, shadows and onion skins.
 
 use glam::{Vec2, Vec3};
-use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Target, Theme};
+use ik_arm::document::{Display, Document, Overlay, SkeletonRig, Skin, Target, Theme};
 use ik_arm::kinematics::skeleton::{Balance, Joint, JointId, Skeleton};
 use ik_arm::scene::{Line, Scene};
 use ik_arm::session::{FileAction, Overlays, PlaybackAction, Session};
@@ -63,6 +63,51 @@ fn shadows_of_short_bones_do_not_add_up() {
         let length: f32 = scene.shadows.iter().map(|it| it.base.distance(it.tip)).sum();
         assert!((length - 2.0).abs() < 1e-3, "{bones}: the shadows are {length} long");
     }
+}
+
+#[test]
+fn a_hand_casts_one_shadow_that_ends_among_its_fingertips() {
+    let mut session = Session::default();
+    session.apply(open_example("human"));
+    let document = session.shown();
+    for has_skin in [true, false] {
+        let mut document = document.clone();
+        document.display = document.display.with(Overlay::Skin, has_skin);
+        let posed = document.at(0.0);
+        let scene = Scene::new(&posed, &Overlays::default(), Theme::Dark);
+        let skeleton = posed.skeleton();
+        for side in ["left", "right"] {
+            let joint = |name: &str| skeleton.find(&format!("{side}_{name}")).expect("a joint");
+            let wrist = skeleton.base(joint("hand"));
+            let shadows: Vec<_> = scene.shadows.iter().filter(|it| it.base == wrist).collect();
+            let [shadow] = shadows[..] else { panic!("{side}: {shadows:?}") };
+            let fingers = ["thumb", "index", "middle", "ring", "little"];
+            let tips = fingers.map(|finger| skeleton.tip(joint(&format!("{finger}_3"))));
+            let [low, high] =
+                [Vec3::min, Vec3::max].map(|bound| tips.into_iter().reduce(bound).expect("a tip"));
+            assert!(shadow.tip.cmpge(low).all() && shadow.tip.cmple(high).all(), "{shadow:?}");
+        }
+        assert!(
+            scene.shadows.len() <= 19,
+            "{}: as many as before the fingers",
+            scene.shadows.len()
+        );
+    }
+}
+
+#[test]
+fn a_skin_stands_for_the_limbs_of_an_arm_and_colours_its_hand() {
+    let mut document = Document::default();
+    document.rig.skin = Some(Skin::from_bones(&document.rig.skeleton));
+    let [bare, skinned, both] =
+        [(false, true), (true, false), (true, true)].map(|(skin, bones)| {
+            let display = document.display.with(Overlay::Skin, skin).with(Overlay::Bones, bones);
+            scene(&Document { display, ..document.clone() })
+        });
+    assert_eq!([&bare, &skinned, &both].map(|it| it.solids.len()), [2, 0, 2]);
+    assert_eq!([&bare, &skinned, &both].map(|it| it.skins.len()), [0, 1, 1]);
+    assert_eq!(skinned.hands[0].colour, skinned.skins[0].colour);
+    assert_eq!(skinned.shadows, bare.shadows);
 }
 
 #[test]

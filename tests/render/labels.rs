@@ -175,6 +175,6 @@ fn a_hand_with_handles_has_no_name_and_the_others_keep_theirs() {
         let scene = Scene::new(&document.at(0.0), &overlays, Theme::Dark);
         scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
     };
-    assert_eq!(names(false), ["Root", "Elbow", "Hand"]);
-    assert_eq!(names(true), ["Root", "Elbow"]);
+    assert_eq!(names(false), ["Root", "Elbow", "Hand", "Pointer"]);
+    assert_eq!(names(true), ["Root", "Elbow", "Pointer"]);
 }

@@ -51,21 +51,24 @@ impl<'a> CylinderLimb<'a> {
     }
 
     /// Adds the limb with its hand, its target, names and shadows, as the display shows them. The
-    /// part under the mouse lights up; an end with handles has no name.
-    pub fn add(&self, scene: &mut Scene, posed: &Posed, overlays: &Overlays) {
+    /// part under the mouse lights up; an end with handles has no name. A skin that stands for the
+    /// limb has the colour `skin`, which the hand then has, too.
+    pub fn add(&self, scene: &mut Scene, posed: &Posed, overlays: &Overlays, skin: Option<Colour>) {
         let (document, frames) = (posed.document(), &self.frames);
         let (display, rig) = (document.display, &document.rig);
         let has_hand = display.shows(Overlay::Hand);
         let colours = BodyColours { palette: scene.palette, overlays };
-        let roll = || rig.hand_roll(posed.skeleton(), self.target.joint);
-        self.add_limbs(scene, has_hand.then(roll).flatten(), colours);
+        if skin.is_none() {
+            let roll = || rig.hand_roll(posed.skeleton(), self.target.joint);
+            self.add_limbs(scene, has_hand.then(roll).flatten(), colours);
+        }
         if let Some(turn) = rig.hand_rotation(posed.skeleton(), self.target.joint)
             && has_hand
         {
             let at = frames.origin(LimbPart::Hand);
             let transform = Affine3A::from_mat3_translation(turn.as_mat3(), at);
             let hand = self.limb.hand.unwrap_or(self.limb.lower);
-            let colour = colours.of(Some(hand), scene.palette.joint);
+            let colour = colours.of(Some(hand), skin.unwrap_or(scene.palette.joint));
             self.add_hand(scene, transform, colour, display.shows(Overlay::Shadow));
         }
         let is_posing = self.target.is_posing();

@@ -44,7 +44,8 @@ pub(super) struct DrawnSkeleton<'a> {
     pub joints: &'a [Shared<Joint>],
     pub pose: &'a SkeletonPose,
     pub depths: &'a [usize],
-    pub are_leaves: &'a [bool],
+    pub children: &'a [usize],
+    pub hands: &'a [Option<JointId>],
     /// Reach in world units.
     pub reach: f32,
     /// World units per unit of the skeleton.
@@ -134,7 +135,7 @@ impl<'a> DrawnSkeleton<'a> {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: base, radius: radius * 1.1, colour });
         }
-        if self.are_leaves[joint.index()] && base != tip {
+        if self.is_leaf(joint) && base != tip {
             let colour = scene.palette.joint;
             scene.balls.push(Ball { centre: tip, radius: self.tip_radius(joint) * 1.1, colour });
         }
@@ -211,36 +212,61 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Adds the shadow of a joint's bone, and of the short bones before it that have none of their
-    /// own.
-    pub fn add_shadow(&self, scene: &mut Scene, joint: JointId) {
+    /// The shadow of a joint's bone, and of the short bones before it that have none of their own; a
+    /// hand has one, from its base to the middle of its fingertips. `radii` are the radii of a bone's
+    /// base and tip. `None` for a short bone, for one without a length, and below the ground.
+    pub fn shadow(&self, joint: JointId, radii: impl Fn(JointId) -> [f32; 2]) -> Option<Shadow> {
         if !self.ends_shadow(joint) {
-            return;
+            return None;
         }
         let above = |joint: &JointId| self.joints[joint.index()].parent;
         let shared = std::iter::successors(above(&joint), above);
         let first = shared.take_while(|it| !self.ends_shadow(*it)).last().unwrap_or(joint);
-        let (base, tip) = (self.pose.base(first), self.pose.tip(joint));
-        let (base_radius, tip_radius) = (self.radius(first), self.tip_radius(joint));
+        let (base, tip) = (self.pose.base(first), self.tip_of_shadow(joint));
+        let ([base_radius, _], [_, tip_radius]) = (radii(first), radii(joint));
         let limb = Shadow { base, base_radius, tip, tip_radius };
-        scene.shadows.extend((base != tip).then(|| limb.above_ground()).flatten());
+        (base != tip).then(|| limb.above_ground()).flatten()
     }
 
-    /// True if a shadow ends at a joint's tip: every so many short bones, and at the end of a
-    /// chain.
+    /// Radii of a bone at its base and tip.
+    pub fn radii(&self, joint: JointId) -> [f32; 2] {
+        [self.radius(joint), self.tip_radius(joint)]
+    }
+
+    fn is_leaf(&self, joint: JointId) -> bool {
+        self.children[joint.index()] == 0
+    }
+
+    /// The joint's tip; for a hand, the middle of its fingertips.
+    fn tip_of_shadow(&self, joint: JointId) -> Vec3 {
+        if self.hands[joint.index()].is_none() {
+            return self.pose.tip(joint);
+        }
+        let is_fingertip =
+            |it: &JointId| self.hands[it.index()] == Some(joint) && self.is_leaf(*it);
+        let tips = self.pose.ids().filter(is_fingertip).map(|it| self.pose.tip(it));
+        let (sum, count) =
+            tips.fold((Vec3::ZERO, 0.0), |(sum, count), tip| (sum + tip, count + 1.0));
+        sum / count
+    }
+
+    /// True if a shadow ends at a joint's tip: every so many short bones, at the end of a chain, and
+    /// at a hand, but not at its fingers.
     fn ends_shadow(&self, joint: JointId) -> bool {
         const MOST: f32 = 64.0;
+        if let Some(hand) = self.hands[joint.index()] {
+            return hand == joint;
+        }
         let length = self.pose.base(joint).distance(self.pose.tip(joint));
         let bones = (SHADOW * self.reach / length).ceil().clamp(1.0, MOST) as usize;
-        self.are_leaves[joint.index()] || (self.depths[joint.index()] + 1).is_multiple_of(bones)
+        self.is_leaf(joint) || (self.depths[joint.index()] + 1).is_multiple_of(bones)
     }
 
     /// Adds the bones in the pose of another frame.
     pub fn add_onion_skin(&self, scene: &mut Scene, colour: Colour) {
         for joint in self.pose.ids() {
             let (base, tip) = (self.pose.base(joint), self.pose.tip(joint));
-            let [from, to] =
-                [self.radius(joint), self.tip_radius(joint)].map(|radius| ONION_SKIN * radius);
+            let [from, to] = self.radii(joint).map(|radius| ONION_SKIN * radius);
             if base != tip {
                 scene.add_solid(base, tip, from, to, colour);
                 scene.balls.push(Ball { centre: tip, radius: to, colour });
@@ -250,13 +276,15 @@ impl<'a> DrawnSkeleton<'a> {
         }
     }
 
-    /// Adds the names of the selected joints and of the joint under the mouse.
+    /// Adds the names of the selected joints and of the joint under the mouse, beside bodies with a
+    /// radius.
     pub fn add_labels(
         &self,
         scene: &mut Scene,
         overlays: &Overlays,
         labelled: &mut Vec<JointId>,
         has_name: impl Fn(JointId) -> bool,
+        radius: impl Fn(JointId) -> f32,
     ) {
         labelled.clear();
         labelled.extend(overlays.selection.iter().copied().chain(overlays.hovered));
@@ -265,8 +293,7 @@ impl<'a> DrawnSkeleton<'a> {
         let is_there = |joint: &JointId| joint.index() < self.joints.len();
         for joint in labelled.iter().copied().filter(is_there).filter(|joint| has_name(*joint)) {
             let middle = self.pose.base(joint).midpoint(self.pose.tip(joint));
-            let label =
-                Label::new(middle, self.radius(joint), LabelSide::Below, scene.palette.text);
+            let label = Label::new(middle, radius(joint), LabelSide::Below, scene.palette.text);
             scene.add_label(label, format_args!("{}", self.joints[joint.index()].name));
         }
     }

@@ -1,13 +1,13 @@
 //! Guides of a limb: its Pointer, its limits, the circle of elbows, frames, and what its twist is
 //! measured from.
 
-use glam::Mat3;
+use glam::{Mat3, Vec3};
 
 use super::{figure, twist};
 use crate::document::{Display, Overlay, Posed};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::{LimbFrames, LimbPart};
-use crate::scene::{Globe, Scene, Solid, SphereShell};
+use crate::scene::{Globe, Label, LabelSide, Scene, Solid, SphereShell};
 use crate::session::{Overlays, ShownLimb};
 
 /// Adds the guides of a limb that the display shows, and the figure that lights up.
@@ -59,12 +59,13 @@ pub(super) fn add_circles(scene: &mut Scene, posed: &Posed, selected: Option<Joi
 fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display) {
     let colour = scene.palette.guide;
     if display.shows(Overlay::Pointer) {
-        scene.guide_solids.push(Solid {
-            transform: limb.world(LimbPart::Pointer),
-            shape: limb.pointer(),
-            colour,
-            winding: None,
-        });
+        let (transform, shape) = (limb.world(LimbPart::Pointer), limb.pointer());
+        scene.guide_solids.push(Solid { transform, shape, colour, winding: None });
+        if display.shows(Overlay::Labels) {
+            let tip = transform.transform_point3(Vec3::X * shape.length);
+            let label = Label::new(tip, shape.tip_radius, LabelSide::Below, scene.palette.text);
+            scene.add_label(label, format_args!("Pointer"));
+        }
     }
     for (overlay, part, radius) in [
         (Overlay::InnerLimit, LimbPart::InnerLimit, limb.limits.inner),

@@ -39,8 +39,12 @@ pub(super) struct Scratch {
     pub distances: Vec<f32>,
     /// Number of bones above each joint, not counting bones of zero length.
     pub depths: Vec<usize>,
-    /// For each joint, true if it has no child.
-    pub are_leaves: Vec<bool>,
+    /// For each joint, the number of its children.
+    pub children: Vec<usize>,
+    /// For each joint, the distance of the farthest tip below it from its root, along offsets.
+    pub tips: Vec<f32>,
+    /// For each joint of a hand, the joint of the palm.
+    pub hands: Vec<Option<JointId>>,
     /// Joints that get a label.
     pub labelled: Vec<JointId>,
     /// For each joint, true if cylinders stand for it.
@@ -70,25 +74,30 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         influences,
         distances,
         depths,
-        are_leaves,
+        children,
+        tips,
+        hands,
         labelled,
         cylinders,
         balance,
     } = scratch;
     let skeleton = &*rig.skeleton;
     posed.skeleton().write_pose(pose);
-    read_tree(skeleton.joints(), depths, are_leaves);
+    read_tree(skeleton.joints(), depths, children);
     let reach = rig.reach_in(distances);
     let scale = skeleton.transform().matrix3.determinant().abs().cbrt();
     let joints = skeleton.joints();
+    read_hands(skeleton, distances, children, tips, hands);
     let shows_stiffness = display.shows(Overlay::Stiffness);
-    let drawn = DrawnSkeleton { joints, pose, depths, are_leaves, reach, scale, shows_stiffness };
+    let drawn =
+        DrawnSkeleton { joints, pose, depths, children, hands, reach, scale, shows_stiffness };
     let skin = ShownSkin::new(rig, display);
     cylinders.clear();
     cylinders.resize(joints.len(), false);
+    let skin_of_limbs = skin.filter(|skin| !skin.has_bones()).map(|skin| skin.colour());
     for limb in CylinderLimb::all(posed) {
         limb.mark(skeleton, cylinders);
-        limb.add(scene, posed, overlays);
+        limb.add(scene, posed, overlays, skin_of_limbs);
     }
     for joint in skeleton.ids().filter(|joint| !cylinders[joint.index()]) {
         if let Some(skin) = skin.filter(|skin| !skin.has_bones()) {
@@ -99,7 +108,7 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         drawn.add_bone(scene, joint, colour);
         drawn.add_link(scene, joint, scene.palette.joint);
         if display.shows(Overlay::Shadow) {
-            drawn.add_shadow(scene, joint);
+            scene.shadows.extend(drawn.shadow(joint, |joint| drawn.radii(joint)));
         }
     }
     if let Some(skin) = skin {
@@ -147,7 +156,13 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         // Cylinders have their targets; a free place has none.
         let is_drawn = |it: &Target| !cylinders[it.joint.index()] && !it.has_free_place();
         for (target, report) in targets.filter(|(it, _)| is_drawn(it)) {
-            drawn.add_target(scene, target, report);
+            // Over a skin, lines through its limbs would look like faults.
+            let is_lit = overlays
+                .selection
+                .iter()
+                .any(|it| rig.limb_target_of(*it) == rig.target(target.joint));
+            let has_pointer = is_lit || skin.is_none_or(|skin| skin.has_bones());
+            drawn.add_target(scene, target, report, has_pointer);
             if target.enabled && target.is_moving() && !rig.leads_path(target) {
                 add_trail(scene, target, posed.skeleton(), posed.time());
             }
@@ -176,23 +191,56 @@ pub(super) fn add(scene: &mut Scene, posed: &Posed, overlays: &Overlays, scratch
         add_reach_region(scene, region);
     }
     if display.shows(Overlay::Labels) {
-        drawn.add_labels(scene, overlays, labelled, |joint| !cylinders[joint.index()]);
+        let radius = |joint| match &skin {
+            Some(skin) => drawn.radius(joint).max(skin.thickness(joint) * scale),
+            None => drawn.radius(joint),
+        };
+        let has_name = |joint: JointId| !cylinders[joint.index()];
+        drawn.add_labels(scene, overlays, labelled, has_name, radius);
     }
 }
 
 /// Sets `depths` to the number of bones above each joint, not counting bones of zero length, and
-/// `are_leaves` to whether each joint has no children.
-fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, are_leaves: &mut Vec<bool>) {
+/// `children` to the number of each joint's children.
+fn read_tree(joints: &[Shared<Joint>], depths: &mut Vec<usize>, children: &mut Vec<usize>) {
     depths.clear();
     depths.resize(joints.len(), 0);
-    are_leaves.clear();
-    are_leaves.resize(joints.len(), true);
+    children.clear();
+    children.resize(joints.len(), 0);
     for (joint, parent) in joints.iter().map(|joint| joint.parent).enumerate() {
         if let Some(parent) = parent {
             let is_bone = joints[parent.index()].axis != Vec3::ZERO;
             depths[joint] = depths[parent.index()] + usize::from(is_bone);
-            are_leaves[parent.index()] = false;
+            children[parent.index()] += 1;
         }
+    }
+}
+
+/// Sets `hands` to the hand that each joint belongs to: below a joint with three or more children, if
+/// no tip there is far from it. `distances` are those of the joints from their roots.
+fn read_hands(
+    skeleton: &Skeleton,
+    distances: &[f32],
+    children: &[usize],
+    tips: &mut Vec<f32>,
+    hands: &mut Vec<Option<JointId>>,
+) {
+    /// Length of a hand at most, as a fraction of the reach.
+    const LENGTH: f32 = 0.25;
+    tips.clear();
+    tips.extend(distances.iter().zip(skeleton.joints()).map(|(at, it)| at + it.axis.length()));
+    for (joint, it) in skeleton.iter().rev() {
+        if let Some(parent) = it.parent {
+            tips[parent.index()] = tips[parent.index()].max(tips[joint.index()]);
+        }
+    }
+    let reach = tips.iter().copied().fold(0.0, f32::max);
+    hands.clear();
+    for (joint, it) in skeleton.iter() {
+        let above = it.parent.and_then(|parent| hands[parent.index()]);
+        let length = tips[joint.index()] - distances[joint.index()];
+        let is_hand = children[joint.index()] >= 3 && length <= LENGTH * reach;
+        hands.push(above.or(is_hand.then_some(joint)));
     }
 }
 
@@ -230,9 +278,15 @@ fn add_curve<I: Iterator<Item = Vec3>>(scene: &mut Scene, points: impl Fn() -> I
 }
 
 impl DrawnSkeleton<'_> {
-    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base and the
-    /// pole.
-    fn add_target(&self, scene: &mut Scene, target: &Target, report: &TargetReport) {
+    /// Adds a target as a ball; for a limb that it poses, the axis from the limb's base, if it is to
+    /// be seen, and the pole.
+    fn add_target(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        report: &TargetReport,
+        has_pointer: bool,
+    ) {
         let at = report.position;
         let radius = self.target_radius(target.joint);
         let guide = scene.palette.guide;
@@ -245,8 +299,11 @@ impl DrawnSkeleton<'_> {
             return;
         }
         if let Some(upper) = self.upper_of(target).filter(|_| target.is_posing()) {
-            let colour = guide.with_opacity(POINTER_OPACITY * target.influence);
-            scene.lines.push(Line { from: self.pose.base(upper), to: at, colour, dashed: false });
+            if has_pointer {
+                let colour = guide.with_opacity(POINTER_OPACITY * target.influence);
+                let from = self.pose.base(upper);
+                scene.lines.push(Line { from, to: at, colour, dashed: false });
+            }
             self.add_pole(scene, target, report, radius);
         }
     }

@@ -95,7 +95,8 @@ impl<'a> ShownSkin<'a> {
         sides.iter().map(move |side| step * side)
     }
 
-    fn colour(&self) -> Colour {
+    /// The colour of the skin, see-through over bones.
+    pub fn colour(&self) -> Colour {
         let [r, g, b] = self.skin.colour.map(|channel| (channel * 255.0).round() as u8);
         let opacity = if self.has_bones { OVER_BONES } else { 1.0 };
         Colour([r, g, b, 255]).with_opacity(opacity)
@@ -106,8 +107,8 @@ impl<'a> ShownSkin<'a> {
         self.mesh.radii.get(joint.index()).copied().unwrap_or_default()
     }
 
-    /// Adds what a skin without bones shows of a joint: its shadow, and its bone if it is selected
-    /// or under the mouse.
+    /// Adds what a skin without bones shows of a joint: its shadow, and its bone if that is selected
+    /// or under the mouse and no part of the skin lights up for it.
     pub fn add_joint(
         &self,
         scene: &mut Scene,
@@ -119,16 +120,21 @@ impl<'a> ShownSkin<'a> {
         let (base, tip) = (drawn.pose.base(joint), drawn.pose.tip(joint));
         let thickness = self.thickness(joint) * drawn.scale;
         if display.shows(Overlay::Shadow) && thickness > 0.0 {
-            for offset in self.offsets() {
-                let (base, tip) = (base + offset, tip + offset);
-                let limb = Shadow { base, base_radius: thickness, tip, tip_radius: thickness };
-                scene.shadows.extend(limb.above_ground());
-            }
+            let radii = |joint| [self.thickness(joint) * drawn.scale; 2];
+            let shadows = drawn.shadow(joint, radii);
+            let moved = |limb: Shadow, offset: Vec3| Shadow {
+                base: limb.base + offset,
+                tip: limb.tip + offset,
+                ..limb
+            };
+            scene
+                .shadows
+                .extend(self.offsets().flat_map(|offset| shadows.map(|limb| moved(limb, offset))));
         }
-        if overlays.selection.contains(&joint) || overlays.hovered == Some(joint) {
+        let is_lit = overlays.selection.contains(&joint) || overlays.hovered == Some(joint);
+        if is_lit && thickness == 0.0 {
             let colour = drawn.colour(scene, joint, overlays);
-            let plain = drawn.radius(joint);
-            let radius = plain.min(0.4 * thickness.max(plain));
+            let radius = drawn.radius(joint);
             if base != tip {
                 scene.add_guide_solid(base, tip, radius, 0.5 * radius, colour);
             }
@@ -145,7 +151,7 @@ fn coloured_weights(
     display: Display,
 ) -> Option<(JointId, WeightColours)> {
     /// Opacities of the tints of a joint under the mouse and of a selected one.
-    const TINTS: [f32; 2] = [0.25, 0.5];
+    const TINTS: [f32; 2] = [0.5, 0.9];
     let selected = overlays.selection.last().copied();
     if display.shows(Overlay::SkinWeights) {
         return selected.map(|joint| (joint, WeightColours::Ramp));

@@ -1,6 +1,6 @@
-//! The round cones that a skin is made of, and which of them blend: those of a joint with those of
-//! its parent, and siblings that start at one point. All others do not, so that fingers do not melt
-//! together.
+//! The bones and blobs that a skin is made of, and which of them blend: those of a joint with those
+//! of its parent, and siblings that start at one point. All others do not, so that fingers do not
+//! melt together.
 
 use glam::{DVec3, Vec3};
 

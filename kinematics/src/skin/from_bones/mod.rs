@@ -69,27 +69,27 @@ impl SkinnedMesh {
 }
 
 /// Size of the cells of each body's grid: the smallest radius divided by the detail, but not so small
-/// that all surfaces together have more than about 200,000 cells. Trees have cells of one size. Each
-/// body of a jointed shape has cells of its own, which are coarser where small details would make
-/// them many, such as an ear on a head.
+/// that all surfaces together have more than about 200,000 cells. Trees have cells of one size. In a
+/// jointed shape, a body that is n times as thick as the thinnest one has cells √n times as large,
+/// since a chord of length c misses an arc of radius r by c² / 8 r: the same for all bodies. Where
+/// small details would make cells many, such as an ear on a head, they are coarser.
 fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeError> {
     const MOST_CELLS: f64 = 2e5;
     const MOST_CELLS_ALONG: f64 = 1e5;
-    const MOST_CELLS_OF_JOINT: f64 = 4000.0;
+    const MOST_CELLS_OF_JOINT: f64 = 1800.0;
     let area = |body: &Body| body.sweeps().map(Sweep::area).sum::<f64>();
     let least = |body: &Body| body.sweeps().map(Sweep::least_radius).fold(f64::INFINITY, f64::min);
-    let mut cells: Vec<f64> =
-        bodies.iter().map(|body| least(body) / f64::from(shape.detail)).collect();
-    if shape.is_jointed {
-        for (cell, body) in cells.iter_mut().zip(bodies) {
+    let thinnest = bodies.iter().map(least).fold(f64::INFINITY, f64::min);
+    let detail = f64::from(shape.detail);
+    let cell = |body: &Body| match shape.is_jointed {
+        false => thinnest / detail,
+        true => {
             let coarsest = least(body) / f64::from(SkinShape::LEAST_DETAIL);
             let coarse = (area(body) / MOST_CELLS_OF_JOINT).sqrt().min(coarsest);
-            *cell = cell.max(coarse);
+            coarse.max((thinnest * least(body)).sqrt() / detail)
         }
-    } else {
-        let least = cells.iter().copied().fold(f64::INFINITY, f64::min);
-        cells.fill(least);
-    }
+    };
+    let mut cells: Vec<f64> = bodies.iter().map(cell).collect();
     let count = bodies.iter().zip(&cells).map(|(body, cell)| area(body) / (cell * cell));
     let coarser = (count.sum::<f64>() / MOST_CELLS).sqrt().max(1.0);
     cells.iter_mut().for_each(|cell| *cell *= coarser);
