@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, pos2};
 use ik_arm::io::{Example, ExampleGroup};
-use ik_arm::session::{Dialog, FileAction, Preferences, ShellAction};
+use ik_arm::session::{Dialog, FileAction, Preferences};
 
 use crate::bench::{Bench, LARGE, SMALL};
 
@@ -103,5 +103,11 @@ fn the_offer_at_the_start_shows_the_examples() {
     let mut bench = Bench::first(LARGE, Preferences::default());
     bench.click(Role::Button, "Examples…");
     assert!(is_open(&bench));
-    bench.apply([ShellAction::CloseDialog]);
+    bench.click(Role::Button, "Close");
+    assert!(!is_open(&bench) && bench.shows(Role::Button, "Take the tour"));
+    bench.click(Role::Button, "Examples…");
+    bench.settle();
+    bench.click(Role::Button, "Human");
+    bench.settle();
+    assert!(!bench.shows(Role::Button, "Take the tour"), "the offer covers the example");
 }

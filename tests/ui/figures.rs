@@ -6,7 +6,7 @@ use egui::{Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use ik_arm::document::Overlay;
-use ik_arm::session::{LimbFigure, PanelTab};
+use ik_arm::session::{LimbFigure, PanelTab, SelectAction};
 
 use crate::bench::{Bench, SMALL};
 use crate::common::all_cases;
@@ -56,6 +56,25 @@ fn row(bench: &mut Bench, name: &str) -> Rect {
         bench.settle();
     }
     panic!("{name} cannot be scrolled to");
+}
+
+#[test]
+fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
+    let mut bench = Bench::example("human");
+    bench.show_tab(PanelTab::Triangle);
+    assert!(bench.says("Select another limb's joint"));
+    bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
+    assert!(bench.says("head is in no limb"));
+    bench.click(Role::ComboBox, "Limb");
+    // The list of targets has buttons of these names, too.
+    let items = bench.harness.get_all_by_role_and_label(Role::Button, "right_foot");
+    let item = items.map(|item| item.rect()).max_by(|a, b| a.left().total_cmp(&b.left()));
+    bench.click_at(item.expect("an item").center());
+    bench.settle();
+    assert_eq!(bench.session().selection().active(), Some(bench.joint("right_foot")));
+    assert!(bench.says("The limb of the selected joint"));
+    let limb = bench.session().limb().expect("a limb");
+    assert_eq!(limb.target, bench.joint("right_shin"));
 }
 
 #[test]

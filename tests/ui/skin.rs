@@ -22,8 +22,8 @@ fn chain() -> Bench {
 
 fn with_skin() -> Bench {
     let mut bench = chain();
-    bench.reveal(Role::Button, "Add skin");
-    bench.click(Role::Button, "Add skin");
+    bench.reveal(Role::CheckBox, "Show skin");
+    bench.click(Role::CheckBox, "Show skin");
     bench.settle();
     bench
 }
@@ -37,7 +37,7 @@ fn shows(bench: &Bench, overlay: Overlay) -> bool {
 }
 
 #[test]
-fn one_button_gives_a_skeleton_a_skin_and_another_removes_it() {
+fn a_switch_gives_a_skeleton_a_skin_and_a_button_removes_it() {
     let mut bench = with_skin();
     let vertices =
         skin(&bench).expect("a skin").mesh().expect("a mesh").mesh.mesh().positions.len();
@@ -49,6 +49,19 @@ fn one_button_gives_a_skeleton_a_skin_and_another_removes_it() {
     bench.reveal(Role::Button, "Remove skin");
     bench.click(Role::Button, "Remove skin");
     assert!(skin(&bench).is_none());
+}
+
+#[test]
+fn the_switch_hides_the_skin_and_shows_it_again() {
+    for mut bench in [Bench::new(), chain()] {
+        for (is_shown, made) in [(true, true), (false, false), (true, false)] {
+            let before = skin(&bench).cloned();
+            bench.reveal(Role::CheckBox, "Show skin");
+            bench.click(Role::CheckBox, "Show skin");
+            assert_eq!(shows(&bench, Overlay::Skin), is_shown);
+            assert_eq!(skin(&bench).cloned() != before, made, "it is made once");
+        }
+    }
 }
 
 #[test]

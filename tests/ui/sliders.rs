@@ -4,8 +4,9 @@ use crate::common::arm::{Arm, ArmEdit, ArmSession};
 use core::f32::consts::TAU;
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, PointerButton, Pos2, pos2};
+use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use glam::Vec3;
+use ik_arm::session::TransactionAction;
 
 use crate::bench::Bench;
 use crate::panel::SLIDERS;
@@ -89,6 +90,41 @@ fn each_slider_changes_its_own_number_and_no_other_bit() {
 }
 
 #[test]
+fn a_dragged_label_turns_its_number_and_with_shift_ten_times_as_finely() {
+    for (modifiers, degrees) in [(Modifiers::NONE, 36.0), (Modifiers::SHIFT, 3.6)] {
+        let mut bench = Bench::new();
+        let at = bench.rect(Role::Label, "Twist").center();
+        bench.hold(modifiers);
+        bench.move_to(at);
+        bench.press(PointerButton::Primary);
+        for step in 1..=20 {
+            bench.move_to(at + vec2(5.0 * step as f32, 0.0));
+        }
+        assert!(bench.session().history().is_editing());
+        let twist = bench.session().arm().twist.to_degrees();
+        assert!((twist - degrees).abs() <= 0.1 * degrees, "{twist}");
+        bench.release(PointerButton::Primary);
+        assert!(!bench.session().history().is_editing());
+        bench.apply([TransactionAction::Undo]);
+        assert_eq!(bench.session().arm(), Arm::default(), "it is one step");
+    }
+}
+
+#[test]
+fn esc_cancels_the_drag_of_a_label() {
+    let mut bench = Bench::after(awkward());
+    let before = bench.session().arm();
+    let at = bench.rect(Role::Label, "Twist").center();
+    bench.drag(PointerButton::Primary, at, at + vec2(40.0, 0.0));
+    assert_ne!(bench.session().arm(), before);
+    bench.key(Key::Escape);
+    bench.move_to(at + vec2(80.0, 0.0));
+    bench.release(PointerButton::Primary);
+    bench.settle();
+    assert_eq!(bench.session().arm(), before);
+}
+
+#[test]
 fn a_click_on_a_rail_goes_there() {
     let mut bench = Bench::new();
     bench.click_at(on_rail(&bench, "Root x", 0.5));
@@ -169,7 +205,7 @@ fn a_double_click_on_rail_or_label_resets() {
             let before = bench.session().arm();
             bench.reveal(Role::Slider, slider);
             let rail = bench.rect(Role::Slider, slider);
-            let label = pos2(rail.left() - 30.0, rail.center().y);
+            let label = pos2(rail.left() - 12.0, rail.center().y);
             bench.double_click_at(if on_label { label } else { on_rail(&bench, slider, 0.3) });
             let after = bench.session().arm();
             assert_eq!(value(&after, slider), value(&Arm::default(), slider), "{slider}");

@@ -119,7 +119,10 @@ fn each_tab_shows_its_page_and_the_choice_is_kept_for_each_rig() {
     assert!(bench.shows(Role::Button, "Race all solvers"));
     assert!(!bench.shows(Role::Tab, "Skin"));
     bench.click(Role::Tab, "Triangle");
-    assert!(bench.says("Limb of left_hand"), "the first limb of the Human");
+    assert!(
+        bench.shows(Role::ComboBox, "Limb") && bench.says("left_hand"),
+        "the first limb of the Human"
+    );
     bench.apply([FileAction::New]);
     assert_eq!(bench.session().preferences().tab, PanelTab::Triangle);
 }

@@ -40,7 +40,10 @@ impl Session {
                     Err(refused) => refused,
                 }
             }
-            Err(FileAction::OpenExample(example)) => open_example(example),
+            Err(FileAction::OpenExample(example)) => {
+                self.preferences.offers_tour = false;
+                open_example(example)
+            }
             Err(FileAction::CopyLink) => copy_link(self.document()),
             Err(FileAction::NewFigure) => new_figure(),
             Err(_) => new_empty(),

@@ -19,8 +19,9 @@ const PICTURE: Vec2 = vec2(192.0, 120.0);
 const TITLE: f32 = 24.0;
 const GAP: f32 = 12.0;
 const MOST_COLUMNS: usize = 4;
+const MOST_ROWS: f32 = 3.0;
 /// Height of the window without the pictures.
-const FRAME: f32 = 220.0;
+const FRAME: f32 = 180.0;
 /// Height of the sentence about the example under the mouse: two lines.
 const SENTENCE: f32 = 40.0;
 /// Number of pictures that are decoded in one frame of the window: more would be felt.
@@ -31,13 +32,15 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let window = ui.ctx().content_rect().size();
     let columns = ((window.x - 80.0) / (PICTURE.x + GAP)).floor() as usize;
     let columns = columns.clamp(1, MOST_COLUMNS);
-    ui.set_width(columns as f32 * (PICTURE.x + GAP) + GAP);
+    ui.set_width(columns as f32 * (PICTURE.x + GAP) - GAP);
     let groups = ExampleGroup::ALL.map(|it| (it, it.title(), "Show the examples of this group"));
     let chosen = widgets::segments(ui, group, &groups);
     actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
     ui.add_space(8.0);
-    let height = (window.y - FRAME).clamp(PICTURE.y + TITLE, 3.2 * (PICTURE.y + TITLE + GAP));
     let examples: Vec<Example> = Example::of(group).collect();
+    let row = PICTURE.y + TITLE + GAP;
+    let rows = ((window.y - FRAME) / row).floor().clamp(1.0, MOST_ROWS) as usize;
+    let height = row * rows as f32 - GAP;
     let mut pictures = Pictures::kept(ui);
     pictures.decode_some(ui, &examples);
     let mut pointed = None;
@@ -60,7 +63,10 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
         }
     });
     pictures.keep(ui);
-    let sentence = pointed.map_or("Point at a picture to see it move.", |it| it.sentence);
+    let sentence = pointed
+        .map_or("Point at a picture to see it move, and click it to open the example.", |it| {
+            it.sentence
+        });
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), SENTENCE), Sense::hover());
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));

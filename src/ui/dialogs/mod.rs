@@ -9,13 +9,16 @@ mod skeleton;
 
 use std::mem::discriminant;
 
-use egui::{Align2, Frame, Grid, Id, Modal, Rect, Role, Ui, WidgetInfo, Window, pos2};
+use egui::{
+    Align2, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, Vec2, WidgetInfo, Window,
+    pos2, vec2,
+};
 
 use super::frame_times::Machine;
 use super::glossary;
 use super::panels::statistics;
+use super::widgets::{Icon, IconButton};
 use crate::session::{Actions, Dialog, PathDialog, Session, ShellAction};
-use path::first_button;
 
 pub(in crate::ui) fn ui(
     ui: &Ui,
@@ -58,17 +61,15 @@ pub(in crate::ui) fn ui(
     if !dialog.is_modal() {
         return beside(ui, title, viewport, actions, |ui| statistics::ui(ui, machine));
     }
-    modal(ui, title, |ui| match dialog {
-        Dialog::About => about(ui, machine, actions),
-        Dialog::Shortcuts => shortcuts(ui, session, actions),
-        Dialog::Glossary => {
-            glossary::dialog(ui, actions);
-            close(ui, actions);
-        }
-        Dialog::Examples(group) => {
-            examples::ui(ui, *group, actions);
-            close(ui, actions);
-        }
+    let has_close = matches!(
+        dialog,
+        Dialog::About | Dialog::Shortcuts | Dialog::Glossary | Dialog::Examples(_)
+    );
+    let closes = modal(ui, title, has_close, |ui| match dialog {
+        Dialog::About => about(ui, machine),
+        Dialog::Shortcuts => shortcuts::ui(ui, session),
+        Dialog::Glossary => glossary::dialog(ui, actions),
+        Dialog::Examples(group) => examples::ui(ui, *group, actions),
         Dialog::Recover { document, file } => {
             files::recover(ui, document, file.as_deref(), actions);
         }
@@ -103,6 +104,9 @@ pub(in crate::ui) fn ui(
         Dialog::DeleteJoints { joints } => skeleton::delete_joints(ui, session, joints, actions),
         Dialog::Statistics => {}
     });
+    if closes {
+        actions.push(ShellAction::CloseDialog);
+    }
 }
 
 /// True if the open dialog differs in kind from that of the previous frame: true in the first frame
@@ -118,19 +122,23 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
-/// Shows `contents` in a modal window.
-fn modal(ui: &Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+/// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
+/// Returns whether the cross was pressed.
+fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) -> bool {
     let style = ui.global_style();
     let frame = Frame::window(&style).inner_margin(16.0);
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
     let modal = Modal::new(id).area(area).frame(frame);
-    modal.show(ui.ctx(), |ui| {
+    let modal = modal.show(ui.ctx(), |ui| {
         ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
+        let top = ui.cursor().min;
         ui.heading(title);
-        ui.add_space(6.0);
+        ui.add_space(8.0);
         contents(ui);
+        has_close && close(ui, pos2(ui.min_rect().right(), top.y))
     });
+    modal.inner
 }
 
 /// Shows `contents` in a window that is not modal, so that everything else stays usable. The window
@@ -157,7 +165,7 @@ fn beside(
     }
 }
 
-fn about(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
+fn about(ui: &mut Ui, machine: &Machine) {
     ui.set_width(360.0);
     ui.heading(concat!("ik-arm ", env!("CARGO_PKG_VERSION")));
     ui.label("Inverse kinematics of a 3D arm and of skeletons, to pose and to study.");
@@ -170,17 +178,19 @@ fn about(ui: &mut Ui, machine: &Machine, actions: &mut Actions) {
         ui.label("MIT or Apache-2.0");
         ui.end_row();
     });
-    close(ui, actions);
 }
 
-fn shortcuts(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    shortcuts::ui(ui, session);
-    close(ui, actions);
-}
-
-fn close(ui: &mut Ui, actions: &mut Actions) {
-    ui.add_space(8.0);
-    if first_button(ui, "Close") {
-        actions.push(ShellAction::CloseDialog);
-    }
+/// Shows a cross whose upper right corner is at a point, and returns whether it was pressed.
+fn close(ui: &mut Ui, corner: Pos2) -> bool {
+    const SIZE: Vec2 = vec2(28.0, 24.0);
+    let rect = Rect::from_min_size(corner - vec2(SIZE.x, 0.0), SIZE);
+    let mut at = ui.new_child(UiBuilder::new().max_rect(rect));
+    let cross = IconButton {
+        icon: Icon::Close,
+        name: "Close",
+        tooltip: "Close (Esc)",
+        on: None,
+        disabled: None,
+    };
+    cross.show(&mut at)
 }

@@ -45,7 +45,7 @@ fn properties(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     guides(ui, session, limb.is_some(), actions);
     if let Some(limb) = limb {
         limb::more(ui, limb, actions);
-        skeleton::folded(ui, session, actions);
+        skeleton::skin_section(ui, session, actions);
         skeleton::selected(ui, session, actions);
     }
     let bodies = [Overlay::Cylinders, Overlay::Hand, Overlay::Paths];
@@ -127,7 +127,7 @@ pub(super) fn right(ui: &mut Ui, session: &Session, actions: &mut Actions) -> Op
         match shown {
             PanelTab::Triangle => figure = explain::triangle(ui, session, actions),
             PanelTab::Twist => explain::twist(ui, session, actions),
-            PanelTab::Reach => explain::reach(ui, session),
+            PanelTab::Reach => explain::reach(ui, session, actions),
             PanelTab::Pops => explain::pops(ui, session, actions),
             PanelTab::Solver => {
                 if session.rig().sole_limb().is_some() {

@@ -54,6 +54,13 @@ pub(in crate::ui) enum Icon {
     NextKey,
     Loop,
     Fold,
+    Close,
+    AddChild,
+    AddRoot,
+    Delete,
+    Rename,
+    AddTarget,
+    RemoveTarget,
 }
 
 /// An icon button; `disabled` is the reason shown while the button is disabled, `None` otherwise.
@@ -110,6 +117,18 @@ impl Icon {
         let bar = |from: f32, to: f32| {
             painter.rect_filled(Rect::from_min_max(at(from, -5.0), at(to, 5.0)), 0.5, colour);
         };
+        let thin = Stroke::new(1.5, colour);
+        let line = |ends: [(f32, f32); 2]| {
+            painter.line_segment(ends.map(|(x, y)| at(x, y)), thin);
+        };
+        let plus = |at: Pos2| {
+            painter.line_segment([at - vec2(2.5, 0.0), at + vec2(2.5, 0.0)], thin);
+            painter.line_segment([at - vec2(0.0, 2.5), at + vec2(0.0, 2.5)], thin);
+        };
+        let cross = |at: Pos2, half: f32| {
+            painter.line_segment([at - Vec2::splat(half), at + Vec2::splat(half)], thin);
+            painter.line_segment([at - vec2(half, -half), at + vec2(half, -half)], thin);
+        };
         match self {
             Self::Play => shape(&[(-4.0, -6.0), (6.0, 0.0), (-4.0, 6.0)]),
             Self::Pause => {
@@ -128,6 +147,39 @@ impl Icon {
                 painter.add(diamond(at(4.0 * side, 0.0), 4.5, colour, Stroke::NONE));
             }
             Self::Fold => shape(&[(-5.5, -3.0), (5.5, -3.0), (0.0, 4.0)]),
+            Self::Close => cross(at(0.0, 0.0), 4.5),
+            Self::AddChild => {
+                line([(-7.0, 4.0), (-1.5, -2.5)]);
+                painter.circle_filled(at(-7.0, 4.0), 2.2, colour);
+                painter.circle_filled(at(-1.5, -2.5), 2.2, colour);
+                plus(at(5.0, 2.0));
+            }
+            Self::AddRoot => {
+                painter.circle_filled(at(-4.5, 0.0), 2.6, colour);
+                plus(at(4.0, 0.0));
+            }
+            Self::Delete => {
+                line([(-5.5, -4.0), (5.5, -4.0)]);
+                line([(-1.5, -6.0), (1.5, -6.0)]);
+                line([(-4.0, -4.0), (-3.2, 6.0)]);
+                line([(4.0, -4.0), (3.2, 6.0)]);
+                line([(-3.2, 6.0), (3.2, 6.0)]);
+            }
+            Self::Rename => {
+                line([(-5.0, 5.0), (-4.2, 2.0)]);
+                line([(-4.2, 2.0), (3.2, -5.4)]);
+                line([(3.2, -5.4), (5.4, -3.2)]);
+                line([(5.4, -3.2), (-2.0, 4.2)]);
+                line([(-2.0, 4.2), (-5.0, 5.0)]);
+            }
+            Self::AddTarget | Self::RemoveTarget => {
+                painter.circle_stroke(at(-3.0, 0.0), 4.5, thin);
+                painter.circle_filled(at(-3.0, 0.0), 1.6, colour);
+                match self {
+                    Self::AddTarget => plus(at(6.0, 0.0)),
+                    _ => line([(3.5, 0.0), (8.5, 0.0)]),
+                }
+            }
             Self::Loop => {
                 let place = |turn: f32| at(5.5 * turn.cos(), 5.5 * turn.sin());
                 let ends = (0.35 * core::f32::consts::PI, 1.85 * core::f32::consts::PI);

@@ -10,9 +10,6 @@ use egui::{
 use crate::session::Actions;
 use crate::ui::glossary;
 
-/// Space below a section, in points.
-const SPACE: f32 = 1.0;
-
 /// Unfolds the section that is identified by `id` in the next frame, and scrolls to it.
 pub(in crate::ui) fn open_section(ui: &Ui, id: Option<&str>) {
     ui.data_mut(|data| data.insert_temp(section_to_open(), id.map(ToOwned::to_owned)));
@@ -48,6 +45,19 @@ pub(in crate::ui) fn section_with(
     aside: impl FnOnce(&mut Ui),
     contents: impl FnOnce(&mut Ui),
 ) {
+    named_section_with(ui, title, title, true, aside, contents);
+}
+
+/// Shows a section, folded at first unless `open`, that is identified by `id`, with the widgets of
+/// `aside` over its title row.
+pub(in crate::ui) fn named_section_with(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    open: bool,
+    aside: impl FnOnce(&mut Ui),
+    contents: impl FnOnce(&mut Ui),
+) {
     let (whole, clip, top) = (ui.max_rect().x_range(), ui.clip_rect(), ui.cursor().top());
     let mut aside = Some(aside);
     let mut show_aside = |ui: &mut Ui, bottom: f32| {
@@ -59,7 +69,7 @@ pub(in crate::ui) fn section_with(
             aside(&mut row);
         }
     };
-    let header = show_section(ui, title, title, true, |ui| {
+    let header = show_section(ui, id, title, open, |ui| {
         // Tab comes to the title row before it comes to the contents.
         show_aside(ui, ui.max_rect().top() - ui.spacing().item_spacing.y);
         contents(ui);
@@ -115,7 +125,6 @@ fn show_section(
         let end = shown.body_returned.map_or(header.rect, |()| ui.min_rect());
         ui.scroll_to_rect(header.rect.union(end), None);
     }
-    ui.add_space(SPACE);
     header.rect
 }
 

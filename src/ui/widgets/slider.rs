@@ -46,7 +46,9 @@ pub(in crate::ui) struct Slider<'a> {
     pub channel: Option<Channel>,
 }
 
+/// Width of a label, and that of one with a single letter: the rail takes the rest.
 const LABEL_WIDTH: f32 = 60.0;
+const LETTER_WIDTH: f32 = 16.0;
 const VALUE_WIDTH: f32 = 66.0;
 const HEIGHT: f32 = 22.0;
 const THUMB: f32 = 6.5;
@@ -68,9 +70,11 @@ impl Slider<'_> {
         set: impl Fn(f32) -> A,
     ) {
         let label = |ui: &mut Ui, actions: &mut Actions| {
-            if self.label(ui, actions) {
+            let label = self.label(ui, actions);
+            if label.double_clicked() {
                 actions.push(set(self.default));
             }
+            self.edit_by_label(ui, &label, session, actions, &set);
         };
         self.show_after(ui, session, actions, &set, label);
     }
@@ -106,9 +110,11 @@ impl Slider<'_> {
         }
     }
 
-    /// Shows the label and returns whether it was double-clicked.
-    fn label(&self, ui: &mut Ui, actions: &mut Actions) -> bool {
-        let (rect, response) = ui.allocate_exact_size(vec2(LABEL_WIDTH, HEIGHT), Sense::CLICK);
+    fn label(&self, ui: &mut Ui, actions: &mut Actions) -> Response {
+        let sense = Sense::CLICK | Sense::DRAG;
+        let width = if self.label.len() == 1 { LETTER_WIDTH } else { LABEL_WIDTH };
+        let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), sense);
+        let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         let colour = self.colour.unwrap_or(ui.visuals().text_color());
         let size = TextStyle::Body.resolve(ui.style()).size;
         let text = ui.fonts_mut(|fonts| fonts.layout_job(text::layout(self.label, size, colour)));
@@ -117,12 +123,52 @@ impl Slider<'_> {
         ui.painter().galley(at, text, colour);
         response
             .widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::spoken(self.label)));
-        let is_reset = response.double_clicked();
         match self.term {
-            Some(term) => glossary::term(ui, response, text_width, term, actions),
-            None => drop(response.on_hover_text(self.tooltip)),
+            Some(term) => glossary::term(ui, response.clone(), text_width, term, actions),
+            None => drop(hover_text(response.clone(), self.tooltip)),
         }
-        is_reset
+        response
+    }
+
+    /// Changes the value while the mouse drags the label: by a thousandth of the range per point,
+    /// with Shift by a tenth of that.
+    fn edit_by_label<A: Into<Action>>(
+        &self,
+        ui: &Ui,
+        label: &Response,
+        session: &Session,
+        actions: &mut Actions,
+        set: &impl Fn(f32) -> A,
+    ) {
+        /// The value without rounding: steps that round to nothing add up.
+        #[derive(Clone, Copy)]
+        struct Unrounded(f32);
+
+        if label.drag_started() {
+            ui.data_mut(|data| data.insert_temp(label.id, Unrounded(self.value)));
+            actions.push(TransactionAction::Begin);
+        }
+        let is_held = label.drag_started() || label.dragged() && is_sliding(session);
+        if is_held && !ui.input(|input| input.key_pressed(Key::Escape)) {
+            let fine = if ui.input(|input| input.modifiers.shift) { FINE } else { 1.0 };
+            let change = label.drag_delta().x * fine * self.speed();
+            let Unrounded(value) = ui.data_mut(|data| {
+                let kept = data.get_temp_mut_or_insert_with(label.id, || Unrounded(self.value));
+                kept.0 += change;
+                *kept
+            });
+            if change != 0.0 {
+                actions.push(set(rounded(value, fine * self.speed())));
+            }
+        }
+        if label.drag_stopped() {
+            actions.push(TransactionAction::Commit);
+        }
+    }
+
+    /// Change of the value per point that the mouse drags the label or the number.
+    fn speed(&self) -> f32 {
+        (self.range.1 - self.range.0) / 1000.0
     }
 
     fn rail(&self, ui: &mut Ui) -> Response {
@@ -186,10 +232,7 @@ impl Slider<'_> {
         let pointed = rail.interact_pointer_pos().map(|at| {
             let part = ((at.x - track.left()) / track.width()).clamp(0.0, 1.0);
             let value = self.range.0 + part * (self.range.1 - self.range.0);
-            // Rounded to the largest power of ten that is at most the change per point.
-            let grain =
-                10.0_f32.powf(((self.range.1 - self.range.0) / track.width()).log10().floor());
-            (value / grain).round() * grain
+            rounded(value, (self.range.1 - self.range.0) / track.width())
         });
         // The value follows the mouse from the press on, before egui reports a drag. A click by the
         // keyboard has no position.
@@ -257,7 +300,7 @@ impl Slider<'_> {
             name: &format!("{} value", self.name),
             value: self.value,
             unit: self.unit,
-            speed: (self.range.1 - self.range.0) / 1000.0,
+            speed: self.speed(),
             width: VALUE_WIDTH,
             format: &|value| text::fixed(value, text::decimals(self.step)),
         };
@@ -296,6 +339,12 @@ pub(in crate::ui) fn requested_values(ui: &Ui, slider: Id) -> Vec<f64> {
         };
         requests.filter_map(value).collect()
     })
+}
+
+/// A value rounded to the largest power of ten that is at most its change per point.
+fn rounded(value: f32, change: f32) -> f32 {
+    let grain = 10.0_f32.powf(change.log10().floor());
+    (value / grain).round() * grain
 }
 
 /// True if a transaction is open that is not a drag in the viewport, such as the drag of a slider.

@@ -13,7 +13,8 @@ use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
 use crate::rig::LimbPart;
-use crate::session::{Actions, LimbFigure, Session, ShownLimb, TourState};
+use crate::session::{Actions, LimbFigure, SelectAction, Session, ShownLimb, TourState};
+use crate::ui::widgets::Choice;
 use crate::ui::{pose_summary, widgets};
 use crate::words::LimbWords;
 use figures::{Lit, capital, degrees, figure_colour, length, point};
@@ -25,7 +26,7 @@ pub(in crate::ui) fn triangle(
     session: &Session,
     actions: &mut Actions,
 ) -> Option<LimbFigure> {
-    let limb = titled_limb(ui, session)?;
+    let limb = titled_limb(ui, session, actions)?;
     let lit = &mut Lit::new(session);
     triangle::ui(ui, limb, lit);
     sentence(ui, session, limb);
@@ -40,14 +41,14 @@ pub(in crate::ui) fn triangle(
 
 /// The references from which a limb's twist can be measured.
 pub(super) fn twist(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    if let Some(limb) = titled_limb(ui, session) {
+    if let Some(limb) = titled_limb(ui, session, actions) {
         twist_references::ui(ui, session, limb, actions);
     }
 }
 
 /// The distances that the hand can have, and those that it has.
-pub(super) fn reach(ui: &mut Ui, session: &Session) {
-    let Some(limb) = titled_limb(ui, session) else { return };
+pub(super) fn reach(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let Some(limb) = titled_limb(ui, session, actions) else { return };
     reach::meter(ui, limb);
     sentence(ui, session, limb);
     // A step of the tour asks for what this section shows.
@@ -76,14 +77,17 @@ pub(super) fn pops(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     }
 }
 
-/// Shows the name of the limb of a figure, and returns the limb; without one, a sentence that says
-/// how to make one.
-fn titled_limb<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a ShownLimb> {
+/// Shows the name of the limb of a figure, which chooses another one, and returns the limb; without
+/// one, a sentence that says how to make one.
+fn titled_limb<'a>(
+    ui: &mut Ui,
+    session: &'a Session,
+    actions: &mut Actions,
+) -> Option<&'a ShownLimb> {
     let limb = session.limb();
     match limb {
         Some(limb) if session.rig().sole_limb().is_none() => {
-            ui.label(RichText::new(format!("Limb of {}", name(session, limb))).strong());
-            ui.add_space(2.0);
+            choose_limb(ui, session, limb, actions);
         }
         Some(_) => {}
         None => {
@@ -93,6 +97,31 @@ fn titled_limb<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a ShownLimb> {
         }
     }
     limb
+}
+
+/// Shows a list of a figure's limbs, and says why this one is shown. Choosing one selects its end.
+fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
+    let rig = session.rig();
+    let shown = name(session, limb);
+    let tooltip = "Choose the limb that this page is about; selecting one of its joints does, too";
+    let choice = Choice { label: "Limb of", name: "Limb", tooltip, shown: &shown };
+    choice.show(ui, |list| {
+        for target in rig.targets.iter().filter(|target| target.limb().is_some()) {
+            let end = rig.end_of(target);
+            if list.item(target.joint == limb.target, &rig.skeleton[end].name, "", None) {
+                actions.push(SelectAction::Joints(vec![end]));
+            }
+        }
+    });
+    let selected = session.selection().active();
+    let is_of_limb = |joint| rig.limb_target_of(joint).is_some();
+    let why = match selected.and_then(|joint| Some((joint, rig.skeleton.joint(joint)?))) {
+        None => "Select another limb's joint to see it here".to_owned(),
+        Some((joint, _)) if is_of_limb(joint) => "The limb of the selected joint".to_owned(),
+        Some((_, joint)) => format!("{} is in no limb", joint.name),
+    };
+    ui.add(Label::new(RichText::new(why).weak().small()).truncate());
+    ui.add_space(4.0);
 }
 
 /// The name of what a limb's target moves.

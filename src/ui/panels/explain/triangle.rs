@@ -4,8 +4,7 @@
 use core::f32::consts::TAU;
 
 use egui::{
-    Color32, Painter, Pos2, Rect, RichText, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Color32, Painter, Pos2, Rect, RichText, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 use glam::Vec3;
 
@@ -82,9 +81,10 @@ impl TriangleDrawing {
         // triangle that would not fit has a smaller scale.
         let widest = (right - left).max(limb.frames.bones().outer_limit() * 0.7);
         let scale = (inside.width() / widest).min(inside.height() / pose.out.max(1e-9));
-        let middle = (left + right) / 2.0;
+        let middle = vec2(left + right, pose.out) / 2.0;
         let place = |along: f32, out: f32| {
-            pos2(inside.center().x + (along - middle) * scale, inside.bottom() - out * scale)
+            let from_middle = vec2(along - middle.x, middle.y - out);
+            inside.center() + from_middle * scale
         };
         let palette = style::palette(ui);
         Self {

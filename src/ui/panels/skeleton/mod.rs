@@ -20,7 +20,7 @@ use crate::ui::widgets::{self, AXES, Choice, PointSliders, Slider};
 
 pub(super) use outliner::panel as outliner;
 pub(in crate::ui) use skin::BIND;
-pub(super) use skin::areas as skin_areas;
+pub(super) use skin::{areas as skin_areas, section as skin_section};
 pub(in crate::ui) use targets::{ADD_TARGETS, may_be_person};
 pub(super) use targets::{note, note_height, space};
 
@@ -36,19 +36,12 @@ pub(in crate::ui) fn noted(session: &Session) -> Option<Target> {
     Some(rig.targets[index])
 }
 
-/// Shows the skin of a figure that is one limb, whose other settings stand elsewhere.
-pub(in crate::ui) fn folded(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    widgets::named_folded_section(ui, "skin of a limb", "Skin", |ui| {
-        skin::ui(ui, session, actions);
-    });
-}
-
 pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     widgets::section(ui, "Targets", |ui| {
         targets::list(ui, session, actions);
         balance::ui(ui, session, actions);
     });
-    widgets::section(ui, "Skin", |ui| skin::ui(ui, session, actions));
+    skin::section(ui, session, actions);
     widgets::section(ui, "Translation", |ui| place(ui, session, actions));
     widgets::section(ui, "Path", |ui| path(ui, session, actions));
 }

@@ -11,7 +11,8 @@ use egui::{
 use crate::kinematics::skeleton::JointId;
 use crate::session::{Actions, JointEdit, SelectAction, Session};
 use crate::ui::keyboard::{focus, viewport};
-use crate::ui::{commands, style, widgets};
+use crate::ui::widgets::{self, Icon, IconButton};
+use crate::ui::{commands, style};
 
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
@@ -40,7 +41,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
         false => Panel::top("folded outliner")
             .resizable(false)
             .show_separator_line(false)
-            .frame(frame.inner_margin(Margin::ZERO)),
+            .frame(frame.inner_margin(Margin { bottom: 6, ..Margin::ZERO })),
     };
     panel.show(ui, |ui| {
         let filter = heading(ui, session, &mut state);
@@ -425,38 +426,39 @@ fn respond(
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+    let pressed = |ui: &mut Ui, icon, name, tooltip, disabled| {
+        IconButton { icon, name, tooltip, on: None, disabled }.show(ui)
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
         let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
-        if widgets::button(ui, "Add child", tooltip, None) {
+        if pressed(ui, Icon::AddChild, "Add child", tooltip, None) {
             actions.push(JointEdit::AddJoint { tip: None });
         }
-        if widgets::button(ui, "Add root", "Add a root joint, the start of another tree", None) {
+        let tooltip = "Add a root joint, the start of another tree";
+        if pressed(ui, Icon::AddRoot, "Add root", tooltip, None) {
             actions.push(JointEdit::AddRoot);
         }
         let tooltip = "Delete the selected joints (Delete)";
-        if widgets::button(ui, "Delete", tooltip, none) {
+        if pressed(ui, Icon::Delete, "Delete", tooltip, none) {
             actions.push(commands::delete(session));
         }
-        if widgets::button(ui, "Rename…", "Rename the selected joint (F2)", none)
+        let tooltip = "Rename the selected joint (F2)";
+        if pressed(ui, Icon::Rename, "Rename…", tooltip, none)
             && let Some(joint) = selected
         {
             actions.push(commands::rename(session, joint));
         }
-        target_button(ui, session, actions);
+        let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
+        let (icon, name, tooltip) = if has_target {
+            let tooltip = "Remove the target of the selected joint (T)";
+            (Icon::RemoveTarget, "Remove target", tooltip)
+        } else {
+            let tooltip = "Add a target for the selected joint's tip (T)";
+            (Icon::AddTarget, "Add target", tooltip)
+        };
+        if pressed(ui, icon, name, tooltip, none) {
+            actions.extend(commands::toggle_target(session));
+        }
     });
-}
-
-fn target_button(ui: &mut Ui, session: &Session, actions: &mut Actions) {
-    let selected = session.selection().active();
-    let none = selected.is_none().then_some(NONE_SELECTED);
-    let has_target = selected.is_some_and(|joint| session.rig().target_of_end(joint).is_some());
-    let (name, tooltip) = if has_target {
-        ("Remove target", "Remove the target of the selected joint (T)")
-    } else {
-        ("Add target", "Add a target for the selected joint's tip (T)")
-    };
-    if widgets::button(ui, name, tooltip, none) {
-        actions.extend(commands::toggle_target(session));
-    }
 }

@@ -16,13 +16,39 @@ use crate::session::{
 use crate::ui::style;
 use crate::ui::widgets::{self, Choice, Slider, plot};
 
-pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+/// Shows the section of the skin, with a switch in its title row. It is folded at first for a figure
+/// that is one limb.
+pub(in crate::ui) fn section(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let is_limb = session.rig().sole_limb().is_some();
+    let id = if is_limb { "skin of a limb" } else { "Skin" };
+    let mut aside = Actions::new();
+    let switch = |ui: &mut Ui| widgets::at_right(ui, |ui| switch(ui, session, &mut aside));
+    widgets::named_section_with(ui, id, "Skin", !is_limb, switch, |ui| {
+        contents(ui, session, actions);
+    });
+    actions.extend(aside);
+}
+
+/// Shows the switch of the skin: it makes one from the bones if there is none.
+fn switch(ui: &mut Ui, session: &Session, actions: &mut Actions) {
+    let has_skin = session.rig().skin.is_some();
+    let is_shown = has_skin && session.shown().display.shows(Overlay::Skin);
+    let why_not = (!session.rig().has_bones()).then_some("Add a bone first");
+    let tooltip = match has_skin {
+        true => "Show the skin in place of the bones",
+        false => "Give the skeleton a smooth skin around its bones",
+    };
+    let edit = |skin| match has_skin {
+        true => SkinEdit::ShowSkin { skin, bones: !skin },
+        false => SkinEdit::AddSkin,
+    };
+    let changed = widgets::check_box(ui, "Show skin", tooltip, is_shown, why_not);
+    actions.extend(changed.map(edit));
+}
+
+fn contents(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let Some(skin) = &session.rig().skin else {
-        let why_not = (!session.rig().has_bones()).then_some("Add a bone first");
-        let tooltip = "Give the skeleton a smooth skin around its bones";
-        if widgets::button(ui, "Add skin", tooltip, why_not) {
-            actions.push(SkinEdit::AddSkin);
-        }
+        ui.weak("A smooth mesh around the bones, as thick as their joints.");
         return;
     };
     shown(ui, session, actions);
