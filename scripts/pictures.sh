@@ -12,6 +12,7 @@ pictures=docs/pictures
 
 main() {
     set_up virtual-display
+    require_tools python3:python3
     cargo build --release --locked
     trap clean_up EXIT
     mkdir -p "$pictures" assets/pictures
@@ -67,11 +68,31 @@ picture_of_example() {
     fi
     for nth in {10..33}; do
         time=$(awk "BEGIN { print (${#all[@]} - 1) / 30 * ($nth - 10) / 24 }")
-        "$program" render "$file" --time "$time" --size 576x360 -o "$frames/$nth.png"
+        come_closer "$name" "$file" "$time" >"$frames/closer.json"
+        "$program" render "$frames/closer.json" --time "$time" --size 576x360 -o "$frames/$nth.png"
     done
     montage "$frames"/*.png -tile 6x4 -geometry 288x180+0+0 "${quality[@]}" \
         "assets/pictures/$name.jpg"
     rm -r "$frames"
+}
+
+# come_closer NAME FILE TIME: prints the document with a nearer camera if its own makes the figure tiny
+# in so small a picture; that of the walk goes along.
+come_closer() {
+    local part=1 speed=0
+    case $1 in
+        walk) part=0.6 speed=1.41 ;; # metres in a second, past the middle of its way after one
+        tadpoles) part=0.8 ;;
+    esac
+    python3 - "$2" "$3" "$part" "$speed" <<'END'
+import json, sys
+document = json.load(open(sys.argv[1]))
+time, part, speed = map(float, sys.argv[2:])
+if camera := document.get("camera"):
+    camera["distance"] *= part
+    camera["target"][2] += speed * (time - 1)
+json.dump(document, sys.stdout)
+END
 }
 
 press() {

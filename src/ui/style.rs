@@ -65,7 +65,9 @@ pub fn install(ctx: &Context) {
             spacing.icon_width = 16.0;
             spacing.menu_margin = egui::Margin::same(6);
             // Otherwise scroll bars cover the ends of texts.
-            spacing.scroll.floating_allocated_width = 4.0;
+            spacing.scroll.floating_allocated_width = 6.0;
+            // Seen also while the mouse is elsewhere: panels show that they scroll.
+            spacing.scroll.dormant_handle_opacity = 0.35;
             spacing.window_margin = egui::Margin::same(12);
             spacing.tooltip_width = 320.0;
             let size = |size| FontId::new(size, FontFamily::Proportional);

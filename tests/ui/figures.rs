@@ -62,9 +62,12 @@ fn row(bench: &mut Bench, name: &str) -> Rect {
 fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
     let mut bench = Bench::example("human");
     bench.show_tab(PanelTab::Triangle);
-    assert!(bench.says("Select another limb's joint"));
+    assert!(bench.says("Select a joint of another limb"));
+    let bones = |bench: &Bench| bench.session().overlays().shows_limb;
+    assert!(bones(&bench));
     bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
-    assert!(bench.says("head is in no limb"));
+    assert!(bench.says("head is in no limb") && !bench.says("Law of cosines"));
+    assert!(!bones(&bench), "no limb is coloured");
     bench.click(Role::ComboBox, "Limb");
     // The list of targets has buttons of these names, too.
     let items = bench.harness.get_all_by_role_and_label(Role::Button, "right_foot");
@@ -72,7 +75,8 @@ fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
     bench.click_at(item.expect("an item").center());
     bench.settle();
     assert_eq!(bench.session().selection().active(), Some(bench.joint("right_foot")));
-    assert!(bench.says("The limb of the selected joint"));
+    assert!(bench.says("The limb of the selected joint") && bench.says("Law of cosines"));
+    assert!(bones(&bench));
     let limb = bench.session().limb().expect("a limb");
     assert_eq!(limb.target, bench.joint("right_shin"));
 }

@@ -18,6 +18,8 @@ const PICTURE: Vec2 = vec2(192.0, 120.0);
 /// Height of the title below a picture.
 const TITLE: f32 = 24.0;
 const GAP: f32 = 12.0;
+/// Room for the bar of the area that scrolls.
+const BAR: f32 = 12.0;
 const MOST_COLUMNS: usize = 4;
 const MOST_ROWS: f32 = 3.0;
 /// Height of the window without the pictures.
@@ -32,9 +34,14 @@ pub(super) fn ui(ui: &mut Ui, group: ExampleGroup, actions: &mut Actions) {
     let window = ui.ctx().content_rect().size();
     let columns = ((window.x - 80.0) / (PICTURE.x + GAP)).floor() as usize;
     let columns = columns.clamp(1, MOST_COLUMNS);
-    ui.set_width(columns as f32 * (PICTURE.x + GAP) - GAP);
+    let pictures_width = columns as f32 * (PICTURE.x + GAP) - GAP;
+    ui.set_width(pictures_width + BAR);
     let groups = ExampleGroup::ALL.map(|it| (it, it.title(), "Show the examples of this group"));
-    let chosen = widgets::segments(ui, group, &groups);
+    let chosen = ui.scope(|ui| {
+        ui.set_max_width(pictures_width);
+        widgets::segments(ui, group, &groups)
+    });
+    let chosen = chosen.inner;
     actions.extend(chosen.map(|it| ShellAction::OpenDialog(Dialog::Examples(it))));
     ui.add_space(8.0);
     let examples: Vec<Example> = Example::of(group).collect();
@@ -95,7 +102,7 @@ fn card(ui: &mut Ui, example: &Example, pictures: &mut Pictures) -> Response {
         true => Stroke::new(2.0, style::accent(ui)),
         false => visuals.widgets.noninteractive.bg_stroke,
     };
-    painter.rect_stroke(picture, rounding, edge, StrokeKind::Outside);
+    painter.rect_stroke(picture, rounding, edge, StrokeKind::Inside);
     let colour = if is_chosen { visuals.strong_text_color() } else { visuals.text_color() };
     let at = pos2(rect.left() + 2.0, rect.bottom() - 0.5 * TITLE + 1.0);
     let font = TextStyle::Body.resolve(ui.style());

@@ -10,8 +10,8 @@ mod skeleton;
 use std::mem::discriminant;
 
 use egui::{
-    Align2, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, Vec2, WidgetInfo, Window,
-    pos2, vec2,
+    Align2, Color32, Frame, Grid, Id, Modal, Pos2, Rect, Role, Ui, UiBuilder, Vec2, WidgetInfo,
+    Window, pos2, vec2,
 };
 
 use super::frame_times::Machine;
@@ -122,6 +122,9 @@ fn is_new(ui: &Ui, dialog: Option<&Dialog>) -> bool {
     now != before
 }
 
+/// Opacity, of 255, of what darkens the window behind a modal one.
+const BACKDROP: u8 = 160;
+
 /// Shows `contents` in a modal window, with a cross that closes it if there is nothing to answer.
 /// Returns whether the cross was pressed.
 fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) -> bool {
@@ -129,7 +132,8 @@ fn modal(ui: &Ui, title: &str, has_close: bool, contents: impl FnOnce(&mut Ui)) 
     let frame = Frame::window(&style).inner_margin(16.0);
     let id = Id::unique(("dialog", title.to_owned()));
     let area = Modal::default_area(id).fade_in(false);
-    let modal = Modal::new(id).area(area).frame(frame);
+    let modal =
+        Modal::new(id).area(area).frame(frame).backdrop_color(Color32::from_black_alpha(BACKDROP));
     let modal = modal.show(ui.ctx(), |ui| {
         ui.response().widget_info(|| WidgetInfo::labeled(Role::Dialog, true, title));
         let top = ui.cursor().min;

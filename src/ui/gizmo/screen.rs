@@ -94,7 +94,7 @@ pub(in crate::ui) fn locked_axis(
 }
 
 /// Draws the lines from the joints of targets that aim to the points that they aim at, with the names
-/// of the joints there; the line of the selected joint in the accent colour, without a name between its
+/// of the joints there; the line of the selected joint in the accent colour, with its name below the
 /// handles.
 pub(in crate::ui) fn aims(
     painter: &Painter,
@@ -105,6 +105,7 @@ pub(in crate::ui) fn aims(
     const DASH: f32 = 6.0;
     /// Distance of a name from its point.
     const GAP: f32 = 16.0;
+    const BELOW_HANDLES: f32 = 40.0;
     let pose = &session.posed().evaluated_skeleton().solved;
     let selected = session.selection().active();
     for target in session.rig().targets.iter().filter(|target| target.is_posing()) {
@@ -115,7 +116,7 @@ pub(in crate::ui) fn aims(
         let weak = ui.visuals().weak_text_color();
         let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
         painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
-        if let Some(joint) = session.rig().skeleton.joint(target.joint).filter(|_| !is_selected) {
+        if let Some(joint) = session.rig().skeleton.joint(target.joint) {
             let text = format!("{} aims here", joint.name);
             let font = TextStyle::Body.resolve(ui.style());
             let text = painter.layout_no_wrap(text, font, ui.visuals().text_color());
@@ -123,7 +124,11 @@ pub(in crate::ui) fn aims(
             let left = to - vec2(GAP + text.size().x, half);
             // On the side that is not the joint's, if there is room.
             let has_room = left.x > painter.clip_rect().left();
-            let at = if to.x < from.x && has_room { left } else { to + vec2(GAP, -half) };
+            let at = match is_selected {
+                true => to + vec2(-0.5 * text.size().x, BELOW_HANDLES),
+                false if to.x < from.x && has_room => left,
+                false => to + vec2(GAP, -half),
+            };
             painter.galley(at, text, ui.visuals().text_color());
         }
     }

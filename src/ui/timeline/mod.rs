@@ -29,11 +29,15 @@ pub(in crate::ui) fn transport(ui: &mut Ui, session: &Session, actions: &mut Act
     }
 }
 
-/// Height at first of the timeline of a document, in points: enough for its rows, within bounds.
+/// Height at first of the timeline of a document, in points: enough for its rows, up to some whole
+/// rows, and for curves to be read.
 pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
-    const RANGE: (f32, f32) = (120.0, 220.0);
-    let rows = rows::rows(session, &FoldedJoints::kept(ui)).len() + 1;
-    (rows::RULER + rows::ROW * rows as f32 + 8.0).clamp(RANGE.0, RANGE.1)
+    const ROWS: (usize, usize) = (5, 9);
+    let rows = match session.preferences().curves {
+        true => ROWS.1,
+        false => rows::rows(session, &FoldedJoints::kept(ui)).len() + 1,
+    };
+    rows::RULER + rows::ROW * rows.clamp(ROWS.0, ROWS.1) as f32
 }
 
 /// Shows the timeline.

@@ -297,13 +297,15 @@ impl Marks {
 
 /// Formats a value with enough decimals to distinguish it from a label that is `step` away.
 fn written(value: f64, step: f64) -> String {
-    let digits = -step.max(1e-6).log10().floor();
+    let power = step.max(1e-6).log10().floor();
+    let is_quarter = (step / 10_f64.powf(power) - 2.5).abs() < 1e-6;
+    let digits = if is_quarter { 1.0 - power } else { -power };
     text::fixed(value, digits.max(0.0) as usize)
 }
 
-/// The smallest number that is at least `step` and is 1, 2 or 5 times a power of ten.
+/// The smallest number that is at least `step` and is 1, 2, 2.5 or 5 times a power of ten.
 fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1e-30).log10().floor());
-    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
+    let steps = [1.0, 2.0, 2.5, 5.0].map(|times| times * power);
     steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
 }

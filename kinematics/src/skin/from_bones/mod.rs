@@ -68,25 +68,32 @@ impl SkinnedMesh {
     }
 }
 
-/// Size of the cells of each body's grid: the smallest radius divided by the detail, but not so small
-/// that all surfaces together have more than about 200,000 cells. Trees have cells of one size. In a
-/// jointed shape, a body that is n times as thick as the thinnest one has cells √n times as large,
-/// since a chord of length c misses an arc of radius r by c² / 8 r: the same for all bodies. Where
-/// small details would make cells many, such as an ear on a head, they are coarser.
+/// Size of the cells of each body's grid, but not so small that all surfaces together have more than
+/// about 200,000 cells. Trees have cells of one size: the smallest radius divided by the detail. In a
+/// jointed shape that is the size for the thinnest body, and a body that is n times as thick has
+/// cells √n times as large, since a chord of length c misses an arc of radius r by c² / 8 r: the same
+/// for all bodies. Where small details would make cells many, such as an ear on a head, they are
+/// coarser.
 fn cell_sizes(bodies: &[Body], shape: &SkinShape) -> Result<Vec<f64>, SkinShapeError> {
     const MOST_CELLS: f64 = 2e5;
     const MOST_CELLS_ALONG: f64 = 1e5;
     const MOST_CELLS_OF_JOINT: f64 = 1800.0;
     let area = |body: &Body| body.sweeps().map(Sweep::area).sum::<f64>();
     let least = |body: &Body| body.sweeps().map(Sweep::least_radius).fold(f64::INFINITY, f64::min);
-    let thinnest = bodies.iter().map(least).fold(f64::INFINITY, f64::min);
+    let mean = |body: &Body| {
+        let sum: f64 = body.sweeps().map(|sweep| sweep.area() * sweep.mean_radius()).sum();
+        sum / area(body)
+    };
+    let smallest =
+        |radius: &dyn Fn(&Body) -> f64| bodies.iter().map(radius).fold(f64::MAX, f64::min);
+    let (least_of_all, thinnest) = (smallest(&least), smallest(&mean));
     let detail = f64::from(shape.detail);
     let cell = |body: &Body| match shape.is_jointed {
-        false => thinnest / detail,
+        false => least_of_all / detail,
         true => {
-            let coarsest = least(body) / f64::from(SkinShape::LEAST_DETAIL);
-            let coarse = (area(body) / MOST_CELLS_OF_JOINT).sqrt().min(coarsest);
-            coarse.max((thinnest * least(body)).sqrt() / detail)
+            let coarse = (area(body) / MOST_CELLS_OF_JOINT).sqrt();
+            let even = (thinnest * mean(body)).sqrt() / detail;
+            coarse.max(even).min(least(body) / f64::from(SkinShape::LEAST_DETAIL))
         }
     };
     let mut cells: Vec<f64> = bodies.iter().map(cell).collect();

@@ -124,6 +124,10 @@ impl RoundCone {
         core::f64::consts::PI * (self.base_radius + self.tip_radius) * self.base.distance(self.tip)
     }
 
+    pub fn mean_radius(&self) -> f64 {
+        0.5 * (self.base_radius + self.tip_radius)
+    }
+
     pub fn least_radius(&self) -> f64 {
         self.base_radius.min(self.tip_radius)
     }

@@ -115,6 +115,13 @@ impl Sweep {
         sides + 2.0 * core::f64::consts::PI * (start * start + end * end)
     }
 
+    /// Mean radius over the surface.
+    pub fn mean_radius(&self) -> f64 {
+        let sides = self.cones.iter().map(|cone| (cone.side(), cone.side() * cone.mean_radius()));
+        let (area, sum) = sides.fold((0.0, 0.0), |(area, sum), it| (area + it.0, sum + it.1));
+        if area > 0.0 { sum / area } else { self.start().1 }
+    }
+
     /// Least radius of all spheres.
     pub fn least_radius(&self) -> f64 {
         self.cones.iter().map(RoundCone::least_radius).fold(f64::INFINITY, f64::min)

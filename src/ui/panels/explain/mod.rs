@@ -88,6 +88,7 @@ fn titled_limb<'a>(
     match limb {
         Some(limb) if session.rig().sole_limb().is_none() => {
             choose_limb(ui, session, limb, actions);
+            return limb_of_selection(ui, session).then_some(limb);
         }
         Some(_) => {}
         None => {
@@ -99,29 +100,45 @@ fn titled_limb<'a>(
     limb
 }
 
-/// Shows a list of a figure's limbs, and says why this one is shown. Choosing one selects its end.
+/// Shows a list of a figure's limbs. Choosing one selects its end.
 fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut Actions) {
     let rig = session.rig();
-    let shown = name(session, limb);
+    let shown =
+        if session.shows_limb_of_selection() { name(session, limb) } else { "–".to_owned() };
     let tooltip = "Choose the limb that this page is about; selecting one of its joints does, too";
     let choice = Choice { label: "Limb of", name: "Limb", tooltip, shown: &shown };
     choice.show(ui, |list| {
         for target in rig.targets.iter().filter(|target| target.limb().is_some()) {
             let end = rig.end_of(target);
-            if list.item(target.joint == limb.target, &rig.skeleton[end].name, "", None) {
+            let is_shown = session.shows_limb_of_selection() && target.joint == limb.target;
+            if list.item(is_shown, &rig.skeleton[end].name, "", None) {
                 actions.push(SelectAction::Joints(vec![end]));
             }
         }
     });
-    let selected = session.selection().active();
-    let is_of_limb = |joint| rig.limb_target_of(joint).is_some();
-    let why = match selected.and_then(|joint| Some((joint, rig.skeleton.joint(joint)?))) {
-        None => "Select another limb's joint to see it here".to_owned(),
-        Some((joint, _)) if is_of_limb(joint) => "The limb of the selected joint".to_owned(),
-        Some((_, joint)) => format!("{} is in no limb", joint.name),
-    };
-    ui.add(Label::new(RichText::new(why).weak().small()).truncate());
     ui.add_space(4.0);
+}
+
+/// Says why a limb of a figure is shown, or that the selected joint is in none. Returns whether a limb
+/// is shown.
+fn limb_of_selection(ui: &mut Ui, session: &Session) -> bool {
+    if session.shows_limb_of_selection() {
+        let why = match session.selection().active() {
+            None => {
+                "Its bones are coloured in the view. Select a joint of another limb to see that one."
+            }
+            Some(_) => "The limb of the selected joint; its bones are coloured in the view.",
+        };
+        ui.label(RichText::new(why).weak());
+        ui.add_space(4.0);
+        return true;
+    }
+    let joint = session.selection().active().and_then(|it| session.skeleton().joint(it));
+    let name = joint.map_or("–", |joint| joint.name.as_str());
+    ui.label(format!(
+        "{name} is in no limb. Choose a limb above, or select a joint of an arm or a leg."
+    ));
+    false
 }
 
 /// The name of what a limb's target moves.

@@ -43,10 +43,11 @@ fn rotation(ui: &mut Ui, session: &Session, index: JointId, joint: &Joint, actio
     if let Some(target) = session.rig().target_that_turns(index)
         && let Some((_, end)) = targets::end(session.rig(), target)
     {
-        let how = if target.influence < 1.0 { "Blended with" } else { "Posed by" };
-        ui.weak(format!("{how} the target of {end}; below are the FK angles."));
+        let how =
+            if target.influence < 1.0 { "poses this joint in part" } else { "poses this joint" };
+        ui.weak(format!("The target of {end} {how}. The angles are those without it (FK)."));
     } else if session.rig().is_pulled(index) {
-        ui.weak("Follows hands and feet where they cannot reach; below are the FK angles.");
+        ui.weak("Follows hands and feet where they cannot reach. The angles are those without them (FK).");
     }
     for axis in RotationAxis::ALL {
         let label = axis.name();

@@ -29,7 +29,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
     let is_limb = session.rig().sole_limb().is_some();
     let state = ui.make_persistent_id(("outliner", is_limb));
     let mut state = CollapsingState::load_with_default_open(ui, state, !is_limb);
-    let [first, most] = [0.34, 0.6].map(|part| (part * ui.available_height()).max(LEAST_HEIGHT));
+    let [first, most] = [0.42, 0.6].map(|part| (part * ui.available_height()).max(LEAST_HEIGHT));
     // The panel around it has a margin.
     let frame = Frame::side_top_panel(ui.style());
     let panel = match state.is_open() {
@@ -56,7 +56,7 @@ pub(in crate::ui) fn panel(ui: &mut Ui, session: &Session, actions: &mut Actions
 
 /// Least and first height of the open panel, in points.
 const LEAST_HEIGHT: f32 = 150.0;
-const HEIGHT: f32 = 268.0;
+const HEIGHT: f32 = 308.0;
 
 /// Shows the title and the filter, and returns what is typed there.
 fn heading(ui: &mut Ui, session: &Session, state: &mut CollapsingState) -> String {
@@ -121,6 +121,8 @@ fn tree(ui: &mut Ui, session: &Session, filter: &str, actions: &mut Actions) {
     let whole = ui.available_rect_before_wrap();
     let lines = if whole.width() < ONE_LINE { 2.0 } else { 1.0 };
     let (above, below) = whole.split_top_bottom_at_y(whole.bottom() - lines * LEGEND);
+    // Whole rows.
+    let above = above.with_max_y(above.top() + (above.height() / ROW).floor() * ROW);
     let mut inside = ui.new_child(UiBuilder::new().max_rect(above));
     let area = ScrollArea::both().auto_shrink([false, false]);
     let mut pointed = None;

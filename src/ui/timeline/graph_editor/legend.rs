@@ -2,8 +2,8 @@
 //! curves.
 
 use egui::{
-    Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 
 use crate::document::Channel;
@@ -12,9 +12,11 @@ use crate::session::{Actions, SelectAction, Session};
 use crate::ui::labels;
 use crate::ui::timeline::context_menu;
 use crate::ui::timeline::rows::{self, ROW, TimelineAreas, VALUES};
+use crate::ui::widgets::AXES;
 
-/// Width in points of one colour beside a name.
+/// Width in points of one colour beside a name, and of a letter x, y or z in its colour.
 const SWATCH: f32 = 6.0;
+const LETTER: f32 = 10.0;
 
 /// A listed channel, with the colours of its curves.
 pub(in crate::ui::timeline) struct LegendEntry {
@@ -92,12 +94,19 @@ fn channel_name(
     let (rect, response) = item(ui, id, is_selected, &format!("Curve of {full}"));
     let indent = if labels::joint_of_channel(session, *channel).is_some() { 18.0 } else { 10.0 };
     let y = rect.center().y;
+    let has_axes = colours.len() == AXES.len();
+    let swatch = if has_axes { LETTER } else { SWATCH };
     for (place, colour) in colours.iter().enumerate() {
-        let x = rect.left() + indent + SWATCH * place as f32;
+        let x = rect.left() + indent + swatch * place as f32;
         let colour = if *is_drawn { *colour } else { colour.gamma_multiply(0.35) };
-        ui.painter().hline(x..=x + SWATCH - 1.5, y, Stroke::new(3.0, colour));
+        if has_axes {
+            let font = TextStyle::Body.resolve(ui.style());
+            ui.painter().text(pos2(x, y), Align2::LEFT_CENTER, AXES[place], font, colour);
+        } else {
+            ui.painter().hline(x..=x + swatch - 1.5, y, Stroke::new(3.0, colour));
+        }
     }
-    let left = rect.left() + indent + SWATCH * colours.len() as f32 - 5.0;
+    let left = rect.left() + indent + swatch * colours.len() as f32 - 5.0;
     let beside = Rect::from_min_max(pos2(left, rect.top()), rect.max);
     let colour = match (is_selected || response.hovered(), is_drawn) {
         (true, _) => ui.visuals().strong_text_color(),

@@ -336,6 +336,7 @@ fn text(session: &Session, target: &Target, report: &TargetReport) -> String {
             format!("Not reached: {missing}")
         }
         TargetOutcome::WholeBody(report) => match report.status {
+            Status::Converged if report.iterations == 0 => "Reached".to_owned(),
             Status::Converged => format!("Reached after {} iterations", report.iterations),
             Status::Iterating | Status::Stalled | Status::OutOfIterations | Status::Bounded => {
                 format!("Not reached: {gap} away, {}", report.status)
