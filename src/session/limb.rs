@@ -1,8 +1,6 @@
 use crate::document::{Document, LengthFormat, Posed};
 use crate::kinematics::skeleton::JointId;
 use crate::rig::LimbFrames;
-use crate::session::Session;
-use crate::session::preferences::PanelTab;
 use crate::words::LimbWords;
 
 /// The limb that pages and guides are about: that of the selected joint, else the first.
@@ -43,22 +41,5 @@ impl ShownLimb {
     /// The format of the limb's lengths.
     pub fn lengths(&self) -> LengthFormat {
         LengthFormat::of_limb(self.frames.bones())
-    }
-}
-
-impl Session {
-    /// True if the limb that pages are about is that of the selection: no joint is selected, or one of
-    /// a limb.
-    pub fn shows_limb_of_selection(&self) -> bool {
-        let is_of_limb = |joint| self.rig().limb_target_of(joint).is_some();
-        self.selection().active().is_none_or(is_of_limb)
-    }
-
-    /// True if the open page is about a limb.
-    pub(in crate::session) fn shows_limb(&self) -> bool {
-        let preferences = self.preferences();
-        let is_about_limb =
-            matches!(preferences.tab, PanelTab::Triangle | PanelTab::Twist | PanelTab::Reach);
-        preferences.explain && is_about_limb && self.shows_limb_of_selection()
     }
 }

@@ -26,8 +26,6 @@ pub struct Overlays {
     pub hovered: Option<JointId>,
     /// The line of the limb's figures that lights up.
     pub figure: Option<LimbFigure>,
-    /// True if a page is about the limb of a figure, whose bones are then seen in its skin.
-    pub shows_limb: bool,
     /// The joints that keep a tip from its target.
     pub concerned: Vec<JointId>,
     /// Shown iterates of the solver run or of the comparison.
@@ -238,7 +236,6 @@ impl Session {
         overlays.figure = self.selection().figure();
         overlays.concerned.clear();
         let is_figure = self.rig().sole_limb().is_none();
-        overlays.shows_limb = is_figure && self.shows_limb();
         if let (Some(found), true) =
             (self.why(false).first(), is_figure && self.solvers().is_idle())
         {

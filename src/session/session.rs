@@ -7,7 +7,7 @@ use super::inspections::{InspectionJob, Inspections};
 use super::limb::ShownLimb;
 use super::playback::Playback;
 use super::pops::CursorMove;
-use super::preferences::Preferences;
+use super::preferences::{PanelTab, Preferences};
 use super::reach_regions::ReachRegions;
 use super::selection::Selection;
 use super::shell::Shell;
@@ -217,6 +217,23 @@ impl Session {
     /// `None` without a limb.
     pub fn limb(&self) -> Option<&ShownLimb> {
         self.evaluated.limb()
+    }
+
+    /// True if the limb that pages are about is that of the selection: no joint is selected, or one of
+    /// a limb.
+    pub fn shows_limb_of_selection(&self) -> bool {
+        let is_of_limb = |joint| self.rig().limb_target_of(joint).is_some();
+        self.selection().active().is_none_or(is_of_limb)
+    }
+
+    /// The limb of a figure that the open page is about.
+    pub fn limb_of_page(&self) -> Option<&ShownLimb> {
+        let preferences = self.preferences();
+        let is_about_limb =
+            matches!(preferences.tab, PanelTab::Triangle | PanelTab::Twist | PanelTab::Reach);
+        let is_figure = self.rig().sole_limb().is_none();
+        let is_shown = preferences.explain && is_about_limb && self.shows_limb_of_selection();
+        self.limb().filter(|_| is_figure && is_shown)
     }
 
     /// The pose of the skeleton at the playhead, in world space.

@@ -68,6 +68,8 @@ pub fn install(ctx: &Context) {
             spacing.scroll.floating_allocated_width = 6.0;
             // Seen also while the mouse is elsewhere: panels show that they scroll.
             spacing.scroll.dormant_handle_opacity = 0.35;
+            // Faded rows look disabled.
+            spacing.scroll.fade.strength = 0.0;
             spacing.window_margin = egui::Margin::same(12);
             spacing.tooltip_width = 320.0;
             let size = |size| FontId::new(size, FontFamily::Proportional);

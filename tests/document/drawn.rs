@@ -96,26 +96,6 @@ fn a_hand_casts_one_shadow_that_ends_among_its_fingertips() {
 }
 
 #[test]
-fn the_limb_of_a_page_has_its_two_bones_in_the_skin() {
-    let mut session = Session::default();
-    session.apply(open_example("human"));
-    let posed = session.shown().at(0.0);
-    let bones = |shows_limb| {
-        let overlays = Overlays { shows_limb, ..Overlays::default() };
-        let scene = Scene::new(&posed, &overlays, Theme::Dark);
-        let limbs = [scene.palette.upper, scene.palette.lower];
-        let coloured = scene.guide_solids.iter().filter(|it| limbs.contains(&it.colour));
-        coloured.map(|it| it.transform.translation.into()).collect::<Vec<Vec3>>()
-    };
-    assert_eq!(bones(false), []);
-    let joint = |name| posed.skeleton().base(posed.skeleton().find(name).expect("a joint"));
-    for (found, base) in bones(true).iter().zip([joint("left_upper_arm"), joint("left_forearm")]) {
-        assert!(found.distance(base) < 1e-4, "{found}, not {base}");
-    }
-    assert_eq!(bones(true).len(), 2);
-}
-
-#[test]
 fn a_skin_stands_for_the_limbs_of_an_arm_and_colours_its_hand() {
     let mut document = Document::default();
     document.rig.skin = Some(Skin::from_bones(&document.rig.skeleton));

@@ -168,7 +168,7 @@ fn names_of_the_arm_are_on_a_side_without_limbs() {
 }
 
 #[test]
-fn a_hand_with_handles_has_the_name_of_the_cursor_and_the_others_keep_theirs() {
+fn a_hand_with_handles_has_no_name_and_the_others_keep_theirs() {
     let document = Document::default();
     let names = |has_handles| {
         let overlays = Overlays { has_handles, ..Overlays::default() };
@@ -176,5 +176,5 @@ fn a_hand_with_handles_has_the_name_of_the_cursor_and_the_others_keep_theirs() {
         scene.labels.iter().map(|label| scene.text(label).to_owned()).collect::<Vec<_>>()
     };
     assert_eq!(names(false), ["Root", "Elbow", "Hand", "Pointer"]);
-    assert_eq!(names(true), ["Root", "Elbow", "Cursor", "Pointer"]);
+    assert_eq!(names(true), ["Root", "Elbow", "Pointer"]);
 }

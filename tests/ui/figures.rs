@@ -63,7 +63,7 @@ fn the_page_of_a_figure_names_its_limb_and_chooses_another_one() {
     let mut bench = Bench::example("human");
     bench.show_tab(PanelTab::Triangle);
     assert!(bench.says("Select a joint of another limb"));
-    let bones = |bench: &Bench| bench.session().overlays().shows_limb;
+    let bones = |bench: &Bench| bench.session().limb_of_page().is_some();
     assert!(bones(&bench));
     bench.apply([SelectAction::Joints(vec![bench.joint("head")])]);
     assert!(bench.says("head is in no limb") && !bench.says("Law of cosines"));

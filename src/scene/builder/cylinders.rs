@@ -86,9 +86,6 @@ impl<'a> CylinderLimb<'a> {
                 LimbPart::Hand => overlays.has_handles && is_posing,
                 _ => false,
             });
-            if overlays.has_handles && is_posing && display.shows(Overlay::Cursor) {
-                self.add_name_of_cursor(scene);
-            }
         }
         if display.shows(Overlay::Shadow) {
             self.add_shadows(scene);
@@ -202,14 +199,6 @@ impl<'a> CylinderLimb<'a> {
                 scene.add_label(label, format_args!("{name}"));
             }
         }
-    }
-
-    /// Adds the name of the Cursor, clear of its handles.
-    fn add_name_of_cursor(&self, scene: &mut Scene) {
-        let at = self.frames.origin(LimbPart::Cursor);
-        let radius = TARGET_BALL * self.thickness;
-        let label = Label::new(at, radius, LabelSide::BelowLeft, scene.palette.text);
-        scene.add_label(label.clear_of_handles(), format_args!("Cursor"));
     }
 
     fn add_shadows(&self, scene: &mut Scene) {

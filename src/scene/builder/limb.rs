@@ -6,8 +6,8 @@ use glam::{Mat3, Vec3};
 use super::{figure, twist};
 use crate::document::{Display, Overlay, Posed};
 use crate::kinematics::skeleton::JointId;
-use crate::rig::{LimbFrames, LimbPart, TaperedCylinder};
-use crate::scene::{Globe, Label, LabelSide, Palette, Scene, Solid, SphereShell};
+use crate::rig::{LimbFrames, LimbPart};
+use crate::scene::{Globe, Label, LabelSide, Scene, Solid, SphereShell};
 use crate::session::{Overlays, ShownLimb};
 
 /// Adds the guides of a limb that the display shows, and the figure that lights up.
@@ -18,9 +18,6 @@ pub(super) fn add_guides(
     display: Display,
 ) {
     add_pointer_and_limits(scene, limb, display);
-    if overlays.shows_limb && display.shows(Overlay::Skin) && !display.shows_bones_in_skin() {
-        add_bones(scene, limb);
-    }
     if display.shows(Overlay::SingularityGlobe) {
         scene.add_globe(Globe {
             centre: limb.origin(LimbPart::Root),
@@ -57,25 +54,6 @@ pub(super) fn add_circles(scene: &mut Scene, posed: &Posed, selected: Option<Joi
     for limb in limbs().filter_map(|target| posed.limb_frames(target.joint)) {
         twist::add_circle(scene, &limb, false);
     }
-}
-
-/// Adds thin bones in the colours of the page about the limb, which its skin lets through faintly.
-fn add_bones(scene: &mut Scene, limb: &LimbFrames) {
-    /// Ratio of their radii to those of an arm's limbs.
-    const THIN: f32 = 0.3;
-    let Palette { upper, lower, .. } = scene.palette;
-    let bones =
-        [(LimbPart::UpperLimb, limb.upper(), upper), (LimbPart::LowerLimb, limb.lower(), lower)];
-    scene.guide_solids.extend(bones.map(|(part, shape, colour)| Solid {
-        transform: limb.world(part),
-        shape: TaperedCylinder {
-            base_radius: THIN * shape.base_radius,
-            tip_radius: THIN * shape.tip_radius,
-            ..shape
-        },
-        colour,
-        winding: None,
-    }));
 }
 
 fn add_pointer_and_limits(scene: &mut Scene, limb: &LimbFrames, display: Display) {

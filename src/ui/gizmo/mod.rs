@@ -6,5 +6,5 @@ pub(in crate::ui) mod screen;
 mod skeleton;
 mod twist_ring;
 
-pub(in crate::ui) use screen::{aims, freedom, locked_axis};
+pub(in crate::ui) use screen::{aims, freedom, limb_of_page, locked_axis};
 pub(in crate::ui) use skeleton::Gizmo;

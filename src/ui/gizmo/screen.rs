@@ -6,8 +6,9 @@ use core::f32::consts::TAU;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, TextStyle, Ui, Vec2, vec2};
 use glam::Vec3;
 
-use crate::document::{Camera, Projection, Ray};
+use crate::document::{Camera, Overlay, Projection, Ray};
 use crate::kinematics::chain_ik::Ellipsoid;
+use crate::rig::LimbPart;
 use crate::session::{Constraint, Drag, Session};
 use crate::ui::style;
 
@@ -93,6 +94,26 @@ pub(in crate::ui) fn locked_axis(
     }
 }
 
+/// Draws the two bones of the limb that a page is about, in the colours that they have there.
+pub(in crate::ui) fn limb_of_page(
+    painter: &Painter,
+    ui: &Ui,
+    screen: &ScreenProjection,
+    session: &Session,
+) {
+    let Some(limb) = session.limb_of_page() else { return };
+    let joints = [LimbPart::Root, LimbPart::Elbow, LimbPart::Hand];
+    let places = joints.map(|part| screen.place(limb.frames.origin(part)));
+    let [Some(base), Some(middle), Some(end)] = places else { return };
+    let palette = style::palette(ui);
+    let [upper, lower] = [palette.upper, palette.lower].map(style::colour);
+    painter.line_segment([base, middle], Stroke::new(3.0, upper));
+    painter.line_segment([middle, end], Stroke::new(3.0, lower));
+    for (at, colour) in [(base, upper), (middle, lower)] {
+        painter.circle_filled(at, 4.0, colour);
+    }
+}
+
 /// Draws the lines from the joints of targets that aim to the points that they aim at, with the names
 /// of the joints there; the line of the selected joint in the accent colour, with its name below the
 /// handles.
@@ -116,7 +137,8 @@ pub(in crate::ui) fn aims(
         let weak = ui.visuals().weak_text_color();
         let stroke = Stroke::new(1.5, if is_selected { style::accent(ui) } else { weak });
         painter.extend(Shape::dashed_line(&[from, to], stroke, DASH, DASH));
-        if let Some(joint) = session.rig().skeleton.joint(target.joint) {
+        let has_name = session.shown().display.shows(Overlay::Labels);
+        if let Some(joint) = session.rig().skeleton.joint(target.joint).filter(|_| has_name) {
             let text = format!("{} aims here", joint.name);
             let font = TextStyle::Body.resolve(ui.style());
             let text = painter.layout_no_wrap(text, font, ui.visuals().text_color());

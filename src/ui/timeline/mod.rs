@@ -37,7 +37,7 @@ pub(in crate::ui) fn height(ui: &Ui, session: &Session) -> f32 {
         true => ROWS.1,
         false => rows::rows(session, &FoldedJoints::kept(ui)).len() + 1,
     };
-    rows::RULER + rows::ROW * rows.clamp(ROWS.0, ROWS.1) as f32
+    rows::RULER + rows::ROW * rows.clamp(ROWS.0, ROWS.1) as f32 + 8.0
 }
 
 /// Shows the timeline.

@@ -12,7 +12,7 @@ use egui::{
 use glam::Vec3;
 
 use super::gizmo::screen::ScreenProjection;
-use super::gizmo::{Gizmo, aims, freedom, locked_axis};
+use super::gizmo::{Gizmo, aims, freedom, limb_of_page, locked_axis};
 use super::keyboard::{self, focus};
 use super::{commands, pose_summary, status_bar};
 use crate::document::Ray;
@@ -57,8 +57,11 @@ pub(in crate::ui) fn ui(ui: &mut Ui, session: &Session, actions: &mut Actions) -
         light_up(ui, session, lit, actions);
     }
     notes::drag_the_hand(ui, session, &screen);
+    if session.crowd().is_none() {
+        limb_of_page(&ui.painter().with_clip_rect(rect), ui, &screen, session);
+        aims(&ui.painter().with_clip_rect(rect), ui, &screen, session);
+    }
     locked_axis(&ui.painter().with_clip_rect(rect), ui, &screen, session);
-    aims(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     freedom(&ui.painter().with_clip_rect(rect), ui, &screen, session);
     gizmo.paint(&ui.painter().with_clip_rect(rect), ui, pointed, held_grip);
     view_axes(ui, rect, session, actions);

@@ -9,7 +9,7 @@ mod reach;
 mod triangle;
 mod twist_references;
 
-use egui::{Align, Label, Layout, Pos2, RichText, Stroke, Ui, vec2};
+use egui::{Align, Frame, Label, Layout, Margin, Pos2, RichText, Stroke, Ui, vec2};
 
 use crate::document::Overlay;
 use crate::rig::LimbPart;
@@ -29,7 +29,7 @@ pub(in crate::ui) fn triangle(
     let limb = titled_limb(ui, session, actions)?;
     let lit = &mut Lit::new(session);
     triangle::ui(ui, limb, lit);
-    sentence(ui, session, limb);
+    caption(ui, session, limb);
     widgets::section(ui, "Hierarchy", |ui| hierarchy(ui, session, limb, lit, actions));
     widgets::section(ui, "Pointer", |ui| pointer::ui(ui, limb, lit));
     let title = format!("{} triangle", capital(limb.words.middle));
@@ -88,7 +88,7 @@ fn titled_limb<'a>(
     match limb {
         Some(limb) if session.rig().sole_limb().is_none() => {
             choose_limb(ui, session, limb, actions);
-            return limb_of_selection(ui, session).then_some(limb);
+            return limb_of_selection(ui, session, actions).then_some(limb);
         }
         Some(_) => {}
         None => {
@@ -119,9 +119,9 @@ fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut A
     ui.add_space(4.0);
 }
 
-/// Says why a limb of a figure is shown, or that the selected joint is in none. Returns whether a limb
-/// is shown.
-fn limb_of_selection(ui: &mut Ui, session: &Session) -> bool {
+/// Says why a limb of a figure is shown, or that the selected joint is in none, with a button for each
+/// limb. Returns whether a limb is shown.
+fn limb_of_selection(ui: &mut Ui, session: &Session, actions: &mut Actions) -> bool {
     if session.shows_limb_of_selection() {
         let why = match session.selection().active() {
             None => {
@@ -135,9 +135,18 @@ fn limb_of_selection(ui: &mut Ui, session: &Session) -> bool {
     }
     let joint = session.selection().active().and_then(|it| session.skeleton().joint(it));
     let name = joint.map_or("–", |joint| joint.name.as_str());
-    ui.label(format!(
-        "{name} is in no limb. Choose a limb above, or select a joint of an arm or a leg."
-    ));
+    ui.label(format!("{name} is in no limb. See one:"));
+    ui.add_space(4.0);
+    let rig = session.rig();
+    ui.horizontal_wrapped(|ui| {
+        for target in rig.targets.iter().filter(|target| target.limb().is_some()) {
+            let end = rig.end_of(target);
+            let tooltip = "Select the end of this limb";
+            if widgets::button(ui, &rig.skeleton[end].name, tooltip, None) {
+                actions.push(SelectAction::Joints(vec![end]));
+            }
+        }
+    });
     false
 }
 
@@ -163,6 +172,18 @@ pub(in crate::ui) fn closed_form(ui: &mut Ui, session: &Session) {
         "A longer chain has many poses with its tip at the target. A solver finds one of them step by \
          step. The solvers below do so for these two limbs, too.",
     );
+}
+
+/// Shows the sentence on a limb as the lower part of the figure's card.
+fn caption(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
+    const MARGIN: f32 = 8.0;
+    let under = ui.painter().add(egui::Shape::Noop);
+    let top = ui.cursor().top();
+    let inside = Frame::NONE.inner_margin(Margin::symmetric(MARGIN as i8, 0));
+    let card = inside.show(ui, |ui| sentence(ui, session, limb)).response.rect;
+    let card = card.with_min_y(top - 2.0 * MARGIN).with_max_x(ui.max_rect().right());
+    let fill = ui.visuals().extreme_bg_color;
+    ui.painter().set(under, egui::Shape::rect_filled(card, 6.0, fill));
 }
 
 fn sentence(ui: &mut Ui, session: &Session, limb: &ShownLimb) {
