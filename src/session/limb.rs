@@ -33,9 +33,8 @@ impl ShownLimb {
     fn target(document: &Document, selected: Option<JointId>) -> Option<JointId> {
         let rig = &document.rig;
         let of_selected = selected.and_then(|joint| rig.limb_target_of(joint));
-        let first = || rig.targets.iter().position(|it| it.limb().is_some());
-        let index = of_selected.or_else(first)?;
-        Some(rig.targets[index].joint)
+        let shown = of_selected.map(|index| &rig.targets[index]);
+        Some(shown.or_else(|| rig.limb_targets().next())?.joint)
     }
 
     /// The format of the limb's lengths.

@@ -156,6 +156,11 @@ impl SkeletonRig {
         limb.into_iter().flat_map(Limb::joints)
     }
 
+    /// The targets that move a limb.
+    pub fn limb_targets(&self) -> impl Iterator<Item = &Target> {
+        self.targets.iter().filter(|target| target.limb().is_some())
+    }
+
     /// Index in [`Self::targets`] of the limb target whose limb has a joint, as the upper joint's
     /// bone, the lower one's, one between them, or the end.
     pub fn limb_target_of(&self, joint: JointId) -> Option<usize> {

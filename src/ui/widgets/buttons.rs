@@ -73,7 +73,15 @@ pub(in crate::ui) struct IconButton<'a> {
     pub disabled: Option<&'a str>,
 }
 
-impl IconButton<'_> {
+impl<'a> IconButton<'a> {
+    /// Size in points.
+    pub const SIZE: Vec2 = vec2(28.0, 24.0);
+
+    /// A button that is not a toggle.
+    pub fn new(icon: Icon, name: &'a str, tooltip: &'a str, disabled: Option<&'a str>) -> Self {
+        Self { icon, name, tooltip, on: None, disabled }
+    }
+
     /// Shows the button and returns whether it was pressed.
     pub fn show(self, ui: &mut Ui) -> bool {
         let enabled = self.disabled.is_none();
@@ -85,7 +93,7 @@ impl IconButton<'_> {
     }
 
     fn button(&self, ui: &mut Ui) -> Response {
-        let (rect, response) = ui.allocate_exact_size(vec2(28.0, 24.0), Sense::click());
+        let (rect, response) = ui.allocate_exact_size(Self::SIZE, Sense::click());
         let enabled = ui.is_enabled();
         response.widget_info(|| match self.on {
             Some(on) => WidgetInfo::selected(Role::Button, enabled, on, self.name),

@@ -108,7 +108,7 @@ fn choose_limb(ui: &mut Ui, session: &Session, limb: &ShownLimb, actions: &mut A
     let tooltip = "Choose the limb that this page is about; selecting one of its joints does, too";
     let choice = Choice { label: "Limb of", name: "Limb", tooltip, shown: &shown };
     choice.show(ui, |list| {
-        for target in rig.targets.iter().filter(|target| target.limb().is_some()) {
+        for target in rig.limb_targets() {
             let end = rig.end_of(target);
             let is_shown = session.shows_limb_of_selection() && target.joint == limb.target;
             if list.item(is_shown, &rig.skeleton[end].name, "", None) {
@@ -139,7 +139,7 @@ fn limb_of_selection(ui: &mut Ui, session: &Session, actions: &mut Actions) -> b
     ui.add_space(4.0);
     let rig = session.rig();
     ui.horizontal_wrapped(|ui| {
-        for target in rig.targets.iter().filter(|target| target.limb().is_some()) {
+        for target in rig.limb_targets() {
             let end = rig.end_of(target);
             let tooltip = "Select the end of this limb";
             if widgets::button(ui, &rig.skeleton[end].name, tooltip, None) {

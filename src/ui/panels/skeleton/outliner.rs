@@ -428,25 +428,22 @@ fn respond(
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let selected = session.selection().active();
     let none = selected.is_none().then_some(NONE_SELECTED);
-    let pressed = |ui: &mut Ui, icon, name, tooltip, disabled| {
-        IconButton { icon, name, tooltip, on: None, disabled }.show(ui)
-    };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let tooltip = "Add a child joint (A, or Ctrl+click in the viewport)";
-        if pressed(ui, Icon::AddChild, "Add child", tooltip, None) {
+        if IconButton::new(Icon::AddChild, "Add child", tooltip, None).show(ui) {
             actions.push(JointEdit::AddJoint { tip: None });
         }
         let tooltip = "Add a root joint, the start of another tree";
-        if pressed(ui, Icon::AddRoot, "Add root", tooltip, None) {
+        if IconButton::new(Icon::AddRoot, "Add root", tooltip, None).show(ui) {
             actions.push(JointEdit::AddRoot);
         }
         let tooltip = "Delete the selected joints (Delete)";
-        if pressed(ui, Icon::Delete, "Delete", tooltip, none) {
+        if IconButton::new(Icon::Delete, "Delete", tooltip, none).show(ui) {
             actions.push(commands::delete(session));
         }
         let tooltip = "Rename the selected joint (F2)";
-        if pressed(ui, Icon::Rename, "Rename…", tooltip, none)
+        if IconButton::new(Icon::Rename, "Rename…", tooltip, none).show(ui)
             && let Some(joint) = selected
         {
             actions.push(commands::rename(session, joint));
@@ -459,7 +456,7 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
             let tooltip = "Add a target for the selected joint's tip (T)";
             (Icon::AddTarget, "Add target", tooltip)
         };
-        if pressed(ui, icon, name, tooltip, none) {
+        if IconButton::new(icon, name, tooltip, none).show(ui) {
             actions.extend(commands::toggle_target(session));
         }
     });
