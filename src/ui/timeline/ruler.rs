@@ -11,6 +11,7 @@ use super::value_scale::ValueScales;
 use crate::document::{LostSpan, Timeline};
 use crate::rig::RigPop;
 use crate::session::{Actions, PlaybackAction, Session};
+use crate::ui::widgets::text;
 use crate::ui::{style, widgets};
 use crate::words;
 
@@ -160,18 +161,11 @@ fn paint(ui: &Ui, scale: TimeScale, timeline: Timeline, rect: Rect) {
     for (x, _) in ticks.lines(scale, timeline, ticks.minor) {
         painter.vline(x, rect.bottom() - 4.0..=rect.bottom(), Stroke::new(1.0, weak));
     }
-    for (x, label) in ticks.lines(scale, timeline, ticks.major) {
+    let digits = ticks.major.digits(timeline);
+    for (x, time) in ticks.lines(scale, timeline, ticks.major) {
         painter.vline(x, rect.bottom() - 7.0..=rect.bottom(), Stroke::new(1.0, strong));
-        // All labels have one unit: frames, where frames are labelled.
-        let (text, colour) = match (label, ticks.major) {
-            (RulerLabel::Second(second), RulerStep::Seconds(_)) => (format!("{second} s"), strong),
-            (RulerLabel::Second(second), RulerStep::Frames(_)) => {
-                (format!("f {:.0}", second as f64 * timeline.frame_rate), strong)
-            }
-            (RulerLabel::Frame(frame), _) => (format!("f {frame}"), weak),
-        };
-        let at = pos2(x, rect.top() + 1.0);
-        painter.text(at, Align2::CENTER_TOP, text, font.clone(), colour);
+        let label = format!("{} s", text::fixed(time, digits));
+        painter.text(pos2(x, rect.top() + 1.0), Align2::CENTER_TOP, label, font.clone(), strong);
     }
 }
 
@@ -260,19 +254,23 @@ enum RulerStep {
     Seconds(i64),
 }
 
-/// The meaning of a line of the ruler. The number of a frame counts from time 0.
-#[derive(Clone, Copy)]
-enum RulerLabel {
-    Frame(i64),
-    Second(i64),
-}
-
 impl RulerStep {
     fn seconds(self, timeline: Timeline) -> f64 {
         match self {
             Self::Frames(frames) => frames as f64 / timeline.frame_rate,
             Self::Seconds(seconds) => seconds as f64,
         }
+    }
+
+    /// Decimals with which the times of lines in a row differ, in seconds: all that a round step has.
+    fn digits(self, timeline: Timeline) -> usize {
+        let span = self.seconds(timeline);
+        let is_exact = |digits: &usize| {
+            let parts = span * 10_f64.powi(*digits as i32);
+            (parts - parts.round()).abs() < 1e-6 * parts
+        };
+        let rounded = -span.log10();
+        (0..3).find(is_exact).unwrap_or(rounded.ceil().max(0.0) as usize)
     }
 
     /// True if every line of `other` is a line of this step, too.
@@ -294,15 +292,28 @@ fn frames_per_second(timeline: Timeline) -> Option<i64> {
     (rate.fract() == 0.0 && timeline.number(0.0).fract() == 0.0).then_some(rate as i64)
 }
 
+/// Numbers of frames, ascending, from one line to the next, within a second: one, two, and those whose
+/// times are round.
+fn frame_steps(timeline: Timeline) -> Vec<i64> {
+    const PARTS: [i64; 5] = [20, 10, 5, 4, 2];
+    let mut steps = vec![1, 2];
+    match frames_per_second(timeline) {
+        Some(rate) => {
+            steps.retain(|frames| rate % frames == 0);
+            steps.extend(PARTS.iter().filter(|part| rate % **part == 0).map(|part| rate / part));
+        }
+        None => steps.extend([5, 10]),
+    }
+    steps.retain(|frames| (*frames as f64) < timeline.frame_rate);
+    steps.sort_unstable();
+    steps
+}
+
 impl RulerTicks {
     fn new(scale: TimeScale, timeline: Timeline) -> Self {
         const SECONDS: [i64; 16] =
             [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200, 86_400];
-        let rate = frames_per_second(timeline);
-        let is_part = |frames: &i64| {
-            (*frames as f64) < timeline.frame_rate && rate.is_none_or(|rate| rate % frames == 0)
-        };
-        let frames = [1, 2, 3, 5, 6, 10, 15].into_iter().filter(is_part).map(RulerStep::Frames);
+        let frames = frame_steps(timeline).into_iter().map(RulerStep::Frames);
         let steps: Vec<RulerStep> = frames.chain(SECONDS.map(RulerStep::Seconds)).collect();
         let points = |step: RulerStep| step.seconds(timeline) * scale.points_per_second();
         let labelled = steps.iter().copied().find(|step| points(*step) >= LABEL);
@@ -312,31 +323,24 @@ impl RulerTicks {
         Self { major, minor }
     }
 
-    /// The x on screen and the label of each visible line of a step.
+    /// The x on screen and the time in seconds of each visible line of a step.
     fn lines(
         &self,
         scale: TimeScale,
         timeline: Timeline,
         step: RulerStep,
-    ) -> impl Iterator<Item = (f32, RulerLabel)> + use<> {
+    ) -> impl Iterator<Item = (f32, f64)> + use<> {
         let (from, to) = scale.range();
         let shift = match step {
             RulerStep::Frames(_) => timeline.time_of_number(0.0),
             RulerStep::Seconds(_) => 0.0,
         };
-        let rate = frames_per_second(timeline);
         let span = step.seconds(timeline);
         let index = |time: f64| (time - shift) / span;
         let (first, last) = (index(from).ceil() as i64, index(to).floor() as i64);
         (first..=last).map(move |index| {
-            let label = match (step, rate) {
-                (RulerStep::Seconds(seconds), _) => RulerLabel::Second(index * seconds),
-                (RulerStep::Frames(frames), Some(rate)) if index * frames % rate == 0 => {
-                    RulerLabel::Second(index * frames / rate)
-                }
-                (RulerStep::Frames(frames), _) => RulerLabel::Frame(index * frames),
-            };
-            (scale.x(index as f64 * span + shift), label)
+            let time = index as f64 * span + shift;
+            (scale.x(time), time)
         })
     }
 }
@@ -363,6 +367,22 @@ mod tests {
                     assert!(xs.len() <= 120, "{frame_rate}/s, {end} s: {} lines", xs.len());
                 }
             }
+        }
+    }
+
+    #[test]
+    fn labels_in_a_row_differ_and_short_ones_are_exact() {
+        let label = |frame_rate: f64, step: RulerStep, index: i64| {
+            let timeline = Timeline { start: 0.0, end: 9.0, frame_rate };
+            text::fixed(index as f64 * step.seconds(timeline), step.digits(timeline))
+        };
+        assert_eq!(label(30.0, RulerStep::Seconds(2), 3), "6");
+        assert_eq!(label(30.0, RulerStep::Frames(15), 3), "1.5");
+        assert_eq!(label(24.0, RulerStep::Frames(6), 3), "0.75");
+        for frame_rate in [1.0, 7.0, 24.0, 29.97, 30.0, 60.0, 1000.0] {
+            let times: Vec<String> =
+                (0..50).map(|frame| label(frame_rate, RulerStep::Frames(1), frame)).collect();
+            assert!(times.windows(2).all(|pair| pair[0] != pair[1]), "{times:?}");
         }
     }
 }

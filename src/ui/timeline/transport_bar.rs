@@ -71,20 +71,11 @@ pub(in crate::ui) fn whole(ui: &mut Ui, session: &Session, actions: &mut Actions
         ends(ui, session, roomy, actions);
         ui.add_space(gap);
         curves(ui, session, actions);
-        let hide = icon_button(Icon::Fold, "Hide timeline", "Hide the keys", None);
+        let hide = IconButton::new(Icon::Fold, "Hide timeline", "Hide the keys", None);
         if hide.show(ui) {
             actions.push(ViewAction::ShowTimeline(false));
         }
     });
-}
-
-fn icon_button<'a>(
-    icon: Icon,
-    name: &'a str,
-    tooltip: &'a str,
-    disabled: Option<&'a str>,
-) -> IconButton<'a> {
-    IconButton { icon, name, tooltip, on: None, disabled }
 }
 
 fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
@@ -92,14 +83,14 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let before = keyboard::key_before(session);
     let tooltip = "Go to the previous key (up arrow in the timeline)";
     let why = before.is_none().then_some("No key before the playhead");
-    if icon_button(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
+    if IconButton::new(Icon::PreviousKey, "Previous key", tooltip, why).show(ui) {
         actions.extend(before.map(PlaybackAction::SetTime));
     }
     play(ui, session, actions);
     let after = keyboard::key_after(session);
     let tooltip = "Go to the next key (down arrow in the timeline)";
     let why = after.is_none().then_some("No key after the playhead");
-    if icon_button(Icon::NextKey, "Next key", tooltip, why).show(ui) {
+    if IconButton::new(Icon::NextKey, "Next key", tooltip, why).show(ui) {
         actions.extend(after.map(PlaybackAction::SetTime));
     }
     to_end(ui, session, actions);
@@ -108,14 +99,14 @@ fn buttons(ui: &mut Ui, session: &Session, actions: &mut Actions) {
 
 fn to_start(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let tooltip = "Go to the start (Home in the timeline)";
-    if icon_button(Icon::Start, "To start", tooltip, None).show(ui) {
+    if IconButton::new(Icon::Start, "To start", tooltip, None).show(ui) {
         actions.push(PlaybackAction::SetTime(session.document().timeline.start));
     }
 }
 
 fn to_end(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let tooltip = "Go to the end (End in the timeline)";
-    if icon_button(Icon::End, "To end", tooltip, None).show(ui) {
+    if IconButton::new(Icon::End, "To end", tooltip, None).show(ui) {
         actions.push(PlaybackAction::SetTime(session.document().timeline.end));
     }
 }
@@ -135,7 +126,7 @@ fn play(ui: &mut Ui, session: &Session, actions: &mut Actions) {
     let tooltip = "Play or pause (Space)";
     let nothing = "Nothing to play: add keys at two times (K) or move a target";
     let disabled = (!playing && !session.document().is_moving()).then_some(nothing);
-    if (IconButton { icon, name, tooltip, on: None, disabled }).show(ui) {
+    if IconButton::new(icon, name, tooltip, disabled).show(ui) {
         actions.push(PlaybackAction::Play(!playing));
     }
 }
@@ -194,7 +185,8 @@ fn time(ui: &mut Ui, session: &Session, roomy: bool, actions: &mut Actions) {
         name: "Frame",
         label: "Frame",
         value: timeline.number(session.playback().time()).round() + 0.0,
-        unit: " f",
+        // Without its label the number needs a unit.
+        unit: if roomy { "" } else { " f" },
         speed: 0.25,
         width: 74.0,
         digits: 0,

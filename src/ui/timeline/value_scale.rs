@@ -85,6 +85,25 @@ impl ValueScales {
         Self(ValueKind::ALL.map(|kind| fitted(values(kind))))
     }
 
+    /// With the zeros of both axes at one height, for which each range becomes at most twice as long.
+    /// Unchanged if there is one axis alone, or one of them has no zero.
+    pub fn with_level_zeros(mut self, sides: AxisSides) -> Self {
+        let (Some(left), Some(right)) = (sides.left, sides.right) else { return self };
+        let [one, other] = [left, right].map(|kind| self.part(kind, 0.0));
+        let (lower, upper) = (one.min(other), one.max(other));
+        if lower <= 0.0 || upper >= 1.0 {
+            return self;
+        }
+        // The height at which both ranges grow by the same factor, 1 − lower + upper.
+        let zero = upper / (1.0 - lower + upper);
+        for kind in [left, right] {
+            let (low, high) = self.range(kind);
+            let span = (-low / zero).max(high / (1.0 - zero));
+            self.0[kind.index()] = (-zero * span, (1.0 - zero) * span);
+        }
+        self
+    }
+
     /// The scales that the user has set for the curves of `channels`; `None` if there are none.
     pub fn load(ui: &Ui, channels: &[Channel]) -> Option<Self> {
         let stored = ui.data(|data| data.get_temp::<StoredScales>(id()))?;
@@ -308,4 +327,38 @@ fn round_step(step: f64) -> f64 {
     let power = 10_f64.powf(step.max(1e-30).log10().floor());
     let steps = [1.0, 2.0, 2.5, 5.0].map(|times| times * power);
     steps.into_iter().find(|it| *it >= step).unwrap_or(10.0 * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AxisSides, ValueKind, ValueScales};
+
+    const SIDES: AxisSides =
+        AxisSides { left: Some(ValueKind::Angle), right: Some(ValueKind::Length) };
+
+    #[test]
+    fn zeros_of_both_axes_are_level_and_all_values_stay_in_view() {
+        for (angles, lengths) in
+            [((-10.0, 30.0), (-4.0, 1.0)), ((-1.0, 99.0), (-99.0, 1.0)), ((-2.0, 2.0), (-1.0, 3.0))]
+        {
+            let before = ValueScales([angles, lengths, (0.0, 1.0)]);
+            let after = before.with_level_zeros(SIDES);
+            let [one, other] =
+                [ValueKind::Angle, ValueKind::Length].map(|kind| after.part(kind, 0.0));
+            assert!((one - other).abs() < 1e-12, "{one} {other}");
+            for kind in [ValueKind::Angle, ValueKind::Length] {
+                let ((low, high), (least, greatest)) = (before.range(kind), after.range(kind));
+                assert!(least <= low + 1e-9 && greatest >= high - 1e-9);
+                assert!(greatest - least <= 2.0 * (high - low));
+            }
+        }
+    }
+
+    #[test]
+    fn an_axis_without_a_zero_keeps_its_scale() {
+        let scales = ValueScales([(-10.0, 30.0), (900.0, 1_100.0), (0.0, 1.0)]);
+        assert_eq!(scales.with_level_zeros(SIDES), scales);
+        let alone = AxisSides { right: None, ..SIDES };
+        assert_eq!(scales.with_level_zeros(alone), scales);
+    }
 }

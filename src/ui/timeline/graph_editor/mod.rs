@@ -141,6 +141,7 @@ fn scales(
             let curves = curves.iter().filter(move |curve| curve.kind == kind);
             curves.flat_map(|curve| &curve.line).map(|point| point[1])
         })
+        .with_level_zeros(sides(drawn))
     };
     let mut scales = stored.unwrap_or_else(fitting);
     scales.follow_input(ui, areas.keys, drawn, drag::is_panning(ui));
